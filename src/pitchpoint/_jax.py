@@ -1,0 +1,31 @@
+"""The one place that configures JAX: double precision and a private, persistent compilation cache."""
+
+import os
+import platform
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+
+__all__ = ["cache_folder", "jax", "jnp"]
+
+
+def cache_folder() -> Path:
+    """Folder of compiled programs: under the user's cache, one for each kind of machine."""
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return base / "pitchpoint" / f"xla-{platform.machine()}-{jax.__version__}"
+
+
+def _enable_cache() -> None:
+    folder = cache_folder()
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    except OSError:
+        return  # a read-only home costs compile time, nothing else
+    jax.config.update("jax_compilation_cache_dir", str(folder))
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+    jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+
+
+jax.config.update("jax_enable_x64", True)
+_enable_cache()

@@ -1,0 +1,123 @@
+"""Imports point one way, along the data flow; what `pitchpoint --help` touches is light."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import pitchpoint
+
+SOURCE = Path(pitchpoint.__file__).parent
+FLOW = (
+    {"errors", "units", "citations", "registry", "_jax"},
+    {"materials"},
+    {"contact"},
+    {"gears"},
+    {"loading"},
+    {"lubrication"},
+    {"efficiency"},
+    {"results"},
+    {"cases"},
+    {"views"},
+    {"cli", "__main__"},
+)
+RANK = {room: rank for rank, rooms in enumerate(FLOW) for room in rooms}
+HEAVY = {"jax", "equinox", "optimistix", "lineax", "numpy", "scipy", "pandas", "xarray", "plotly"}
+HEAVY |= {"h5netcdf", "h5py", "pint"}
+
+
+def absolute(node: ast.ImportFrom, package: tuple[str, ...]) -> str:
+    above = package[: len(package) - node.level + 1] if node.level else ()
+    return ".".join([*above, *filter(None, [node.module])])
+
+
+def imported(tree: ast.AST, package: tuple[str, ...]) -> Iterator[str]:
+    """Dotted name of everything that is imported, inside functions and type-checking blocks too."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield from (f"{absolute(node, package)}.{alias.name}" for alias in node.names)
+
+
+def edges(source: Path) -> Iterator[tuple[str, str, str]]:
+    """(file, room, room it imports) for each import of our own outside the root module."""
+    for file in sorted(source.rglob("*.py")):
+        inner = file.relative_to(source).with_suffix("").parts
+        if inner == ("__init__",):
+            continue
+        for name in imported(ast.parse(file.read_text("utf-8")), ("pitchpoint", *inner[:-1])):
+            root, _, rest = name.partition(".")
+            if root == "pitchpoint" and rest != "__version__":
+                yield "/".join(inner), inner[0], rest.split(".")[0]
+
+
+def backward(source: Path) -> list[str]:
+    return [
+        f"{file} imports pitchpoint.{target}"
+        for file, room, target in edges(source)
+        if room != target and not allowed(room, target)
+    ]
+
+
+def allowed(room: str, target: str) -> bool:
+    if room not in RANK or target not in RANK:
+        return False  # a room with no place in FLOW, or a public name taken through the root
+    return RANK[target] < RANK[room] or RANK[target] == RANK[room] == 0
+
+
+def test_imports_follow_the_data_flow() -> None:
+    assert backward(SOURCE) == []
+
+
+def test_every_room_has_a_place() -> None:
+    files = SOURCE.rglob("*.py")
+    rooms = {file.relative_to(SOURCE).with_suffix("").parts[0] for file in files} - {"__init__"}
+    assert rooms <= RANK.keys()
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "caught"),
+    [
+        ("gears/pair.py", "from pitchpoint.contact.hertz import line", False),
+        ("gears/pair.py", "from ..errors import InputError", False),
+        ("gears/pair.py", "from . import flank", False),
+        ("gears/pair.py", "from pitchpoint import __version__", False),
+        ("units.py", "from pitchpoint.errors import InputError", False),
+        ("gears/pair.py", "import pitchpoint.loading.sharing", True),
+        ("gears/pair.py", "def f():\n    from ..loading import sharing", True),
+        ("gears/pair.py", "from pitchpoint import views", True),
+        ("gears/pair.py", "from pitchpoint import SpurPair", True),
+        ("gears/internal/ring.py", "from ...cases import load", True),
+        ("attic/old.py", "from pitchpoint import errors", True),
+    ],
+)
+def test_the_check_sees(tmp_path: Path, file: str, line: str, caught: bool) -> None:
+    path = tmp_path / file
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(line, "utf-8")
+    assert bool(backward(tmp_path)) is caught
+
+
+HELP = """
+import sys
+from pitchpoint.cli import main
+sys.argv = ["pitchpoint", "--help"]
+try:
+    main()
+except SystemExit as stop:
+    assert not stop.code, stop.code
+"""
+
+
+@pytest.mark.parametrize("code", ["import pitchpoint", HELP], ids=["import", "help"])
+def test_nothing_heavy_is_loaded(code: str) -> None:
+    report = f"\nimport sys; print('loaded:', *(sys.modules.keys() & {HEAVY!r}))"
+    done = subprocess.run(
+        [sys.executable, "-c", code + report], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1].strip() == "loaded:"

@@ -1,0 +1,64 @@
+"""What is shipped: version, type marker, data files, locked requirements."""
+
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+
+import pitchpoint
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+LOCKS = {path.stem: path.read_text("utf-8") for path in (ROOT / "requirements").glob("*.lock")}
+
+
+def pins(lock: str) -> dict[str, str]:
+    return dict(re.findall(r"^([a-z0-9-]+)==([^ ]+)", LOCKS[lock], re.MULTILINE))
+
+
+def test_version_is_the_same_everywhere() -> None:
+    version = PROJECT["project"]["version"]
+    assert pitchpoint.__version__ == version
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text("utf-8")
+    assert version in (ROOT / "CHANGELOG.md").read_text("utf-8")
+
+
+def test_every_public_name_loads() -> None:
+    assert all(getattr(pitchpoint, name) is not None for name in dir(pitchpoint))
+    with pytest.raises(AttributeError, match="no attribute 'pitch_point'"):
+        _ = pitchpoint.pitch_point
+
+
+def test_wheel_holds_every_source_file(tmp_path: Path) -> None:
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
+    subprocess.run(build, cwd=ROOT, check=True, capture_output=True, timeout=120)
+    [wheel] = tmp_path.glob("*.whl")
+    shipped = set(zipfile.ZipFile(wheel).namelist())
+    files = [path for path in (ROOT / "src" / "pitchpoint").rglob("*") if path.is_file()]
+    wanted = {str(path.relative_to(ROOT / "src")) for path in files if path.suffix != ".pyc"}
+    assert "pitchpoint/py.typed" in shipped
+    assert wanted <= shipped
+
+
+def test_locks_name_no_address() -> None:
+    assert not [name for name, text in LOCKS.items() if "://" in text]
+
+
+def test_locks_agree() -> None:
+    assert pins("run").items() <= pins("dev").items()
+
+
+def test_locks_hold_what_the_project_asks_for() -> None:
+    groups = PROJECT["dependency-groups"]
+    wanted = {
+        "run": PROJECT["project"]["dependencies"] + groups["build"],
+        "dev": groups["dev"],
+    }
+    for lock, lines in wanted.items():
+        for asked in map(Requirement, lines):
+            assert pins(lock)[asked.name] in asked.specifier, asked
