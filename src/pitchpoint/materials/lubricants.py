@@ -1,0 +1,254 @@
+"""Lubricating oils: density, viscosity and pressure-viscosity coefficient against temperature."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from typing import Any
+
+import equinox as eqx
+from jax.typing import ArrayLike
+from jaxtyping import Array, Bool, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.errors import InputError, unknown_name
+from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
+from pitchpoint.materials.pressure_viscosity import gold_2001
+from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
+
+__all__ = ["Lubricant", "LubricantRecord", "base_oils", "catalogue", "constant_alpha", "find"]
+
+ZERO_CELSIUS = 273.15
+DENSITY_TEMPERATURE = ZERO_CELSIUS + 15.0
+"""Temperature at which the density of an oil is stated [K]."""
+
+
+class Lubricant(eqx.Module):
+    """An oil, ready for a computation: array leaves only, so another oil does not recompile.
+
+    Args:
+        nu_1: kinematic viscosity at T_1, shape (...) [m2/s].
+        nu_2: kinematic viscosity at T_2, shape (...) [m2/s].
+        T_1: lower of the two temperatures, shape (...) [K].
+        T_2: higher of the two temperatures, shape (...) [K].
+        density_15: density at 15 degC, shape (...) [kg/m3].
+        density_slope: fall of the density per kelvin, shape (...) [kg/m3/K].
+        gold_s: constant of the pressure-viscosity law, shape (...) [1/GPa at 1 mm2/s].
+        gold_t: exponent of the pressure-viscosity law, shape (...) [1].
+        lubricant_factor: lubricant factor X_L of mean friction laws, shape (...) [1].
+        T_min: lowest temperature the values are meant for, shape (...) [K].
+        T_max: highest temperature the values are meant for, shape (...) [K].
+    """
+
+    nu_1: Float[Array, "..."]
+    nu_2: Float[Array, "..."]
+    T_1: Float[Array, "..."]
+    T_2: Float[Array, "..."]
+    density_15: Float[Array, "..."]
+    density_slope: Float[Array, "..."]
+    gold_s: Float[Array, "..."]
+    gold_t: Float[Array, "..."]
+    lubricant_factor: Float[Array, "..."]
+    T_min: Float[Array, "..."]
+    T_max: Float[Array, "..."]
+
+    def __init__(
+        self,
+        *,
+        nu_1: ArrayLike,
+        nu_2: ArrayLike,
+        T_1: ArrayLike,
+        T_2: ArrayLike,
+        density_15: ArrayLike,
+        density_slope: ArrayLike,
+        gold_s: ArrayLike,
+        gold_t: ArrayLike,
+        lubricant_factor: ArrayLike,
+        T_min: ArrayLike,
+        T_max: ArrayLike,
+    ) -> None:
+        self.nu_1, self.nu_2 = as_array(nu_1), as_array(nu_2)
+        self.T_1, self.T_2 = as_array(T_1), as_array(T_2)
+        self.density_15, self.density_slope = as_array(density_15), as_array(density_slope)
+        self.gold_s, self.gold_t = as_array(gold_s), as_array(gold_t)
+        self.lubricant_factor = as_array(lubricant_factor)
+        self.T_min, self.T_max = as_array(T_min), as_array(T_max)
+
+    def kinematic_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
+        """Kinematic viscosity at T [K] by ASTM D341, shape (...) [m2/s]."""
+        return astm_d341(T=T, nu_1=self.nu_1, T_1=self.T_1, nu_2=self.nu_2, T_2=self.T_2)
+
+    def density(self, T: ArrayLike) -> Float[Array, "..."]:
+        """Density at T [K], linear from the value at 15 degC, shape (...) [kg/m3]."""
+        return self.density_15 - self.density_slope * (jnp.asarray(T) - DENSITY_TEMPERATURE)
+
+    def viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
+        """Dynamic viscosity at T [K] and ambient pressure, shape (...) [Pa s]."""
+        return dynamic_viscosity(nu=self.kinematic_viscosity(T), rho=self.density(T))
+
+    def pressure_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
+        """Pressure-viscosity coefficient at T [K], shape (...) [1/Pa]."""
+        return gold_2001(nu=self.kinematic_viscosity(T), s=self.gold_s, t=self.gold_t)
+
+    def in_range(self, T: ArrayLike) -> Bool[Array, "..."]:
+        """Whether T [K] is a temperature the values are meant for, shape (...)."""
+        temperature = jnp.asarray(T)
+        return (temperature >= self.T_min) & (temperature <= self.T_max)
+
+
+def constant_alpha(alpha: float) -> tuple[float, float]:
+    """Return the s and t with which Gold's law gives one coefficient at every temperature.
+
+    Args:
+        alpha: pressure-viscosity coefficient [1/Pa].
+
+    Returns:
+        s [1/GPa at 1 mm2/s] and t = 0.
+    """
+    return alpha * 1e9, 0.0
+
+
+_T_40 = Datum(value=ZERO_CELSIUS + 40.0)
+_T_100 = Datum(value=ZERO_CELSIUS + 100.0)
+_T_LOWEST = Datum(value=ZERO_CELSIUS, status="assumed")
+_T_HIGHEST = Datum(value=ZERO_CELSIUS + 120.0, status="assumed")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LubricantRecord:
+    """An oil with its name and the origin of each value; `build()` gives the bare numbers.
+
+    Args:
+        name: name in the catalogue, or one of the user's.
+        title: what it is, in words.
+        base: class of base oil: "mineral", "pao", "ester", "pag", or another word.
+        nu_1: kinematic viscosity at T_1 [m2/s].
+        nu_2: kinematic viscosity at T_2 [m2/s], below nu_1.
+        T_1: lower temperature [K], 40 degC unless given.
+        T_2: higher temperature [K], 100 degC unless given.
+        density_15: density at 15 degC [kg/m3].
+        density_slope: fall of the density per kelvin [kg/m3/K].
+        gold_s: constant of the pressure-viscosity law [1/GPa at 1 mm2/s].
+        gold_t: exponent of the pressure-viscosity law [1]; `constant_alpha` gives both.
+        lubricant_factor: lubricant factor X_L of mean friction laws [1].
+        T_min: lowest temperature the values are meant for [K], 0 degC unless given.
+        T_max: highest temperature the values are meant for [K], 120 degC unless given. The two
+            defaults are a choice: D341 goes through two points 60 K apart and is taken 40 K
+            below and 20 K above them.
+
+    Raises:
+        InputError: a value is out of its physical range.
+
+    Example:
+        >>> oil = find("pao-vg-220").build()
+        >>> round(float(oil.kinematic_viscosity(353.15)) * 1e6, 1)
+        45.1
+    """
+
+    name: str
+    title: str = ""
+    base: str = ""
+    nu_1: Datum
+    nu_2: Datum
+    density_15: Datum
+    density_slope: Datum
+    gold_s: Datum
+    gold_t: Datum
+    lubricant_factor: Datum
+    T_1: Datum = _T_40
+    T_2: Datum = _T_100
+    T_min: Datum = _T_LOWEST
+    T_max: Datum = _T_HIGHEST
+
+    def __post_init__(self) -> None:
+        free = {"density_slope", "gold_t"}  # these two may be zero or negative
+        check_positive(self.name, [item for item in self.data().items() if item[0] not in free])
+        _check_order(self)
+
+    def data(self) -> dict[str, Datum]:
+        """Return the values by name, each with its status and source."""
+        every = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {key: value for key, value in every.items() if isinstance(value, Datum)}
+
+    def build(self) -> Lubricant:
+        """Return the numbers alone, for a computation."""
+        return Lubricant(**{key: datum.value for key, datum in self.data().items()})
+
+    def with_values(self, **values: float) -> LubricantRecord:
+        """Return a copy with some values [SI] replaced by the user's own.
+
+        Raises:
+            InputError: there is no value of that name.
+        """
+        for key in values.keys() - self.data().keys():
+            raise InputError(f'"{key}" is not a property of an oil', allowed=self.data())
+        given: dict[str, Any] = {key: Datum(value=value) for key, value in values.items()}
+        return replace(self, **given)
+
+
+def _check_order(record: LubricantRecord) -> None:
+    checks = {
+        "nu_1": (record.nu_1.value > record.nu_2.value, "must be above nu_2"),
+        "nu_2": (record.nu_2.value >= 2e-6, "must be 2 mm2/s or more, where D341 holds as used"),
+        "T_1": (record.T_1.value < record.T_2.value, "must be below T_2"),
+        "T_min": (record.T_min.value < record.T_max.value, "must be below T_max"),
+        "gold_t": (math.isfinite(record.gold_t.value), "must be a finite number"),
+        "density_slope": (_lightest(record) > 0.0, "makes the density negative at T_max"),
+    }
+    for key, (passed, message) in checks.items():
+        if not passed:
+            raise InputError(message, key=f"{record.name}.{key}")
+
+
+def _lightest(record: LubricantRecord) -> float:
+    fall = record.density_slope.value * (record.T_max.value - DENSITY_TEMPERATURE)
+    return record.density_15.value - fall
+
+
+_SCALES = {"nu_1": ("nu_40_mm2_s", 1e-6), "nu_2": ("nu_100_mm2_s", 1e-6)}
+_PLAIN = {
+    "density_15": "density_15_kg_m3",
+    "density_slope": "density_slope_kg_m3_K",
+    "gold_s": "gold_s",
+    "gold_t": "gold_t",
+    "lubricant_factor": "lubricant_factor",
+}
+
+
+@lru_cache(maxsize=1)
+def _records() -> dict[str, LubricantRecord]:
+    data = read_data("lubricants.toml")
+    return {name: _record(name, entry, data["base"]) for name, entry in data["oil"].items()}
+
+
+def _record(name: str, entry: dict[str, Any], bases: dict[str, Any]) -> LubricantRecord:
+    base = bases[entry["base"]]
+    values = {key: read_datum(entry[column], scale=k) for key, (column, k) in _SCALES.items()}
+    plain = {key: read_datum(entry.get(col, base[col])) for key, col in _PLAIN.items()}
+    return LubricantRecord(name=name, title=entry["title"], base=entry["base"], **values, **plain)
+
+
+def base_oils() -> dict[str, dict[str, Datum]]:
+    """Return the values shared by a class of base oil, by class and property [SI]."""
+    bases = read_data("lubricants.toml")["base"]
+    return {
+        name: {key: read_datum(base[column]) for key, column in _PLAIN.items()}
+        for name, base in bases.items()
+    }
+
+
+def catalogue() -> dict[str, LubricantRecord]:
+    """Return the oils of the catalogue by name."""
+    return dict(_records())
+
+
+def find(name: str) -> LubricantRecord:
+    """Return one oil of the catalogue.
+
+    Raises:
+        InputError: there is no oil of this name; the message has the nearest ones.
+    """
+    if name not in _records():
+        raise unknown_name(name, _records(), what="a lubricant")
+    return _records()[name]

@@ -1,0 +1,468 @@
+"""Numbers with units, at the door only: text such as "3 mm" in, SI floats inside, and back.
+
+The number and the unit are split here, and the unit must be on the list of its quantity kind.
+Only our own expression for a listed unit reaches pint, never the text a user wrote. Factors are
+looked up once for each unit and kept, and pint is imported when the first one is needed.
+
+Spelling: `*`, `.` and `·` between units mean a product and may be written as a space ("N m",
+"N*m"), a power is written "mm2", "mm^2" or "mm²", and "µm", "°C" and "°" are understood.
+Revolutions and radians are never guessed: "Hz" and "1/s" are frequencies, a rotational speed is
+given in rpm, rev/s, rad/s or deg/s.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NoReturn, overload
+
+from pitchpoint.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pint
+    from numpy.typing import NDArray
+
+__all__ = ["UnitError", "convert", "kind_of", "kinds", "parse", "si_unit", "units_of"]
+
+MAX_LENGTH = 64
+"""Longest text that is read as a quantity [characters]."""
+
+
+class UnitError(InputError):
+    """The text is not a quantity of the kind that is needed."""
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """One quantity kind: its noun, an example to show, and pint's name for each unit."""
+
+    noun: str
+    example: str
+    units: Mapping[str, str]
+
+    @property
+    def si(self) -> str:
+        return next(iter(self.units))
+
+
+# The first unit of each kind is its SI unit.
+_KINDS: dict[str, _Kind] = {
+    "length": _Kind(
+        "a length",
+        "3 mm",
+        {
+            "m": "meter",
+            "mm": "millimeter",
+            "um": "micrometer",
+            "nm": "nanometer",
+            "cm": "centimeter",
+            "in": "inch",
+        },
+    ),
+    "angle": _Kind(
+        "an angle",
+        "20 deg",
+        {
+            "rad": "radian",
+            "deg": "degree",
+            "mrad": "milliradian",
+            "arcmin": "arcminute",
+            "arcsec": "arcsecond",
+            "rev": "turn",
+        },
+    ),
+    "rotational speed": _Kind(
+        "a rotational speed",
+        "1500 rpm",
+        {
+            "rad/s": "radian/second",
+            "rpm": "turn/minute",
+            "rev/min": "turn/minute",
+            "1/min": "turn/minute",
+            "rev/s": "turn/second",
+            "deg/s": "degree/second",
+        },
+    ),
+    "torque": _Kind(
+        "a torque",
+        "159 N m",
+        {
+            "N m": "newton*meter",
+            "Nm": "newton*meter",
+            "kN m": "kilonewton*meter",
+            "kNm": "kilonewton*meter",
+            "mN m": "millinewton*meter",
+            "mNm": "millinewton*meter",
+            "N mm": "newton*millimeter",
+            "Nmm": "newton*millimeter",
+            "lbf in": "force_pound*inch",
+            "lbf ft": "force_pound*foot",
+        },
+    ),
+    "temperature": _Kind(
+        "a temperature", "55 degC", {"K": "kelvin", "degC": "degC", "degF": "degF"}
+    ),
+    "temperature difference": _Kind(
+        "a temperature difference",
+        "10 K",
+        {"K": "kelvin", "degC": "delta_degC", "degF": "delta_degF"},
+    ),
+    "pressure": _Kind(
+        "a pressure",
+        "206 GPa",
+        {
+            "Pa": "pascal",
+            "kPa": "kilopascal",
+            "MPa": "megapascal",
+            "GPa": "gigapascal",
+            "N/mm2": "newton/millimeter**2",
+            "bar": "bar",
+            "psi": "force_pound/inch**2",
+            "ksi": "kip/inch**2",
+        },
+    ),
+    "dynamic viscosity": _Kind(
+        "a dynamic viscosity",
+        "10 mPa s",
+        {"Pa s": "pascal*second", "mPa s": "millipascal*second", "cP": "centipoise"},
+    ),
+    "kinematic viscosity": _Kind(
+        "a kinematic viscosity",
+        "98.8 mm2/s",
+        {
+            "m2/s": "meter**2/second",
+            "mm2/s": "millimeter**2/second",
+            "cSt": "centistokes",
+        },
+    ),
+    "density": _Kind(
+        "a density",
+        "859 kg/m3",
+        {
+            "kg/m3": "kilogram/meter**3",
+            "kg/dm3": "kilogram/decimeter**3",
+            "g/cm3": "gram/centimeter**3",
+            "g/ml": "gram/milliliter",
+        },
+    ),
+    "density slope": _Kind(
+        "a fall of density with temperature",
+        "0.5 kg/m3/K",
+        {
+            "kg/m3/K": "kilogram/meter**3/kelvin",
+            "kg/(m3 K)": "kilogram/meter**3/kelvin",
+            "g/cm3/K": "gram/centimeter**3/kelvin",
+        },
+    ),
+    "pressure-viscosity coefficient": _Kind(
+        "a pressure-viscosity coefficient",
+        "22 1/GPa",
+        {
+            "1/Pa": "1/pascal",
+            "1/MPa": "1/megapascal",
+            "1/GPa": "1/gigapascal",
+            "Pa-1": "1/pascal",
+            "GPa-1": "1/gigapascal",
+            "m2/N": "meter**2/newton",
+            "mm2/N": "millimeter**2/newton",
+        },
+    ),
+    "mass": _Kind("a mass", "1.2 kg", {"kg": "kilogram", "g": "gram", "lb": "pound"}),
+    "force": _Kind(
+        "a force",
+        "500 N",
+        {"N": "newton", "kN": "kilonewton", "mN": "millinewton", "lbf": "force_pound"},
+    ),
+    "line load": _Kind(
+        "a load per length",
+        "150 N/mm",
+        {
+            "N/m": "newton/meter",
+            "N/mm": "newton/millimeter",
+            "kN/m": "kilonewton/meter",
+            "lbf/in": "force_pound/inch",
+        },
+    ),
+    "velocity": _Kind(
+        "a velocity",
+        "3 m/s",
+        {
+            "m/s": "meter/second",
+            "mm/s": "millimeter/second",
+            "km/h": "kilometer/hour",
+            "ft/min": "foot/minute",
+        },
+    ),
+    "power": _Kind("a power", "25 kW", {"W": "watt", "kW": "kilowatt", "hp": "horsepower"}),
+    "time": _Kind(
+        "a time",
+        "3 s",
+        {
+            "s": "second",
+            "ms": "millisecond",
+            "us": "microsecond",
+            "min": "minute",
+            "h": "hour",
+        },
+    ),
+    "frequency": _Kind(
+        "a frequency", "50 Hz", {"Hz": "1/second", "kHz": "kilohertz", "1/s": "1/second"}
+    ),
+    "dimensionless": _Kind(
+        "a plain number", "0.3", {"": "dimensionless", "1": "dimensionless", "%": "percent"}
+    ),
+}
+
+_NUMBER = re.compile(
+    r"([+-]?(?:\d{1,40}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,3})?)(.*)", re.ASCII
+)
+_SIGNS = str.maketrans({"µ": "u", "μ": "u", "²": "2", "³": "3", "·": " ", "⋅": " ", "°": "deg"})
+_PRODUCT = re.compile(r"(?<!\*)\*(?!\*)|(?<=[A-Za-z0-9])\.(?=[A-Za-z])")
+_POWER = re.compile(r"(?<=[A-Za-z])\^(?=-?\d)")
+
+
+def kinds() -> tuple[str, ...]:
+    """Return the names of the quantity kinds."""
+    return tuple(_KINDS)
+
+
+def units_of(kind: str) -> tuple[str, ...]:
+    """Return the unit spellings that a kind accepts, its SI unit first."""
+    return tuple(unit for unit in _kind(kind).units if unit)
+
+
+def si_unit(kind: str) -> str:
+    """Return the SI unit of a kind; empty for plain numbers.
+
+    Example:
+        >>> si_unit("torque")
+        'N m'
+    """
+    return _kind(kind).si
+
+
+def kind_of(unit: str) -> str:
+    """Return the kind a unit belongs to, the first in the list of kinds where two share it.
+
+    Args:
+        unit: a unit as a user may write it, for example "N*m".
+
+    Raises:
+        UnitError: no kind has this unit.
+
+    Example:
+        >>> kind_of("N*m")
+        'torque'
+    """
+    found = _first_kind(_spelling(unit))
+    if found is None:
+        raise UnitError(f"{_quoted(unit)} is not a known unit", value=unit)
+    return found
+
+
+def parse(text: str | float, kind: str) -> float:
+    """Read a quantity and return it in SI units.
+
+    Args:
+        text: number and unit, for example "3 mm"; a bare number only where kind is
+            "dimensionless".
+        kind: what is needed, one of `kinds()`.
+
+    Returns:
+        The value in `si_unit(kind)`.
+
+    Raises:
+        UnitError: the text is not a finite quantity of this kind; the sentence says why.
+
+    Example:
+        >>> parse("55 degC", "temperature")
+        328.15
+    """
+    wanted = _kind(kind)
+    number, unit = _split(text, wanted)
+    if unit not in wanted.units:
+        _refuse_unit(text, number, unit, wanted)
+    scale, offset = _factors(kind, unit)
+    value = float(Decimal(number) * scale + offset)
+    if not math.isfinite(value):
+        raise UnitError(f"{_quoted(text)} is too large", value=text)
+    if kind == "temperature" and value < 0.0:
+        raise UnitError(f"{_quoted(text)} is below absolute zero", value=text)
+    return value
+
+
+@overload
+def convert(value_si: float, unit: str, kind: str) -> float: ...
+@overload
+def convert(value_si: NDArray[np.floating[Any]], unit: str, kind: str) -> NDArray[Any]: ...
+def convert(
+    value_si: float | NDArray[np.floating[Any]], unit: str, kind: str
+) -> float | NDArray[Any]:
+    """Express an SI value in another unit, for display.
+
+    Args:
+        value_si: value in `si_unit(kind)`, a float or an array of any shape.
+        unit: the unit wanted.
+        kind: the quantity kind, one of `kinds()`.
+
+    Returns:
+        The value in `unit`, same shape.
+
+    Raises:
+        UnitError: the kind does not have this unit.
+
+    Example:
+        >>> convert(0.003, "mm", "length")
+        3.0
+    """
+    spelled = _spelling(unit)
+    wanted = _kind(kind)
+    if spelled not in wanted.units:
+        raise UnitError(
+            f"{_quoted(unit)} is not a unit of {wanted.noun}; use one of {_listed(wanted)}",
+            value=unit,
+            allowed=units_of(kind),
+        )
+    scale, offset = _factors(kind, spelled)
+    return (value_si - float(offset)) / float(scale)
+
+
+def _kind(kind: str) -> _Kind:
+    if kind not in _KINDS:
+        raise ValueError(f"no quantity kind {kind!r}; there are {', '.join(_KINDS)}")
+    return _KINDS[kind]
+
+
+def _spelling(unit: str) -> str:
+    """Bring a unit to the spelling of the lists; what is not understood stays as it is."""
+    plain = _POWER.sub("", _PRODUCT.sub(" ", unit.translate(_SIGNS)))
+    return re.sub(r" ?([/()]) ?", r"\1", re.sub(r"\s+", " ", plain)).strip()
+
+
+def _first_kind(spelled: str) -> str | None:
+    return next((name for name, kind in _KINDS.items() if spelled in kind.units), None)
+
+
+def _split(text: str | float, wanted: _Kind) -> tuple[str, str]:
+    """Return number and unit spelling; a missing unit is refused unless none is needed."""
+    match = _match(text, wanted)
+    number, unit = match.group(1), _spelling(match.group(2))
+    if not math.isfinite(float(number)):
+        raise UnitError(f"{_quoted(text)} is too large", value=text)
+    if not unit and "" not in wanted.units:
+        raise UnitError(
+            f'{_quoted(text)} has no unit where {wanted.noun} is needed; write "{number} '
+            f'{wanted.example.split(" ", 1)[1]}" or use one of {_listed(wanted)}',
+            value=text,
+            allowed=_shown(wanted),
+        )
+    return number, unit
+
+
+def _match(text: object, wanted: _Kind) -> re.Match[str]:
+    if isinstance(text, bool) or not isinstance(text, str | int | float):
+        raise UnitError(f'{_quoted(text)} is not {wanted.noun}; write "{wanted.example}"')
+    plain = _plain(text)
+    if len(plain) > MAX_LENGTH:
+        raise UnitError(f"a quantity of {len(plain)} characters is too long", value=text)
+    match = _NUMBER.fullmatch(plain.strip()) if plain.isprintable() else None
+    if match is None or match.group(2)[:1] in {"_", ",", "."}:
+        _refuse_number(text, plain, wanted)
+    return match
+
+
+def _plain(text: str | float) -> str:
+    """Turn a number into text that reads back to the same value."""
+    if isinstance(text, str):
+        return text
+    if isinstance(text, int) and abs(text) >= 10**40:
+        return "an integer that is too large"
+    return repr(text if isinstance(text, int) else float(text))
+
+
+def _refuse_number(text: object, plain: str, wanted: _Kind) -> NoReturn:
+    comma = "; write the decimals after a point" if re.match(r"\s*[+-]?\d+,\d", plain) else ""
+    raise UnitError(
+        f"{_quoted(text)} does not start with a plain finite number{comma or _like(wanted)}",
+        value=text,
+    )
+
+
+def _like(wanted: _Kind) -> str:
+    return f'; write {wanted.noun} like "{wanted.example}"'
+
+
+def _refuse_unit(text: str | float, number: str, unit: str, wanted: _Kind) -> NoReturn:
+    other = _first_kind(unit)
+    if other is not None:
+        reason = f"is {_KINDS[other].noun}, but {wanted.noun} is needed"
+    else:
+        reason = f"is not {wanted.noun}"
+    raise UnitError(
+        f"{_quoted(text)} {reason}; {_advice(number, unit, other, wanted)}",
+        value=text,
+        allowed=_shown(wanted),
+    )
+
+
+def _advice(number: str, unit: str, other: str | None, wanted: _Kind) -> str:
+    if wanted is _KINDS["dimensionless"]:
+        return "give a number without a unit, or in %"
+    near = [] if other else difflib.get_close_matches(unit, wanted.units, n=1, cutoff=0.6)
+    meant = f' (did you mean "{number} {near[0]}"?)' if near else ""
+    return f"give a number with one of {_listed(wanted)}{meant}"
+
+
+def _shown(wanted: _Kind) -> tuple[str, ...]:
+    """Return one spelling for each unit; "Nm" goes without saying beside "N m"."""
+    first = {expression: unit for unit, expression in reversed(list(wanted.units.items())) if unit}
+    return tuple(unit for unit in wanted.units if unit in first.values())
+
+
+def _listed(wanted: _Kind) -> str:
+    return ", ".join(_shown(wanted))
+
+
+def _quoted(text: object) -> str:
+    """Quote input for a message: short, and without characters that move the cursor."""
+    shown = text if isinstance(text, str) else _described(text)
+    if len(shown) > MAX_LENGTH:
+        shown = shown[:MAX_LENGTH] + "..."
+    return f'"{shown}"' if shown.isprintable() else f'"{ascii(shown)[1:-1]}"'
+
+
+def _described(value: object) -> str:
+    if value is None or isinstance(value, float):
+        return str(value)
+    if isinstance(value, int) and abs(value) < 10**40:
+        return str(value)
+    return f"a value of type {type(value).__name__}"
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry[Decimal]:
+    import pint  # takes 0.6 s, and many commands never need a unit
+
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+@lru_cache(maxsize=256)
+def _factors(kind: str, unit: str) -> tuple[Decimal, Decimal]:
+    """Return scale and offset of `si = scale * value + offset`; decimals keep "0.8 um" exact."""
+    if unit == si_unit(kind):
+        return Decimal(1), Decimal(0)
+    if kind == "temperature":
+        return _factors("temperature difference", unit)[0], _in_si(kind, unit, Decimal(0))
+    return _in_si(kind, unit, Decimal(1)), Decimal(0)
+
+
+def _in_si(kind: str, unit: str, value: Decimal) -> Decimal:
+    units = _KINDS[kind].units
+    quantity = _registry().Quantity(value, units[unit])
+    return Decimal(quantity.to(units[si_unit(kind)]).magnitude)

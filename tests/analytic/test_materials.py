@@ -1,0 +1,203 @@
+"""Material laws against closed forms, and the catalogue against its own check values."""
+
+import tomllib
+from importlib import resources
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from pitchpoint import citations
+from pitchpoint.errors import InputError
+from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials.pressure_viscosity import gold_2001
+from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.materials.surfaces import composite_rq
+from pitchpoint.materials.viscosity import astm_d341
+
+DATA = resources.files("pitchpoint.materials").joinpath("catalogue", "lubricants.toml")
+OILS = tomllib.loads(DATA.read_text(encoding="utf-8"))["oil"]
+CHECKED = [name for name, entry in OILS.items() if "nu_80_mm2_s" in entry]
+
+
+def test_reduced_modulus_of_steel():
+    steel = solids.find("steel").build()
+    assert float(reduced_modulus(steel, steel)) == pytest.approx(206e9 / 0.91, rel=1e-15)
+    assert float(reduced_modulus(steel, steel)) / 1e9 == pytest.approx(226.4, abs=0.05)
+
+
+def test_reduced_modulus_against_a_much_stiffer_body_doubles():
+    soft = Solid(young=3e9, poisson=0.4, density=1400.0)
+    hard = Solid(young=3e20, poisson=0.3, density=7830.0)
+    assert float(reduced_modulus(soft, hard)) == pytest.approx(2.0 * 3e9 / 0.84, rel=1e-9)
+
+
+def test_steel_gives_the_elasticity_factor_of_iso_6336_2():
+    steel = solids.find("steel").build()
+    factor = jnp.sqrt(reduced_modulus(steel, steel) / 1e6 / (2.0 * jnp.pi))
+    assert float(factor) == pytest.approx(189.8, abs=0.05)
+
+
+def test_d341_passes_through_its_two_points():
+    nu = astm_d341(
+        T=jnp.array([313.15, 373.15]), nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15
+    )
+    np.testing.assert_allclose(nu, [98.8e-6, 15.2e-6], rtol=1e-12)
+
+
+def test_d341_meets_a_hand_calculation():
+    nu = astm_d341(T=328.15, nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15)
+    assert float(nu) * 1e6 == pytest.approx(54.79, abs=0.005)
+
+
+def test_d341_is_straight_in_its_own_coordinates():
+    T = jnp.geomspace(280.0, 390.0, 7)
+    nu = astm_d341(T=T, nu_1=98.8e-6, T_1=313.15, nu_2=15.2e-6, T_2=373.15)
+    steps = jnp.diff(jnp.log10(jnp.log10(nu * 1e6 + 0.7)))
+    np.testing.assert_allclose(steps, steps[0], rtol=1e-10)
+
+
+@pytest.mark.parametrize("name", CHECKED)
+def test_viscosity_of_the_catalogue_at_80_degc(name):
+    nu = lubricants.find(name).build().kinematic_viscosity(353.15)
+    assert float(nu) * 1e6 == pytest.approx(OILS[name]["nu_80_mm2_s"]["value"], rel=4e-4)
+
+
+def test_all_check_values_of_the_catalogue_are_used():
+    assert len(CHECKED) == 18
+
+
+def test_density_falls_linearly_from_15_degc():
+    oil = lubricants.find("mineral-vg-220").build()
+    assert float(oil.density(288.15)) == 902.0
+    assert float(oil.density(328.15)) == pytest.approx(902.0 * (1.0 - 5.8e-4 * 40.0), rel=1e-7)
+
+
+def test_dynamic_viscosity_is_the_product():
+    oil = lubricants.find("75W90-A").build()
+    product = oil.kinematic_viscosity(328.15) * oil.density(328.15)
+    assert float(oil.viscosity(328.15)) == pytest.approx(float(product), rel=1e-15)
+    assert float(oil.viscosity(328.15)) == pytest.approx(46.0e-3, abs=0.1e-3)
+
+
+def test_gold_at_one_mm2_s_is_its_constant():
+    assert float(gold_2001(nu=1e-6, s=9.904, t=0.139)) == pytest.approx(9.904e-9, rel=1e-12)
+
+
+def test_gold_meets_a_hand_calculation():
+    # lg 100 = 2, so 100^0.139 = 10^0.278 = 1.89671
+    assert float(gold_2001(nu=100e-6, s=9.904, t=0.139)) == pytest.approx(18.785e-9, rel=1e-4)
+
+
+def test_constant_pressure_viscosity_does_not_change_with_temperature():
+    s, t = lubricants.constant_alpha(22e-9)
+    oil = lubricants.find("fva-3").with_values(gold_s=s, gold_t=t).build()
+    np.testing.assert_allclose(oil.pressure_viscosity(jnp.array([300.0, 350.0])), 22e-9, rtol=1e-14)
+
+
+def test_range_of_temperature():
+    oil = lubricants.find("fva-3").build()
+    inside = oil.in_range(jnp.array([273.0, 273.15, 393.15, 393.3]))
+    assert inside.tolist() == [False, True, True, False]
+
+
+def test_another_oil_does_not_compile_again():
+    traces = []
+
+    @eqx.filter_jit
+    def viscosity(oil, T):
+        traces.append(1)
+        return oil.viscosity(T)
+
+    for name in ("pao-vg-220", "fva-1", "75W90-A"):
+        viscosity(lubricants.find(name).build(), jnp.asarray(330.0))
+    assert len(traces) == 1
+
+
+def test_gradient_of_viscosity_equals_finite_difference():
+    oil = lubricants.find("pag-vg-320").build()
+    step = 1e-3
+    central = (oil.viscosity(330.0 + step) - oil.viscosity(330.0 - step)) / (2.0 * step)
+    assert float(jax.grad(oil.viscosity)(330.0)) == pytest.approx(float(central), rel=1e-6)
+
+
+def test_every_value_has_a_known_source_or_an_assumed_status():
+    records = [*lubricants.catalogue().values(), *solids.catalogue().values()]
+    data = [getattr(r, key) for r in records for key in r.__dataclass_fields__]
+    data = [d for d in data if hasattr(d, "status")]
+    assert len(data) > 200
+    for datum in data:
+        assert datum.source in {"", *citations.available()}
+        assert datum.source or datum.status in {"assumed", "given"}
+
+
+def test_unknown_oil_and_material_name_the_nearest():
+    with pytest.raises(
+        InputError, match=r'"pao-220" is not a lubricant .* did you mean pao-vg-220'
+    ):
+        lubricants.find("pao-220")
+    with pytest.raises(InputError, match=r'"Steel" is not a material .* did you mean steel'):
+        solids.find("Steel")
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"nu_2": 100e-6}, "fva-3.nu_1: must be above nu_2"),
+        ({"nu_1": float("nan")}, "fva-3.nu_1: nan is not a positive number"),
+        ({"density_15": -1.0}, "fva-3.density_15: -1.0 is not a positive number"),
+        ({"density_slope": 10.0}, "fva-3.density_slope: makes the density negative at T_max"),
+        ({"T_1": 400.0}, "fva-3.T_1: must be below T_2"),
+        ({"colour": 1.0}, '"colour" is not a property of an oil'),
+    ],
+)
+def test_impossible_oil_is_refused(values, message):
+    with pytest.raises(InputError) as caught:
+        lubricants.find("fva-3").with_values(**values)
+    assert str(caught.value) == message
+
+
+def test_composite_of_equal_flanks_is_root_two():
+    flanks = Roughness.from_rq(0.5e-6)
+    assert float(flanks.composite_rq) == pytest.approx(0.5e-6 * 2.0**0.5, rel=1e-15)
+
+
+def test_rq_of_gaussian_heights():
+    heights = np.random.default_rng(0).normal(size=1_000_000)
+    ratio = heights.std() / np.abs(heights).mean()
+    flanks = Roughness.from_ra(0.8e-6, 0.4e-6)
+    assert float(flanks.rq_1) == pytest.approx(0.8e-6 * ratio, rel=3e-3)
+    assert float(flanks.rq_1) == pytest.approx(0.8e-6 * 1.2533, rel=1e-4)
+    assert float(flanks.mean_ra) == pytest.approx(0.6e-6, rel=1e-15)
+
+
+def test_roughness_from_the_composite_gives_it_back():
+    assert float(Roughness.from_composite_rq(1.1e-6).composite_rq) == pytest.approx(1.1e-6)
+
+
+def test_composite_has_a_finite_gradient_where_both_flanks_are_smooth():
+    slope = jax.grad(lambda rq: composite_rq(rq_1=rq, rq_2=rq))
+    assert float(slope(0.0)) == 0.0
+    assert float(slope(1e-6)) == pytest.approx(2.0**0.5)
+
+
+def test_every_reference_can_be_cited():
+    for key in citations.available():
+        entry = citations.reference(key)
+        assert entry.title in citations.cite(key)
+        assert str(entry.year) in key
+        assert citations.bibtex(key).count("{") == citations.bibtex(key).count("}")
+
+
+def test_citation_of_an_article():
+    assert citations.cite("xu_2007") == (
+        "Xu, H., Kahraman, A., Anderson, N. E. and Maddock, D. G. (2007). Prediction of mechanical "
+        "efficiency of parallel-axis gear pairs. Journal of Mechanical Design, 129(1), 58-68. "
+        "doi:10.1115/1.2359478."
+    )
+    assert "@article{xu_2007," in citations.bibtex("xu_2007")
+    assert "pages = {58--68}" in citations.bibtex("xu_2007")
+    with pytest.raises(InputError, match="did you mean xu_2007"):
+        citations.cite("xu2007")

@@ -1,0 +1,200 @@
+"""Quantities as users write them, and what they are told when one is wrong."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from pitchpoint.errors import InputError
+from pitchpoint.units import UnitError, convert, kind_of, kinds, parse, si_unit, units_of
+
+GOOD = [
+    ("3 mm", "length", 0.003),
+    ("0.8 um", "length", 0.8e-6),
+    ("0.8µm", "length", 0.8e-6),
+    ("1 in", "length", 0.0254),
+    ("20 deg", "angle", math.radians(20.0)),
+    ("20°", "angle", math.radians(20.0)),
+    ("1500 rpm", "rotational speed", 50.0 * math.pi),
+    ("1500 1/min", "rotational speed", 50.0 * math.pi),
+    ("25 rev/s", "rotational speed", 50.0 * math.pi),
+    ("7 rad/s", "rotational speed", 7.0),
+    ("159 N m", "torque", 159.0),
+    ("159 N*m", "torque", 159.0),
+    ("159 N·m", "torque", 159.0),
+    ("159Nm", "torque", 159.0),
+    ("0.2 kN m", "torque", 200.0),
+    ("1 lbf in", "torque", 4.4482216152605 * 0.0254),
+    ("1 lbf ft", "torque", 4.4482216152605 * 0.3048),
+    ("55 degC", "temperature", 328.15),
+    ("55 °C", "temperature", 328.15),
+    ("212 degF", "temperature", 373.15),
+    ("0 K", "temperature", 0.0),
+    ("9 degF", "temperature difference", 5.0),
+    ("206 GPa", "pressure", 206e9),
+    ("1 psi", "pressure", 4.4482216152605 / 0.0254**2),
+    ("2 N/mm2", "pressure", 2e6),
+    ("1e-3 Pa s", "dynamic viscosity", 1e-3),
+    ("10.6 mPa*s", "dynamic viscosity", 10.6e-3),
+    ("10 cP", "dynamic viscosity", 10e-3),
+    ("98.8 mm2/s", "kinematic viscosity", 98.8e-6),
+    ("98.8 mm^2/s", "kinematic viscosity", 98.8e-6),
+    ("98.8 cSt", "kinematic viscosity", 98.8e-6),
+    ("0.859 g/cm3", "density", 859.0),
+    ("0.5 kg/(m3 K)", "density slope", 0.5),
+    ("22 1/GPa", "pressure-viscosity coefficient", 22e-9),
+    ("0.022 mm2/N", "pressure-viscosity coefficient", 22e-9),
+    ("150 N/mm", "line load", 150e3),
+    ("36 km/h", "velocity", 10.0),
+    ("25 kW", "power", 25e3),
+    ("2 h", "time", 7200.0),
+    ("2 kHz", "frequency", 2000.0),
+    ("30 %", "dimensionless", 0.3),
+    ("-.5e1", "dimensionless", -5.0),
+    (0.3, "dimensionless", 0.3),
+    (np.float64(0.4), "dimensionless", 0.4),
+]
+
+
+@pytest.mark.parametrize(("text", "kind", "expected"), GOOD)
+def test_parse_gives_si(text, kind, expected):
+    assert parse(text, kind) == pytest.approx(expected, rel=1e-15, abs=0.0)
+
+
+MESSAGES = [
+    (
+        "3 mmm",
+        "length",
+        '"3 mmm" is not a length; give a number with one of m, mm, um, nm, cm, in '
+        '(did you mean "3 mm"?)',
+    ),
+    (
+        "3 s",
+        "length",
+        '"3 s" is a time, but a length is needed; give a number with one of m, mm, um, nm, cm, in',
+    ),
+    (
+        "3",
+        "length",
+        '"3" has no unit where a length is needed; write "3 mm" or use one of '
+        "m, mm, um, nm, cm, in",
+    ),
+    (
+        0.5,
+        "pressure",
+        '"0.5" has no unit where a pressure is needed; write "0.5 GPa" or use one of '
+        "Pa, kPa, MPa, GPa, N/mm2, bar, psi, ksi",
+    ),
+    (
+        "3,5 mm",
+        "length",
+        '"3,5 mm" does not start with a plain finite number; write the decimals after a point',
+    ),
+    (
+        "nan mm",
+        "length",
+        '"nan mm" does not start with a plain finite number; write a length like "3 mm"',
+    ),
+    (
+        "25 Hz",
+        "rotational speed",
+        '"25 Hz" is a frequency, but a rotational speed is needed; '
+        "give a number with one of rad/s, rpm, rev/s, deg/s",
+    ),
+    (
+        "0.3 mm",
+        "dimensionless",
+        '"0.3 mm" is a length, but a plain number is needed; give a number without a unit, or in %',
+    ),
+    ("-300 degC", "temperature", '"-300 degC" is below absolute zero'),
+    ("1e999 mm", "length", '"1e999 mm" is too large'),
+    ("1e308 kN", "force", '"1e308 kN" is too large'),
+    (True, "length", '"True" is not a length; write "3 mm"'),
+    (None, "length", '"None" is not a length; write "3 mm"'),
+]
+
+
+@pytest.mark.parametrize(("text", "kind", "message"), MESSAGES)
+def test_message_of_a_bad_quantity(text, kind, message):
+    with pytest.raises(UnitError) as caught:
+        parse(text, kind)
+    assert str(caught.value) == message
+
+
+def test_error_takes_a_location():
+    with pytest.raises(InputError) as caught:
+        parse("3 mmm", "length")
+    located = caught.value.at(file="pair.toml", key="gears.module")
+    assert str(located).startswith('pair.toml: gears.module: "3 mmm" is not a length; ')
+    assert "mm" in located.allowed
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["10**10**10 m", "3 **mm", "1_0 mm", "٣ mm", "0x10 mm", "inf mm", "--3 mm", "3 mm mm", "3 MM"],
+)
+def test_what_python_or_pint_would_accept_is_refused(text):
+    with pytest.raises(UnitError):
+        parse(text, "length")
+
+
+def test_control_characters_do_not_reach_the_message():
+    with pytest.raises(UnitError) as caught:
+        parse("3 mm\x1b[2J", "length")
+    assert str(caught.value).isprintable()
+
+
+def test_long_text_is_refused_without_being_repeated():
+    with pytest.raises(UnitError) as caught:
+        parse("3 " + "m" * 10**6, "length")
+    assert len(str(caught.value)) < 100
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_every_unit_of_a_kind_converts_both_ways(kind):
+    assert parse(f"2 {si_unit(kind)}", kind) == 2.0
+    for unit in units_of(kind):
+        assert convert(parse(f"2 {unit}", kind), unit, kind) == pytest.approx(2.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", kinds())
+def test_every_example_in_a_message_is_valid(kind):
+    with pytest.raises(UnitError) as caught:
+        parse("abc", kind)
+    parse(str(caught.value).rsplit(" like ", 1)[1].strip('"'), kind)
+
+
+def test_convert_keeps_the_shape_of_arrays():
+    shown = convert(np.array([[273.15, 328.15]]), "degC", "temperature")
+    np.testing.assert_allclose(shown, [[0.0, 55.0]], atol=1e-12)
+
+
+def test_convert_names_the_units_it_knows():
+    with pytest.raises(UnitError, match='"s" is not a unit of a length; use one of m, mm'):
+        convert(1.0, "s", "length")
+
+
+def test_kind_of():
+    assert (kind_of("N*m"), kind_of("mm^2/s"), kind_of("%")) == (
+        "torque",
+        "kinematic viscosity",
+        "dimensionless",
+    )
+    with pytest.raises(UnitError, match='"furlong" is not a known unit'):
+        kind_of("furlong")
+
+
+def test_unknown_kind_is_a_mistake_of_the_program_not_of_the_input():
+    with pytest.raises(ValueError, match="no quantity kind 'colour'") as caught:
+        parse("3 mm", "colour")
+    assert not isinstance(caught.value, UnitError)
+
+
+def test_pint_is_imported_only_when_a_factor_is_needed():
+    script = (
+        "import sys, pitchpoint.units as u; u.parse('3 m', 'length'); u.parse(1, 'dimensionless');"
+        "assert 'pint' not in sys.modules; u.parse('3 mm', 'length'); assert 'pint' in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True)
