@@ -1,0 +1,1 @@
+"""Gear families: where their teeth touch and how they move there."""

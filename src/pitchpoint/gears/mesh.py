@@ -1,0 +1,72 @@
+"""What every gear family answers."""
+
+import abc
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint.contact.contacts import Contacts
+
+__all__ = ["Mesh", "Reference"]
+
+
+class Reference(eqx.Module):
+    """Pitch-point values for laws that describe a whole mesh.
+
+    Attributes:
+        width: face width [m].
+        radius: relative radius of curvature at the pitch point [m].
+        sum_speed: sum of the surface speeds there per radian of the driver [m/rad].
+        pitch_line_speed: speed of the pitch circles per radian of the driver [m/rad].
+    """
+
+    width: Float[Array, ""]
+    radius: Float[Array, ""]
+    sum_speed: Float[Array, ""]
+    pitch_line_speed: Float[Array, ""]
+
+
+class Mesh(eqx.Module):
+    """A gear family: contacts that travel, and the coordinates of the bodies that carry them.
+
+    One period of `phase` is one engagement: the state of the mesh repeats with it. Coordinates are
+    rotations counter-clockwise [rad], or translations [m] where a family has them.
+    """
+
+    @abc.abstractmethod
+    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+        """Contacts at any phase [periods]."""
+
+    @abc.abstractmethod
+    def events(self) -> Float[Array, " event"]:
+        """Sorted phases in [0, 1) at which a pair enters, leaves or passes pure rolling (static count)."""
+
+    @property
+    @abc.abstractmethod
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Mean number of pairs in contact."""
+
+    @property
+    @abc.abstractmethod
+    def motion(self) -> Float[Array, " dof"]:
+        """Nominal rate of each coordinate per radian of the driver."""
+
+    @property
+    @abc.abstractmethod
+    def driver(self) -> Float[Array, " dof"]:
+        """One for the coordinate that drives, zero elsewhere."""
+
+    @property
+    @abc.abstractmethod
+    def loaded(self) -> Float[Array, " dof"]:
+        """One for the coordinate whose load is prescribed, zero elsewhere."""
+
+    @property
+    @abc.abstractmethod
+    def period(self) -> Float[Array, ""]:
+        """Driver angle of one period [rad]."""
+
+    @property
+    @abc.abstractmethod
+    def reference(self) -> Reference | None:
+        """Pitch-point values, or None: laws for a whole mesh then do not apply."""
