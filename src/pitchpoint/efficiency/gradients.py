@@ -1,0 +1,64 @@
+"""Derivatives of the main figures with respect to every continuous input, geometry included."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
+
+__all__ = ["input_torque_gradient", "mean_loss_gradient", "ripple_gradient"]
+
+Inputs = tuple[Design, Operation]
+
+
+def mean_loss_gradient(design: Design, operation: Operation, models: Models) -> Inputs:
+    """Derivatives of the mean power loss [W].
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: one operating point.
+        models: laws.
+
+    Returns:
+        A design and an operation that hold the derivative in place of each continuous value, in W
+        over its SI unit; None in place of the others.
+    """
+    return _gradient((design, operation), "mean_loss", models)
+
+
+def ripple_gradient(design: Design, operation: Operation, models: Models) -> Inputs:
+    """Derivatives of the ripple of the input torque [N m], on this side of any event.
+
+    The ripple is piecewise differentiable: where the extreme state moves from one segment of the
+    cycle to another, the derivative jumps. Arguments and result as in `mean_loss_gradient`.
+    """
+    return _gradient((design, operation), "ripple", models)
+
+
+def input_torque_gradient(
+    design: Design, operation: Operation, models: Models, phase: Float[Array, ""]
+) -> Inputs:
+    """Derivatives of the input torque [N m] at one phase.
+
+    Arguments and result as in `mean_loss_gradient`. The torque jumps at entry and exit of a pair: on
+    an event itself the derivative is that of one side.
+    """
+    return _at_phase((design, operation), models, phase)
+
+
+@eqx.filter_jit
+def _gradient(inputs: Inputs, figure: str, models: Models) -> Inputs:
+    def value(inputs: Inputs) -> Array:
+        result: Array = getattr(cycle(*inputs, models), figure)
+        return result
+
+    derivatives: Inputs = eqx.filter_grad(value)(inputs)
+    return derivatives
+
+
+@eqx.filter_jit
+def _at_phase(inputs: Inputs, models: Models, phase: Float[Array, ""]) -> Inputs:
+    def torque(inputs: Inputs) -> Array:
+        return state(*inputs, phase, models).input_torque
+
+    derivatives: Inputs = eqx.filter_grad(torque)(inputs)
+    return derivatives

@@ -1,0 +1,79 @@
+"""Everything along one mesh cycle, for figures and tables: torques, and the state of every contact."""
+
+import equinox as eqx
+from jaxtyping import Array
+
+from pitchpoint._jax import jnp
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.lubrication.conditions import evaluate
+from pitchpoint.lubrication.film_thickness import FilmThickness
+
+__all__ = ["profile"]
+
+
+@eqx.filter_jit
+def profile(
+    design: Design, operation: Operation, models: Models, film: FilmThickness, nodes: int = 48
+) -> dict[str, Array]:
+    """State over one period at one operating point.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: one operating point.
+        models: laws.
+        film: law of the film thickness.
+        nodes: in each segment between events.
+
+    Returns:
+        Quantities by name, [node] for the mesh and [node, pair, slice] for each contact; zero where
+        a pair is not in contact.
+    """
+    result = cycle(design, operation, models, nodes)
+    state = result.state
+    at, contacts = state.conditions, state.contacts
+    thickness = evaluate(film.function, at)
+    slip = contacts.slip_arm @ at.motion
+    mesh = {
+        "phase": result.phase,
+        "weight": result.weight,
+        "input_torque": state.input_torque,
+        "efficiency": state.efficiency,
+        "loss": state.loss,
+        "contact_force": state.balance.force,
+        "contact_force_ratio": state.contact_force_ratio,
+        "residual": state.balance.residual,
+        "locked": state.balance.locked,
+    }
+    each = {
+        "load": state.balance.load,
+        "load_share": state.balance.load / _positive(state.balance.force)[..., None, None],
+        "friction": state.balance.friction,
+        "sliding_velocity": slip * at.speed[..., None, None],
+        "entrainment": at.entrainment,
+        "slide_roll_ratio": at.slide_roll_ratio,
+        "pressure": at.pressure,
+        "film_thickness": thickness,
+        "lambda_ratio": thickness / _positive(at.roughness_rq),
+        "sliding_loss": state.sliding_loss,
+        "rolling_loss": state.rolling_loss,
+        "radius": contacts.radius,
+    }
+    mesh = {name: jnp.broadcast_to(v, result.phase.shape) for name, v in mesh.items()}
+    outside = {
+        f"outside {law.name} {name}": _outside(getattr(at, name), limits, contacts.active)
+        for law in models.friction
+        for name, limits in law.ranges.items()
+    }
+    masked = {name: jnp.where(contacts.active, values, 0.0) for name, values in each.items()}
+    return {**mesh, **outside, **masked, "active": contacts.active, "path": contacts.path}
+
+
+def _outside(value: Array, limits: tuple[float, float], active: Array) -> Array:
+    """True at nodes where a condition of a pair in contact leaves the range of a law."""
+    beyond = (value < limits[0]) | (value > limits[1])
+    return jnp.any(beyond & active, axis=(-2, -1))
+
+
+def _positive(value: Array) -> Array:
+    """Value, or infinity in place of zero, so that a quotient is zero."""
+    return jnp.where(value > 0.0, value, jnp.inf)

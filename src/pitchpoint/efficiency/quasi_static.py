@@ -1,0 +1,327 @@
+"""The quasi-static state of a mesh at any phase, and its cycle between events."""
+
+from collections.abc import Callable, Mapping
+from functools import cache
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.balance import Balance, balance
+from pitchpoint.loading.sharing import LoadSharing
+from pitchpoint.lubrication.conditions import Conditions, evaluate
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.rolling_resistance import RollingResistance
+from pitchpoint.materials.lubricants import Lubricant
+from pitchpoint.materials.surfaces import Roughness
+
+__all__ = ["Cycle", "Design", "Models", "Operation", "State", "cycle", "cycle_nodes", "state"]
+
+# Nodes keep this relative distance from the events, so that each lies on one side of them.
+_INSIDE = 1e-9
+
+Lanes = Float[Array, "*b pair slice"]
+Each = Float[Array, "*b"]
+
+
+class Design(eqx.Module):
+    """What is built once: the mesh, the modulus of its materials, oil and surfaces.
+
+    Attributes:
+        mesh: any gear family.
+        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E over both members.
+        lubricant: the oil.
+        roughness: of both flanks.
+    """
+
+    mesh: Mesh
+    modulus: Float[Array, ""]
+    lubricant: Lubricant
+    roughness: Roughness
+
+
+class Operation(eqx.Module):
+    """Operating points.
+
+    Attributes:
+        load: torque (or force) that the driven coordinate carries, not negative [N m or N].
+        speed: of the driver, positive [rad/s].
+        temperature: of the oil [K].
+    """
+
+    load: Each
+    speed: Each
+    temperature: Each
+
+
+class Models(eqx.Module):
+    """Which law stands for which effect.
+
+    Several friction laws share one compiled program: `choice` picks one of them at run time.
+
+    Attributes:
+        friction: laws of the friction coefficient.
+        choice: index of the one that acts.
+        parameters: values of the laws' own parameters by name of the law.
+        sharing: of the load between pairs.
+        rolling: rolling resistance.
+    """
+
+    friction: tuple[FrictionLaw, ...] = eqx.field(static=True)
+    choice: Int[Array, ""]
+    parameters: Mapping[str, Mapping[str, Float[Array, ""]]]
+    sharing: LoadSharing = eqx.field(static=True)
+    rolling: RollingResistance = eqx.field(static=True)
+
+    def coefficient(self, conditions: Conditions) -> Lanes:
+        """Friction coefficient at every contact by the chosen law."""
+
+        def branch(law: FrictionLaw) -> Callable[[Conditions], Lanes]:
+            return lambda at: evaluate(law.function, at, self.parameters.get(law.name))
+
+        if len(self.friction) == 1:
+            return branch(self.friction[0])(conditions)
+        chosen: Lanes = jax.lax.switch(
+            self.choice, [branch(law) for law in self.friction], conditions
+        )
+        return chosen
+
+
+class State(eqx.Module):
+    """Quasi-static state at phases and operating points `*b`.
+
+    Attributes:
+        contacts: where the teeth touch.
+        conditions: at each of them.
+        balance: forces and torques.
+        sliding_loss, rolling_loss: power lost at each slice [W].
+        input_torque: torque of the driver in its direction of motion [N m].
+        output_power: power taken by the load [W].
+    """
+
+    contacts: Contacts
+    conditions: Conditions
+    balance: Balance
+    sliding_loss: Lanes
+    rolling_loss: Lanes
+    input_torque: Each
+    output_power: Each
+
+    @property
+    def loss(self) -> Each:
+        """Power lost in all contacts [W]."""
+        return jnp.sum(self.sliding_loss + self.rolling_loss, axis=(-2, -1))
+
+    @property
+    def input_power(self) -> Each:
+        """Power of the driver, from the balance of torques [W]."""
+        return self.input_torque * self.conditions.speed
+
+    @property
+    def efficiency(self) -> Each:
+        """Output over input power; NaN where no power is transmitted."""
+        transmits = self.output_power > 0.0
+        return jnp.where(
+            transmits, self.output_power / jnp.where(transmits, self.input_power, 1.0), jnp.nan
+        )
+
+    @property
+    def contact_force_ratio(self) -> Each:
+        """Contact force over that without friction; one without load (Tian et al. 2024, eq. 18)."""
+        loaded = self.balance.frictionless > 0.0
+        return jnp.where(
+            loaded, self.balance.force / jnp.where(loaded, self.balance.frictionless, 1.0), 1.0
+        )
+
+
+def state(design: Design, operation: Operation, phase: Each, models: Models) -> State:
+    """State of the mesh in static equilibrium with friction.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: operating points [*b], broadcast against the phases.
+        phase: [*b] periods.
+        models: laws.
+    """
+    mesh = design.mesh
+    contacts = mesh.contacts(phase)
+    share = models.sharing.function(contacts, mesh.contact_ratio)
+    arm = jnp.abs(jnp.sum(share * (contacts.normal @ mesh.loaded), axis=(-2, -1)))
+    oil, temperature = design.lubricant, operation.temperature
+
+    def conditions(load: Lanes) -> Conditions:
+        return Conditions(
+            contacts=contacts,
+            load=load,
+            nominal_load=operation.load / arm,
+            motion=mesh.motion,
+            speed=operation.speed,
+            modulus=design.modulus,
+            oil_viscosity=oil.viscosity(temperature),
+            oil_kinematic_viscosity=oil.kinematic_viscosity(temperature),
+            oil_pressure_viscosity=oil.pressure_viscosity(temperature),
+            oil_factor=oil.lubricant_factor,
+            mean_ra=design.roughness.mean_ra,
+            composite_rq=design.roughness.composite_rq,
+            reference=mesh.reference,
+        )
+
+    def friction(load: Lanes) -> Lanes:
+        return models.coefficient(conditions(load))
+
+    def rolling(load: Lanes) -> Lanes:
+        return evaluate(models.rolling.function, conditions(load)) * contacts.weight
+
+    balanced = balance(
+        contacts,
+        share,
+        motion=mesh.motion,
+        loaded=mesh.loaded,
+        load=operation.load,
+        friction=friction,
+        rolling=None if models.rolling.name == "none" else rolling,
+    )
+    at_contact = conditions(balanced.load)
+    driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
+    delivered = jnp.abs(mesh.loaded @ mesh.motion)
+    return State(
+        contacts=contacts,
+        conditions=at_contact,
+        balance=balanced,
+        sliding_loss=balanced.load * balanced.friction * at_contact.sliding,
+        rolling_loss=2.0 * balanced.rolling * at_contact.entrainment,
+        input_torque=balanced.torque @ driver,
+        output_power=operation.load * operation.speed * delivered,
+    )
+
+
+class Cycle(eqx.Module):
+    """One period of states with the weights that integrate over it.
+
+    Attributes:
+        phase: nodes [node], ordered, moving with the events.
+        weight: of each node; they sum to one.
+        state: at the nodes, batch axes `*b node`.
+        nodes: static, nodes in each segment between events.
+    """
+
+    phase: Float[Array, " node"]
+    weight: Float[Array, " node"]
+    state: State
+    nodes: int = eqx.field(static=True)
+
+    def mean(self, values: Float[Array, "*b node"]) -> Each:
+        """Mean over one period."""
+        return jnp.sum(values * self.weight, axis=-1)
+
+    def path_mean(self, values: Float[Array, "*b node"]) -> Each:
+        """Mean over the path of contact of one pair: double contact counts twice."""
+        pairs = jnp.sum(jnp.any(self.state.contacts.active, axis=-1), axis=-1)
+        return self.mean(values * pairs) / self.mean(pairs * 1.0)
+
+    def extremes(self, values: Float[Array, "*b node"]) -> tuple[Each, Each]:
+        """Smallest and largest value of the cycle, between the nodes too; piecewise differentiable.
+
+        A polynomial through the nodes of each segment is read at points between them: jumps lie at
+        the ends of segments, where there are nodes.
+        """
+        segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
+        segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
+        dense = segments @ _between(self.nodes)
+        return jnp.min(dense, axis=(-2, -1)), jnp.max(dense, axis=(-2, -1))
+
+    @property
+    def mean_loss(self) -> Each:
+        """Mean power lost [W]."""
+        return self.mean(self.state.loss)
+
+    @property
+    def mean_input_torque(self) -> Each:
+        """Mean torque of the driver [N m]."""
+        return self.mean(self.state.input_torque)
+
+    @property
+    def mean_efficiency(self) -> Each:
+        """Energy out over energy in within one period; NaN where no power is transmitted."""
+        power_out = self.mean(self.state.output_power)
+        transmits = power_out > 0.0
+        power_in = jnp.where(transmits, self.mean(self.state.input_power), 1.0)
+        return jnp.where(transmits, power_out / power_in, jnp.nan)
+
+    @property
+    def ripple(self) -> Each:
+        """Largest minus smallest input torque [N m]; piecewise differentiable."""
+        low, high = self.extremes(self.state.input_torque)
+        return high - low
+
+    @property
+    def residual(self) -> Each:
+        """Largest relative error of the balance."""
+        return jnp.max(self.state.balance.residual, axis=-1)
+
+    @property
+    def locked(self) -> Bool[Array, "*b"]:
+        """True where friction locks the mesh at some phase."""
+        return jnp.any(self.state.balance.locked, axis=-1)
+
+
+def cycle(design: Design, operation: Operation, models: Models, nodes: int = 24) -> Cycle:
+    """States over one period, integrated segment by segment between the events.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: operating points [*b].
+        models: laws.
+        nodes: Gauss-Lobatto nodes in each segment; its ends lie beside the events.
+    """
+    phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
+    points = Operation(
+        load=operation.load[..., None],
+        speed=operation.speed[..., None],
+        temperature=operation.temperature[..., None],
+    )
+    return Cycle(phase, weight, state(design, points, phase, models), nodes)
+
+
+def cycle_nodes(
+    mesh: Mesh, sharing: LoadSharing, nodes: int
+) -> tuple[Float[Array, " node"], Float[Array, " node"]]:
+    """Phases and weights that integrate exactly between events, and move with them.
+
+    Args:
+        mesh: any family.
+        sharing: may add hand-overs to the events of the mesh.
+        nodes: in each segment, at least 3.
+    """
+    edges = mesh.events()
+    if sharing.hand_over is not None:
+        edges = jnp.concatenate([edges, sharing.hand_over(mesh.contact_ratio)])
+    edges = jnp.concatenate([jnp.sort(edges), jnp.ones(1)])
+    start, length = edges[:-1, None], jnp.diff(edges)[:, None]
+    unit, weight = _lobatto(nodes)
+    return (start + length * unit).ravel(), (length * weight).ravel()
+
+
+@cache
+def _lobatto(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Lobatto nodes, nearly on [0, 1], and weights: both ends and the roots of P'."""
+    legendre = np.polynomial.Legendre.basis(count - 1)
+    inner = np.sort(legendre.deriv().roots().real)
+    x = np.concatenate([[-1.0], inner, [1.0]])
+    weight = 1.0 / (count * (count - 1) * legendre(x) ** 2)
+    return np.clip((x + 1.0) / 2.0, _INSIDE, 1.0 - _INSIDE), weight
+
+
+@cache
+def _between(count: int) -> np.ndarray:
+    """Matrix from values at the nodes to values at them and at seven points between neighbours."""
+    nodes = np.arccos(1.0 - 2.0 * _lobatto(count)[0])
+    angles = np.interp(np.arange(8 * (count - 1) + 1) / 8.0, np.arange(count), nodes)
+    return np.linalg.solve(_modes(np.cos(nodes), count).T, _modes(np.cos(angles), count).T)
+
+
+def _modes(x: np.ndarray, count: int) -> np.ndarray:
+    return np.polynomial.legendre.legvander(-x, count - 1)

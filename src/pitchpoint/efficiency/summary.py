@@ -1,0 +1,111 @@
+"""Figures of whole mesh cycles for many designs and operating points at once, in chunks of one size."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, cycle_nodes
+from pitchpoint.loading.sharing import equal
+
+__all__ = ["CHUNK", "loss_factor", "summarise", "summary"]
+
+CHUNK = 32
+"""Cycles computed together: one compiled program serves any number of them."""
+
+Point = tuple[Design, Operation]
+
+
+def loss_factor(design: Design, models: Models) -> Array:
+    """Loss factor H_V with equal load sharing: P_loss = P_in mu H_V to first order in mu.
+
+    Mean over one base pitch of the sliding arms over the driver's arm; for an involute pair it is
+    Ohlendorf's closed form.
+    """
+    mesh = design.mesh
+    phase, weight = cycle_nodes(mesh, models.sharing, 6)
+    contacts = mesh.contacts(phase)
+    share = equal(contacts, mesh.contact_ratio)
+    sliding = jnp.abs(contacts.slip_arm @ mesh.motion)
+    arm = jnp.abs(contacts.normal @ mesh.driver)
+    return jnp.sum(share * sliding / arm, axis=(-2, -1)) @ weight
+
+
+def summary(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
+    """Figures of one cycle; powers in W, torques in N m, the rest dimensionless."""
+    result = cycle(design, operation, models)
+    state = result.state
+    low, high = result.extremes(_defined(state.efficiency))
+    torque_low, torque_high = result.extremes(state.input_torque)
+    return {
+        "contact_ratio": design.mesh.contact_ratio,
+        "loss_factor": loss_factor(design, models),
+        "mean_loss": result.mean_loss,
+        "mean_loss_path": result.path_mean(state.loss),
+        "mean_efficiency": result.mean_efficiency,
+        "mean_efficiency_path": result.path_mean(state.efficiency),
+        "min_efficiency": low,
+        "max_efficiency": high,
+        "mean_input_torque": result.mean_input_torque,
+        "mean_input_torque_path": result.path_mean(state.input_torque),
+        "min_input_torque": torque_low,
+        "max_input_torque": torque_high,
+        "mean_friction": _mean_friction(result),
+        "residual": result.residual,
+        "iterations": state.balance.iterations,
+        "locked": result.locked,
+    }
+
+
+def summarise(
+    points: Sequence[Point],
+    models: Models,
+    progress: Callable[[int], None] | None = None,
+) -> dict[str, np.ndarray]:
+    """Summaries of many points, each quantity [point].
+
+    Args:
+        points: designs and operating points of equal static structure (lanes, undercut).
+        models: laws.
+        progress: told the number of finished points after each chunk.
+    """
+    chunks: list[dict[str, np.ndarray]] = []
+    for chunk, used in _chunks(points):
+        designs, operations = chunk
+        out = jax.device_get(_summaries(designs, operations, models))
+        chunks.append({name: np.asarray(values)[:used] for name, values in out.items()})
+        if progress is not None:
+            progress(sum(len(part["residual"]) for part in chunks))
+    return {name: np.concatenate([part[name] for part in chunks]) for name in chunks[0]}
+
+
+@eqx.filter_jit
+def _summaries(designs: Design, operations: Operation, models: Models) -> dict[str, Array]:
+    result: dict[str, Array] = eqx.filter_vmap(
+        lambda design, operation: summary(design, operation, models)
+    )(designs, operations)
+    return result
+
+
+def _chunks(points: Sequence[Point]) -> Iterator[tuple[Point, int]]:
+    """Stacks of CHUNK points, the last one filled up by repetition."""
+    for start in range(0, len(points), CHUNK):
+        part = list(points[start : start + CHUNK])
+        padded = part + [part[-1]] * (CHUNK - len(part))
+        yield jax.tree.map(lambda *leaves: np.stack(leaves), *padded), len(part)
+
+
+def _defined(efficiency: Array) -> Array:
+    """Efficiency with one in place of the undefined, so that extremes stay finite."""
+    return jnp.where(jnp.isnan(efficiency), 1.0, efficiency)
+
+
+def _mean_friction(result: Cycle) -> Array:
+    """Friction coefficient weighted with the load of the contacts."""
+    balance = result.state.balance
+    total = jnp.sum(balance.load, axis=(-2, -1))
+    weighted = jnp.sum(balance.load * balance.friction, axis=(-2, -1))
+    loaded = total > 0.0
+    return result.mean(jnp.where(loaded, weighted / jnp.where(loaded, total, 1.0), 0.0))

@@ -1,0 +1,1 @@
+"""How the load is shared between pairs, and the balance of torques with friction."""

@@ -1,0 +1,1 @@
+"""Film thickness, friction laws and rolling resistance, all functions of the conditions at a contact."""

@@ -1,0 +1,244 @@
+"""Conditions at each contact under the names by which the laws of friction and film ask for them."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact import hertz
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Reference
+
+__all__ = ["Conditions", "arguments", "evaluate"]
+
+Lanes = Float[Array, "*b pair slice"]
+Each = Float[Array, "*b"]
+
+
+class Conditions(eqx.Module):
+    """State of every contact at given load and speed; laws read its properties by name.
+
+    Attributes:
+        contacts: of the mesh.
+        load: normal force of each slice [N].
+        nominal_load: normal force of the whole mesh without friction [N].
+        motion: rates of the coordinates per radian of the driver.
+        speed: of the driver [rad/s].
+        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+        oil_viscosity, oil_kinematic_viscosity: at oil temperature [Pa s], [m2/s].
+        oil_pressure_viscosity: alpha at oil temperature [1/Pa].
+        oil_factor: lubricant factor X_L.
+        mean_ra, composite_rq: roughness of the flanks [m].
+        reference: pitch-point values, or None.
+    """
+
+    contacts: Contacts
+    load: Lanes
+    nominal_load: Each
+    motion: Float[Array, " dof"]
+    speed: Each
+    modulus: Float[Array, ""]
+    oil_viscosity: Each
+    oil_kinematic_viscosity: Each
+    oil_pressure_viscosity: Each
+    oil_factor: Float[Array, ""]
+    mean_ra: Float[Array, ""]
+    composite_rq: Float[Array, ""]
+    reference: Reference | None
+
+    @property
+    def line_load(self) -> Lanes:
+        """Normal load per length of contact line [N/m]."""
+        return self.load / self.contacts.weight
+
+    @property
+    def speed_a(self) -> Lanes:
+        """Surface speed of member 0 relative to the contact [m/s]."""
+        return self.contacts.speeds(self.motion)[..., 0] * _lanes(self.speed)
+
+    @property
+    def speed_b(self) -> Lanes:
+        """Surface speed of member 1 relative to the contact [m/s]."""
+        return self.contacts.speeds(self.motion)[..., 1] * _lanes(self.speed)
+
+    @property
+    def entrainment(self) -> Lanes:
+        """Mean of the surface speeds, without sign [m/s]."""
+        return jnp.abs(jnp.sum(self.contacts.speeds(self.motion), -1) / 2.0) * _lanes(self.speed)
+
+    @property
+    def sliding(self) -> Lanes:
+        """Difference of the surface speeds, without sign [m/s]."""
+        return jnp.abs(self.contacts.slip_arm @ self.motion) * _lanes(self.speed)
+
+    @property
+    def slide_roll_ratio(self) -> Lanes:
+        """Sliding over entrainment; a matter of geometry, defined at standstill too."""
+        mean = jnp.abs(self.contacts.roll_arm @ self.motion) / 2.0
+        slip = jnp.abs(self.contacts.slip_arm @ self.motion)
+        return jnp.where(mean > 0.0, slip / jnp.where(mean > 0.0, mean, 1.0), 0.0)
+
+    @property
+    def radius(self) -> Lanes:
+        """Relative radius of curvature in the rolling direction [m]."""
+        return self.contacts.radius
+
+    @property
+    def transverse_radius(self) -> Lanes:
+        """Relative radius of curvature across the rolling direction [m]; of elliptic contacts."""
+        return 1.0 / self.contacts.relative_curvature[..., 1]
+
+    @property
+    def pressure(self) -> Lanes:
+        """Largest Hertz pressure [Pa]."""
+        if self.contacts.shape == "ellipse":
+            return hertz.elliptic_pressure(
+                load=self.load,
+                radius=self.radius,
+                transverse_radius=self.transverse_radius,
+                modulus=self.modulus,
+            )
+        return hertz.line_pressure(
+            line_load=self.line_load, radius=self.radius, modulus=self.modulus
+        )
+
+    @property
+    def half_width(self) -> Lanes:
+        """Half-width of a line contact [m]."""
+        return hertz.line_half_width(
+            line_load=self.line_load, radius=self.radius, modulus=self.modulus
+        )
+
+    @property
+    def viscosity(self) -> Lanes:
+        """Dynamic viscosity at oil temperature [Pa s]."""
+        return _lanes(self.oil_viscosity)
+
+    @property
+    def kinematic_viscosity(self) -> Lanes:
+        """Kinematic viscosity at oil temperature [m2/s]."""
+        return _lanes(self.oil_kinematic_viscosity)
+
+    @property
+    def pressure_viscosity(self) -> Lanes:
+        """Pressure-viscosity coefficient at oil temperature [1/Pa]."""
+        return _lanes(self.oil_pressure_viscosity)
+
+    @property
+    def lubricant_factor(self) -> Float[Array, ""]:
+        """X_L of the lubricant."""
+        return self.oil_factor
+
+    @property
+    def roughness_ra(self) -> Float[Array, ""]:
+        """Mean Ra of both flanks [m]."""
+        return self.mean_ra
+
+    @property
+    def roughness_rq(self) -> Float[Array, ""]:
+        """Composite Rq of both flanks [m]."""
+        return self.composite_rq
+
+    @property
+    def face_width(self) -> Float[Array, ""]:
+        """Face width of the mesh [m]."""
+        return self._pitch_point.width
+
+    @property
+    def reference_line_load(self) -> Lanes:
+        """Tangential force at the base circle over the face width F_bt/b, without friction [N/m]."""
+        return _lanes(self.nominal_load / self._pitch_point.width)
+
+    @property
+    def reference_sum_speed(self) -> Lanes:
+        """Sum of the surface speeds at the pitch point [m/s]."""
+        return _lanes(self.speed * self._pitch_point.sum_speed)
+
+    @property
+    def reference_radius(self) -> Float[Array, ""]:
+        """Relative radius of curvature at the pitch point [m]."""
+        return self._pitch_point.radius
+
+    @property
+    def pitch_line_speed(self) -> Lanes:
+        """Speed of the pitch circles [m/s]."""
+        return _lanes(self.speed * self._pitch_point.pitch_line_speed)
+
+    @property
+    def _pitch_point(self) -> Reference:
+        if self.reference is None:
+            raise InputError(
+                "a law for a whole mesh does not apply: this contact has no pitch point"
+            )
+        return self.reference
+
+
+# Unit of every condition that a law may ask for by name.
+UNITS: Mapping[str, str] = {
+    "line_load": "N/m",
+    "load": "N",
+    "entrainment": "m/s",
+    "sliding": "m/s",
+    "slide_roll_ratio": "1",
+    "speed_a": "m/s",
+    "speed_b": "m/s",
+    "radius": "m",
+    "transverse_radius": "m",
+    "pressure": "Pa",
+    "half_width": "m",
+    "viscosity": "Pa s",
+    "kinematic_viscosity": "m2/s",
+    "pressure_viscosity": "1/Pa",
+    "lubricant_factor": "1",
+    "roughness_ra": "m",
+    "roughness_rq": "m",
+    "modulus": "Pa",
+    "face_width": "m",
+    "reference_line_load": "N/m",
+    "reference_sum_speed": "m/s",
+    "reference_radius": "m",
+    "pitch_line_speed": "m/s",
+}
+
+
+def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
+    """Conditions that a law asks for, and its own parameters with their defaults.
+
+    Raises:
+        InputError: the law asks for something that is neither a condition nor has a default.
+    """
+    wanted, parameters = [], {}
+    for name, parameter in inspect.signature(law).parameters.items():
+        if name in UNITS:
+            wanted.append(name)
+        elif parameter.default is not inspect.Parameter.empty:
+            parameters[name] = parameter.default
+        else:
+            raise InputError(
+                f"the law {getattr(law, '__name__', 'given')} asks for '{name}', which is no condition "
+                f"at a contact; conditions are {', '.join(UNITS)}"
+            )
+    return wanted, parameters
+
+
+def evaluate(
+    law: Callable[..., Array], conditions: Conditions, parameters: Mapping[str, Any] | None = None
+) -> Lanes:
+    """Value of a law at every contact.
+
+    Args:
+        law: function with keyword arguments named as in `UNITS`; others are its parameters.
+        conditions: at the contacts.
+        parameters: values of its parameters where they differ from the defaults.
+    """
+    wanted, _ = arguments(law)
+    values = {name: getattr(conditions, name) for name in wanted}
+    return jnp.broadcast_to(law(**values, **(parameters or {})), conditions.load.shape)
+
+
+def _lanes(value: Each) -> Lanes:
+    return jnp.asarray(value)[..., None, None]

@@ -1,0 +1,131 @@
+"""Film thickness of EHL contacts by published regressions."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Shape
+from pitchpoint.registry import Registry
+
+__all__ = [
+    "FILM_THICKNESS",
+    "FilmThickness",
+    "dowson_higginson_1959",
+    "hamrock_dowson_1977",
+]
+
+Each = Float[Array, "*b"]
+
+
+@dataclass(frozen=True, eq=False)
+class FilmThickness:
+    """A named film law; `function` gives metres, `place` says minimum or central film."""
+
+    name: str
+    title: str
+    function: Callable[..., Array]
+    sources: tuple[str, ...]
+    place: str
+    shape: Shape = "line"
+    note: str = ""
+
+
+def dowson_higginson_1959(
+    *,
+    line_load: Each,
+    entrainment: Each,
+    viscosity: Each,
+    pressure_viscosity: Each,
+    radius: Each,
+    modulus: Each,
+) -> Each:
+    """Minimum film of a line contact [m]: h/R = 1.6 G^0.6 U^0.7 W^-0.13.
+
+    Args:
+        line_load: w [N/m].
+        entrainment: mean surface speed u [m/s].
+        viscosity: eta0 [Pa s].
+        pressure_viscosity: alpha [1/Pa].
+        radius: R [m].
+        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+
+    W = w/(E' R), U = eta0 u/(E' R), G = alpha E'. Source: Dowson and Higginson (1959).
+    """
+    groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    return radius * _product(1.6, groups, (-0.13, 0.7, 0.6))
+
+
+def hamrock_dowson_1977(
+    *,
+    load: Each,
+    entrainment: Each,
+    viscosity: Each,
+    pressure_viscosity: Each,
+    radius: Each,
+    transverse_radius: Each,
+    modulus: Each,
+) -> Each:
+    """Minimum film of an elliptic contact [m]: h/R = 3.63 U^0.68 G^0.49 W^-0.073 (1 - exp(-0.68 k)).
+
+    Args:
+        load: normal load F [N].
+        entrainment: mean surface speed u along R_x [m/s].
+        viscosity: eta0 [Pa s].
+        pressure_viscosity: alpha [1/Pa].
+        radius: R_x [m].
+        transverse_radius: R_y [m].
+        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+
+    W = F/(E' R_x^2), k = (R_y/R_x)^(2/pi). Source: Hamrock and Dowson (1977).
+    """
+    groups = (
+        load / (modulus * radius**2),
+        viscosity * entrainment / (modulus * radius),
+        pressure_viscosity * modulus,
+    )
+    slender = (transverse_radius / radius) ** (2.0 / jnp.pi)
+    return radius * _product(3.63, groups, (-0.073, 0.68, 0.49)) * (1.0 - jnp.exp(-0.68 * slender))
+
+
+def _line_groups(
+    line_load: Each, entrainment: Each, viscosity: Each, alpha: Each, radius: Each, modulus: Each
+) -> tuple[Each, Each, Each]:
+    """Load, speed and material parameters W, U, G."""
+    return (
+        line_load / (modulus * radius),
+        viscosity * entrainment / (modulus * radius),
+        alpha * modulus,
+    )
+
+
+def _product(
+    factor: float, groups: tuple[Each, Each, Each], exponents: tuple[float, float, float]
+) -> Each:
+    """Factor * W^a U^b G^c; zero without load, where the regressions say nothing, and at standstill."""
+    load, speed, material = groups
+    film = (load > 0.0) & (speed > 0.0)
+    logs = [jnp.log(jnp.where(film, group, 1.0)) for group in (load, speed, material)]
+    total = sum(power * log for power, log in zip(exponents, logs, strict=True))
+    return jnp.where(film, factor * jnp.exp(total), 0.0)
+
+
+FILM_THICKNESS = Registry(
+    "film thickness law",
+    FilmThickness(
+        "dowson_higginson_1959",
+        "Dowson-Higginson, line",
+        dowson_higginson_1959,
+        ("dowson_higginson_1959",),
+        "minimum",
+    ),
+    FilmThickness(
+        "hamrock_dowson_1977",
+        "Hamrock-Dowson, ellipse",
+        hamrock_dowson_1977,
+        ("hamrock_dowson_1977",),
+        "minimum",
+        "ellipse",
+    ),
+)

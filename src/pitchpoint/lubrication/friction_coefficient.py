@@ -1,0 +1,307 @@
+"""Friction coefficients of lubricated gear teeth: published laws, and the table of them.
+
+A law takes SI values by keyword and returns a dimensionless coefficient that is never negative. Its
+arguments carry the names of the contact conditions, so that a caller can pass the conditions on as
+they are; a further keyword is a parameter of the law and has a default. All arguments broadcast.
+
+A law is listed in `LAWS` when its form, its coefficients and its units agree in two sources that do
+not depend on each other.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from jax.typing import ArrayLike
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+
+__all__ = [
+    "LAWS",
+    "FrictionLaw",
+    "constant",
+    "frictionless",
+    "iso_tr_14179_2",
+    "matsumoto_morikawa_2014",
+    "xu_2007",
+]
+
+# Far below any physical value in fitted units, large enough for finite powers and gradients.
+_FLOOR: Final = 1e-12
+
+_XU: Final = (
+    -8.916465,
+    1.03303,
+    1.036077,
+    -0.354068,
+    2.812084,
+    -0.100601,
+    0.752755,
+    -0.390958,
+    0.620305,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionLaw:
+    """A friction law with what a user needs to choose it.
+
+    Attributes:
+        name: name of the function.
+        title: name to show.
+        function: the law; keyword-only, SI in, coefficient out.
+        sources: keys of the bibliography.
+        ranges: fitted range of each argument, in SI; empty where no source states one.
+        local: True if the law holds at each contact, False if it gives one mean for the mesh.
+        note: what it was fitted on, and cautions.
+        full_film: True if it describes contacts that a film separates.
+        check: arguments in SI and the value computed from the printed formula in printed units.
+    """
+
+    name: str
+    title: str
+    function: Callable[..., Array]
+    sources: tuple[str, ...]
+    check: tuple[dict[str, float], float]
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    local: bool = True
+    note: str = ""
+    full_film: bool = False
+
+
+def _floored(value: ArrayLike) -> Array:
+    return jnp.where(jnp.asarray(value) > _FLOOR, value, _FLOOR)
+
+
+def _power_product(*factors: tuple[ArrayLike, float]) -> Array:
+    """Product of value ** exponent, 0 where a factor with a positive exponent vanishes.
+
+    A factor with a negative exponent has no finite limit at zero: it is held at the floor.
+    """
+    total = jnp.asarray(0.0)
+    vanishes = jnp.asarray(False)
+    for value, exponent in factors:
+        total = total + exponent * jnp.log(_floored(value))
+        if exponent > 0:
+            vanishes = vanishes | (jnp.asarray(value) <= _FLOOR)
+    return jnp.where(vanishes, 0.0, jnp.exp(total))
+
+
+def constant(*, coefficient: ArrayLike = 0.05) -> Float[Array, "..."]:
+    """Coulomb friction with one coefficient for every contact.
+
+    Args:
+        coefficient: friction coefficient [-].
+
+    Returns:
+        The coefficient as an array [-].
+
+    Example:
+        >>> float(constant(coefficient=0.06))
+        0.06
+    """
+    return jnp.asarray(coefficient, dtype=float)
+
+
+def frictionless() -> Float[Array, ""]:
+    """No friction at all: the reference that losses are measured against.
+
+    Returns:
+        Zero [-].
+    """
+    return jnp.asarray(0.0)
+
+
+def iso_tr_14179_2(
+    *,
+    reference_line_load: ArrayLike,
+    reference_sum_speed: ArrayLike,
+    reference_radius: ArrayLike,
+    viscosity: ArrayLike,
+    roughness_ra: ArrayLike,
+    lubricant_factor: ArrayLike,
+) -> Float[Array, "..."]:
+    """Mean coefficient of a whole mesh after ISO/TR 14179-2, known as Schlenk's formula.
+
+    It belongs with the total load of the mesh and its loss factor. The load enters as it is, no
+    lower limit is applied. The formula has no finite limit at standstill: a sum speed below
+    1e-12 m/s counts as 1e-12 m/s.
+
+    Args:
+        reference_line_load: transverse force at the base circle per face width [N/m].
+        reference_sum_speed: sum of the surface speeds at the pitch point [m/s].
+        reference_radius: relative radius of curvature at the pitch point [m].
+        viscosity: dynamic viscosity at oil temperature [Pa s].
+        roughness_ra: mean of the arithmetic roughness of the two flanks [m].
+        lubricant_factor: X_L, the factor of the oil type [-].
+
+    Returns:
+        Mean friction coefficient of the mesh [-].
+
+    References:
+        ISO/TR 14179-2:2001 (`iso_tr_14179_2_2001`); Tian et al. 2024, equation 12 (`tian_2024`).
+
+    Example:
+        >>> mu = iso_tr_14179_2(reference_line_load=117.3e3, reference_sum_speed=2.9,
+        ...     reference_radius=6.156e-3, viscosity=0.05, roughness_ra=0.8e-6,
+        ...     lubricant_factor=1.0)
+        >>> round(float(mu), 4)
+        0.0544
+    """
+    newton_per_mm = jnp.asarray(reference_line_load) * 1e-3
+    mm, mPas, um = (
+        jnp.asarray(reference_radius) * 1e3,
+        jnp.asarray(viscosity) * 1e3,
+        jnp.asarray(roughness_ra) * 1e6,
+    )
+    powers = _power_product(
+        (newton_per_mm, 0.2), (reference_sum_speed, -0.2), (mm, -0.2), (mPas, -0.05), (um, 0.25)
+    )
+    return 0.048 * powers * jnp.asarray(lubricant_factor)
+
+
+def xu_2007(
+    *,
+    pressure: ArrayLike,
+    slide_roll_ratio: ArrayLike,
+    entrainment: ArrayLike,
+    viscosity: ArrayLike,
+    radius: ArrayLike,
+    roughness_rq: ArrayLike,
+) -> Float[Array, "..."]:
+    """Local coefficient after Xu and Kahraman: a regression of computed EHL contacts.
+
+    It tends to zero at pure rolling. It is doubly exponential in the roughness, and returns values
+    of mixed friction and above for rough flanks. It has no finite limit at zero entrainment, which
+    is held at 1e-12 m/s. Inlet viscosities below 1 mPa s are outside its form.
+
+    Args:
+        pressure: maximum Hertz pressure [Pa].
+        slide_roll_ratio: sliding speed over entrainment speed, absolute [-].
+        entrainment: mean of the two surface speeds [m/s].
+        viscosity: dynamic viscosity at inlet temperature and ambient pressure [Pa s].
+        radius: relative radius of curvature [m].
+        roughness_rq: composite RMS roughness of the two surfaces [m].
+
+    Returns:
+        Friction coefficient at the contact [-].
+
+    References:
+        Xu et al., J. Mech. Des. 129 (2007) 58-68 (`xu_2007`); Xu 2005 (`xu_2005`).
+
+    Example:
+        >>> mu = xu_2007(pressure=1e9, slide_roll_ratio=0.3, entrainment=10.0, viscosity=0.01,
+        ...     radius=0.01, roughness_rq=0.5e-6)
+        >>> round(float(mu), 6)
+        0.021024
+    """
+    b1, b2, b3, b4, b5, b6, b7, b8, b9 = _XU
+    GPa, cP = jnp.asarray(pressure) * 1e-9, jnp.asarray(viscosity) * 1e3
+    um, SR = jnp.asarray(roughness_rq) * 1e6, jnp.abs(jnp.asarray(slide_roll_ratio))
+    heaviness = SR * GPa * jnp.log(_floored(cP)) / jnp.log(10.0)
+    f = b1 + b4 * heaviness + b5 * jnp.exp(-heaviness) + b9 * jnp.exp(um)
+    powers = _power_product((GPa, b2), (SR, b3), (entrainment, b6), (cP, b7), (radius, b8))
+    return jnp.exp(f) * powers
+
+
+def matsumoto_morikawa_2014(
+    *,
+    film_thickness: ArrayLike,
+    roughness_height: ArrayLike,
+    boundary_coefficient: ArrayLike,
+    fluid_coefficient: ArrayLike,
+) -> Float[Array, "..."]:
+    """Mixed coefficient: boundary and fluid friction shared by the ratio of roughness to film.
+
+    The asperities carry the share log10(roughness/film)/2, held between 0 (film as thick as the
+    roughness is high) and 1 (a hundredth of it). The law needs a film thickness and the friction of
+    the film, which a caller computes first; for that reason it is not in `LAWS`.
+
+    Args:
+        film_thickness: minimum EHL film thickness [m].
+        roughness_height: sum of the maximum heights Rz of the two surfaces [m].
+        boundary_coefficient: coefficient where the asperities carry all load [-].
+        fluid_coefficient: coefficient where the film carries all load [-].
+
+    Returns:
+        Friction coefficient at the contact [-].
+
+    References:
+        Matsumoto and Morikawa 2014 (`matsumoto2014`), as given by Arana et al. 2019, equation 5 and
+        Table 1 (`arana2019`).
+
+    Example:
+        >>> mu = matsumoto_morikawa_2014(film_thickness=0.2e-6, roughness_height=2e-6,
+        ...     boundary_coefficient=0.09, fluid_coefficient=0.01)
+        >>> round(float(mu), 6)
+        0.05
+    """
+    ratio = jnp.log(_floored(roughness_height)) - jnp.log(_floored(film_thickness))
+    share = jnp.clip(0.5 * ratio / jnp.log(10.0), 0.0, 1.0)
+    fluid = jnp.asarray(fluid_coefficient)
+    return fluid + share * (jnp.asarray(boundary_coefficient) - fluid)
+
+
+LAWS: Final[tuple[FrictionLaw, ...]] = (
+    FrictionLaw(
+        name="constant",
+        title="Constant coefficient",
+        function=constant,
+        sources=(),
+        check=({"coefficient": 0.06}, 0.06),
+        note="One coefficient for every contact. The default 0.05 is a round figure, not a fit.",
+    ),
+    FrictionLaw(
+        name="frictionless",
+        title="Frictionless",
+        function=frictionless,
+        sources=(),
+        check=({}, 0.0),
+        note="No friction: the reference case.",
+    ),
+    FrictionLaw(
+        name="iso_tr_14179_2",
+        title="ISO/TR 14179-2 (Schlenk), mesh mean",
+        function=iso_tr_14179_2,
+        sources=("iso_tr_14179_2_2001", "tian_2024"),
+        check=(
+            {
+                "reference_line_load": 117.3e3,
+                "reference_sum_speed": 2.90,
+                "reference_radius": 6.156e-3,
+                "viscosity": 0.050,
+                "roughness_ra": 0.8e-6,
+                "lubricant_factor": 1.0,
+            },
+            0.0543983233897726,
+        ),
+        local=False,
+        note=(
+            "Mean coefficient fitted to losses of gear test rigs; use it with the load of the whole"
+            " mesh. X_L differs between oils, about 0.6 to 1."
+        ),
+    ),
+    FrictionLaw(
+        name="xu_2007",
+        title="Xu and Kahraman 2007, EHL regression",
+        function=xu_2007,
+        sources=("xu_2007", "xu_2005"),
+        check=(
+            {
+                "pressure": 1e9,
+                "slide_roll_ratio": 0.3,
+                "entrainment": 10.0,
+                "viscosity": 0.010,
+                "radius": 0.01,
+                "roughness_rq": 0.5e-6,
+            },
+            0.0210243789171055,
+        ),
+        note=(
+            "Regression of thermal EHL solutions for one 75W90 gear oil. Zero at pure rolling;"
+            " doubly exponential in roughness, so too high for rough flanks or mixed friction."
+        ),
+        full_film=True,
+    ),
+)
