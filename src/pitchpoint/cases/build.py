@@ -1,0 +1,229 @@
+"""From a validated case to the design, the operating point and the laws that compute it."""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import cos, pi, sin, tan
+
+from pitchpoint._jax import jnp
+from pitchpoint.cases.document import Document
+from pitchpoint.cases.laws import CASE_LAWS, FRICTION
+from pitchpoint.cases.schema import TEMPERATURE, Case, Gears, Materials, Oil, SolidValues, Surface
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.errors import InputError
+from pitchpoint.gears.checks import check_cylindrical
+from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials._leaves import Datum
+from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.materials.surfaces import Roughness
+
+__all__ = ["Built", "build", "laws_of"]
+
+_AVAILABLE_FILLET = 0.38
+
+
+@dataclass(frozen=True)
+class Built:
+    """A case ready to compute.
+
+    Attributes:
+        case: as validated.
+        design, operation: what the kernels take.
+        lubricant: record of the oil with the origin of its values.
+        warnings: sentences about the design.
+        own: friction law of the user's own that takes the place of those of the case.
+    """
+
+    case: Case
+    design: Design
+    operation: Operation
+    lubricant: lubricants.LubricantRecord
+    warnings: tuple[str, ...]
+    own: FrictionLaw | None = None
+
+    @property
+    def pair(self) -> CylindricalPair:
+        """The gear pair."""
+        assert isinstance(self.design.mesh, CylindricalPair)
+        return self.design.mesh
+
+
+def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Built:
+    """Design and operating point of a case.
+
+    Raises:
+        InputError: a gear pair that cannot run, a temperature outside the oil's range, a law that
+            does not hold for this pair; with file and key.
+    """
+    try:
+        pair, warnings, contact_ratio = _checked(case.gears, case.operation.driver)
+    except InputError as error:
+        inside = (
+            error.key if not error.key or error.key.startswith("gears") else f"gears.{error.key}"
+        )
+        raise error.at(file=document.name, key=inside or "gears") from None
+    record = _oil(case.lubricant, document)
+    _check_temperature(case.operation.temperature, record, document, "operation.temperature")
+    sharing = LOAD_SHARING[case.models.load_sharing]
+    try:
+        sharing.check(contact_ratio)
+    except InputError as error:
+        raise error.at(file=document.name, key="models.load_sharing") from None
+    design = Design(
+        mesh=pair,
+        modulus=_modulus(case.materials),
+        lubricant=record.build(),
+        roughness=_roughness(case.roughness),
+    )
+    operation = Operation(
+        load=jnp.asarray(case.operation.torque),
+        speed=jnp.asarray(case.operation.speed),
+        temperature=jnp.asarray(case.operation.temperature),
+    )
+    return Built(case, design, operation, record, warnings, own)
+
+
+def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
+    """Models with every law compiled in, and the indices of the laws that the case chose.
+
+    The laws of the library are always among them: their spread is shown beside every efficiency.
+    """
+    case = built.case
+    chosen = [FRICTION[choice.name] for choice in case.models.friction]
+    published = case.source in {law.sources[0] for law in CASE_LAWS}
+    extra = CASE_LAWS if published or any(law in CASE_LAWS for law in chosen) else ()
+    laws: tuple[FrictionLaw, ...] = (*LAWS, *extra)
+    if built.own is not None:
+        chosen, laws = [built.own], (*laws, built.own)
+    models = Models(
+        friction=laws,
+        choice=jnp.asarray(0),
+        parameters=_parameters(case, laws),
+        sharing=LOAD_SHARING[case.models.load_sharing],
+        rolling=ROLLING_RESISTANCE[case.models.rolling_resistance],
+    )
+    return models, tuple(laws.index(law) for law in chosen)
+
+
+def _parameters(case: Case, laws: tuple[FrictionLaw, ...]) -> dict[str, dict[str, jnp.ndarray]]:
+    from pitchpoint.lubrication.conditions import arguments
+
+    given = {choice.name: choice.parameters for choice in case.models.friction}
+    return {
+        law.name: {
+            key: jnp.asarray(given.get(law.name, {}).get(key, default), dtype=float)
+            for key, default in arguments(law.function)[1].items()
+        }
+        for law in laws
+    }
+
+
+@lru_cache(maxsize=256)
+def _checked(gears: Gears, driver: str) -> tuple[CylindricalPair, tuple[str, ...], float]:
+    """Pair, its warnings and its contact ratio; a sweep that leaves the gears alone builds them once."""
+    pair = _pair(gears, driver=2 if driver == "gear 2" else 1)
+    return pair, tuple(check_cylindrical(pair)), float(pair.contact_ratio)
+
+
+def _pair(gears: Gears, driver: int) -> CylindricalPair:
+    dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
+    fillet = gears.fillet_radius or tuple(
+        min(_AVAILABLE_FILLET, _largest_fillet(depth, gears.pressure_angle)) for depth in dedendum
+    )
+    return build_cylindrical_pair(
+        teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
+        module=gears.module,
+        pressure_angle=gears.pressure_angle,
+        face_width=gears.face_width,
+        profile_shift=gears.profile_shift,
+        addendum=gears.addendum,
+        dedendum=dedendum,
+        fillet_radius=(fillet[0], fillet[1]),
+        tip_alteration=gears.tip_alteration,
+        centre_distance=gears.centre_distance,
+        driver=driver,
+        left_flank=gears.flank == "left",
+    )
+
+
+def _largest_fillet(dedendum: float, angle: float) -> float:
+    """Corner rounding of the rack that leaves no flat on its tip, in modules (ISO 53)."""
+    return max((pi / 4 - dedendum * tan(angle)) * cos(angle) / (1.0 - sin(angle)), 0.0)
+
+
+def _modulus(materials: Materials) -> jnp.ndarray:
+    return reduced_modulus(_solid(materials.gear_1), _solid(materials.gear_2))
+
+
+def _solid(given: SolidValues | str) -> Solid:
+    if isinstance(given, str):
+        return solids.find(given).build()
+    return Solid(young=given.young, poisson=given.poisson, density=given.density)
+
+
+def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
+    values = {
+        "nu_1": oil.viscosity_40,
+        "nu_2": oil.viscosity_100,
+        "density_15": oil.density,
+        "density_slope": oil.density_slope,
+        "lubricant_factor": oil.lubricant_factor,
+        "T_min": oil.temperature_min,
+        "T_max": oil.temperature_max,
+    }
+    given = {key: value for key, value in values.items() if value is not None}
+    if oil.pressure_viscosity is not None:
+        given["gold_s"], given["gold_t"] = lubricants.constant_alpha(oil.pressure_viscosity)
+    try:
+        if oil.name is not None:
+            return lubricants.find(oil.name).with_values(**given)
+        assert oil.base is not None
+        data = {
+            **lubricants.base_oils()[oil.base],
+            **{key: Datum(value=value) for key, value in given.items()},
+        }
+        return lubricants.LubricantRecord(
+            name="oil by value", title=f"{oil.base} oil by value", base=oil.base, **data
+        )
+    except InputError as error:
+        key = _OIL_KEYS.get((error.key or "").rsplit(".", 1)[-1], "")
+        raise InputError(error.message).at(
+            file=document.name, key=f"lubricant.{key}".rstrip(".")
+        ) from None
+
+
+_OIL_KEYS = {
+    "nu_1": "viscosity_40",
+    "nu_2": "viscosity_100",
+    "density_15": "density",
+    "density_slope": "density_slope",
+    "gold_s": "pressure_viscosity",
+    "lubricant_factor": "lubricant_factor",
+    "T_min": "temperature_min",
+    "T_max": "temperature_max",
+}
+
+
+def _check_temperature(
+    temperature: float, oil: lubricants.LubricantRecord, document: Document, key: str
+) -> None:
+    low, high = oil.T_min.value, oil.T_max.value
+    if not low <= temperature <= high:
+        allowed = replace(TEMPERATURE, low=low, high=high).allowed
+        raise InputError(
+            f"{TEMPERATURE.show(temperature)} is outside the range of {oil.name}; {allowed}",
+            file=document.name,
+            key=key,
+        )
+
+
+def _roughness(surface: Surface) -> Roughness:
+    if surface.ra is not None:
+        return Roughness.from_ra(*surface.ra)
+    if surface.rq is not None:
+        return Roughness.from_rq(*surface.rq)
+    assert surface.composite_rq is not None
+    return Roughness.from_composite_rq(surface.composite_rq)

@@ -1,0 +1,155 @@
+"""Tables for people and machines: what can be chosen by name, and the main figures of a result."""
+
+from typing import Any
+
+import numpy as np
+
+from pitchpoint import units
+from pitchpoint.cases.laws import CASE_LAWS, FRICTION
+from pitchpoint.cases.run import Outcome
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.conditions import UNITS
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.results.variables import VARIABLES
+
+__all__ = ["entries", "figures", "summary_table"]
+
+MAIN = (
+    "mean_efficiency",
+    "min_efficiency",
+    "max_efficiency",
+    "mean_loss",
+    "mean_input_torque",
+    "torque_ripple",
+    "mean_friction",
+)
+
+
+def entries() -> list[dict[str, str]]:
+    """Every law, oil and material that a case file may name."""
+    rows = [_entry("friction", law, _friction_range(law)) for law in FRICTION.values()]
+    rows += [
+        _entry("load_sharing", model, _ratio_range(model.ratio_range))
+        for model in LOAD_SHARING.values()
+    ]
+    rows += [_entry("rolling_resistance", model, "") for model in ROLLING_RESISTANCE.values()]
+    rows += [
+        _entry("film_thickness", law, f"{law.shape} contacts, {law.place} film")
+        for law in FILM_THICKNESS.values()
+    ]
+    rows += [_record("lubricant", oil, _oil_range(oil)) for oil in lubricants.catalogue().values()]
+    return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]
+
+
+def figures(outcome: Outcome) -> dict[str, Any]:
+    """Main figures of one variant in SI, by law; None where a quantity is undefined."""
+    manifest = outcome.manifest
+    studies = {
+        name.removeprefix("study_"): _by_law(data, MAIN)
+        for name, data in outcome.parts.items()
+        if name.startswith("study_")
+    }
+    return {
+        "title": manifest["title"],
+        "units": {name: VARIABLES[name].unit for name in MAIN},
+        "operation": _by_law(outcome.parts["operation"], MAIN),
+        "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
+        "back_driving": _by_law(outcome.parts["back_driving"], ("mean_efficiency", "locked")),
+        "studies": studies,
+        "warnings": manifest["warnings"],
+        "rows": manifest["rows"],
+    }
+
+
+def summary_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...], str]:
+    """Rows, columns and a note: the operating point by law, and how far the laws disagree."""
+    data = outcome.parts["operation"]
+    back = outcome.parts["back_driving"]
+    rows = []
+    for position, law in enumerate(data["law"].values):
+        row = {"friction law": str(law)}
+        row.update({_head(name): _cell(data, name, position) for name in MAIN})
+        locked = bool(back["locked"].values[position, 0])
+        row["back-driving"] = "locked" if locked else _cell(back, "mean_efficiency", position)
+        rows.append(row)
+    return rows, tuple(rows[0]), spread_sentence(outcome)
+
+
+def spread_sentence(outcome: Outcome) -> str:
+    """How far the friction laws that apply disagree about the mean efficiency."""
+    data = outcome.parts["laws"]
+    values = data["mean_efficiency"].values[:, 0]
+    if np.isnan(values).any():
+        return "No power is transmitted: the efficiency is undefined."
+    low, high = int(values.argmin()), int(values.argmax())
+    names = [str(name) for name in data["law"].values]
+    return (
+        f"The friction laws that apply give {100 * values[low]:.2f} % ({names[low]}) to "
+        f"{100 * values[high]:.2f} % ({names[high]}): the model counts for "
+        f"{100 * (values[high] - values[low]):.2f} percentage points."
+    )
+
+
+def _head(name: str) -> str:
+    variable = VARIABLES[name]
+    unit = f" [{variable.display}]" if variable.display != "1" else ""
+    return f"{variable.symbol}{unit}"
+
+
+def _cell(data: Any, name: str, position: int) -> str:
+    variable, value = VARIABLES[name], float(data[name].values[position, 0])
+    if np.isnan(value):
+        return "undefined"
+    if variable.display == "1":
+        return f"{value:.4f}"
+    return f"{units.convert(value, variable.display, variable.kind):.5g}"
+
+
+def _by_law(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    result: dict[str, Any] = {
+        str(law): {name: _numbers(data[name].values[position]) for name in names}
+        for position, law in enumerate(data["law"].values)
+    }
+    if "axis" in data:
+        result["axis"] = {
+            "key": data.attrs["sweep_key"],
+            "values": _numbers(data["axis"].values),
+        }
+    return result
+
+
+def _numbers(values: Any) -> Any:
+    plain = [None if isinstance(v, float) and np.isnan(v) else v for v in values.tolist()]
+    return plain if len(plain) > 1 else plain[0]
+
+
+def _entry(kind: str, model: Any, limits: str) -> dict[str, str]:
+    name, title, note = str(model.name), str(model.title), str(model.note)
+    sources = ", ".join(model.sources)
+    return dict(kind=kind, name=name, title=title, range=limits, sources=sources, note=note)
+
+
+def _record(kind: str, record: Any, limits: str) -> dict[str, str]:
+    return dict(kind=kind, name=record.name, title=record.title, range=limits, sources="", note="")
+
+
+def _friction_range(law: FrictionLaw) -> str:
+    limits = [
+        f"{low:g} <= {name} <= {high:g} {UNITS[name]}" for name, (low, high) in law.ranges.items()
+    ]
+    place = "each contact" if law.local else "whole mesh"
+    own = "; only for its case" if law in CASE_LAWS else ""
+    return "; ".join([place + own, *limits])
+
+
+def _ratio_range(limits: tuple[float, float]) -> str:
+    low, high = limits
+    return f"{low:g} < contact ratio < {high:g}" if high < float("inf") else "any contact ratio"
+
+
+def _oil_range(oil: lubricants.LubricantRecord) -> str:
+    low, high = (units.convert(t.value, "degC", "temperature") for t in (oil.T_min, oil.T_max))
+    return f"{low:g} to {high:g} degC"

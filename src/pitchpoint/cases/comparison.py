@@ -1,0 +1,122 @@
+"""Printed numbers against computed ones."""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint import units
+from pitchpoint.cases.schema import Target
+from pitchpoint.errors import InputError
+from pitchpoint.registry import nearest
+from pitchpoint.results.variables import VARIABLES
+
+__all__ = ["Row", "compare", "counts"]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One printed number, in the unit of the print, and what was computed for it."""
+
+    quantity: str
+    where: str
+    printed: float
+    computed: float | None
+    unit: str
+    tolerance: float
+    kind: str
+    verdict: str
+    reason: str
+
+    @property
+    def deviation(self) -> float | None:
+        """Computed minus printed."""
+        return None if self.computed is None else self.computed - self.printed
+
+    def as_json(self) -> dict[str, Any]:
+        """The row for machines."""
+        return asdict(self)
+
+
+def compare(targets: Sequence[Target], results: Mapping[str, xr.Dataset]) -> list[Row]:
+    """A row for every target.
+
+    Args:
+        targets: of the case.
+        results: datasets by name of the part.
+
+    Raises:
+        InputError: a target that names no study, variable or law of the results.
+    """
+    return [_row(target, results) for target in targets]
+
+
+def counts(rows: Sequence[Row]) -> dict[str, Counter[str]]:
+    """Verdicts counted for each kind of target, never summed over kinds."""
+    kinds: dict[str, Counter[str]] = {}
+    for row in rows:
+        kinds.setdefault(row.kind, Counter())[row.verdict] += 1
+    return kinds
+
+
+def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
+    computed = None if target.kind == "excluded" else _computed(target, results)
+    return Row(
+        quantity=target.quantity,
+        where=target.where,
+        printed=target.printed,
+        computed=computed,
+        unit=target.unit,
+        tolerance=target.tolerance,
+        kind=target.kind,
+        verdict=_verdict(target, computed),
+        reason=target.reason,
+    )
+
+
+def _verdict(target: Target, computed: float | None) -> str:
+    if computed is None:
+        return "excluded"
+    return "pass" if abs(computed - target.printed) <= target.tolerance else "miss"
+
+
+def _computed(target: Target, results: Mapping[str, xr.Dataset]) -> float:
+    part = f"study_{target.study}"
+    if part not in results:
+        raise InputError(f"there is no study '{target.study}'", key="targets.study")
+    data = results[part]
+    if target.variable not in data:
+        raise InputError(
+            f"there is no quantity '{target.variable}'{nearest(target.variable, _names(data))}",
+            key="targets.variable",
+        )
+    values = data[target.variable].transpose("law", "point").values[list(target.law)]
+    number = _reductions(target.reduce)(values)
+    relative = target.reduce == "relative_drop"
+    variable = VARIABLES[target.variable]
+    kind = "dimensionless" if relative else variable.kind
+    return float(units.convert(number, target.unit, kind)) if target.unit != "1" else number
+
+
+def _names(data: xr.Dataset) -> dict[str, None]:
+    return dict.fromkeys(str(name) for name in data.data_vars)
+
+
+def _reductions(name: str) -> Callable[[np.ndarray], float]:
+    known: dict[str, Callable[[np.ndarray], float]] = {
+        "value": lambda v: float(v[0, 0]),
+        "first": lambda v: float(v[0, 0]),
+        "last": lambda v: float(v[0, -1]),
+        "min": lambda v: float(v[0].min()),
+        "max": lambda v: float(v[0].max()),
+        "drop": lambda v: float(v[0, 0] - v[0, -1]),
+        "gain": lambda v: float(v[0, -1] - v[0, 0]),
+        "relative_drop": lambda v: float(1.0 - v[0, -1] / v[0, 0]),
+        "max_difference": lambda v: float(np.abs(v[0] - v[1]).max()),
+    }
+    if name not in known:
+        raise InputError(f"'{name}' is no reduction{nearest(name, known)}", key="targets.reduce")
+    return known[name]

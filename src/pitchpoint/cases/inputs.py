@@ -1,0 +1,107 @@
+"""The inputs of a case as resolved, in the units in which people read them, with their status."""
+
+from typing import Any
+
+from pydantic import BaseModel
+
+from pitchpoint import units
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.document import Document
+from pitchpoint.cases.schema import quantity_at
+
+__all__ = ["resolved"]
+
+_TABLES = ("gears", "materials", "lubricant", "roughness", "operation", "models")
+
+_OIL = {
+    "nu_1": ("kinematic viscosity at the lower temperature", "mm2/s", "kinematic viscosity"),
+    "nu_2": ("kinematic viscosity at the upper temperature", "mm2/s", "kinematic viscosity"),
+    "T_1": ("lower temperature", "degC", "temperature"),
+    "T_2": ("upper temperature", "degC", "temperature"),
+    "density_15": ("density at 15 degC", "kg/m3", "density"),
+    "density_slope": ("fall of density", "kg/m3/K", "density slope"),
+    "gold_s": ("Gold's s", "1", "dimensionless"),
+    "gold_t": ("Gold's t", "1", "dimensionless"),
+    "lubricant_factor": ("lubricant factor X_L", "1", "dimensionless"),
+    "T_min": ("lowest temperature", "degC", "temperature"),
+    "T_max": ("highest temperature", "degC", "temperature"),
+}
+
+
+def resolved(built: Built, document: Document) -> list[dict[str, str]]:
+    """Rows of table, key, value, status, place and note for every input.
+
+    Args:
+        built: the case.
+        document: it came from; keys that it does not hold are defaults.
+    """
+    rows = [row for table in _TABLES for row in _rows(built, document, table)]
+    return rows + [
+        {
+            "table": "oil as resolved",
+            "key": label,
+            "value": _shown(built.lubricant.data()[name].value, unit, kind),
+            "status": built.lubricant.data()[name].status,
+            "where": built.lubricant.data()[name].source,
+            "note": built.lubricant.data()[name].note,
+        }
+        for name, (label, unit, kind) in _OIL.items()
+    ]
+
+
+def _rows(built: Built, document: Document, table: str) -> list[dict[str, str]]:
+    model: BaseModel = getattr(built.case, table)
+    given = document.tree.get(table, {})
+    rows = []
+    for key in type(model).model_fields:
+        value = _value(getattr(model, key), f"{table}.{key}", built, key)
+        if value is None:
+            continue
+        mark = document.provenance.get(f"{table}.{key}")
+        status = mark.status if mark else ("given" if key in given else "default")
+        rows.append(
+            {
+                "table": table,
+                "key": key,
+                "value": value,
+                "status": status,
+                "where": mark.where if mark else "",
+                "note": mark.note if mark else "",
+            }
+        )
+    return rows
+
+
+def _value(value: Any, key: str, built: Built, name: str) -> str | None:
+    """Value in words; what was left open is shown as computed, or not at all."""
+    if value is None:
+        value = _computed(built, name)
+    if value is None:
+        return None
+    quantity = quantity_at(key)
+    if quantity is not None:
+        each = value if isinstance(value, tuple) else (value,)
+        return " / ".join(dict.fromkeys(quantity.show(number) for number in each))
+    if isinstance(value, BaseModel):
+        return ", ".join(f"{name} {item}" for name, item in value.model_dump().items())
+    if isinstance(value, tuple):
+        return ", ".join(_choice(item) for item in value)
+    return str(value)
+
+
+def _choice(item: Any) -> str:
+    own = ", ".join(f"{key} {value:g}" for key, value in item.parameters.items())
+    return f"{item.name} ({own})" if own else str(item.name)
+
+
+def _computed(built: Built, name: str) -> Any:
+    if name not in ("dedendum", "fillet_radius", "tip_alteration", "centre_distance"):
+        return None
+    number = getattr(built.pair, name)
+    return float(number) if number.ndim == 0 else tuple(float(one) for one in number)
+
+
+def _shown(value: float, unit: str, kind: str) -> str:
+    if kind == "dimensionless":
+        return f"{value:.6g}"
+    return f"{units.convert(value, unit, kind):.6g} {unit}"

@@ -1,0 +1,37 @@
+"""Cases that ship with the package, and cases in files."""
+
+from importlib import resources
+from pathlib import Path
+
+from pitchpoint.cases.document import Tree, read
+from pitchpoint.errors import InputError
+from pitchpoint.registry import nearest
+
+__all__ = ["find", "names", "path_of"]
+
+
+def names() -> list[str]:
+    """Names of the shipped cases."""
+    folder = resources.files(__package__)
+    return sorted(item.name for item in folder.iterdir() if (item / "case.toml").is_file())
+
+
+def path_of(case: str) -> Path:
+    """File of a shipped case, or the file itself.
+
+    Raises:
+        InputError: neither a shipped case nor a file.
+    """
+    if case in names():
+        return Path(str(resources.files(__package__) / case / "case.toml"))
+    if Path(case).suffix == "" and not Path(case).exists():
+        hint = nearest(case, dict.fromkeys(names()))
+        raise InputError(f"'{case[:60]}' is neither a shipped case nor a file{hint}")
+    return Path(case)
+
+
+def find(case: str) -> tuple[str, Tree]:
+    """Short name and tables of a case by its name or its file."""
+    path = path_of(case)
+    tree = read(path)
+    return (case if case in names() else path.name), tree

@@ -1,0 +1,125 @@
+"""Values of a case file with kind and allowed range, as pydantic types."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from pitchpoint import units
+from pitchpoint.errors import InputError
+
+__all__ = ["Pair", "Quantity", "SIValue", "shown"]
+
+
+class SIValue(float):
+    """A number that is in SI already, as sweeps make it."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Annotation of a field: what kind of quantity it is and what range is allowed.
+
+    Attributes:
+        kind: of `units.kinds()`.
+        low, high: allowed range in SI.
+        unit: in which the value is shown.
+        open_low: True if the lower bound itself is not allowed.
+        whole: True for counts.
+    """
+
+    kind: str
+    low: float
+    high: float
+    unit: str = "1"
+    open_low: bool = False
+    whole: bool = False
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """One validator from text or number to SI."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, value: Any) -> float:
+        """SI value of text or number; InputError if it is not what is needed."""
+        number = float(value) if isinstance(value, SIValue) else self._parse(value)
+        below = number <= self.low if self.open_low else number < self.low
+        if not math.isfinite(number) or below or number > self.high:
+            raise InputError(f"{shown(value)} is out of range; {self.allowed}", value=value)
+        if self.whole and number != round(number):
+            raise InputError(f"{shown(value)} is not a whole number; {self.allowed}", value=value)
+        return number
+
+    @property
+    def allowed(self) -> str:
+        """The allowed range in words."""
+        low, high = (self.show(bound) for bound in (self.low, self.high))
+        if not math.isfinite(self.high):
+            return f"allowed is {'above' if self.open_low else 'at least'} {low}"
+        return f"allowed is {'above ' if self.open_low else ''}{low} to {high}"
+
+    def show(self, number: float) -> str:
+        """Number in the unit in which it is shown."""
+        if self.unit == "1":
+            return f"{number:.6g}"
+        return f"{units.convert(number, self.unit, self.kind):.6g} {self.unit}"
+
+    def _parse(self, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
+            what = "a list" if isinstance(value, list | tuple) else shown(value)
+            raise InputError(f"{what} was given where one value belongs; {self.allowed}")
+        return units.parse(value, self.kind)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Annotation of a field that holds one value for both gears, or a list of two."""
+
+    each: Quantity
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """One validator to a tuple of two SI values."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, value: Any) -> tuple[float, float]:
+        """SI values of gear 1 and gear 2."""
+        if isinstance(value, list | tuple):
+            if len(value) != 2:
+                raise InputError(
+                    f"{len(value)} values were given; give one for both gears, or a list of two"
+                )
+            return self.each.read(value[0]), self.each.read(value[1])
+        both = self.each.read(value)
+        return both, both
+
+
+def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], str]:
+    """Validator of a name out of a registry that is looked up when it is needed."""
+
+    def read(value: Any) -> str:
+        from pitchpoint.registry import nearest
+
+        known = registry()
+        if not isinstance(value, str):
+            raise InputError(f"{shown(value)} is not the name of a {kind}")
+        if value not in known:
+            hint = nearest(value, dict.fromkeys(known))
+            raise InputError(f"'{shorten(value)}' is not a known {kind}{hint}")
+        return value
+
+    return read
+
+
+def shown(value: Any) -> str:
+    """Value as a message shows it: quoted text, shortened."""
+    return f'"{shorten(value)}"' if isinstance(value, str) else shorten(repr(value))
+
+
+def shorten(text: str) -> str:
+    """At most 60 characters."""
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,296 @@
+"""Running a case: every part is on disk, whole, as soon as it is computed, and is not computed twice."""
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from pitchpoint.cases import inputs
+from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.comparison import Row, compare
+from pitchpoint.cases.document import Tree, variants
+from pitchpoint.cases.library import find
+from pitchpoint.cases.schema import Study
+from pitchpoint.cases.studies import Job, Variant, jobs
+from pitchpoint.citations import cite
+from pitchpoint.errors import InputError
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.results.store import fingerprint, load, save, write_text
+
+__all__ = ["Outcome", "Progress", "open_result", "run", "run_variant"]
+
+MANIFEST = "manifest.json"
+
+
+class Progress:
+    """What a caller may want to hear; this one is silent."""
+
+    def part(self, variant: str, title: str, reused: bool) -> None:
+        """A part begins, or is read from disk."""
+
+    def points(self, done: int) -> None:
+        """Points of the part that are finished."""
+
+
+@dataclass
+class Outcome:
+    """One variant of a case with its results.
+
+    Attributes:
+        manifest: title, inputs, warnings, laws, sources, issues, printed against computed.
+        parts: datasets by name.
+    """
+
+    manifest: dict[str, Any]
+    parts: dict[str, xr.Dataset] = field(default_factory=dict)
+
+    @property
+    def rows(self) -> list[Row]:
+        """Printed against computed."""
+        return [Row(**row) for row in self.manifest["rows"]]
+
+
+def run(
+    case: str,
+    *,
+    folder: Path | None = None,
+    only: Sequence[str] = (),
+    settings: Mapping[str, Any] | None = None,
+    studies: Mapping[str, Study] | None = None,
+    friction: Callable[..., Any] | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Outcome]:
+    """Compute all parts of a case.
+
+    Args:
+        case: name of a shipped case, or a file.
+        folder: where parts and manifests go; nothing is written without one.
+        only: variants to run; all by default.
+        settings: values by dotted key that replace those of the file.
+        studies: further studies, as `--sweep` makes them.
+        friction: a law of one's own in place of those of the case: a function of JAX arrays whose
+            keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`.
+        progress: told about parts and points.
+
+    Returns:
+        Outcomes by variant.
+
+    Raises:
+        InputError: anything wrong with the input.
+        ConvergenceError: a balance that was not found; what was finished is on disk.
+    """
+    name, tree = find(case)
+    chosen = list(only) or variants(tree)
+    own = None if friction is None else _own(friction)
+    return {
+        variant: run_variant(
+            Variant(tree, name, variant, dict(settings or {}), own),
+            folder=None if folder is None else folder / variant,
+            studies=studies or {},
+            progress=progress or Progress(),
+        )
+        for variant in chosen
+    }
+
+
+def run_variant(
+    variant: Variant, *, folder: Path | None, studies: Mapping[str, Study], progress: Progress
+) -> Outcome:
+    """Compute all parts of one variant; finished parts found in the folder are read."""
+    built = variant.built({})
+    outcome = Outcome(_manifest(variant, built))
+    for job in jobs(variant, studies):
+        outcome.parts[job.name] = part = _part(job, variant, folder, studies, progress)
+        told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
+        outcome.manifest["warnings"] = list(dict.fromkeys(told))
+        _note(outcome, folder, finished=False)
+    outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
+    _note(outcome, folder, finished=True)
+    return outcome
+
+
+def _own(function: Callable[..., Any]) -> FrictionLaw:
+    """A user's function as a law; InputError if it asks for what is no condition."""
+    arguments(function)
+    name = getattr(function, "__name__", "own")
+    return FrictionLaw(name, f"{name}, the user's own", function, (), ({}, 0.0))
+
+
+def open_result(folder: Path) -> dict[str, Outcome]:
+    """Outcomes of a folder that `run` wrote, by variant.
+
+    Raises:
+        InputError: the folder holds no result.
+    """
+    manifests = sorted(folder.glob(f"*/{MANIFEST}"))
+    if not manifests:
+        raise InputError("holds no result of pitchpoint", file=str(folder))
+    outcomes = {path.parent.name: _opened(path) for path in manifests}
+    order = [name for one in outcomes.values() for name in one.manifest["variants"]]
+    return {name: outcomes[name] for name in dict.fromkeys(order) if name in outcomes}
+
+
+def manifests(folder: Path) -> list[dict[str, Any]]:
+    """Manifests of a result, one for each variant.
+
+    Raises:
+        InputError: the folder holds no result.
+    """
+    return [outcome.manifest for outcome in open_result(folder).values()]
+
+
+def describe(case: str, only: Sequence[str] = ()) -> list[dict[str, Any]]:
+    """Manifests of a case that has not been computed: inputs, warnings, issues, sources."""
+    name, tree = find(case)
+    made = [Variant(tree, name, variant) for variant in list(only) or variants(tree)]
+    return [_manifest(variant, variant.built({})) for variant in made]
+
+
+def compare_case(
+    case: str,
+    variant: str | None = None,
+    watch: Callable[[Path | None], AbstractContextManager[Progress]] | None = None,
+) -> tuple[str, str, list[Row]]:
+    """Name, variant and rows of a case with targets, computed afresh.
+
+    Raises:
+        InputError: the case has no targets.
+    """
+    name, tree = find(case)
+    known = variants(tree)
+    chosen = variant or ("as_published" if "as_published" in known else known[0])
+    made = Variant(tree, name, chosen)
+    built = made.built({})
+    if not built.case.targets:
+        raise InputError("has no targets to compare with", file=name)
+    needed = {f"study_{target.study}" for target in built.case.targets}
+    parts = {}
+    with (watch or _unwatched)(None) as progress:
+        for job in jobs(made, {}):
+            if job.name in needed:
+                progress.part(chosen, job.title, False)
+                parts[job.name] = _part(job, made, None, {}, progress)
+    return name, chosen, compare(built.case.targets, parts)
+
+
+@contextmanager
+def _unwatched(_: Path | None) -> Iterator[Progress]:
+    yield Progress()
+
+
+def _opened(path: Path) -> Outcome:
+    try:
+        manifest = json.loads(path.read_text(encoding="utf-8"))
+        parts = {name: load(path.parent / f"{name}.nc") for name in manifest["parts"]}
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"is not a manifest of pitchpoint: {error}", file=str(path)) from None
+    return Outcome(manifest, parts)
+
+
+def _part(
+    job: Job,
+    variant: Variant,
+    folder: Path | None,
+    studies: Mapping[str, Study],
+    progress: Progress,
+) -> xr.Dataset:
+    extra = {name: study.model_dump() for name, study in studies.items()}
+    mark = fingerprint(variant.document().tree, job.name, extra.get(job.name[6:]))
+    labels = {"case": variant.name, "variant": variant.variant, "fingerprint": mark}
+    whole = None if folder is None else folder / f"{job.name}.nc"
+    found = None if variant.own is not None else _found(whole, mark)
+    progress.part(variant.variant, job.title, found is not None)
+    if found is not None:
+        return found
+    pieces = []
+    for number, compute in enumerate(job.pieces):
+        path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
+        piece = None if variant.own is not None else _found(path, mark)
+        if piece is None:
+            piece = compute(progress.points)
+            piece.attrs.update(labels)
+            if len(job.pieces) > 1:
+                _keep(piece, path)
+        pieces.append(piece)
+        progress.points(sum(part.sizes.get("point", 0) for part in pieces))
+    data = pieces[0] if len(pieces) == 1 else xr.concat(pieces, "point", combine_attrs="override")
+    _keep(data, whole)
+    if folder is not None:
+        for path in folder.glob(f"{job.name}.[0-9][0-9][0-9][0-9].nc"):
+            path.unlink()
+    return data
+
+
+def _found(path: Path | None, mark: str) -> xr.Dataset | None:
+    """Dataset on disk if it is whole and of these very inputs."""
+    if path is None or not path.is_file():
+        return None
+    try:
+        data = load(path)
+    except InputError:
+        return None  # not ours or damaged: computed again
+    return data if data.attrs.get("fingerprint") == mark else None
+
+
+def _keep(data: xr.Dataset, path: Path | None) -> None:
+    if path is not None:
+        save(data, path)
+
+
+def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
+    outcome.manifest.update(parts=list(outcome.parts), finished=finished)
+    if folder is not None:
+        write_text(folder / MANIFEST, json.dumps(outcome.manifest, indent=1, ensure_ascii=False))
+
+
+def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
+    """Targets belong to the reading of the paper; another variant is not measured by them."""
+    if variant.variant not in ("as_published", "default"):
+        return []
+    return compare(built.case.targets, parts)
+
+
+def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
+    case, document = built.case, variant.document()
+    models, chosen = laws_of(built)
+    laws = [models.friction[index] for index in chosen]
+    others: list[Any] = [
+        LOAD_SHARING[case.models.load_sharing],
+        ROLLING_RESISTANCE[case.models.rolling_resistance],
+        FILM_THICKNESS[case.models.film_thickness],
+    ]
+    keys = [key for law in [*laws, *others] for key in law.sources]
+    keys += [datum.source for datum in built.lubricant.data().values() if datum.source]
+    if case.source:
+        keys.insert(0, case.source)
+    return {
+        "case": variant.name,
+        "variant": variant.variant,
+        "variants": variants(_tree(variant)),
+        "title": case.title or variant.name,
+        "summary": case.summary,
+        "settings": {key: str(value) for key, value in variant.settings.items()},
+        "inputs": inputs.resolved(built, document),
+        "warnings": list(built.warnings),
+        "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
+        "models": [{"name": law.name, "title": law.title, "note": law.note} for law in others],
+        "averaging": case.models.averaging,
+        "oil": built.lubricant.title or built.lubricant.name,
+        "sources": [{"key": key, "text": cite(key)} for key in dict.fromkeys(keys)],
+        "issues": [issue.model_dump() for issue in case.issues],
+        "rows": [],
+        "parts": [],
+        "finished": False,
+    }
+
+
+def _tree(variant: Variant) -> Tree:
+    return dict(variant.tree)

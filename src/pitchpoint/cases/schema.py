@@ -1,0 +1,427 @@
+"""The schema of a case file: one table a class, every value with kind and allowed range."""
+
+from collections.abc import Iterator, Mapping
+from math import inf, pi
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
+from pydantic.fields import FieldInfo
+
+from pitchpoint.cases.document import Document
+from pitchpoint.cases.quantities import Pair, Quantity, named, shorten, shown
+from pitchpoint.errors import InputError
+from pitchpoint.registry import nearest
+
+__all__ = ["Case", "quantity_at", "validate"]
+
+_ZERO_CELSIUS = 273.15
+
+TEETH = Quantity("dimensionless", 3, 10_000, whole=True)
+MODULE = Quantity("length", 1e-5, 0.1, "mm")
+WIDTH = Quantity("length", 1e-5, 10.0, "mm")
+DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
+ANGLE = Quantity("angle", 5 * pi / 180, 45 * pi / 180, "deg")
+SHIFT = Quantity("dimensionless", -2.0, 3.0)
+RACK = Quantity("dimensionless", 0.1, 4.0)
+FILLET = Quantity("dimensionless", 0.0, 1.0)
+TIP = Quantity("dimensionless", -2.0, 2.0)
+MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
+POISSON = Quantity("dimensionless", 0.0, 0.5)
+DENSITY = Quantity("density", 100.0, 30_000.0, "kg/m3")
+SLOPE = Quantity("density slope", 0.0, 5.0, "kg/m3/K")
+VISCOSITY = Quantity("kinematic viscosity", 2e-6, 0.1, "mm2/s")
+ALPHA = Quantity("pressure-viscosity coefficient", 1e-10, 1e-6, "1/GPa")
+FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
+ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
+TORQUE = Quantity("torque", 0.0, 1e8, "N m")
+SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
+MAP_SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm")
+TEMPERATURE = Quantity("temperature", 150.0, 600.0, "degC")
+COEFFICIENT = Quantity("dimensionless", 0.0, 2.0)
+COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
+ANY = Quantity("dimensionless", -inf, inf)
+
+Text = Annotated[str, BeforeValidator(lambda value: _text(value))]
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{shown(value)} was given where text belongs")
+    return value
+
+
+def _friction_laws() -> list[str]:
+    from pitchpoint.cases.laws import FRICTION
+
+    return list(FRICTION)
+
+
+def _sharings() -> list[str]:
+    from pitchpoint.loading.sharing import LOAD_SHARING
+
+    return list(LOAD_SHARING)
+
+
+def _rollings() -> list[str]:
+    from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+
+    return list(ROLLING_RESISTANCE)
+
+
+def _films() -> list[str]:
+    from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+
+    return [name for name, law in FILM_THICKNESS.items() if law.shape == "line"]
+
+
+def _oils() -> list[str]:
+    from pitchpoint.materials.lubricants import catalogue
+
+    return list(catalogue())
+
+
+def _solids() -> list[str]:
+    from pitchpoint.materials.solids import catalogue
+
+    return list(catalogue())
+
+
+def _bases() -> list[str]:
+    from pitchpoint.materials.lubricants import base_oils
+
+    return list(base_oils())
+
+
+class Table(BaseModel):
+    """A table of a case file: no unknown keys, values fixed once read."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Gears(Table):
+    """A pair of external involute spur gears."""
+
+    family: Literal["cylindrical"] = "cylindrical"
+    teeth: Annotated[tuple[float, float], Pair(TEETH)]
+    module: Annotated[float, MODULE]
+    face_width: Annotated[float, WIDTH]
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+    profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] = (0.0, 0.0)
+    addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
+    dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
+    fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
+    tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
+    centre_distance: Annotated[float, DISTANCE] | None = None
+    flank: Literal["right", "left"] = "right"
+
+
+class SolidValues(Table):
+    """A material by value."""
+
+    young: Annotated[float, MODULUS]
+    poisson: Annotated[float, POISSON]
+    density: Annotated[float, DENSITY] = 7830.0
+
+
+SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]
+
+
+class Materials(Table):
+    """Materials of both gears, by name or by value."""
+
+    gear_1: SolidValues | SolidName = "steel"
+    gear_2: SolidValues | SolidName = "steel"
+
+
+class Oil(Table):
+    """An oil of the catalogue, by value, or a catalogue oil with some values of one's own."""
+
+    name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
+    base: Annotated[str, BeforeValidator(named(_bases, "class of base oil"))] | None = None
+    viscosity_40: Annotated[float, VISCOSITY] | None = None
+    viscosity_100: Annotated[float, VISCOSITY] | None = None
+    density: Annotated[float, DENSITY] | None = None
+    density_slope: Annotated[float, SLOPE] | None = None
+    pressure_viscosity: Annotated[float, ALPHA] | None = None
+    lubricant_factor: Annotated[float, FACTOR] | None = None
+    temperature_min: Annotated[float, TEMPERATURE] | None = None
+    temperature_max: Annotated[float, TEMPERATURE] | None = None
+
+    @model_validator(mode="after")
+    def _known(self) -> "Oil":
+        if self.name is None and (self.viscosity_40 is None or self.viscosity_100 is None):
+            raise InputError(
+                "an oil needs a name of the catalogue, or viscosity_40 and viscosity_100 by value"
+            )
+        if self.name is None and self.base is None:
+            raise InputError(
+                f"an oil by value needs its base, one of {', '.join(_bases())}, for density, "
+                "pressure-viscosity coefficient and lubricant factor where they are not given"
+            )
+        return self
+
+
+class Surface(Table):
+    """Roughness: Ra or Rq of one flank (taken for both) or of each, or the composite Rq."""
+
+    ra: Annotated[tuple[float, float], Pair(ROUGHNESS)] | None = None
+    rq: Annotated[tuple[float, float], Pair(ROUGHNESS)] | None = None
+    composite_rq: Annotated[float, ROUGHNESS] | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> "Surface":
+        given = [name for name in ("ra", "rq", "composite_rq") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise InputError(
+                f"{len(given) or 'no'} roughness values were given; give exactly one of ra, rq "
+                "(one flank or a list of two) and composite_rq"
+            )
+        return self
+
+
+class Operating(Table):
+    """Torque on the driven gear, speed of the driving one, temperature of the oil."""
+
+    torque: Annotated[float, TORQUE]
+    speed: Annotated[float, SPEED]
+    temperature: Annotated[float, TEMPERATURE]
+    driver: Literal["gear 1", "gear 2"] = "gear 1"
+
+
+class FrictionChoice(BaseModel):
+    """A friction law with values for its own parameters."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    name: Annotated[str, BeforeValidator(named(_friction_laws, "friction law"))]
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Values of the law's own parameters."""
+        return {key: float(value) for key, value in (self.model_extra or {}).items()}
+
+    @model_validator(mode="after")
+    def _own(self) -> "FrictionChoice":
+        from pitchpoint.cases.laws import FRICTION
+        from pitchpoint.lubrication.conditions import arguments
+
+        _, known = arguments(FRICTION[self.name].function)
+        for key, value in (self.model_extra or {}).items():
+            if key not in known:
+                has = f"has {', '.join(known)}" if known else "has no parameters"
+                raise InputError(f"'{shorten(key)}' is no parameter of {self.name}; it {has}")
+            COEFFICIENT.read(value)
+        return self
+
+
+def _choices(value: Any) -> Any:
+    several = value if isinstance(value, list | tuple) else [value]
+    if not 1 <= len(several) <= 12:
+        raise InputError("give 1 to 12 friction laws")
+    return [{"name": one} if isinstance(one, str) else one for one in several]
+
+
+class Choices(Table):
+    """Which law stands for which effect."""
+
+    friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(_choices)] = (
+        FrictionChoice(name="xu_2007"),
+    )
+    load_sharing: Annotated[str, BeforeValidator(named(_sharings, "load sharing model"))] = "equal"
+    rolling_resistance: Annotated[str, BeforeValidator(named(_rollings, "rolling resistance"))] = (
+        "none"
+    )
+    film_thickness: Annotated[str, BeforeValidator(named(_films, "film thickness law"))] = (
+        "dowson_higginson_1959"
+    )
+    averaging: Literal["base_pitch", "path"] = "base_pitch"
+
+
+class Sweep(Table):
+    """Values of one key: from start to stop in equal steps, or a list."""
+
+    key: Text
+    start: Any = None
+    stop: Any = None
+    count: Annotated[float, COUNT] = 19.0
+    values: tuple[Any, ...] | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Sweep":
+        if (self.values is None) == (self.start is None or self.stop is None):
+            raise InputError("a sweep needs either start and stop, or values")
+        return self
+
+
+class Study(Table):
+    """One computation of the case: its operating point with changes, swept or not."""
+
+    title: Text = ""
+    change: dict[str, Any] = {}
+    sweep: Sweep | None = None
+
+
+class LossMap(Table):
+    """Axes of the loss map; zero torque and zero speed are allowed."""
+
+    torque: Annotated[float, TORQUE] | None = None
+    speed: Annotated[float, MAP_SPEED] | None = None
+    temperatures: tuple[Annotated[float, TEMPERATURE], ...] | None = None
+    count: Annotated[float, Quantity("dimensionless", 2, 200, whole=True)] = 9.0
+
+
+class Target(Table):
+    """A printed number and how it is computed from a study."""
+
+    quantity: Text
+    where: Text
+    kind: Literal["predicted", "fitted", "calibrated", "trend", "excluded"]
+    printed: float
+    unit: Text = "1"
+    tolerance: float = 0.0
+    study: Text = ""
+    variable: Text = ""
+    reduce: Text = "value"
+    law: tuple[int, ...] = (0,)
+    reason: Text = ""
+
+
+class Issue(Table):
+    """A misprint or a questionable point of the publication."""
+
+    where: Text
+    issue: Text
+    verdict: Text
+
+
+class Case(Table):
+    """A whole case file, one variant of it."""
+
+    title: Text = ""
+    summary: Text = ""
+    source: Text = ""
+    gears: Gears
+    materials: Materials = Materials()
+    lubricant: Oil
+    roughness: Surface
+    operation: Operating
+    models: Choices = Choices()
+    studies: dict[str, Study] = {}
+    loss_map: LossMap | None = None
+    targets: tuple[Target, ...] = ()
+    issues: tuple[Issue, ...] = ()
+
+
+def validate(document: Document) -> Case:
+    """Case out of a document.
+
+    Raises:
+        InputError: the first value that is wrong, with file, key, value and what is allowed.
+    """
+    try:
+        return Case.model_validate(document.tree)
+    except ValidationError as error:
+        raise _sentence(error, document) from None
+
+
+def quantity_at(key: str) -> Quantity | None:
+    """Kind and range of the value at a dotted key, None where it is no quantity."""
+    fields: Mapping[str, FieldInfo] = Case.model_fields
+    parts = [part for part in key.split(".") if not part.isdigit()]
+    for position, part in enumerate(parts):
+        if part not in fields:
+            raise InputError(f"there is no such key{nearest(part, fields)}", key=key)
+        tables = list(_tables(fields[part].annotation))
+        if position == len(parts) - 1:
+            return _quantity(fields[part])
+        if not tables:
+            raise InputError(f"'{part}' is a value, not a table", key=key)
+        fields = tables[0].model_fields
+    return None
+
+
+def _quantity(info: FieldInfo) -> Quantity | None:
+    for mark in _marks(info):
+        if isinstance(mark, Pair):
+            return mark.each
+        if isinstance(mark, Quantity):
+            return mark
+    return None
+
+
+def _marks(info: FieldInfo) -> Iterator[Any]:
+    yield from info.metadata
+    for option in getattr(info.annotation, "__args__", ()):
+        yield from getattr(option, "__metadata__", ())
+
+
+def _tables(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for option in getattr(annotation, "__args__", ()):
+        yield from _tables(option)
+
+
+def _sentence(error: ValidationError, document: Document) -> InputError:
+    """The first complaint of pydantic in gear words."""
+    detail = _clearest(error.errors())
+    key = ".".join(str(part) for part in detail["loc"] if str(part) in _words(document, detail))
+    cause = detail.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        return cause.at(file=document.name, key=".".join(filter(None, (key, cause.key))))
+    return InputError(_message(detail), file=document.name, key=key)
+
+
+def _clearest(details: list[Any]) -> Any:
+    """For a value that may be a name or a table, the complaint about the form that was given."""
+    first = details[0]
+    same = [item for item in details if item["loc"][:2] == first["loc"][:2]]
+    fitting = [item for item in same if item["type"] not in ("model_type", "model_attributes_type")]
+    return (fitting or same)[0]
+
+
+def _words(document: Document, detail: Any) -> set[str]:
+    """Parts of a location that stand in the file, without pydantic's names of alternatives."""
+    words: set[str] = set()
+    node: Any = document.tree
+    for part in detail["loc"]:
+        if (isinstance(node, dict) and part in node) or (
+            isinstance(node, list | tuple) and isinstance(part, int) and part < len(node)
+        ):
+            node = node[part]
+        elif part != detail["loc"][-1] or detail["type"] not in ("missing", "extra_forbidden"):
+            continue
+        words.add(str(part))
+    return words
+
+
+def _message(detail: Any) -> str:
+    kind, given, context = detail["type"], detail.get("input"), detail.get("ctx", {})
+    if kind == "missing":
+        return f"is missing{_needed(detail['loc'])}"
+    if kind == "extra_forbidden":
+        return f"is not a known key{nearest(str(detail['loc'][-1]), _siblings(detail['loc']))}"
+    if kind == "literal_error":
+        return f"{shown(given)} is not allowed; use {context['expected']}"
+    if kind in ("model_type", "model_attributes_type", "dict_type"):
+        return f"{shown(given)} was given where a table belongs"
+    if kind in ("tuple_type", "list_type"):
+        return f"{shown(given)} was given where a list belongs"
+    return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
+
+
+def _siblings(location: tuple[Any, ...]) -> dict[str, None]:
+    fields: Mapping[str, FieldInfo] = Case.model_fields
+    for part in location[:-1]:
+        if isinstance(part, str) and part in fields:
+            tables = list(_tables(fields[part].annotation))
+            fields = tables[0].model_fields if tables else {}
+    return dict.fromkeys(fields)
+
+
+def _needed(location: tuple[Any, ...]) -> str:
+    try:
+        quantity = quantity_at(".".join(str(part) for part in location))
+    except InputError:
+        return ""
+    return f"; {quantity.allowed}" if quantity else ""

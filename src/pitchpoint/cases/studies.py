@@ -1,0 +1,431 @@
+"""Computations of a case: the cycle in detail, studies, spread of the laws, loss map, back-driving."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+import xarray as xr
+from jaxtyping import Array
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.cases.build import Built, build, laws_of
+from pitchpoint.cases.document import Document, leaves, resolve
+from pitchpoint.cases.laws import CASE_LAWS
+from pitchpoint.cases.quantities import SIValue
+from pitchpoint.cases.schema import (
+    SPEED,
+    TEMPERATURE,
+    TORQUE,
+    Study,
+    Sweep,
+    quantity_at,
+    validate,
+)
+from pitchpoint.efficiency.profile import profile
+from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint.efficiency.summary import summarise
+from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.gears.cylindrical import CylindricalPair
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.results.store import dataset
+
+__all__ = ["Job", "Variant", "jobs"]
+
+PIECE = 256
+"""Points of a sweep that are kept on disk together."""
+
+TOLERANCE = 1e-10
+"""Largest relative residual of the torque balance that counts as converged."""
+
+Progress = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Job:
+    """One dataset to compute, in one piece or several.
+
+    Attributes:
+        name: of the part, and of its file.
+        title: for progress and figures.
+        pieces: each computes one dataset, told a callback for progress; a long sweep has several,
+            to be put together along its points.
+    """
+
+    name: str
+    title: str
+    pieces: "tuple[Callable[[Progress], xr.Dataset], ...]"
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A case file in one variant, with the means to build it again with changed values."""
+
+    tree: Mapping[str, Any]
+    name: str
+    variant: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    own: FrictionLaw | None = None
+
+    def document(self, **changes: Any) -> Document:
+        """Plain values with further settings."""
+        return resolve(
+            dict(self.tree),
+            name=self.name,
+            variant=self.variant,
+            settings={**self.settings, **changes},
+        )
+
+    def built(self, changes: Mapping[str, Any]) -> Built:
+        """Case with some values changed."""
+        document = self.document(**changes)
+        return build(validate(document), document, self.own)
+
+
+def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
+    """All parts of a case in the order in which they are worth having.
+
+    Args:
+        variant: the case.
+        extra: studies that the user added.
+    """
+    built = variant.built({})
+    yield Job("teeth", "teeth", (lambda _: _teeth(built),))
+    yield Job("cycle", "mesh cycle", (lambda _: _cycle(built),))
+    yield Job("operation", "operating point", (lambda _: _operation(built),))
+    yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
+    for name, study in {**built.case.studies, **extra}.items():
+        yield _study(variant, name, study)
+    yield Job("loss_map", "loss map", (lambda progress: _loss_map(built, progress),))
+    yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
+
+
+def _teeth(built: Built) -> xr.Dataset:
+    """Outline of one tooth of each gear, circles and points of the path, for drawing to scale."""
+    numbers = jax.device_get(_drawing(built.pair))
+    dims = {"outline": ("gear", "corner", "xy"), "points": ("point",)}
+    return dataset(
+        {name: (dims.get(name, ("gear",)[: np.ndim(v)]), v) for name, v in numbers.items()},
+        {"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+        title="teeth",
+    )
+
+
+@eqx.filter_jit
+def _drawing(pair: CylindricalPair) -> dict[str, Array]:
+    return {
+        "outline": jnp.stack([gear.outline() for gear in pair.gears]),
+        "points": pair.points,
+        "teeth": pair.teeth,
+        "base_radius": pair.base_radii,
+        "tip_radius": pair.tip_radii,
+        "root_radius": jnp.stack([gear.root_radius for gear in pair.gears]),
+        "reference_radius": jnp.stack([gear.reference_radius for gear in pair.gears]),
+        "working_radius": pair.working_radii,
+        "tip_thickness": jnp.stack([gear.tip_thickness for gear in pair.gears]),
+        "working_pressure_angle": pair.working_pressure_angle,
+        "centre_distance": pair.centre_distance,
+        "base_pitch": pair.base_pitch,
+        "contact_ratio": pair.contact_ratio,
+        "specific_sliding_A": pair.specific_sliding(pair.limits[0]),
+        "specific_sliding_E": pair.specific_sliding(pair.limits[1]),
+    }
+
+
+def _cycle(built: Built) -> xr.Dataset:
+    models, chosen = laws_of(built)
+    film = FILM_THICKNESS[built.case.models.film_thickness]
+    runs = [
+        profile(built.design, built.operation, _choose(models, index), film) for index in chosen
+    ]
+    names = _names(models, chosen)
+    _demand_motion(np.stack([run["locked"].any(keepdims=True) for run in runs]), [built], names)
+    _demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)
+    lanes = ("law", "node", "pair", "slice")
+    common = {
+        "phase": (("node",), runs[0]["phase"]),
+        "weight": (("node",), runs[0]["weight"]),
+        "path": (lanes[1:], runs[0]["path"]),
+        "active": (lanes[1:], runs[0]["active"]),
+    }
+    each = {
+        name: (lanes if runs[0][name].ndim == 3 else lanes[:2], np.stack([r[name] for r in runs]))
+        for name in runs[0]
+        if name not in common and not name.startswith("outside")
+    }
+    laws = [models.friction[index] for index in chosen]
+    warnings = [
+        text
+        for law, run in zip(laws, runs, strict=True)
+        for text in _film_warnings(built, law, run)
+    ]
+    return dataset(
+        {**common, **each},
+        {"law": names},
+        title="mesh cycle",
+        warnings=warnings,
+        film_law=film.name,
+        events=[float(phase) for phase in built.pair.events()],
+    )
+
+
+def _operation(built: Built) -> xr.Dataset:
+    models, chosen = laws_of(built)
+    return _summaries([built], models, chosen, {}, title="operating point")
+
+
+def _laws(built: Built) -> xr.Dataset:
+    """Every law of the library at the operating point: how far the models themselves disagree."""
+    models, _ = laws_of(built)
+    every = [
+        index
+        for index, law in enumerate(models.friction)
+        if law not in CASE_LAWS and law.name not in ("constant", "frictionless")
+    ]
+    return _summaries([built], models, every, {}, title="friction laws that apply", may_lock=True)
+
+
+def _study(variant: Variant, name: str, study: Study) -> Job:
+    fixed = {key: value for key, value in leaves(study.change)}
+    title = study.title or name
+    if study.sweep is None:
+        return Job(f"study_{name}", title, (_points(variant, [fixed], {}, title, {}),))
+    values, kind = sweep_values(study.sweep, f"studies.{name}.sweep", variant.name)
+    told = {
+        "sweep_key": study.sweep.key,
+        "axis_kind": kind.kind if kind else "",
+        "axis_unit": kind.unit if kind else "",
+    }
+    pieces = []
+    for start in range(0, len(values), PIECE):
+        part = values[start : start + PIECE]
+        axis = {"axis": (("point",), np.array([_number(value) for value in part]))}
+        changes = [{**fixed, study.sweep.key: value} for value in part]
+        pieces.append(_points(variant, changes, axis, title, told))
+    return Job(f"study_{name}", title, tuple(pieces))
+
+
+def _points(
+    variant: Variant,
+    changes: Sequence[Mapping[str, Any]],
+    axis: Mapping[str, Any],
+    title: str,
+    told: Mapping[str, str],
+) -> Callable[[Progress], xr.Dataset]:
+    def compute(progress: Progress) -> xr.Dataset:
+        points = [variant.built(change) for change in changes]
+        models, chosen = laws_of(points[0])
+        data = _summaries(points, models, chosen, axis, progress, title=title)
+        data.attrs.update(told)
+        return data
+
+    return compute
+
+
+def sweep_values(sweep: Sweep, where: str, name: str) -> tuple[list[Any], Any]:
+    """Values of a sweep, numbers in SI, and their kind.
+
+    Raises:
+        InputError: an unknown key, or a value that the key does not take.
+    """
+    try:
+        quantity = quantity_at(sweep.key)
+        if sweep.values is not None:
+            if quantity is None:
+                return list(sweep.values), None
+            return [SIValue(quantity.read(value)) for value in sweep.values], quantity
+        if quantity is None:
+            raise InputError(f"'{sweep.key}' is no number; give values in place of start and stop")
+        ends = quantity.read(sweep.start), quantity.read(sweep.stop)
+        grid = np.linspace(*ends, int(sweep.count))
+        return [SIValue(value) for value in (np.round(grid) if quantity.whole else grid)], quantity
+    except InputError as error:
+        raise error.at(file=name, key=f"{where}.{sweep.key}") from None
+
+
+def _loss_map(built: Built, progress: Progress) -> xr.Dataset:
+    axes = _map_axes(built)
+    torque, speed, temperature = np.meshgrid(*axes, indexing="ij")
+    models, chosen = laws_of(built)
+    points = [
+        (
+            built.design,
+            Operation(jnp.asarray(load), jnp.asarray(rate or 1.0), jnp.asarray(degree)),
+        )
+        for load, rate, degree in zip(torque.flat, speed.flat, temperature.flat, strict=True)
+    ]
+    shape = torque.shape
+    losses, efficiencies = [], []
+    for law in chosen:
+        out = summarise(points, _choose(models, law), progress)
+        locked = out["locked"][None, :]
+        _demand_motion(locked, [built], [models.friction[law].name])
+        _demand_convergence(out["residual"][None, :], [built], [models.friction[law].name])
+        losses.append(np.where(speed > 0.0, out["mean_loss"].reshape(shape), 0.0))
+        efficiencies.append(np.where(speed > 0.0, out["mean_efficiency"].reshape(shape), np.nan))
+    dims = ("law", "torque", "speed", "temperature")
+    return dataset(
+        {"mean_loss": (dims, np.stack(losses)), "mean_efficiency": (dims, np.stack(efficiencies))},
+        {
+            "law": _names(models, chosen),
+            **{name: (name, values) for name, values in zip(dims[1:], axes, strict=True)},
+        },
+        title="loss map",
+        note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
+    )
+
+
+def _map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    asked, point = built.case.loss_map, built.case.operation
+    count = int(asked.count) if asked else 9
+    torque = (asked and asked.torque) or 1.5 * point.torque or 1.0
+    speed = (asked and asked.speed) or 1.5 * point.speed
+    oil = built.lubricant
+    around = point.temperature + np.array([-20.0, 0.0, 20.0])
+    degrees = np.unique(np.clip(around, oil.T_min.value, oil.T_max.value))
+    if asked and asked.temperatures:
+        degrees = np.array(asked.temperatures)
+        for degree in degrees:
+            if not oil.T_min.value <= degree <= oil.T_max.value:
+                raise InputError(
+                    f"{TEMPERATURE.show(degree)} is outside the range of {oil.name}",
+                    key="loss_map.temperatures",
+                )
+    return np.linspace(0.0, torque, count), np.linspace(0.0, speed, count), degrees
+
+
+def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
+    """The other gear drives at its own speed and carries the same power."""
+    case = built.case
+    pair = built.pair
+    ratio = float(pair.teeth[1] / pair.teeth[0])
+    forward = case.operation.driver == "gear 1"
+    step = ratio if forward else 1.0 / ratio
+    other = variant.built(
+        {
+            "operation.driver": "gear 2" if forward else "gear 1",
+            "operation.torque": SIValue(case.operation.torque / step),
+            "operation.speed": SIValue(case.operation.speed / step),
+        }
+    )
+    models, chosen = laws_of(built)
+    return _summaries([other], models, chosen, {}, title="back-driving", may_lock=True)
+
+
+def _summaries(
+    points: list[Built],
+    models: Models,
+    laws: tuple[int, ...] | list[int],
+    extra: Mapping[str, Any],
+    progress: Progress = lambda _: None,
+    *,
+    title: str,
+    may_lock: bool = False,
+) -> xr.Dataset:
+    """Figures of points under several laws; with `may_lock` a locked mesh is an answer (NaN)."""
+    runs = [_grouped(points, _choose(models, law), progress) for law in laws]
+    out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
+    if not may_lock:
+        _demand_motion(out["locked"], points, _names(models, laws))
+    for name, values in out.items():
+        if values.dtype.kind == "f" and name not in ("contact_ratio", "loss_factor"):
+            values[out["locked"]] = np.nan
+    _demand_convergence(np.nan_to_num(out["residual"]), points, _names(models, laws))
+    if points[0].case.models.averaging == "path":
+        for name in ("mean_loss", "mean_efficiency", "mean_input_torque"):
+            out[name] = out[f"{name}_path"]
+    out = {name: values for name, values in out.items() if not name.endswith("_path")}
+    out["efficiency_fluctuation"] = out["max_efficiency"] - out["min_efficiency"]
+    out["torque_ripple"] = out["max_input_torque"] - out["min_input_torque"]
+    out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
+    warnings = sorted({text for point in points for text in point.warnings})
+    return dataset(
+        {**{name: (("law", "point"), values) for name, values in out.items()}, **extra},
+        {"law": _names(models, laws)},
+        title=title,
+        warnings=warnings,
+    )
+
+
+def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[str, np.ndarray]:
+    """Summaries in order, points of equal static structure computed together."""
+    groups: dict[int, list[int]] = {}
+    for position, point in enumerate(points):
+        groups.setdefault(point.pair.lanes, []).append(position)
+    parts = [
+        (
+            where,
+            summarise([(points[i].design, points[i].operation) for i in where], models, progress),
+        )
+        for where in groups.values()
+    ]
+    result = {name: np.empty(len(points), values.dtype) for name, values in parts[0][1].items()}
+    for where, values in parts:
+        for name in result:
+            result[name][where] = values[name]
+    return result
+
+
+def _choose(models: Models, index: int) -> Models:
+    return replace(models, choice=jnp.asarray(index))
+
+
+def _names(models: Models, laws: tuple[int, ...] | list[int]) -> list[str]:
+    return [models.friction[law].name for law in laws]
+
+
+def _number(value: Any) -> float:
+    return float(value) if isinstance(value, int | float) else np.nan
+
+
+def _demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:
+    """ConvergenceError if a balance [law, point] was not found: no numbers are returned."""
+    if not (residual <= TOLERANCE).all():
+        law, point = divmod(int(np.argmax(residual > TOLERANCE)), residual.shape[1])
+        raise ConvergenceError(
+            f"the torque balance did not converge (relative residual {residual[law, point]:.2g}, "
+            f"allowed {TOLERANCE:g}) with {laws[law]} {_where(points[min(point, len(points) - 1)])}"
+        )
+
+
+def _demand_motion(locked: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:
+    """ConvergenceError if friction locks the mesh [law, point]: there is no balance to find."""
+    if locked.any():
+        law, point = divmod(int(np.argmax(locked)), locked.shape[1])
+        raise ConvergenceError(
+            f"friction locks the mesh with {laws[law]} {_where(points[min(point, len(points) - 1)])}: "
+            "no force carries the load; the friction coefficient is too high"
+        )
+
+
+def _where(built: Built) -> str:
+    point = built.case.operation
+    return ", ".join(
+        f"{name} {kind.show(value)}"
+        for name, kind, value in (
+            ("at torque", TORQUE, point.torque),
+            ("speed", SPEED, point.speed),
+            ("temperature", TEMPERATURE, point.temperature),
+        )
+    )
+
+
+def _film_warnings(built: Built, law: FrictionLaw, run: Mapping[str, Any]) -> list[str]:
+    """A full-film law where there is no full film, and conditions outside the fitted range."""
+    told = []
+    active = np.asarray(run["active"])
+    thinnest = float(np.asarray(run["lambda_ratio"])[active].min())
+    if law.full_film and built.case.operation.torque > 0.0 and thinnest < 1.0:
+        highest = float(np.asarray(run["friction"]).max())
+        told.append(
+            f"{law.name} describes contacts with a full film, but the film is down to {thinnest:.2g} "
+            f"of the composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an "
+            "extrapolation."
+        )
+    for name in law.ranges:
+        share = float(np.mean(run[f"outside {law.name} {name}"]))
+        if share > 0.0:
+            told.append(f"{law.name}: {name} leaves the fitted range in part of the mesh cycle.")
+    return told

@@ -1,0 +1,354 @@
+"""The command line. Numbers for machines go to stdout with --json, tables and progress to the terminal."""
+
+import json
+import sys
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from pitchpoint.errors import InputError, PitchpointError
+
+if TYPE_CHECKING:
+    from pitchpoint.cases.comparison import Row
+    from pitchpoint.cases.run import Outcome, Progress
+    from pitchpoint.cases.schema import Study
+
+app = typer.Typer(
+    help="Load, sliding, film, friction and efficiency where gear teeth touch.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+CaseName = Annotated[str, typer.Argument(metavar="CASE", help="A shipped case, or a TOML file.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON to stdout instead of tables.")]
+Variants = Annotated[
+    list[str] | None, typer.Option("--variant", help="Run this variant only; may be repeated.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help='For example operation.torque="200 N m".'),
+]
+Sweeps = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--sweep",
+        metavar="KEY=START:STOP:COUNT",
+        help='For example operation.speed="500 rpm:3000 rpm:11".',
+    ),
+]
+Folder = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", metavar="DIR", help="Default: results/CASE."),
+]
+
+
+def main() -> None:
+    """Entry point: one sentence for what went wrong, and the exit status that goes with it."""
+    try:
+        app()
+    except PitchpointError as error:
+        _complain(f"error: {error}")
+        raise SystemExit(error.exit_code) from None
+    except KeyboardInterrupt:
+        _complain("interrupted")
+        raise SystemExit(130) from None
+    except BrokenPipeError:
+        sys.stderr.close()
+        raise SystemExit(1) from None
+
+
+@app.command()
+def cases(json_: AsJson = False) -> None:
+    """List the cases that ship with the package."""
+    from pitchpoint.cases.library import find, names
+
+    rows = [{"case": name, "title": str(find(name)[1].get("title", ""))} for name in names()]
+    _show(rows, json_, ("case", "title"))
+
+
+@app.command()
+def show(case: CaseName, variant: Variants = None, json_: AsJson = False) -> None:
+    """Show the inputs of a case as resolved, with their status, and its issues."""
+    from pitchpoint.cases.run import describe
+
+    manifests = describe(case, only=variant or [])
+    if json_:
+        _emit(manifests)
+        return
+    for manifest in manifests:
+        _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({manifest['variant']})")
+        columns = ("table", "key", "value", "status", "where", "note")
+        _table(manifest["inputs"], columns)
+        _warn(manifest["warnings"])
+    for issue in manifests[0]["issues"]:
+        _console().print(f"- {_plain(issue['where'])}: {_plain(issue['issue'])}. ", end="")
+        _console().print(_plain(issue["verdict"]), style="dim")
+
+
+@app.command()
+def run(
+    case: CaseName,
+    output: Folder = None,
+    variant: Variants = None,
+    set_: Settings = None,
+    sweep: Sweeps = None,
+    json_: AsJson = False,
+) -> None:
+    """Compute a case: tables on screen, results and report.html in a folder."""
+    from pitchpoint.cases.run import run as compute
+
+    settings, studies = _settings(set_ or []), _studies(sweep or [])
+    folder = output or Path("results") / Path(case).stem
+    _writable(folder)
+    with _progress(folder) as progress:
+        outcomes = compute(
+            case,
+            folder=folder,
+            only=variant or [],
+            settings=settings,
+            studies=studies,
+            progress=progress,
+        )
+        progress.part("", "report", False)
+        _write_report(outcomes, folder)
+    if json_:
+        _emit({name: _figures(outcome) for name, outcome in outcomes.items()})
+        return
+    for name, outcome in outcomes.items():
+        _summary(name, outcome)
+    _verdicts([row for outcome in outcomes.values() for row in outcome.rows])
+    _console().print(f"Report: {_plain(str(folder / 'report.html'))}")
+
+
+@app.command()
+def compare(case: CaseName, variant: Variants = None, json_: AsJson = False) -> None:
+    """Compare a published case with its print; exit status 1 when a row misses."""
+    from pitchpoint.cases.run import compare_case
+
+    name, chosen, rows = compare_case(case, variant[0] if variant else None, _progress)
+    if json_:
+        keep = [
+            "quantity",
+            "where",
+            "printed",
+            "computed",
+            "tolerance",
+            "kind",
+            "verdict",
+            "reason",
+            "unit",
+        ]
+        flat = [{key: row.as_json()[key] for key in keep} for row in rows]
+        _emit({"case": name, "variant": chosen, "rows": flat})
+    else:
+        _rows(rows)
+        _verdicts(rows)
+    if any(row.verdict == "miss" for row in rows):
+        raise SystemExit(1)
+
+
+@app.command()
+def cite(
+    result: Annotated[Path, typer.Argument(metavar="RESULT", help="Folder that `run` wrote.")],
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="BibTeX entries.")] = False,
+    json_: AsJson = False,
+) -> None:
+    """List the sources behind a result."""
+    from pitchpoint import citations
+    from pitchpoint.cases.run import manifests
+
+    sources = {
+        source["key"]: source["text"] for one in manifests(result) for source in one["sources"]
+    }
+    if json_:
+        _emit([{"key": key, "text": text} for key, text in sources.items()])
+        return
+    for key, text in sources.items():
+        typer.echo(citations.bibtex(key) if bibtex else f"{key}: {text}")
+
+
+@app.command()
+def models(json_: AsJson = False) -> None:
+    """List the laws that can be chosen by name, with their ranges and sources."""
+    from pitchpoint.cases.catalogue import entries
+
+    columns = ("kind", "name", "title", "range", "sources", "note")
+    _show(entries(), json_, columns)
+
+
+def _settings(texts: list[str]) -> dict[str, Any]:
+    settings = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not key.strip():
+            raise InputError(f"'{text}' is not KEY=VALUE", key="--set")
+        settings[key.strip()] = _value(value.strip())
+    return settings
+
+
+def _value(text: str) -> Any:
+    """TOML value where the text is one, else the text itself."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def _studies(texts: list[str]) -> dict[str, "Study"]:
+    from pitchpoint.cases.schema import Study, Sweep
+
+    studies = {}
+    for text in texts:
+        key, _, grid = text.partition("=")
+        parts = [part.strip() for part in grid.split(":")]
+        if len(parts) != 3 or not parts[2].isdigit() or not 1 <= int(parts[2]) <= 100_000:
+            raise InputError(f"'{text}' is not KEY=START:STOP:COUNT", key="--sweep")
+        start, stop, count = parts
+        sweep = Sweep(key=key.strip(), start=start, stop=stop, count=float(count))
+        studies[key.strip().replace(".", "_")] = Study(title=key.strip(), sweep=sweep)
+    return studies
+
+
+def _write_report(outcomes: "dict[str, Outcome]", folder: Path) -> None:
+    from pitchpoint.views.report import write_report
+
+    write_report(outcomes, folder / "report.html")
+
+
+def _writable(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / ".writable").touch()
+        (folder / ".writable").unlink()
+    except OSError as error:
+        raise InputError(f"cannot be written to: {error.strerror}", file=str(folder)) from None
+
+
+@contextmanager
+def _progress(folder: Path | None) -> "Iterator[Progress]":
+    """Progress on the terminal; says what is on disk when it is interrupted."""
+    from pitchpoint.cases.run import Progress
+
+    console = _console(stderr=True)
+
+    class Shown(Progress):
+        finished = 0
+
+        def part(self, variant: str, title: str, reused: bool) -> None:
+            self.finished += 1
+            self.title = f"{variant} {title}".strip() + (" (on disk)" if reused else "")
+            status.update(_plain(self.title))
+
+        def points(self, done: int) -> None:
+            status.update(_plain(f"{self.title}: {done} points"))
+
+    with console.status("reading") as status:
+        shown = Shown()
+        try:
+            yield shown
+        except KeyboardInterrupt:
+            status.stop()
+            if folder is not None:
+                _complain(
+                    f"interrupted: {max(shown.finished - 1, 0)} finished parts are in {folder}; "
+                    "the same command goes on from there"
+                )
+                raise SystemExit(130) from None
+            raise
+
+
+def _figures(outcome: "Outcome") -> dict[str, Any]:
+    from pitchpoint.cases.catalogue import figures
+
+    return figures(outcome)
+
+
+def _summary(name: str, outcome: "Outcome") -> None:
+    from pitchpoint.cases.catalogue import summary_table
+
+    manifest = outcome.manifest
+    _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
+    _console().print(_plain(f"Oil: {manifest['oil']}. Averages over: {manifest['averaging']}."))
+    rows, columns, note = summary_table(outcome)
+    _table(rows, columns)
+    _console().print(_plain(note))
+    _warn(manifest["warnings"])
+
+
+def _rows(rows: "list[Row]") -> None:
+    def number(value: float | None) -> str:
+        return "" if value is None else f"{value:.5g}"
+
+    shown = [
+        {
+            "quantity": row.quantity,
+            "place": row.where,
+            "printed": f"{row.printed:g} {row.unit if row.unit != '1' else ''}",
+            "computed": number(row.computed),
+            "deviation": "" if row.deviation is None else f"{row.deviation:+.2g}",
+            "tolerance": f"{row.tolerance:g}",
+            "kind": row.kind,
+            "verdict": row.verdict,
+        }
+        for row in rows
+    ]
+    _table(shown, tuple(shown[0]) if shown else ())
+    for row in rows:
+        if row.verdict != "pass" and row.reason:
+            _console().print(_plain(f"{row.verdict}: {row.quantity}: {row.reason}"))
+
+
+def _verdicts(rows: "list[Row]") -> None:
+    from pitchpoint.cases.comparison import counts
+
+    for kind, verdicts in counts(rows).items():
+        told = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
+        _console().print(f"{kind}: {told}")
+
+
+def _show(rows: list[dict[str, str]], as_json: bool, columns: tuple[str, ...]) -> None:
+    if as_json:
+        _emit(rows)
+    else:
+        _table(rows, columns)
+
+
+def _table(rows: list[dict[str, str]], columns: tuple[str, ...]) -> None:
+    from rich.table import Table
+
+    used = [name for name in columns if any(row.get(name) for row in rows)]
+    table = Table(*used, box=None, pad_edge=False, header_style="bold")
+    for row in rows:
+        table.add_row(*(_plain(str(row.get(name, ""))) for name in used))
+    _console().print(table)
+
+
+def _warn(warnings: list[str]) -> None:
+    for text in warnings:
+        _console().print(f"[yellow]warning:[/] {_plain(text)}")
+
+
+def _emit(value: Any) -> None:
+    typer.echo(json.dumps(value, ensure_ascii=False, indent=1, allow_nan=False))
+
+
+def _complain(text: str) -> None:
+    sys.stderr.write(text.rstrip() + "\n")
+
+
+def _plain(text: str) -> str:
+    """Text without rich's markup: what the user typed is shown as it is."""
+    from rich.markup import escape
+
+    return escape(text)
+
+
+def _console(stderr: bool = False) -> Any:
+    from rich.console import Console
+
+    return Console(stderr=stderr, highlight=False, soft_wrap=not sys.stdout.isatty())

@@ -1,0 +1,1 @@
+"""Results as labelled datasets: conventions, and files that are whole or absent."""

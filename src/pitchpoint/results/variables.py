@@ -1,0 +1,77 @@
+"""Name, symbol, unit and kind of every quantity that a result holds."""
+
+from dataclasses import dataclass
+
+__all__ = ["VARIABLES", "Variable"]
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A quantity of a result: long name, symbol, SI unit, and unit and kind for display."""
+
+    long_name: str
+    symbol: str
+    unit: str
+    shown: str = ""
+    kind: str = "dimensionless"
+
+    @property
+    def display(self) -> str:
+        """Unit in which tables and figures show it."""
+        return self.shown or self.unit
+
+
+def _percent(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "1", "%")
+
+
+def _torque(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "N m", "N m", "torque")
+
+
+def _power(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "W", "W", "power")
+
+
+VARIABLES: dict[str, Variable] = {
+    "phase": Variable("phase of the mesh cycle", "φ", "1"),
+    "weight": Variable("weight of the node in a mean over one period", "w", "1"),
+    "path": Variable("position on the path of contact from A, in base pitches", "x/p_b", "1"),
+    "active": Variable("pair in contact", "", "1"),
+    "input_torque": _torque("input torque", "T_in"),
+    "efficiency": _percent("instantaneous efficiency", "η"),
+    "loss": _power("power loss", "P_loss"),
+    "contact_force": Variable("normal force of the mesh", "F_n", "N", "N", "force"),
+    "contact_force_ratio": Variable("contact force over that without friction", "β", "1"),
+    "residual": Variable("relative residual of the torque balance", "", "1"),
+    "load": Variable("normal force of the pair", "F", "N", "N", "force"),
+    "load_share": Variable("share of the load", "λ", "1"),
+    "friction": Variable("friction coefficient", "μ", "1"),
+    "sliding_velocity": Variable("sliding velocity, signed", "v_s", "m/s", "m/s", "velocity"),
+    "entrainment": Variable("entrainment velocity", "u", "m/s", "m/s", "velocity"),
+    "slide_roll_ratio": Variable("slide-roll ratio", "SR", "1"),
+    "pressure": Variable("largest Hertz pressure", "p_H", "Pa", "MPa", "pressure"),
+    "film_thickness": Variable("film thickness", "h", "m", "um", "length"),
+    "lambda_ratio": Variable("film thickness over composite Rq", "Λ", "1"),
+    "sliding_loss": _power("sliding loss of the pair", "P_s"),
+    "rolling_loss": _power("rolling loss of the pair", "P_r"),
+    "radius": Variable("relative radius of curvature", "R", "m", "mm", "length"),
+    "contact_ratio": Variable("transverse contact ratio", "ε_α", "1"),
+    "loss_factor": Variable("loss factor with equal sharing", "H_V", "1"),
+    "mean_loss": _power("mean power loss", "P_loss"),
+    "mean_efficiency": _percent("mean efficiency", "η mean"),
+    "min_efficiency": _percent("smallest efficiency", "η min"),
+    "max_efficiency": _percent("largest efficiency", "η max"),
+    "efficiency_fluctuation": _percent("fluctuation of the efficiency", "Δη"),
+    "mean_input_torque": _torque("mean input torque", "T_in mean"),
+    "min_input_torque": _torque("smallest input torque", "T_in min"),
+    "max_input_torque": _torque("largest input torque", "T_in max"),
+    "torque_ripple": _torque("ripple of the input torque", "ΔT_in"),
+    "mean_friction": Variable("mean friction coefficient", "μ mean", "1"),
+    "loss_factor_efficiency": _percent("efficiency by loss factor, 1 - μ H_V", "1 - μ H_V"),
+    "iterations": Variable("iterations of the torque balance", "", "1"),
+    "locked": Variable("friction locks the mesh", "", "1"),
+    "torque": _torque("output torque", "T_out"),
+    "speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
+    "temperature": Variable("oil temperature", "θ", "K", "degC", "temperature"),
+}
