@@ -7,17 +7,20 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 
-__all__ = ["Contacts", "Shape"]
+
+__all__ = ["Contacts", "Shape", "along", "total"]
 
 Shape = Literal["line", "ellipse"]
 
 
 class Contacts(eqx.Module):
-    """Travelling contacts of one mesh, per radian of the driver so that speeds and loads broadcast over them.
+    """Travelling contacts of one mesh, per radian of the driver: speeds and loads broadcast over them.
 
-    Axes: `*b` any batch (phases, designs), `pair` of teeth, `slice` along the contact line, `member`
-    (the two bodies that touch), `dof` (coordinates of the bodies, rotations counter-clockwise).
-    Inactive lanes hold harmless finite values; `active` masks them.
+    Axes: `member` (the two bodies that touch), `dof` (coordinates of the bodies, rotations
+    counter-clockwise), `pair` of teeth, `slice` along the contact line, and last `*b`, any batch
+    (phases). With the batch last, values of the whole mesh broadcast over the contacts as they are,
+    and sums over contacts run along long rows. Inactive lanes hold harmless finite values; `active`
+    masks them.
 
     Attributes:
         active: True where the pair touches.
@@ -34,37 +37,45 @@ class Contacts(eqx.Module):
         shape: a line contact or an elliptic one; a line is not the limit of an ellipse.
     """
 
-    active: Bool[Array, "*b pair slice"]
-    path: Float[Array, "*b pair slice"]
-    width: Float[Array, "*b pair slice"]
-    weight: Float[Array, "*b pair slice"]
-    curvature: Float[Array, "*b pair slice member 2"]
-    surface: Float[Array, "*b pair slice member dof"]
-    normal: Float[Array, "*b pair slice dof"]
-    gap: Float[Array, "*b pair slice"]
-    flank: Float[Array, "*b pair slice member"]
+    active: Bool[Array, "pair slice *b"]
+    path: Float[Array, "pair slice *b"]
+    width: Float[Array, "pair slice *b"]
+    weight: Float[Array, "pair slice *b"]
+    curvature: Float[Array, "member 2 pair slice *b"]
+    surface: Float[Array, "member dof pair slice *b"]
+    normal: Float[Array, "dof pair slice *b"]
+    gap: Float[Array, "pair slice *b"]
+    flank: Float[Array, "member pair slice *b"]
     shape: Shape = eqx.field(static=True)
 
     @property
-    def slip_arm(self) -> Float[Array, "*b pair slice dof"]:
+    def slip_arm(self) -> Float[Array, "dof pair slice *b"]:
         """Sliding velocity of member 0 over member 1 for a unit rate of each coordinate [m/rad or 1]."""
-        return self.surface[..., 0, :] - self.surface[..., 1, :]
+        return self.surface[0] - self.surface[1]
 
     @property
-    def roll_arm(self) -> Float[Array, "*b pair slice dof"]:
+    def roll_arm(self) -> Float[Array, "dof pair slice *b"]:
         """Sum of the two surface velocities for a unit rate of each coordinate [m/rad or 1]."""
-        return self.surface[..., 0, :] + self.surface[..., 1, :]
+        return self.surface[0] + self.surface[1]
 
     @property
-    def relative_curvature(self) -> Float[Array, "*b pair slice 2"]:
+    def relative_curvature(self) -> Float[Array, "2 pair slice *b"]:
         """Sum of the members' curvatures: second derivative of the separation [1/m]."""
-        return jnp.sum(self.curvature, axis=-2)
+        return self.curvature[0] + self.curvature[1]
 
     @property
-    def radius(self) -> Float[Array, "*b pair slice"]:
+    def radius(self) -> Float[Array, "pair slice *b"]:
         """Relative radius of curvature in the rolling direction [m]."""
-        return 1.0 / self.relative_curvature[..., 0]
+        return 1.0 / self.relative_curvature[0]
 
-    def speeds(self, motion: Float[Array, " dof"]) -> Float[Array, "*b pair slice member"]:
-        """Surface speeds relative to the contact for the coordinate rates `motion` [m/s for rad/s]."""
-        return self.surface @ motion
+
+def along(
+    arms: Float[Array, "dof pair slice *b"], rates: Float[Array, " dof"]
+) -> Float[Array, "pair slice *b"]:
+    """Velocity at each contact for given rates of the coordinates: sum of arms times rates."""
+    return sum((rates[k] * arms[k] for k in range(1, arms.shape[0])), rates[0] * arms[0])
+
+
+def total(values: Float[Array, "pair slice *b"]) -> Float[Array, "*b"]:
+    """Sum over all contacts of a mesh."""
+    return jnp.sum(values, axis=(0, 1))

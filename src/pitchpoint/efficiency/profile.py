@@ -4,6 +4,7 @@ import equinox as eqx
 from jaxtyping import Array
 
 from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
@@ -32,7 +33,7 @@ def profile(
     state = result.state
     at, contacts = state.conditions, state.contacts
     thickness = evaluate(film.function, at)
-    slip = contacts.slip_arm @ at.motion
+    slip = along(contacts.slip_arm, at.motion)
     mesh = {
         "phase": result.phase,
         "weight": result.weight,
@@ -46,9 +47,9 @@ def profile(
     }
     each = {
         "load": state.balance.load,
-        "load_share": state.balance.load / _positive(state.balance.force)[..., None, None],
+        "load_share": state.balance.load / _positive(state.balance.force),
         "friction": state.balance.friction,
-        "sliding_velocity": slip * at.speed[..., None, None],
+        "sliding_velocity": slip * at.speed,
         "entrainment": at.entrainment,
         "slide_roll_ratio": at.slide_roll_ratio,
         "pressure": at.pressure,
@@ -65,13 +66,14 @@ def profile(
         for name, limits in law.ranges.items()
     }
     masked = {name: jnp.where(contacts.active, values, 0.0) for name, values in each.items()}
-    return {**mesh, **outside, **masked, "active": contacts.active, "path": contacts.path}
+    lanes = {**masked, "active": contacts.active, "path": contacts.path}
+    return {**mesh, **outside, **{name: jnp.moveaxis(v, -1, 0) for name, v in lanes.items()}}
 
 
 def _outside(value: Array, limits: tuple[float, float], active: Array) -> Array:
     """True at nodes where a condition of a pair in contact leaves the range of a law."""
     beyond = (value < limits[0]) | (value > limits[1])
-    return jnp.any(beyond & active, axis=(-2, -1))
+    return jnp.any(beyond & active, axis=(0, 1))
 
 
 def _positive(value: Array) -> Array:

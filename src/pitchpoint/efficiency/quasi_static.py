@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.balance import Balance, balance
 from pitchpoint.loading.sharing import LoadSharing
@@ -23,7 +23,7 @@ __all__ = ["Cycle", "Design", "Models", "Operation", "State", "cycle", "cycle_no
 # Nodes keep this relative distance from the events, so that each lies on one side of them.
 _INSIDE = 1e-9
 
-Lanes = Float[Array, "*b pair slice"]
+Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 
 
@@ -99,7 +99,7 @@ class State(eqx.Module):
         balance: forces and torques.
         sliding_loss, rolling_loss: power lost at each slice [W].
         input_torque: torque of the driver in its direction of motion [N m].
-        output_power: power taken by the load [W].
+        output_power: power taken from all coordinates but the driver [W].
     """
 
     contacts: Contacts
@@ -113,7 +113,7 @@ class State(eqx.Module):
     @property
     def loss(self) -> Each:
         """Power lost in all contacts [W]."""
-        return jnp.sum(self.sliding_loss + self.rolling_loss, axis=(-2, -1))
+        return total(self.sliding_loss + self.rolling_loss)
 
     @property
     def input_power(self) -> Each:
@@ -137,7 +137,9 @@ class State(eqx.Module):
         )
 
 
-def state(design: Design, operation: Operation, phase: Each, models: Models) -> State:
+def state(
+    design: Design, operation: Operation, phase: Each, models: Models, *, unrolled: int = 0
+) -> State:
     """State of the mesh in static equilibrium with friction.
 
     Args:
@@ -145,11 +147,14 @@ def state(design: Design, operation: Operation, phase: Each, models: Models) -> 
         operation: operating points [*b], broadcast against the phases.
         phase: [*b] periods.
         models: laws.
+        unrolled: fixed number of steps of the balance, for speed; check the residual then.
     """
     mesh = design.mesh
+    rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
+    phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
     contacts = mesh.contacts(phase)
     share = models.sharing.function(contacts, mesh.contact_ratio)
-    arm = jnp.abs(jnp.sum(share * (contacts.normal @ mesh.loaded), axis=(-2, -1)))
+    arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
     oil, temperature = design.lubricant, operation.temperature
 
     def conditions(load: Lanes) -> Conditions:
@@ -160,12 +165,12 @@ def state(design: Design, operation: Operation, phase: Each, models: Models) -> 
             motion=mesh.motion,
             speed=operation.speed,
             modulus=design.modulus,
-            oil_viscosity=oil.viscosity(temperature),
-            oil_kinematic_viscosity=oil.kinematic_viscosity(temperature),
-            oil_pressure_viscosity=oil.pressure_viscosity(temperature),
-            oil_factor=oil.lubricant_factor,
-            mean_ra=design.roughness.mean_ra,
-            composite_rq=design.roughness.composite_rq,
+            viscosity=oil.viscosity(temperature),
+            kinematic_viscosity=oil.kinematic_viscosity(temperature),
+            pressure_viscosity=oil.pressure_viscosity(temperature),
+            lubricant_factor=oil.lubricant_factor,
+            roughness_ra=design.roughness.mean_ra,
+            roughness_rq=design.roughness.composite_rq,
             reference=mesh.reference,
         )
 
@@ -183,19 +188,25 @@ def state(design: Design, operation: Operation, phase: Each, models: Models) -> 
         load=operation.load,
         friction=friction,
         rolling=None if models.rolling.name == "none" else rolling,
+        unrolled=unrolled,
     )
     at_contact = conditions(balanced.load)
     driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
-    delivered = jnp.abs(mesh.loaded @ mesh.motion)
+    others = (1.0 - mesh.driver) * mesh.motion
     return State(
         contacts=contacts,
         conditions=at_contact,
         balance=balanced,
         sliding_loss=balanced.load * balanced.friction * at_contact.sliding,
         rolling_loss=2.0 * balanced.rolling * at_contact.entrainment,
-        input_torque=balanced.torque @ driver,
-        output_power=operation.load * operation.speed * delivered,
+        input_torque=along(balanced.torque, driver),
+        output_power=-along(balanced.torque, others) * operation.speed,
     )
+
+
+def _of_rank(values: Each, rank: int) -> Each:
+    """Values with axes of length one in front: contacts and operating points count the same batch axes."""
+    return jnp.reshape(values, (*(1 for _ in range(rank - jnp.ndim(values))), *jnp.shape(values)))
 
 
 class Cycle(eqx.Module):
@@ -219,7 +230,7 @@ class Cycle(eqx.Module):
 
     def path_mean(self, values: Float[Array, "*b node"]) -> Each:
         """Mean over the path of contact of one pair: double contact counts twice."""
-        pairs = jnp.sum(jnp.any(self.state.contacts.active, axis=-1), axis=-1)
+        pairs = jnp.sum(jnp.any(self.state.contacts.active, axis=1), axis=0)
         return self.mean(values * pairs) / self.mean(pairs * 1.0)
 
     def extremes(self, values: Float[Array, "*b node"]) -> tuple[Each, Each]:

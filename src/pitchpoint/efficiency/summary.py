@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import along, total
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, cycle_nodes
 from pitchpoint.loading.sharing import equal
 
@@ -28,9 +29,9 @@ def loss_factor(design: Design, models: Models) -> Array:
     phase, weight = cycle_nodes(mesh, models.sharing, 6)
     contacts = mesh.contacts(phase)
     share = equal(contacts, mesh.contact_ratio)
-    sliding = jnp.abs(contacts.slip_arm @ mesh.motion)
-    arm = jnp.abs(contacts.normal @ mesh.driver)
-    return jnp.sum(share * sliding / arm, axis=(-2, -1)) @ weight
+    sliding = jnp.abs(along(contacts.slip_arm, mesh.motion))
+    arm = jnp.abs(along(contacts.normal, mesh.driver))
+    return total(share * sliding / arm) @ weight
 
 
 def summary(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
@@ -105,7 +106,7 @@ def _defined(efficiency: Array) -> Array:
 def _mean_friction(result: Cycle) -> Array:
     """Friction coefficient weighted with the load of the contacts."""
     balance = result.state.balance
-    total = jnp.sum(balance.load, axis=(-2, -1))
-    weighted = jnp.sum(balance.load * balance.friction, axis=(-2, -1))
-    loaded = total > 0.0
-    return result.mean(jnp.where(loaded, weighted / jnp.where(loaded, total, 1.0), 0.0))
+    normal = total(balance.load)
+    weighted = total(balance.load * balance.friction)
+    loaded = normal > 0.0
+    return result.mean(jnp.where(loaded, weighted / jnp.where(loaded, normal, 1.0), 0.0))

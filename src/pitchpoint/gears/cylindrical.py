@@ -218,22 +218,24 @@ class CylindricalPair(Mesh):
 
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
-        path = jnp.mod(phase, 1.0)[..., None, None] + jnp.arange(float(self.lanes))[:, None]
+        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+        path = jnp.mod(phase, 1.0) + number
         active = path <= self.contact_ratio
         position = jnp.where(active, self.limits[0] + path * self.base_pitch, self.pitch_position)
-        rolling = jnp.stack([position, self.tangent_length - position], axis=-1)
-        lanes = jnp.shape(position)
-        arms = rolling[..., None] * jnp.diag(self._side * jnp.array([1.0, -1.0]))
+        rolling = jnp.stack([position, self.tangent_length - position])
+        none, lanes = jnp.zeros_like(position), jnp.shape(position)
+        first, second = self._side * rolling[0], -self._side * rolling[1]
+        arms = self._side * self.base_radii
         return Contacts(
             active=active,
             path=path,
-            width=jnp.zeros(lanes),
+            width=none,
             weight=jnp.broadcast_to(self.face_width, lanes),
-            curvature=jnp.stack([1.0 / rolling, jnp.zeros_like(rolling)], axis=-1),
-            surface=arms,
-            normal=jnp.broadcast_to(self._side * self.base_radii, (*lanes, 2)),
-            gap=jnp.zeros(lanes),
-            flank=rolling**2 / (2.0 * self.base_radii),
+            curvature=jnp.stack([1.0 / rolling, jnp.zeros_like(rolling)], axis=1),
+            surface=jnp.stack([jnp.stack([first, none]), jnp.stack([none, second])]),
+            normal=jnp.stack([jnp.broadcast_to(arm, lanes) for arm in arms]),
+            gap=none,
+            flank=jnp.stack([rolling[k] ** 2 / (2.0 * self.base_radii[k]) for k in (0, 1)]),
             shape="line",
         )
 

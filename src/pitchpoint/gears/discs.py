@@ -55,9 +55,9 @@ class _Rig(Mesh):
         length: Float[Array, ""],
         shape: Shape,
     ) -> Contacts:
-        lanes = (*jnp.shape(phase), 1, 1)
+        lanes = (1, 1, *jnp.shape(phase))
         zero = jnp.zeros(lanes)
-        turn = jnp.mod(phase, 1.0)[..., None, None]
+        turn = jnp.mod(phase, 1.0)[None, None]
         surface = jnp.zeros((2, 3)).at[0, 0].set(arms[0]).at[1, 1].set(arms[1])
         speeds = surface @ self.motion
         return Contacts(
@@ -65,13 +65,22 @@ class _Rig(Mesh):
             path=turn,
             width=zero,
             weight=jnp.broadcast_to(length, lanes),
-            curvature=jnp.broadcast_to(curvature, (*lanes, 2, 2)),
-            surface=jnp.broadcast_to(surface, (*lanes, 2, 3)),
-            normal=jnp.broadcast_to(self.loaded, (*lanes, 3)),
+            curvature=_everywhere(curvature, lanes),
+            surface=_everywhere(surface, lanes),
+            normal=_everywhere(self.loaded, lanes),
             gap=zero,
-            flank=turn[..., None] * speeds * self.period,
+            flank=_everywhere(speeds * self.period, lanes) * turn,
             shape=shape,
         )
+
+
+def _everywhere(
+    values: Float[Array, "*structure"], lanes: tuple[int, ...]
+) -> Float[Array, "*structure pair slice *b"]:
+    """The same values at every contact."""
+    return jnp.broadcast_to(
+        values.reshape(*values.shape, *(1 for _ in lanes)), (*values.shape, *lanes)
+    )
 
 
 class TwinDisc(_Rig):

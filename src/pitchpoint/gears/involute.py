@@ -18,8 +18,7 @@ def involute(angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
 
 def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
     """Angle [rad] whose involute function is `value`, for value > 0."""
-    guess = jnp.cbrt(3.0 * value)
-    guess = guess - 2.0 * value / 5.0  # second term of the series of the inverse
+    guess = jnp.arctan(value + jnp.minimum(jnp.cbrt(3.0 * value), 1.5))
     solver: optx.Newton[Any, Any, Any] = optx.Newton(rtol=1e-14, atol=1e-14)
     solution: optx.Solution[Any, Any] = optx.root_find(
         lambda angle, target: involute(angle) - target, solver, guess, value, throw=False

@@ -1,20 +1,16 @@
 """Quasi-static balance: contact force and torques under friction that depends on the force."""
 
 from collections.abc import Callable
-from typing import Any
-
 import equinox as eqx
-import lineax as lx
-import optimistix as optx
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.loading.root import root
 
 __all__ = ["Balance", "balance"]
 
-Lanes = Float[Array, "*b pair slice"]
-TOLERANCE = 1e-11
+Lanes = Float[Array, "pair slice *b"]
 
 
 class Balance(eqx.Module):
@@ -37,7 +33,7 @@ class Balance(eqx.Module):
     load: Lanes
     friction: Lanes
     rolling: Lanes
-    torque: Float[Array, "*b dof"]
+    torque: Float[Array, "dof *b"]
     residual: Float[Array, "*b"]
     iterations: Int[Array, ""]
     locked: Bool[Array, "*b"]
@@ -52,6 +48,7 @@ def balance(
     load: Float[Array, "*b"],
     friction: Callable[[Lanes], Lanes],
     rolling: Callable[[Lanes], Lanes] | None = None,
+    unrolled: int = 0,
 ) -> Balance:
     """Contact force that carries a prescribed load against friction, and the torques it takes.
 
@@ -67,60 +64,62 @@ def balance(
         load: torque or force there, not negative [N m or N].
         friction: coefficient from the normal force of each slice [N].
         rolling: resistance on each surface [N] from the normal force of each slice; none by default.
+        unrolled: fixed number of steps instead of as many as it takes, see `root`.
 
     Source: Tian et al. (2024), eqs. 1, 2, 16, for any number of contacts and coordinates.
     """
-    side = jnp.sign(contacts.normal @ loaded)
-    normal = share * jnp.abs(contacts.normal @ loaded)
-    slip = side * (contacts.slip_arm @ loaded) * jnp.sign(contacts.slip_arm @ motion)
-    roll = side * (contacts.roll_arm @ loaded) * jnp.sign(contacts.roll_arm @ motion)
-    arm = jnp.sum(normal, axis=(-2, -1))
+    closing = along(contacts.normal, loaded)
+    side = jnp.sign(closing)
+    rolling_speed = along(contacts.roll_arm, motion)
+    sense = _sign(along(contacts.slip_arm, motion), jnp.abs(rolling_speed))
+    turn = jnp.sign(rolling_speed)
+    normal = share * jnp.abs(closing)
+    slip = side * along(contacts.slip_arm, loaded) * sense
+    roll = side * along(contacts.roll_arm, loaded) * turn
+    arm = total(normal)
     frictionless = load / arm
     safe_load = jnp.where(load > 0.0, load, 1.0)
 
     def laws(ratio: Float[Array, "*b"]) -> tuple[Lanes, Lanes, Lanes]:
         """Load, friction coefficient and rolling resistance of each slice at F = ratio F0."""
-        force = share * (ratio * frictionless)[..., None, None]
+        force = share * (ratio * frictionless)
         coefficient = jnp.where(contacts.active, friction(force), 0.0)
         resistance = rolling(force) if rolling is not None else jnp.zeros_like(force)
         return force, coefficient, jnp.where(contacts.active & (force > 0.0), resistance, 0.0)
 
     def leverage(coefficient: Lanes) -> Float[Array, "*b"]:
-        return 1.0 + jnp.sum(share * coefficient * slip, axis=(-2, -1)) / arm
+        return 1.0 + total(share * coefficient * slip) / arm
 
-    def unbalance(ratio: Float[Array, "*b"], args: None) -> Float[Array, "*b"]:
+    def unbalance(ratio: Float[Array, "*b"]) -> Float[Array, "*b"]:
         _, coefficient, resistance = laws(ratio)
-        rolled = jnp.sum(resistance * roll, axis=(-2, -1)) / safe_load
+        rolled = total(resistance * roll) / safe_load
         return ratio * leverage(coefficient) + rolled - 1.0
 
-    solver: optx.Newton[Any, Any, Any] = optx.Newton(
-        rtol=TOLERANCE, atol=TOLERANCE, linear_solver=lx.Diagonal(), norm=optx.max_norm
+    start = jnp.ones(jnp.broadcast_shapes(frictionless.shape, share.shape[2:]))
+    ratio, iterations = root(unbalance, start, unrolled=unrolled)
+    force, coefficient, resistance = laws(ratio)
+    torque = jnp.stack(
+        [
+            total(
+                force * (contacts.normal[k] + coefficient * sense * contacts.slip_arm[k])
+                + resistance * turn * contacts.roll_arm[k]
+            )
+            for k in range(motion.shape[0])
+        ]
     )
-    solution: optx.Solution[Any, Any] = optx.root_find(
-        unbalance,
-        solver,
-        jnp.ones(jnp.broadcast_shapes(frictionless.shape, share.shape[:-2])),
-        tags=frozenset({lx.diagonal_tag}),
-        adjoint=optx.ImplicitAdjoint(linear_solver=lx.Diagonal()),
-        max_steps=30,
-        throw=False,
-    )
-    force, coefficient, resistance = laws(solution.value)
-    sign = jnp.sign(contacts.slip_arm @ motion)
-    turn = jnp.sign(contacts.roll_arm @ motion)
-    torque = (
-        force[..., None] * (contacts.normal + (coefficient * sign)[..., None] * contacts.slip_arm)
-        + (resistance * turn)[..., None] * contacts.roll_arm
-    )
-    total = jnp.sum(torque, axis=(-3, -2))
     return Balance(
-        force=solution.value * frictionless,
+        force=ratio * frictionless,
         frictionless=frictionless,
         load=force,
         friction=coefficient,
         rolling=resistance,
-        torque=total,
-        residual=jnp.abs(jnp.abs(total @ loaded) - load) / safe_load,
-        iterations=jnp.asarray(solution.stats["num_steps"]),
+        torque=torque,
+        residual=jnp.abs(jnp.abs(along(torque, loaded)) - load) / safe_load,
+        iterations=iterations,
         locked=leverage(coefficient) <= 0.0,
     )
+
+
+def _sign(value: Lanes, scale: Lanes) -> Lanes:
+    """Sign of a velocity, zero where it is rounding against `scale`: pure rolling has no direction."""
+    return jnp.where(jnp.abs(value) > 1e-13 * scale, jnp.sign(value), 0.0)

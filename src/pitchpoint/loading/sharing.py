@@ -13,7 +13,7 @@ from pitchpoint.registry import Registry
 __all__ = ["LOAD_SHARING", "LoadSharing", "equal", "sanchez_2017", "single"]
 
 Ratio = Float[Array, ""]
-Share = Float[Array, "*b pair slice"]
+Share = Float[Array, "pair slice *b"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ def single(contacts: Contacts, contact_ratio: Ratio) -> Share:
         contact_ratio: eps_alpha, length of the path in base pitches.
     """
     from_middle = jnp.where(contacts.active, jnp.abs(contacts.path - contact_ratio / 2.0), jnp.inf)
-    nearest = from_middle <= jnp.min(from_middle, axis=-2, keepdims=True)
+    nearest = from_middle <= jnp.min(from_middle, axis=0, keepdims=True)
     return _normalised(jnp.where(nearest & contacts.active, contacts.weight, 0.0))
 
 
@@ -89,12 +89,12 @@ def sanchez_2017(contacts: Contacts, contact_ratio: Ratio) -> Share:
     """
     double = contact_ratio - 1.0
     from_end = jnp.minimum(contacts.path, contact_ratio - contacts.path)
-    share = jnp.where(from_end < double, 0.36 + 0.28 * from_end / double, 1.0)
-    return jnp.where(contacts.active, share, 0.0)
+    share = jnp.where(from_end <= double, 0.36 + 0.28 * from_end / double, 1.0)
+    return _normalised(jnp.where(contacts.active, share, 0.0))
 
 
 def _normalised(share: Share) -> Share:
-    return share / jnp.sum(share, axis=(-2, -1), keepdims=True)
+    return share / jnp.sum(share, axis=(0, 1), keepdims=True)
 
 
 LOAD_SHARING = Registry(

@@ -9,13 +9,13 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact import hertz
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Reference
 
 __all__ = ["Conditions", "arguments", "evaluate"]
 
-Lanes = Float[Array, "*b pair slice"]
+Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 
 
@@ -29,10 +29,11 @@ class Conditions(eqx.Module):
         motion: rates of the coordinates per radian of the driver.
         speed: of the driver [rad/s].
         modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
-        oil_viscosity, oil_kinematic_viscosity: at oil temperature [Pa s], [m2/s].
-        oil_pressure_viscosity: alpha at oil temperature [1/Pa].
-        oil_factor: lubricant factor X_L.
-        mean_ra, composite_rq: roughness of the flanks [m].
+        viscosity, kinematic_viscosity: dynamic [Pa s] and kinematic [m2/s], at oil temperature.
+        pressure_viscosity: alpha at oil temperature [1/Pa].
+        lubricant_factor: X_L.
+        roughness_ra: mean Ra of both flanks [m].
+        roughness_rq: composite Rq of both flanks [m].
         reference: pitch-point values, or None.
     """
 
@@ -42,12 +43,12 @@ class Conditions(eqx.Module):
     motion: Float[Array, " dof"]
     speed: Each
     modulus: Float[Array, ""]
-    oil_viscosity: Each
-    oil_kinematic_viscosity: Each
-    oil_pressure_viscosity: Each
-    oil_factor: Float[Array, ""]
-    mean_ra: Float[Array, ""]
-    composite_rq: Float[Array, ""]
+    viscosity: Each
+    kinematic_viscosity: Each
+    pressure_viscosity: Each
+    lubricant_factor: Float[Array, ""]
+    roughness_ra: Float[Array, ""]
+    roughness_rq: Float[Array, ""]
     reference: Reference | None
 
     @property
@@ -58,28 +59,28 @@ class Conditions(eqx.Module):
     @property
     def speed_a(self) -> Lanes:
         """Surface speed of member 0 relative to the contact [m/s]."""
-        return self.contacts.speeds(self.motion)[..., 0] * _lanes(self.speed)
+        return along(self.contacts.surface[0], self.motion) * self.speed
 
     @property
     def speed_b(self) -> Lanes:
         """Surface speed of member 1 relative to the contact [m/s]."""
-        return self.contacts.speeds(self.motion)[..., 1] * _lanes(self.speed)
+        return along(self.contacts.surface[1], self.motion) * self.speed
 
     @property
     def entrainment(self) -> Lanes:
         """Mean of the surface speeds, without sign [m/s]."""
-        return jnp.abs(jnp.sum(self.contacts.speeds(self.motion), -1) / 2.0) * _lanes(self.speed)
+        return jnp.abs(along(self.contacts.roll_arm, self.motion) / 2.0) * self.speed
 
     @property
     def sliding(self) -> Lanes:
         """Difference of the surface speeds, without sign [m/s]."""
-        return jnp.abs(self.contacts.slip_arm @ self.motion) * _lanes(self.speed)
+        return jnp.abs(along(self.contacts.slip_arm, self.motion)) * self.speed
 
     @property
     def slide_roll_ratio(self) -> Lanes:
         """Sliding over entrainment; a matter of geometry, defined at standstill too."""
-        mean = jnp.abs(self.contacts.roll_arm @ self.motion) / 2.0
-        slip = jnp.abs(self.contacts.slip_arm @ self.motion)
+        mean = jnp.abs(along(self.contacts.roll_arm, self.motion)) / 2.0
+        slip = jnp.abs(along(self.contacts.slip_arm, self.motion))
         return jnp.where(mean > 0.0, slip / jnp.where(mean > 0.0, mean, 1.0), 0.0)
 
     @property
@@ -90,7 +91,7 @@ class Conditions(eqx.Module):
     @property
     def transverse_radius(self) -> Lanes:
         """Relative radius of curvature across the rolling direction [m]; of elliptic contacts."""
-        return 1.0 / self.contacts.relative_curvature[..., 1]
+        return 1.0 / self.contacts.relative_curvature[1]
 
     @property
     def pressure(self) -> Lanes:
@@ -114,49 +115,19 @@ class Conditions(eqx.Module):
         )
 
     @property
-    def viscosity(self) -> Lanes:
-        """Dynamic viscosity at oil temperature [Pa s]."""
-        return _lanes(self.oil_viscosity)
-
-    @property
-    def kinematic_viscosity(self) -> Lanes:
-        """Kinematic viscosity at oil temperature [m2/s]."""
-        return _lanes(self.oil_kinematic_viscosity)
-
-    @property
-    def pressure_viscosity(self) -> Lanes:
-        """Pressure-viscosity coefficient at oil temperature [1/Pa]."""
-        return _lanes(self.oil_pressure_viscosity)
-
-    @property
-    def lubricant_factor(self) -> Float[Array, ""]:
-        """X_L of the lubricant."""
-        return self.oil_factor
-
-    @property
-    def roughness_ra(self) -> Float[Array, ""]:
-        """Mean Ra of both flanks [m]."""
-        return self.mean_ra
-
-    @property
-    def roughness_rq(self) -> Float[Array, ""]:
-        """Composite Rq of both flanks [m]."""
-        return self.composite_rq
-
-    @property
     def face_width(self) -> Float[Array, ""]:
         """Face width of the mesh [m]."""
         return self._pitch_point.width
 
     @property
-    def reference_line_load(self) -> Lanes:
+    def reference_line_load(self) -> Each:
         """Tangential force at the base circle over the face width F_bt/b, without friction [N/m]."""
-        return _lanes(self.nominal_load / self._pitch_point.width)
+        return self.nominal_load / self._pitch_point.width
 
     @property
-    def reference_sum_speed(self) -> Lanes:
+    def reference_sum_speed(self) -> Each:
         """Sum of the surface speeds at the pitch point [m/s]."""
-        return _lanes(self.speed * self._pitch_point.sum_speed)
+        return self.speed * self._pitch_point.sum_speed
 
     @property
     def reference_radius(self) -> Float[Array, ""]:
@@ -164,9 +135,9 @@ class Conditions(eqx.Module):
         return self._pitch_point.radius
 
     @property
-    def pitch_line_speed(self) -> Lanes:
+    def pitch_line_speed(self) -> Each:
         """Speed of the pitch circles [m/s]."""
-        return _lanes(self.speed * self._pitch_point.pitch_line_speed)
+        return self.speed * self._pitch_point.pitch_line_speed
 
     @property
     def _pitch_point(self) -> Reference:
@@ -238,7 +209,3 @@ def evaluate(
     wanted, _ = arguments(law)
     values = {name: getattr(conditions, name) for name in wanted}
     return jnp.broadcast_to(law(**values, **(parameters or {})), conditions.load.shape)
-
-
-def _lanes(value: Each) -> Lanes:
-    return jnp.asarray(value)[..., None, None]

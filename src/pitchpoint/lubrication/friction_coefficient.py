@@ -202,7 +202,8 @@ def xu_2007(
     heaviness = SR * GPa * jnp.log(_floored(cP)) / jnp.log(10.0)
     f = b1 + b4 * heaviness + b5 * jnp.exp(-heaviness) + b9 * jnp.exp(um)
     powers = _power_product((GPa, b2), (SR, b3), (entrainment, b6), (cP, b7), (radius, b8))
-    return jnp.exp(f) * powers
+    # Far beyond any sense already; without the limit a rough flank overflows.
+    return jnp.exp(jnp.minimum(f, 50.0)) * powers
 
 
 def matsumoto_morikawa_2014(
