@@ -74,16 +74,16 @@ def _floored(value: ArrayLike) -> Array:
     return jnp.where(jnp.asarray(value) > _FLOOR, value, _FLOOR)
 
 
-def _power_product(*factors: tuple[ArrayLike, float]) -> Array:
-    """Product of value ** exponent, 0 where a factor with a positive exponent vanishes.
+def _power_product(*factors: tuple[ArrayLike, float], exponent: ArrayLike = 0.0) -> Array:
+    """Product of value ** power, times exp(exponent); 0 where a factor of positive power vanishes.
 
-    A factor with a negative exponent has no finite limit at zero: it is held at the floor.
+    A factor of negative power has no finite limit at zero: it is held at the floor.
     """
-    total = jnp.asarray(0.0)
+    total = jnp.asarray(exponent)
     vanishes = jnp.asarray(False)
-    for value, exponent in factors:
-        total = total + exponent * jnp.log(_floored(value))
-        if exponent > 0:
+    for value, power in factors:
+        total = total + power * jnp.log(_floored(value))
+        if power > 0:
             vanishes = vanishes | (jnp.asarray(value) <= _FLOOR)
     return jnp.where(vanishes, 0.0, jnp.exp(total))
 
@@ -201,9 +201,15 @@ def xu_2007(
     um, SR = jnp.asarray(roughness_rq) * 1e6, jnp.abs(jnp.asarray(slide_roll_ratio))
     heaviness = SR * GPa * jnp.log(_floored(cP)) / jnp.log(10.0)
     f = b1 + b4 * heaviness + b5 * jnp.exp(-heaviness) + b9 * jnp.exp(um)
-    powers = _power_product((GPa, b2), (SR, b3), (entrainment, b6), (cP, b7), (radius, b8))
-    # Far beyond any sense already; without the limit a rough flank overflows.
-    return jnp.exp(jnp.minimum(f, 50.0)) * powers
+    return _power_product(
+        (GPa, b2),
+        (SR, b3),
+        (entrainment, b6),
+        (cP, b7),
+        (radius, b8),
+        # Far beyond any sense already; without the limit a rough flank overflows.
+        exponent=jnp.minimum(f, 50.0),
+    )
 
 
 def matsumoto_morikawa_2014(
