@@ -8,7 +8,33 @@ from typing import Any
 
 __version__: str
 
-_LAZY: dict[str, str] = {}  # public name -> module that defines it
+# public name -> module that defines it
+_LAZY: dict[str, str] = {
+    "run": "pitchpoint.cases.run",
+    "load_case": "pitchpoint.cases.run",
+    "open_result": "pitchpoint.cases.run",
+    "laws_of": "pitchpoint.cases.build",
+    "write_report": "pitchpoint.views.report",
+    "Study": "pitchpoint.cases.schema",
+    "Sweep": "pitchpoint.cases.schema",
+    "Contacts": "pitchpoint.contact.contacts",
+    "BallOnDisc": "pitchpoint.gears.discs",
+    "TwinDisc": "pitchpoint.gears.discs",
+    "CylindricalPair": "pitchpoint.gears.cylindrical",
+    "build_cylindrical_pair": "pitchpoint.gears.cylindrical",
+    "Design": "pitchpoint.efficiency.quasi_static",
+    "Operation": "pitchpoint.efficiency.quasi_static",
+    "Models": "pitchpoint.efficiency.quasi_static",
+    "cycle": "pitchpoint.efficiency.quasi_static",
+    "state": "pitchpoint.efficiency.quasi_static",
+    "state_grid": "pitchpoint.efficiency.grid",
+    "mean_loss_gradient": "pitchpoint.efficiency.gradients",
+    "input_torque_gradient": "pitchpoint.efficiency.gradients",
+    "ripple_gradient": "pitchpoint.efficiency.gradients",
+    "FrictionLaw": "pitchpoint.lubrication.friction_coefficient",
+    "InputError": "pitchpoint.errors",
+    "ConvergenceError": "pitchpoint.errors",
+}
 
 
 def __getattr__(name: str) -> Any:

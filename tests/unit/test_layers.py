@@ -24,7 +24,7 @@ FLOW = (
     {"views"},
     {"cli", "__main__"},
 )
-RANK = {room: rank for rank, rooms in enumerate(FLOW) for room in rooms}
+RANK = {folder: rank for rank, folders in enumerate(FLOW) for folder in folders}
 HEAVY = {"jax", "equinox", "optimistix", "lineax", "numpy", "scipy", "pandas", "xarray", "plotly"}
 HEAVY |= {"h5netcdf", "h5py", "pint"}
 
@@ -44,7 +44,7 @@ def imported(tree: ast.AST, package: tuple[str, ...]) -> Iterator[str]:
 
 
 def edges(source: Path) -> Iterator[tuple[str, str, str]]:
-    """(file, room, room it imports) for each import of our own outside the root module."""
+    """(file, folder, folder it imports) for each import of our own outside the root module."""
     for file in sorted(source.rglob("*.py")):
         inner = file.relative_to(source).with_suffix("").parts
         if inner == ("__init__",):
@@ -58,15 +58,15 @@ def edges(source: Path) -> Iterator[tuple[str, str, str]]:
 def backward(source: Path) -> list[str]:
     return [
         f"{file} imports pitchpoint.{target}"
-        for file, room, target in edges(source)
-        if room != target and not allowed(room, target)
+        for file, folder, target in edges(source)
+        if folder != target and not allowed(folder, target)
     ]
 
 
-def allowed(room: str, target: str) -> bool:
-    if room not in RANK or target not in RANK:
-        return False  # a room with no place in FLOW, or a public name taken through the root
-    return RANK[target] < RANK[room] or RANK[target] == RANK[room] == 0
+def allowed(folder: str, target: str) -> bool:
+    if folder not in RANK or target not in RANK:
+        return False  # a folder with no place in FLOW, or a public name taken through the root
+    return RANK[target] < RANK[folder] or RANK[target] == RANK[folder] == 0
 
 
 def test_imports_follow_the_data_flow() -> None:
@@ -75,8 +75,8 @@ def test_imports_follow_the_data_flow() -> None:
 
 def test_every_room_has_a_place() -> None:
     files = SOURCE.rglob("*.py")
-    rooms = {file.relative_to(SOURCE).with_suffix("").parts[0] for file in files} - {"__init__"}
-    assert rooms <= RANK.keys()
+    folders = {file.relative_to(SOURCE).with_suffix("").parts[0] for file in files} - {"__init__"}
+    assert folders <= RANK.keys()
 
 
 @pytest.mark.parametrize(

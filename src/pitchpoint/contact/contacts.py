@@ -7,7 +7,6 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 
-
 __all__ = ["Contacts", "Shape", "along", "total"]
 
 Shape = Literal["line", "ellipse"]

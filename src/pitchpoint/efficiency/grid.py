@@ -1,6 +1,8 @@
 """States over a grid of positions and operating points, fast and in bounded memory."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -21,7 +23,8 @@ _CACHED = 2048
 _STEPS = 2
 
 
-class Block(eqx.Module):
+@dataclass(frozen=True)
+class Block:
     """States of some operating points [point] at all positions [position].
 
     Attributes:
@@ -63,10 +66,13 @@ def state_grid(
         block = _block(part, points, phase, models, _STEPS)
         if not bool(block[-1] <= TOLERANCE):
             block = _block(part, points, phase, models, 0)
-        yield Block(first, *(values[:used] for values in block[:-1]), block[-1])
+        force, torque, efficiency, residual = block
+        yield Block(first, force[:used], torque[:used], efficiency[:used], residual)
 
 
-def _taken(inputs: tuple[Design, Operation], rows: np.ndarray, count: int) -> tuple[Design, Operation]:
+def _taken(
+    inputs: tuple[Design, Operation], rows: np.ndarray, count: int
+) -> tuple[Design, Operation]:
     """Rows of everything that has one value for each operating point."""
 
     def take(leaf: Array) -> Array:
@@ -95,7 +101,7 @@ def _block(
             jnp.max(found.balance.residual),
         )
 
-    rowwise, whole = eqx.partition((design, points), lambda leaf: _per_row(leaf))
+    rowwise, whole = eqx.partition((design, points), _per_row)
     stacked = jax.tree.map(lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), rowwise)
     out = jax.lax.map(lambda rows: solve(eqx.combine(rows, whole)), stacked)
     force, torque, efficiency, residual = out
@@ -103,5 +109,5 @@ def _block(
     return force.reshape(shape), torque.reshape(shape), efficiency.reshape(shape), jnp.max(residual)
 
 
-def _per_row(leaf: object) -> bool:
+def _per_row(leaf: Any) -> bool:
     return eqx.is_array(leaf) and jnp.ndim(leaf) == 2 and leaf.shape[0] == ROWS

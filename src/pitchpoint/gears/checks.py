@@ -112,7 +112,7 @@ def _measure(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
     numbers = jax.device_get(_measures(dataclasses.replace(pair, lanes=lanes)))
     whole, *gears = [{key: float(x) for key, x in part.items()} for part in numbers]
     return _Pair(**whole), [
-        _Gear(number=i + 1, undercut=bool(pair.undercut[i]), **gear) for i, gear in enumerate(gears)
+        _Gear(number=i + 1, undercut=pair.undercut[i], **gear) for i, gear in enumerate(gears)
     ]
 
 

@@ -64,7 +64,7 @@ class CylindricalPair(Mesh):
         centre_distance: in operation [m].
         wheel_drives: True if gear 2 drives and gear 1 carries the load; the same flanks touch.
         left_flank: True if the opposite flanks of both gears touch.
-        undercut: for each gear whether the rack undercuts its flanks.
+        undercut: for each gear whether the rack undercuts its flanks; static.
         crossing: for each gear where the undercut crosses the involute, see `InvoluteGear`.
         lanes: static count of pairs held, at least the contact ratio rounded up.
     """
@@ -81,7 +81,7 @@ class CylindricalPair(Mesh):
     centre_distance: Float[Array, ""]
     wheel_drives: Bool[Array, ""]
     left_flank: Bool[Array, ""]
-    undercut: Bool[Array, "2"]
+    undercut: tuple[bool, bool] = eqx.field(static=True)
     crossing: Float[Array, "2"]
     lanes: int = eqx.field(static=True)
 
@@ -136,9 +136,10 @@ class CylindricalPair(Mesh):
         reach = jnp.sqrt(self.tip_radii**2 - self.base_radii**2)
         start, end = self.tangent_length - reach[1], reach[0]
         first, second = self.gears
-        lowest = self.tangent_length - second.form_roll_length
-        start = jnp.where(first.undercut, jnp.maximum(start, first.form_roll_length), start)
-        end = jnp.where(second.undercut, jnp.minimum(end, lowest), end)
+        if first.undercut:
+            start = jnp.maximum(start, first.form_roll_length)
+        if second.undercut:
+            end = jnp.minimum(end, self.tangent_length - second.form_roll_length)
         return jnp.stack([start, end])
 
     @property
@@ -324,13 +325,14 @@ def build_cylindrical_pair(
         centre_distance=_array(centre_distance or 0.0),
         wheel_drives=jnp.asarray(driver == 2),
         left_flank=jnp.asarray(left_flank),
-        undercut=jnp.zeros(2, bool),
+        undercut=(False, False),
         crossing=jnp.full(2, jnp.asarray(pressure_angle, dtype=jnp.float64)),
         lanes=2,
     )
-    pair = _complete(pair, centre_distance is None, tip_alteration is None)
-    if bool(pair.undercut.any()):
-        pair = _with_crossings(pair)
+    pair, limit = _complete(pair, centre_distance is None, tip_alteration is None)
+    first, second = (bool(one) for one in pair.profile_shift < limit)
+    if first or second:
+        pair = _with_crossings(dataclasses.replace(pair, undercut=(first, second)))
     ratio = float(_contact_ratio(pair))
     if not 0.0 < ratio < _LANES_FOR_RATIO_BELOW[-1]:
         check_cylindrical(pair)  # says why, in gear words
@@ -345,8 +347,8 @@ def _contact_ratio(pair: CylindricalPair) -> Float[Array, ""]:
 @eqx.filter_jit
 def _complete(
     pair: CylindricalPair, without_backlash: bool, keep_clearance: bool
-) -> CylindricalPair:
-    """Pair with the dimensions that follow from the others."""
+) -> tuple[CylindricalPair, Float[Array, "2"]]:
+    """Pair with the dimensions that follow from the others, and the undercut limits of both gears."""
     rack = {"teeth": pair.teeth, "module": pair.module, "profile_shift": pair.profile_shift}
     if without_backlash:
         distance = zero_backlash_centre_distance(**rack, pressure_angle=pair.pressure_angle)
@@ -354,14 +356,13 @@ def _complete(
     if keep_clearance:
         change = clearance_keeping_tip_alteration(**rack, centre_distance=pair.centre_distance)
         pair = dataclasses.replace(pair, tip_alteration=jnp.stack([change, change]))
-    limits = jnp.stack([gear.undercut_limit for gear in pair.gears])
-    return dataclasses.replace(pair, undercut=pair.profile_shift < limits)
+    return pair, jnp.stack([gear.undercut_limit for gear in pair.gears])
 
 
 @eqx.filter_jit
 def _with_crossings(pair: CylindricalPair) -> CylindricalPair:
-    crossing = jnp.stack([gear.crossing_angle() for gear in pair.gears])
-    return dataclasses.replace(pair, crossing=jnp.where(pair.undercut, crossing, pair.crossing))
+    found = [gear.crossing_angle() if gear.undercut else gear.crossing for gear in pair.gears]
+    return dataclasses.replace(pair, crossing=jnp.stack(found))
 
 
 def _array(value: object) -> jax.Array:

@@ -74,10 +74,8 @@ class _Rig(Mesh):
         )
 
 
-def _everywhere(
-    values: Float[Array, "*structure"], lanes: tuple[int, ...]
-) -> Float[Array, "*structure pair slice *b"]:
-    """The same values at every contact."""
+def _everywhere(values: Float[Array, "..."], lanes: tuple[int, ...]) -> Float[Array, "..."]:
+    """The same values [structure] at every contact [structure pair slice *b]."""
     return jnp.broadcast_to(
         values.reshape(*values.shape, *(1 for _ in lanes)), (*values.shape, *lanes)
     )

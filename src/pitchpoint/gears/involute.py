@@ -4,7 +4,7 @@ from typing import Any
 
 import equinox as eqx
 import optimistix as optx
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 
@@ -36,7 +36,7 @@ class InvoluteGear(eqx.Module):
         profile_shift: coefficient x.
         tip_alteration: coefficient k; negative shortens the tip (ISO 21771).
         addendum, dedendum, fillet_radius: of the basic rack, in modules (h_aP*, h_fP*, rho_fP*).
-        undercut: True if the rack undercuts the flank.
+        undercut: True if the rack undercuts the flank; static, so that sound gears compile to little.
         crossing: normal angle of the fillet point where an undercut crosses the involute [rad], as
             `crossing_angle` finds it; any value without undercut.
     """
@@ -49,7 +49,7 @@ class InvoluteGear(eqx.Module):
     addendum: Float[Array, ""]
     dedendum: Float[Array, ""]
     fillet_radius: Float[Array, ""]
-    undercut: Bool[Array, ""]
+    undercut: bool = eqx.field(static=True)
     crossing: Float[Array, ""]
 
     @property
@@ -86,11 +86,11 @@ class InvoluteGear(eqx.Module):
 
         Without undercut the rack's straight flank ends there; with undercut fillet and involute cross.
         """
-        margin = self.profile_shift - self.undercut_limit
-        regular = margin * self.module / jnp.sin(self.pressure_angle)
+        if not self.undercut:
+            margin = self.profile_shift - self.undercut_limit
+            return margin * self.module / jnp.sin(self.pressure_angle)
         radius = self._point(self._fillet_end)[0]
-        squared = jnp.where(self.undercut, radius**2 - self.base_radius**2, 1.0)
-        return jnp.where(self.undercut, jnp.sqrt(jnp.maximum(squared, 1e-30)), regular)
+        return jnp.sqrt(jnp.maximum(radius**2 - self.base_radius**2, 1e-30))
 
     def half_thickness_angle(self, radius: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Half the tooth's angle [rad] at a radius [m] on the involute; negative beyond the pointed tip."""
@@ -171,10 +171,11 @@ class InvoluteGear(eqx.Module):
         One Newton step from the stored crossing, so that it follows the dimensions to first order
         and gradients see them.
         """
+        if not self.undercut:
+            return self.pressure_angle
         stored = jax.lax.stop_gradient(self.crossing)
         value, slope = jax.jvp(self._removed, (stored,), (jnp.ones_like(stored),))
-        step = value / jnp.where(self.undercut, jax.lax.stop_gradient(slope), 1.0)
-        return jnp.where(self.undercut, stored - step, self.pressure_angle)
+        return jnp.asarray(stored - value / jax.lax.stop_gradient(slope))
 
     def _removed(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Angle by which the fillet point lies inside the tooth that the involute bounds [rad]."""

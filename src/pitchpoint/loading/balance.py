@@ -1,6 +1,7 @@
 """Quasi-static balance: contact force and torques under friction that depends on the force."""
 
 from collections.abc import Callable
+
 import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 

@@ -75,4 +75,4 @@ def _halley(function: Callable[[Each], Each], at: Each) -> Each:
     (value, slope), (_, curve) = jax.jvp(
         lambda x: _tangent(function, x), (at,), (jnp.ones_like(at),)
     )
-    return at - value * slope / (slope**2 - 0.5 * value * curve)
+    return jnp.asarray(at - value * slope / (slope**2 - 0.5 * value * curve))

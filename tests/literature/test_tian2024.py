@@ -1,0 +1,70 @@
+"""Tian, Wang, Jiang (2024): every printed number within what the print supports.
+
+Excluded: the 98.03 % quoted from another reference, whose model and conditions are not given, and
+figures 4, 5, 9, 10, 11 and 12, which carry no numbers in the text.
+"""
+
+import dataclasses
+
+import pytest
+
+from pitchpoint.cases.comparison import compare, counts
+from pitchpoint.cases.library import find
+from pitchpoint.cases.run import compare_case
+from pitchpoint.cases.studies import Variant, jobs
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return compare_case("tian2024")[2]
+
+
+def computed(changes):
+    """Comparison of the case with some inputs changed."""
+    name, tree = find("tian2024")
+    variant = Variant(tree, name, "as_published", changes)
+    targets = variant.built({}).case.targets
+    needed = {f"study_{target.study}" for target in targets}
+    parts = {
+        job.name: job.pieces[0](lambda _: None) for job in jobs(variant, {}) if job.name in needed
+    }
+    return compare(targets, parts)
+
+
+def test_every_row_passes_or_is_excluded_with_a_reason(rows):
+    missed = [row for row in rows if row.verdict == "miss"]
+    assert not missed
+    assert all(row.reason for row in rows if row.verdict == "excluded")
+
+
+def test_rows_are_counted_for_each_kind(rows):
+    assert {kind: dict(found) for kind, found in counts(rows).items()} == {
+        "predicted": {"pass": 22},
+        "calibrated": {"pass": 9},
+        "fitted": {"pass": 3},
+        "excluded": {"excluded": 1},
+    }
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"roughness.ra": "0.808 um"},
+        {"lubricant.viscosity_40": "101.764 mm2/s", "lubricant.viscosity_100": "15.656 mm2/s"},
+    ],
+    ids=["Ra 1 % higher", "viscosity 3 % higher"],
+)
+def test_a_small_change_of_the_inputs_makes_rows_miss(changes):
+    assert [row.quantity for row in computed(changes) if row.verdict == "miss"]
+
+
+def test_a_reading_of_the_paper_is_not_in_the_library():
+    from pitchpoint.lubrication.friction_coefficient import LAWS
+
+    assert not [law.name for law in LAWS if "tian" in law.name]
+
+
+def test_rows_carry_units_of_the_print(rows):
+    units = {row.unit for row in rows}
+    assert units == {"1", "%", "N m"}
+    assert all(dataclasses.asdict(row)["where"] for row in rows)
