@@ -1,6 +1,7 @@
 """The command line. Numbers for machines go to stdout with --json, tables and progress to the terminal."""
 
 import json
+import re
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -23,6 +24,9 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+
+_INTERRUPTED = 130
+_COUNT = re.compile("[1-9][0-9]{0,4}|100000", re.ASCII)
 
 CaseName = Annotated[str, typer.Argument(metavar="CASE", help="A shipped case, or a TOML file.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON to stdout instead of tables.")]
@@ -50,16 +54,24 @@ Folder = Annotated[
 def main() -> None:
     """Entry point: one sentence for what went wrong, and the exit status that goes with it."""
     try:
-        app()
+        status = app(standalone_mode=False) or 0
     except PitchpointError as error:
         _complain(f"error: {error}")
-        raise SystemExit(error.exit_code) from None
-    except KeyboardInterrupt:
-        _complain("interrupted")
-        raise SystemExit(130) from None
+        status = error.exit_code
+    except typer.TyperException as error:
+        told = error.format_message().rstrip(".")
+        if told:  # without arguments the help is all there is to say
+            _complain(f"error: {told}; see pitchpoint --help")
+        status = error.exit_code
     except BrokenPipeError:
         sys.stderr.close()
-        raise SystemExit(1) from None
+        status = 1
+    except OSError as error:
+        _complain(f"error: {error.filename or 'a file'}: {error.strerror}")
+        status = 1
+    if status == _INTERRUPTED:
+        _complain("interrupted")
+    raise SystemExit(status)
 
 
 @app.command()
@@ -100,10 +112,12 @@ def run(
     json_: AsJson = False,
 ) -> None:
     """Compute a case: tables on screen, results and report.html in a folder."""
+    from pitchpoint.cases.run import describe
     from pitchpoint.cases.run import run as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
     folder = output or Path("results") / Path(case).stem
+    describe(case, variant or [], settings=settings, studies=studies)  # before anything is written
     _writable(folder)
     with _progress(folder) as progress:
         outcomes = compute(
@@ -195,19 +209,21 @@ def _value(text: str) -> Any:
     """TOML value where the text is one, else the text itself."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text
 
 
 def _studies(texts: list[str]) -> dict[str, "Study"]:
     from pitchpoint.cases.schema import Study, Sweep
 
-    studies = {}
+    studies: dict[str, Study] = {}
     for text in texts:
         key, _, grid = text.partition("=")
         parts = [part.strip() for part in grid.split(":")]
-        if len(parts) != 3 or not parts[2].isdigit() or not 1 <= int(parts[2]) <= 100_000:
-            raise InputError(f"'{text}' is not KEY=START:STOP:COUNT", key="--sweep")
+        if len(parts) != 3 or not _COUNT.fullmatch(parts[2]):
+            raise InputError(
+                f"'{text}' is not KEY=START:STOP:COUNT with a count of 1 to 100000", key="--sweep"
+            )
         start, stop, count = parts
         sweep = Sweep(key=key.strip(), start=start, stop=stop, count=float(count))
         studies[key.strip().replace(".", "_")] = Study(title=key.strip(), sweep=sweep)
@@ -338,7 +354,9 @@ def _emit(value: Any) -> None:
 
 
 def _complain(text: str) -> None:
-    sys.stderr.write(text.rstrip() + "\n")
+    """One line, whatever the names of files and keys are made of."""
+    plain = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text.rstrip())
+    sys.stderr.write(plain + "\n")
 
 
 def _plain(text: str) -> str:
@@ -351,4 +369,6 @@ def _plain(text: str) -> str:
 def _console(stderr: bool = False) -> Any:
     from rich.console import Console
 
-    return Console(stderr=stderr, highlight=False, soft_wrap=not sys.stdout.isatty())
+    stream = sys.stderr if stderr else sys.stdout
+    # A file or a pipe has no width; tables there keep their rows whole.
+    return Console(stderr=stderr, highlight=False, width=None if stream.isatty() else 200)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import pint
     from numpy.typing import NDArray
 
-__all__ = ["UnitError", "convert", "kind_of", "kinds", "parse", "si_unit", "units_of"]
+__all__ = ["UnitError", "convert", "example", "kind_of", "kinds", "parse", "si_unit", "units_of"]
 
 MAX_LENGTH = 64
 """Longest text that is read as a quantity [characters]."""
@@ -245,6 +245,17 @@ def si_unit(kind: str) -> str:
         'N m'
     """
     return _kind(kind).si
+
+
+def example(kind: str) -> str:
+    """Return a quantity of a kind as a user writes it.
+
+    Example:
+        >>> example("length")
+        '"3 mm"'
+    """
+    plain = kind == "dimensionless"
+    return _kind(kind).example if plain else f'"{_kind(kind).example}"'
 
 
 def kind_of(unit: str) -> str:

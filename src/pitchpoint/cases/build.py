@@ -67,6 +67,8 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         raise error.at(file=document.name, key=inside or "gears") from None
     record = _oil(case.lubricant, document)
     _check_temperature(case.operation.temperature, record, document, "operation.temperature")
+    for temperature in (case.loss_map and case.loss_map.temperatures) or ():
+        _check_temperature(temperature, record, document, "loss_map.temperatures")
     sharing = LOAD_SHARING[case.models.load_sharing]
     try:
         sharing.check(contact_ratio)
@@ -75,7 +77,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     design = Design(
         mesh=pair,
         modulus=_modulus(case.materials),
-        lubricant=record.build(),
+        lubricant=_built_oil(record),
         roughness=_roughness(case.roughness),
     )
     operation = Operation(
@@ -87,7 +89,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
 
 
 def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
-    """Models with every law compiled in, and the indices of the laws that the case chose.
+    """Models with every law compiled in, the first law of the case acting, and the indices of its laws.
 
     The laws of the library are always among them: their spread is shown beside every efficiency.
     """
@@ -98,14 +100,15 @@ def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
     laws: tuple[FrictionLaw, ...] = (*LAWS, *extra)
     if built.own is not None:
         chosen, laws = [built.own], (*laws, built.own)
+    indices = tuple(laws.index(law) for law in chosen)
     models = Models(
         friction=laws,
-        choice=jnp.asarray(0),
+        choice=jnp.asarray(indices[0]),
         parameters=_parameters(case, laws),
         sharing=LOAD_SHARING[case.models.load_sharing],
         rolling=ROLLING_RESISTANCE[case.models.rolling_resistance],
     )
-    return models, tuple(laws.index(law) for law in chosen)
+    return models, indices
 
 
 def _parameters(case: Case, laws: tuple[FrictionLaw, ...]) -> dict[str, dict[str, jnp.ndarray]]:
@@ -119,6 +122,11 @@ def _parameters(case: Case, laws: tuple[FrictionLaw, ...]) -> dict[str, dict[str
         }
         for law in laws
     }
+
+
+@lru_cache(maxsize=64)
+def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
+    return record.build()
 
 
 @lru_cache(maxsize=256)
@@ -190,9 +198,11 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
         )
     except InputError as error:
         key = _OIL_KEYS.get((error.key or "").rsplit(".", 1)[-1], "")
-        raise InputError(error.message).at(
-            file=document.name, key=f"lubricant.{key}".rstrip(".")
-        ) from None
+        message = error.message
+        for name, word in _OIL_KEYS.items():
+            message = message.replace(name, word)
+        where = f"lubricant.{key}".rstrip(".")
+        raise InputError(message, file=document.name, key=where) from None
 
 
 _OIL_KEYS = {

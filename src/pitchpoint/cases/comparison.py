@@ -9,12 +9,13 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
+from pitchpoint.cases.quantities import shown
 from pitchpoint.cases.schema import Target
 from pitchpoint.errors import InputError
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["Row", "compare", "counts"]
+__all__ = ["REDUCTIONS", "Row", "compare", "counts"]
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,20 @@ class Row:
         return asdict(self)
 
 
+REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
+    "value": lambda v: float(v[0, 0]),
+    "first": lambda v: float(v[0, 0]),
+    "last": lambda v: float(v[0, -1]),
+    "min": lambda v: float(v[0].min()),
+    "max": lambda v: float(v[0].max()),
+    "drop": lambda v: float(v[0, 0] - v[0, -1]),
+    "gain": lambda v: float(v[0, -1] - v[0, 0]),
+    "relative_drop": lambda v: float(1.0 - v[0, -1] / v[0, 0]),
+    "max_difference": lambda v: float(np.abs(v[0] - v[1]).max()),
+}
+"""One number out of values [law, point]."""
+
+
 def compare(targets: Sequence[Target], results: Mapping[str, xr.Dataset]) -> list[Row]:
     """A row for every target.
 
@@ -51,7 +66,14 @@ def compare(targets: Sequence[Target], results: Mapping[str, xr.Dataset]) -> lis
     Raises:
         InputError: a target that names no study, variable or law of the results.
     """
-    return [_row(target, results) for target in targets]
+    rows = []
+    for position, target in enumerate(targets):
+        try:
+            rows.append(_row(target, results))
+        except InputError as error:
+            key = ".".join(filter(None, (f"targets.{position}", error.key or "unit")))
+            raise error.at(key=key) from None
+    return rows
 
 
 def counts(rows: Sequence[Row]) -> dict[str, Counter[str]]:
@@ -86,15 +108,23 @@ def _verdict(target: Target, computed: float | None) -> str:
 def _computed(target: Target, results: Mapping[str, xr.Dataset]) -> float:
     part = f"study_{target.study}"
     if part not in results:
-        raise InputError(f"there is no study '{target.study}'", key="targets.study")
+        raise InputError(f"there is no study '{target.study}'", key="study")
     data = results[part]
     if target.variable not in data:
         raise InputError(
             f"there is no quantity '{target.variable}'{nearest(target.variable, _names(data))}",
-            key="targets.variable",
+            key="variable",
         )
-    values = data[target.variable].transpose("law", "point").values[list(target.law)]
-    number = _reductions(target.reduce)(values)
+    values = data[target.variable].transpose("law", "point").values
+    wanted = [int(position) for position in target.law]
+    needed = 2 if target.reduce == "max_difference" else 1
+    if max(wanted, default=-1) >= len(values) or len(wanted) < needed:
+        raise InputError(
+            f"{shown(wanted)} does not fit; this study has {len(values)} friction laws, counted "
+            f"from 0, and {target.reduce} takes {needed}",
+            key="law",
+        )
+    number = REDUCTIONS[target.reduce](values[wanted])
     relative = target.reduce == "relative_drop"
     variable = VARIABLES[target.variable]
     kind = "dimensionless" if relative else variable.kind
@@ -103,20 +133,3 @@ def _computed(target: Target, results: Mapping[str, xr.Dataset]) -> float:
 
 def _names(data: xr.Dataset) -> dict[str, None]:
     return dict.fromkeys(str(name) for name in data.data_vars)
-
-
-def _reductions(name: str) -> Callable[[np.ndarray], float]:
-    known: dict[str, Callable[[np.ndarray], float]] = {
-        "value": lambda v: float(v[0, 0]),
-        "first": lambda v: float(v[0, 0]),
-        "last": lambda v: float(v[0, -1]),
-        "min": lambda v: float(v[0].min()),
-        "max": lambda v: float(v[0].max()),
-        "drop": lambda v: float(v[0, 0] - v[0, -1]),
-        "gain": lambda v: float(v[0, -1] - v[0, 0]),
-        "relative_drop": lambda v: float(1.0 - v[0, -1] / v[0, 0]),
-        "max_difference": lambda v: float(np.abs(v[0] - v[1]).max()),
-    }
-    if name not in known:
-        raise InputError(f"'{name}' is no reduction{nearest(name, known)}", key="targets.reduce")
-    return known[name]

@@ -1,19 +1,24 @@
 """Case files as plain data: reading, variants, settings, and where each value comes from."""
 
 import copy
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pitchpoint.cases.quantities import shorten, shown
 from pitchpoint.errors import InputError
 from pitchpoint.registry import nearest
 
-__all__ = ["Document", "Provenance", "read", "setting", "strip"]
+__all__ = ["Document", "Provenance", "check_name", "read", "setting", "strip"]
 
 MAX_BYTES = 1_000_000
 """Largest case file that is read; real ones have a few kilobytes."""
+
+MAX_DEPTH = 16
+"""Deepest nesting of tables and lists that is read; real ones have about five levels."""
 
 STATUSES = (
     "printed",
@@ -29,6 +34,9 @@ STATUSES = (
 
 Tree = dict[str, Any]
 _MARKS = {"status", "where", "note"}
+_BETWEEN_KEYS = re.compile(r"[=,{}\[\]\n]")
+_MANY_DOTS = 500  # more than any remark has
+_NAME = re.compile(r"[A-Za-z0-9_-]{1,60}", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -61,29 +69,78 @@ def read(path: Path) -> Tree:
     Raises:
         InputError: missing, too large, not text, not TOML.
     """
-    if not path.is_file():
-        raise InputError("there is no such case file", file=str(path))
-    if path.stat().st_size > MAX_BYTES:
-        size = path.stat().st_size / 1e6
-        raise InputError(
-            f"has {size:.0f} MB; a case file has at most {MAX_BYTES / 1e6:.0f} MB", file=path.name
-        )
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        text = _text(path)
+        if max(part.count(".") for part in _BETWEEN_KEYS.split(text)) > _MANY_DOTS:
+            raise _too_deep(path.name)  # the reader would take hours to say so
+        tree = tomllib.loads(text)
     except UnicodeDecodeError:
         raise InputError("is not UTF-8 text, so it is no TOML file", file=path.name) from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"is not a TOML file: {error}", file=path.name) from None
     except RecursionError:
-        raise InputError("is nested too deeply for a case file", file=path.name) from None
+        raise _too_deep(path.name) from None
+    except ValueError as error:
+        raise InputError(f"is not a TOML file: {error}", file=path.name) from None
     except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", file=path.name) from None
+        raise InputError(f"cannot be read: {error.strerror}", file=shorten(path.name)) from None
+    if _depth(tree) > MAX_DEPTH:
+        raise _too_deep(path.name)
+    try:
+        _overlays(tree)
+    except InputError as error:
+        raise error.at(file=path.name) from None
+    return tree
+
+
+def _text(path: Path) -> str:
+    if path.is_dir():
+        raise InputError("is a folder; give the case file in it", file=str(path))
+    if not path.is_file():
+        raise InputError("there is no such case file", file=str(path))
+    size = path.stat().st_size / 1e6
+    if size > MAX_BYTES / 1e6:
+        allowed = f"a case file has at most {MAX_BYTES / 1e6:g} MB"
+        raise InputError(f"has {size:.4g} MB; {allowed}", file=path.name)
+    return path.read_text(encoding="utf-8-sig")
+
+
+def _too_deep(name: str) -> InputError:
+    return InputError(f"is nested more than {MAX_DEPTH} levels deep, the most allowed", file=name)
+
+
+def _depth(tree: Any) -> int:
+    """Levels of tables and lists; without recursion, so that no file exhausts the stack."""
+    level, depth = [tree], 0
+    while level and depth <= MAX_DEPTH:
+        inner = [item.values() if isinstance(item, dict) else item for item in level]
+        level = [part for items in inner for part in items if isinstance(part, dict | list)]
+        depth += 1
+    return depth
 
 
 def variants(tree: Tree) -> list[str]:
     """Names of the variants that a case file defines; one nameless default if it has none."""
+    return list(_overlays(tree)) or ["default"]
+
+
+def _overlays(tree: Tree) -> Tree:
     given = tree.get("variants", {})
-    return list(given) if isinstance(given, dict) and given else ["default"]
+    if not isinstance(given, dict):
+        raise InputError(f"{shown(given)} was given where a table belongs", key="variants")
+    for name, overlay in given.items():
+        check_name(name, "variants")
+        if not isinstance(overlay, dict):
+            raise InputError(
+                f"{shown(overlay)} was given where a table belongs", key=f"variants.{name}"
+            )
+    return given
+
+
+def check_name(name: str, key: str) -> None:
+    """InputError if a name of the user's own would not do as the name of a file."""
+    if not _NAME.fullmatch(name):
+        raise InputError(
+            f"{shown(name)} is not a name; use 1 to 60 letters, digits, '_' and '-'", key=key
+        )
 
 
 def resolve(
@@ -103,15 +160,12 @@ def resolve(
     known = variants(tree)
     if variant not in known:
         raise InputError(
-            f"'{variant}' is not a variant of this case{nearest(variant, dict.fromkeys(known))}",
+            f"{shown(variant)} is not a variant of this case{nearest(variant, dict.fromkeys(known))}",
             file=name,
             key="variants",
         )
     base = {key: value for key, value in tree.items() if key != "variants"}
-    overlay = tree.get("variants", {}).get(variant, {}) if variant != "default" else {}
-    if not isinstance(overlay, dict):
-        raise InputError("must be a table", file=name, key=f"variants.{variant}")
-    merged = _merged(base, overlay)
+    merged = _merged(base, _overlays(tree).get(variant, {}))
     for key, value in (settings or {}).items():
         merged = setting(merged, key, {"value": value, "status": "set"}, name=name)
     provenance: dict[str, Provenance] = {}
@@ -123,12 +177,15 @@ def setting(tree: Tree, key: str, value: Any, *, name: str = "--set") -> Tree:
     result = copy.deepcopy(tree)
     *parents, last = key.split(".")
     node: Any = result
-    for part in parents if not last.isdigit() else parents[:-1]:
+    for part in parents if not last.isdecimal() else parents[:-1]:
         node = node.setdefault(part, {})
-        if not isinstance(node, dict):
-            raise InputError(f"'{part}' is a value, not a table", file=name, key=key)
-    if last.isdigit() and parents:
-        node[parents[-1]] = _of_gear(node.get(parents[-1], 0.0), int(last), value, key)
+        if not isinstance(node, dict) or _marked(node):
+            raise InputError(f"{shown(part)} is a value, not a table", file=name, key=key)
+    if last.isdecimal() and parents:
+        try:
+            node[parents[-1]] = _of_gear(node.get(parents[-1], 0.0), last, value)
+        except InputError as error:
+            raise error.at(file=name, key=key) from None
     else:
         node[last] = value
     return result
@@ -137,7 +194,7 @@ def setting(tree: Tree, key: str, value: Any, *, name: str = "--set") -> Tree:
 def strip(value: Any, provenance: dict[str, Provenance], *, name: str = "", key: str = "") -> Any:
     """Values without their marks, which go into `provenance` by dotted key."""
     if isinstance(value, dict):
-        if "value" in value and set(value) <= _MARKS | {"value"}:
+        if _marked(value):
             provenance[key] = _provenance(value, name, key)
             return strip(value["value"], provenance, name=name, key=key)
         return {
@@ -145,6 +202,11 @@ def strip(value: Any, provenance: dict[str, Provenance], *, name: str = "", key:
             for part, item in value.items()
         }
     return value
+
+
+def _marked(table: Tree) -> bool:
+    """True for a value with its marks, false for a table of values."""
+    return "value" in table and set(table) <= _MARKS | {"value"}
 
 
 def leaves(tree: Tree, prefix: str = "") -> Iterator[tuple[str, Any]]:
@@ -161,7 +223,7 @@ def _provenance(mark: Tree, name: str, key: str) -> Provenance:
     status = mark.get("status", "given")
     if status not in STATUSES:
         raise InputError(
-            f"'{status}' is not a status; use one of {', '.join(STATUSES)}", file=name, key=key
+            f"{shown(status)} is not a status; use one of {', '.join(STATUSES)}", file=name, key=key
         )
     return Provenance(str(status), str(mark.get("where", "")), str(mark.get("note", "")))
 
@@ -180,13 +242,13 @@ def _merged(base: Any, overlay: Any) -> Any:
     }
 
 
-def _of_gear(pair: Any, gear: int, value: Any, key: str) -> Any:
+def _of_gear(pair: Any, gear: str, value: Any) -> Any:
+    if gear not in ("1", "2"):
+        raise InputError(f"there is no gear {shorten(gear)}; use 1 or 2")
     if isinstance(pair, dict):
         pair = pair.get("value", 0.0)
     if isinstance(value, dict):
         value = value["value"]
-    if gear not in (1, 2):
-        raise InputError("there are gear 1 and gear 2", key=key)
     both = list(pair) if isinstance(pair, list | tuple) and len(pair) == 2 else [pair, pair]
-    both[gear - 1] = value
+    both[int(gear) - 1] = value
     return both

@@ -24,10 +24,17 @@ def path_of(case: str) -> Path:
     """
     if case in names():
         return Path(str(resources.files(__package__) / case / "case.toml"))
-    if Path(case).suffix == "" and not Path(case).exists():
+    if Path(case).suffix == "" and not _exists(Path(case)):
         hint = nearest(case, dict.fromkeys(names()))
         raise InputError(f"'{case[:60]}' is neither a shipped case nor a file{hint}")
     return Path(case)
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a name that no file system takes
+        return False
 
 
 def find(case: str) -> tuple[str, Tree]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler
@@ -11,11 +12,14 @@ from pydantic_core import CoreSchema, core_schema
 from pitchpoint import units
 from pitchpoint.errors import InputError
 
-__all__ = ["Pair", "Quantity", "SIValue", "shown"]
+__all__ = ["Pair", "Quantity", "SIValue", "named", "shorten", "shown"]
+
+
+TOO_LONG = 10**40
 
 
 class SIValue(float):
-    """A number that is in SI already, as sweeps make it."""
+    """A number in SI that was checked before, as sweeps make it."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,9 @@ class Quantity:
 
     def read(self, value: Any) -> float:
         """SI value of text or number; InputError if it is not what is needed."""
-        number = float(value) if isinstance(value, SIValue) else self._parse(value)
+        if isinstance(value, SIValue):
+            return float(value)
+        number = self._parse(value)
         below = number <= self.low if self.open_low else number < self.low
         if not math.isfinite(number) or below or number > self.high:
             raise InputError(f"{shown(value)} is out of range; {self.allowed}", value=value)
@@ -57,9 +63,16 @@ class Quantity:
     def allowed(self) -> str:
         """The allowed range in words."""
         low, high = (self.show(bound) for bound in (self.low, self.high))
+        if not math.isfinite(self.low):
+            return "allowed is any finite number"
         if not math.isfinite(self.high):
             return f"allowed is {'above' if self.open_low else 'at least'} {low}"
         return f"allowed is {'above ' if self.open_low else ''}{low} to {high}"
+
+    @property
+    def example(self) -> str:
+        """How a value is written."""
+        return units.example(self.kind)
 
     def show(self, number: float) -> str:
         """Number in the unit in which it is shown."""
@@ -69,9 +82,13 @@ class Quantity:
 
     def _parse(self, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, str | int | float):
-            what = "a list" if isinstance(value, list | tuple) else shown(value)
-            raise InputError(f"{what} was given where one value belongs; {self.allowed}")
-        return units.parse(value, self.kind)
+            raise InputError(f"{shown(value)} was given where one value belongs; {self.allowed}")
+        if isinstance(value, int) and abs(value) >= TOO_LONG:
+            raise InputError(f"{shown(value)} is too large; {self.allowed}")
+        try:
+            return units.parse(value, self.kind)
+        except InputError as error:
+            raise InputError(f"{error.message}; {self.allowed}", value=value) from None
 
 
 @dataclass(frozen=True)
@@ -91,7 +108,8 @@ class Pair:
         if isinstance(value, list | tuple):
             if len(value) != 2:
                 raise InputError(
-                    f"{len(value)} values were given; give one for both gears, or a list of two"
+                    f"{shown(value)} has {len(value)} values; give one for both gears, or a list "
+                    f"of two; {self.each.allowed}"
                 )
             return self.each.read(value[0]), self.each.read(value[1])
         both = self.each.read(value)
@@ -106,20 +124,35 @@ def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], s
 
         known = registry()
         if not isinstance(value, str):
-            raise InputError(f"{shown(value)} is not the name of a {kind}")
+            raise InputError(
+                f"{shown(value)} is not the name of a {kind}; known are {', '.join(known)}"
+            )
         if value not in known:
             hint = nearest(value, dict.fromkeys(known))
-            raise InputError(f"'{shorten(value)}' is not a known {kind}{hint}")
+            raise InputError(f"{shown(value)} is not a known {kind}{hint}")
         return value
 
     return read
 
 
 def shown(value: Any) -> str:
-    """Value as a message shows it: quoted text, shortened."""
-    return f'"{shorten(value)}"' if isinstance(value, str) else shorten(repr(value))
+    """Value as a case file writes it: text quoted, on one line, shortened."""
+    if isinstance(value, str):
+        return f'"{shorten(value)}"'
+    if isinstance(value, dict):
+        inner = ", ".join(f"{key} = {shown(item)}" for key, item in islice(value.items(), 9))
+        return f"the table {shorten(f'{{ {inner} }}')}"
+    if isinstance(value, list | tuple):
+        inner = ", ".join(shown(item) for item in value[:9])
+        return f"the list {shorten(f'[{inner}]')}"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int) and abs(value) >= TOO_LONG:
+        return "a whole number of more than 40 digits"
+    return shorten(str(value))
 
 
 def shorten(text: str) -> str:
-    """At most 60 characters."""
-    return text if len(text) <= 60 else f"{text[:57]}..."
+    """At most 60 characters, none of which moves the cursor."""
+    plain = text if text.isprintable() else ascii(text)[1:-1]
+    return plain if len(plain) <= 60 else f"{plain[:57]}..."

@@ -147,10 +147,40 @@ def manifests(folder: Path) -> list[dict[str, Any]]:
     return [outcome.manifest for outcome in open_result(folder).values()]
 
 
-def describe(case: str, only: Sequence[str] = ()) -> list[dict[str, Any]]:
-    """Manifests of a case that has not been computed: inputs, warnings, issues, sources."""
+def load_case(
+    case: str, variant: str | None = None, settings: Mapping[str, Any] | None = None
+) -> Built:
+    """A case ready for computations of one's own: its design, operating point and inputs.
+
+    Args:
+        case: name of a shipped case, or a file.
+        variant: the first one by default.
+        settings: values by dotted key that replace those of the file.
+
+    Raises:
+        InputError: anything wrong with the input.
+    """
     name, tree = find(case)
-    made = [Variant(tree, name, variant) for variant in list(only) or variants(tree)]
+    return Variant(tree, name, variant or variants(tree)[0], dict(settings or {})).built({})
+
+
+def describe(
+    case: str,
+    only: Sequence[str] = (),
+    *,
+    settings: Mapping[str, Any] | None = None,
+    studies: Mapping[str, Study] | None = None,
+) -> list[dict[str, Any]]:
+    """Manifests of a case that has not been computed: inputs, warnings, issues, sources.
+
+    Raises:
+        InputError: anything wrong with the input that shows before the computation.
+    """
+    name, tree = find(case)
+    named = list(only) or variants(tree)
+    made = [Variant(tree, name, variant, dict(settings or {})) for variant in named]
+    for variant in made:
+        list(jobs(variant, studies or {}))  # made, not computed: a wrong study shows now
     return [_manifest(variant, variant.built({})) for variant in made]
 
 

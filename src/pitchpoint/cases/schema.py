@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
-from pitchpoint.cases.document import Document
+from pitchpoint import units
+from pitchpoint.cases.document import Document, check_name
 from pitchpoint.cases.quantities import Pair, Quantity, named, shorten, shown
 from pitchpoint.errors import InputError
 from pitchpoint.registry import nearest
@@ -41,13 +42,35 @@ COEFFICIENT = Quantity("dimensionless", 0.0, 2.0)
 COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
+NOT_NEGATIVE = Quantity("dimensionless", 0.0, inf)
+POSITION = Quantity("dimensionless", 0, 11, whole=True)
+
 Text = Annotated[str, BeforeValidator(lambda value: _text(value))]
+Unit = Annotated[str, BeforeValidator(lambda value: _unit(value))]
 
 
 def _text(value: Any) -> str:
     if not isinstance(value, str):
         raise InputError(f"{shown(value)} was given where text belongs")
     return value
+
+
+def _unit(value: Any) -> str:
+    if _text(value) != "1":
+        units.kind_of(value)
+    return str(value)
+
+
+def _reductions() -> list[str]:
+    from pitchpoint.cases.comparison import REDUCTIONS
+
+    return list(REDUCTIONS)
+
+
+def _variables() -> list[str]:
+    from pitchpoint.results.variables import VARIABLES
+
+    return list(VARIABLES)
 
 
 def _friction_laws() -> list[str]:
@@ -198,7 +221,7 @@ class FrictionChoice(BaseModel):
     @property
     def parameters(self) -> dict[str, float]:
         """Values of the law's own parameters."""
-        return {key: float(value) for key, value in (self.model_extra or {}).items()}
+        return {key: COEFFICIENT.read(value) for key, value in (self.model_extra or {}).items()}
 
     @model_validator(mode="after")
     def _own(self) -> "FrictionChoice":
@@ -208,17 +231,25 @@ class FrictionChoice(BaseModel):
         _, known = arguments(FRICTION[self.name].function)
         for key, value in (self.model_extra or {}).items():
             if key not in known:
-                has = f"has {', '.join(known)}" if known else "has no parameters"
-                raise InputError(f"'{shorten(key)}' is no parameter of {self.name}; it {has}")
-            COEFFICIENT.read(value)
+                has = nearest(key, known) if known else "; it has none"
+                raise InputError(f"is no parameter of {self.name}{has}", key=shorten(key))
+            try:
+                COEFFICIENT.read(value)
+            except InputError as error:
+                raise error.at(key=key) from None
         return self
 
 
 def _choices(value: Any) -> Any:
     several = value if isinstance(value, list | tuple) else [value]
     if not 1 <= len(several) <= 12:
-        raise InputError("give 1 to 12 friction laws")
-    return [{"name": one} if isinstance(one, str) else one for one in several]
+        raise InputError(f"{len(several)} friction laws were given; allowed are 1 to 12")
+    tables = [one if isinstance(one, dict | FrictionChoice) else {"name": one} for one in several]
+    names = [str(one.get("name")) for one in tables if isinstance(one, dict)]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{shown(name)} was given twice; name each friction law once")
+    return tables
 
 
 class Choices(Table):
@@ -250,6 +281,8 @@ class Sweep(Table):
     def _complete(self) -> "Sweep":
         if (self.values is None) == (self.start is None or self.stop is None):
             raise InputError("a sweep needs either start and stop, or values")
+        if self.values is not None and not 1 <= len(self.values) <= COUNT.high:
+            raise InputError(f"{len(self.values)} values were given; {COUNT.allowed}", key="values")
         return self
 
 
@@ -276,13 +309,13 @@ class Target(Table):
     quantity: Text
     where: Text
     kind: Literal["predicted", "fitted", "calibrated", "trend", "excluded"]
-    printed: float
-    unit: Text = "1"
-    tolerance: float = 0.0
+    printed: Annotated[float, ANY]
+    unit: Unit = "1"
+    tolerance: Annotated[float, NOT_NEGATIVE] = 0.0
     study: Text = ""
-    variable: Text = ""
-    reduce: Text = "value"
-    law: tuple[int, ...] = (0,)
+    variable: Annotated[str, BeforeValidator(named(_variables, "quantity"))] = ""
+    reduce: Annotated[str, BeforeValidator(named(_reductions, "reduction"))] = "value"
+    law: tuple[Annotated[float, POSITION], ...] = (0.0,)
     reason: Text = ""
 
 
@@ -292,6 +325,12 @@ class Issue(Table):
     where: Text
     issue: Text
     verdict: Text
+
+
+def _named(value: Any) -> Any:
+    for name in value if isinstance(value, dict) else ():
+        check_name(name, "")
+    return value
 
 
 class Case(Table):
@@ -306,10 +345,20 @@ class Case(Table):
     roughness: Surface
     operation: Operating
     models: Choices = Choices()
-    studies: dict[str, Study] = {}
+    studies: Annotated[dict[str, Study], BeforeValidator(_named)] = {}
     loss_map: LossMap | None = None
     targets: tuple[Target, ...] = ()
     issues: tuple[Issue, ...] = ()
+
+    @model_validator(mode="after")
+    def _aimed(self) -> "Case":
+        for position, target in enumerate(self.targets):
+            if target.kind != "excluded" and target.study not in self.studies:
+                raise InputError(
+                    f"there is no study {shown(target.study)}{nearest(target.study, self.studies)}",
+                    key=f"targets.{position}.study",
+                )
+        return self
 
 
 def validate(document: Document) -> Case:
@@ -365,7 +414,8 @@ def _tables(annotation: Any) -> Iterator[type[BaseModel]]:
 def _sentence(error: ValidationError, document: Document) -> InputError:
     """The first complaint of pydantic in gear words."""
     detail = _clearest(error.errors())
-    key = ".".join(str(part) for part in detail["loc"] if str(part) in _words(document, detail))
+    words = _words(document, detail)
+    key = ".".join(shorten(str(part)) for part in detail["loc"] if str(part) in words)
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         return cause.at(file=document.name, key=".".join(filter(None, (key, cause.key))))
@@ -373,11 +423,15 @@ def _sentence(error: ValidationError, document: Document) -> InputError:
 
 
 def _clearest(details: list[Any]) -> Any:
-    """For a value that may be a name or a table, the complaint about the form that was given."""
-    first = details[0]
+    """A misspelt key before the one it left missing.
+
+    For a value that may be a name or a table, the complaint about the form that was given.
+    """
+    unknown = [item for item in details if item["type"] == "extra_forbidden"]
+    first = (unknown or details)[0]
     same = [item for item in details if item["loc"][:2] == first["loc"][:2]]
     fitting = [item for item in same if item["type"] not in ("model_type", "model_attributes_type")]
-    return (fitting or same)[0]
+    return unknown[0] if unknown else (fitting or same)[0]
 
 
 def _words(document: Document, detail: Any) -> set[str]:
@@ -400,7 +454,9 @@ def _message(detail: Any) -> str:
     if kind == "missing":
         return f"is missing{_needed(detail['loc'])}"
     if kind == "extra_forbidden":
-        return f"is not a known key{nearest(str(detail['loc'][-1]), _siblings(detail['loc']))}"
+        what = "table" if isinstance(given, dict) else "key"
+        known = _siblings(detail["loc"])
+        return f"is not a known {what}{nearest(str(detail['loc'][-1]), known)}"
     if kind == "literal_error":
         return f"{shown(given)} is not allowed; use {context['expected']}"
     if kind in ("model_type", "model_attributes_type", "dict_type"):
@@ -411,17 +467,29 @@ def _message(detail: Any) -> str:
 
 
 def _siblings(location: tuple[Any, ...]) -> dict[str, None]:
+    return dict.fromkeys(_fields(location))
+
+
+def _fields(location: tuple[Any, ...]) -> Mapping[str, FieldInfo]:
+    """Fields of the table in which the last part of a location stands."""
     fields: Mapping[str, FieldInfo] = Case.model_fields
     for part in location[:-1]:
         if isinstance(part, str) and part in fields:
             tables = list(_tables(fields[part].annotation))
             fields = tables[0].model_fields if tables else {}
-    return dict.fromkeys(fields)
+    return fields
 
 
 def _needed(location: tuple[Any, ...]) -> str:
-    try:
-        quantity = quantity_at(".".join(str(part) for part in location))
-    except InputError:
+    fields = _fields(location)
+    info = fields.get(str(location[-1]))
+    if info is None:
         return ""
-    return f"; {quantity.allowed}" if quantity else ""
+    quantity = _quantity(info)
+    if quantity is not None:
+        return f"; write {quantity.example}; {quantity.allowed}"
+    if len(location) == 1:
+        needed = [name for name, field in fields.items() if field.is_required()]
+        return f"; a case file needs the tables {', '.join(needed)}"
+    options = getattr(info.annotation, "__args__", ())
+    return f"; use one of {', '.join(options)}" if options else "; write text"

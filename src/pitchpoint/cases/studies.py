@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import equinox as eqx
@@ -13,7 +14,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, build, laws_of
 from pitchpoint.cases.document import Document, leaves, resolve
 from pitchpoint.cases.laws import CASE_LAWS
-from pitchpoint.cases.quantities import SIValue
+from pitchpoint.cases.quantities import SIValue, shorten, shown
 from pitchpoint.cases.schema import (
     SPEED,
     TEMPERATURE,
@@ -36,6 +37,11 @@ __all__ = ["Job", "Variant", "jobs"]
 
 PIECE = 256
 """Points of a sweep that are kept on disk together."""
+
+_TOLD = ("targets", "issues", "studies")
+
+SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
+"""Tables whose values may be swept; rival models stand side by side as a list in [models]."""
 
 TOLERANCE = 1e-10
 """Largest relative residual of the torque balance that counts as converged."""
@@ -78,10 +84,28 @@ class Variant:
             settings={**self.settings, **changes},
         )
 
+    @cached_property
+    def _computed(self) -> "Variant":
+        """The tables that a point is computed from: a sweep reads them for every point."""
+        return replace(self, tree=_without(self.tree))
+
     def built(self, changes: Mapping[str, Any]) -> Built:
         """Case with some values changed."""
-        document = self.document(**changes)
+        document = (self._computed if changes else self).document(**changes)
         return build(validate(document), document, self.own)
+
+
+def _without(tree: Mapping[str, Any]) -> dict[str, Any]:
+    kept = {key: value for key, value in tree.items() if key not in _TOLD}
+    overlays = kept.get("variants", {})
+    if isinstance(overlays, dict):
+        kept["variants"] = {
+            name: {key: value for key, value in overlay.items() if key not in _TOLD}
+            if isinstance(overlay, dict)
+            else overlay
+            for name, overlay in overlays.items()
+        }
+    return kept
 
 
 def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
@@ -90,14 +114,18 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     Args:
         variant: the case.
         extra: studies that the user added.
+
+    Raises:
+        InputError: before the first part, for the case and for the ends of every sweep.
     """
     built = variant.built({})
+    studies = [_study(variant, n, study, f"studies.{n}") for n, study in built.case.studies.items()]
+    studies += [_study(variant, name, study, "--sweep") for name, study in extra.items()]
     yield Job("teeth", "teeth", (lambda _: _teeth(built),))
     yield Job("cycle", "mesh cycle", (lambda _: _cycle(built),))
     yield Job("operation", "operating point", (lambda _: _operation(built),))
     yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
-    for name, study in {**built.case.studies, **extra}.items():
-        yield _study(variant, name, study)
+    yield from studies
     yield Job("loss_map", "loss map", (lambda progress: _loss_map(built, progress),))
     yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
 
@@ -187,23 +215,27 @@ def _laws(built: Built) -> xr.Dataset:
     return _summaries([built], models, every, {}, title="friction laws that apply", may_lock=True)
 
 
-def _study(variant: Variant, name: str, study: Study) -> Job:
+def _study(variant: Variant, name: str, study: Study, where: str) -> Job:
     fixed = {key: value for key, value in leaves(study.change)}
     title = study.title or name
     if study.sweep is None:
-        return Job(f"study_{name}", title, (_points(variant, [fixed], {}, title, {}),))
-    values, kind = sweep_values(study.sweep, f"studies.{name}.sweep", variant.name)
+        _point(variant, fixed, where)
+        return Job(f"study_{name}", title, (_points(variant, [fixed], {}, title, {}, where),))
+    where = where if where.startswith("--") else f"{where}.sweep"
+    values, kind = sweep_values(study.sweep, where, variant.name)
     told = {
         "sweep_key": study.sweep.key,
         "axis_kind": kind.kind if kind else "",
         "axis_unit": kind.unit if kind else "",
     }
+    for value in (values[0], values[-1]):
+        _point(variant, {**fixed, study.sweep.key: value}, where, study.sweep.key)
     pieces = []
     for start in range(0, len(values), PIECE):
         part = values[start : start + PIECE]
         axis = {"axis": (("point",), np.array([_number(value) for value in part]))}
         changes = [{**fixed, study.sweep.key: value} for value in part]
-        pieces.append(_points(variant, changes, axis, title, told))
+        pieces.append(_points(variant, changes, axis, title, told, where))
     return Job(f"study_{name}", title, tuple(pieces))
 
 
@@ -213,15 +245,33 @@ def _points(
     axis: Mapping[str, Any],
     title: str,
     told: Mapping[str, str],
+    where: str,
 ) -> Callable[[Progress], xr.Dataset]:
     def compute(progress: Progress) -> xr.Dataset:
-        points = [variant.built(change) for change in changes]
+        swept = told.get("sweep_key", "")
+        points = [_point(variant, change, where, swept) for change in changes]
         models, chosen = laws_of(points[0])
         data = _summaries(points, models, chosen, axis, progress, title=title)
         data.attrs.update(told)
         return data
 
     return compute
+
+
+def _point(variant: Variant, changes: Mapping[str, Any], where: str, swept: str = "") -> Built:
+    """Case with the changes of a study; what is wrong with it is told with study and value."""
+    try:
+        return variant.built(changes)
+    except InputError as error:
+        at = f"at {swept} = {_told(swept, changes[swept])}: " if swept else ""
+        inside = f"{error.key}: " if error.key and error.key != swept else ""
+        message = f"{at}{inside}{error.message}"
+        raise InputError(message, file=error.file, key=where, value=changes.get(swept)) from None
+
+
+def _told(key: str, value: Any) -> str:
+    quantity = quantity_at(key)
+    return quantity.show(value) if quantity and isinstance(value, float) else shown(value)
 
 
 def sweep_values(sweep: Sweep, where: str, name: str) -> tuple[list[Any], Any]:
@@ -232,6 +282,8 @@ def sweep_values(sweep: Sweep, where: str, name: str) -> tuple[list[Any], Any]:
     """
     try:
         quantity = quantity_at(sweep.key)
+        if sweep.key.partition(".")[0] not in SWEPT:
+            raise InputError(f"cannot be swept; keys of {', '.join(SWEPT)} can")
         if sweep.values is not None:
             if quantity is None:
                 return list(sweep.values), None
@@ -242,7 +294,7 @@ def sweep_values(sweep: Sweep, where: str, name: str) -> tuple[list[Any], Any]:
         grid = np.linspace(*ends, int(sweep.count))
         return [SIValue(value) for value in (np.round(grid) if quantity.whole else grid)], quantity
     except InputError as error:
-        raise error.at(file=name, key=f"{where}.{sweep.key}") from None
+        raise error.at(file=name, key=f"{where}: {shorten(sweep.key)}") from None
 
 
 def _loss_map(built: Built, progress: Progress) -> xr.Dataset:
@@ -287,12 +339,6 @@ def _map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     degrees = np.unique(np.clip(around, oil.T_min.value, oil.T_max.value))
     if asked and asked.temperatures:
         degrees = np.array(asked.temperatures)
-        for degree in degrees:
-            if not oil.T_min.value <= degree <= oil.T_max.value:
-                raise InputError(
-                    f"{TEMPERATURE.show(degree)} is outside the range of {oil.name}",
-                    key="loss_map.temperatures",
-                )
     return np.linspace(0.0, torque, count), np.linspace(0.0, speed, count), degrees
 
 
@@ -332,7 +378,8 @@ def _summaries(
     for name, values in out.items():
         if values.dtype.kind == "f" and name not in ("contact_ratio", "loss_factor"):
             values[out["locked"]] = np.nan
-    _demand_convergence(np.nan_to_num(out["residual"]), points, _names(models, laws))
+    residual = np.where(out["locked"], 0.0, out["residual"])
+    _demand_convergence(residual, points, _names(models, laws))
     if points[0].case.models.averaging == "path":
         for name in ("mean_loss", "mean_efficiency", "mean_input_torque"):
             out[name] = out[f"{name}_path"]
@@ -351,9 +398,9 @@ def _summaries(
 
 def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[str, np.ndarray]:
     """Summaries in order, points of equal static structure computed together."""
-    groups: dict[int, list[int]] = {}
+    groups: dict[Any, list[int]] = {}
     for position, point in enumerate(points):
-        groups.setdefault(point.pair.lanes, []).append(position)
+        groups.setdefault((point.pair.lanes, point.pair.undercut), []).append(position)
     parts = [
         (
             where,
