@@ -1,0 +1,1 @@
+"""Figures and the report: results made visible, with nothing computed anew."""

@@ -1,0 +1,293 @@
+"""Figures along the path of contact and over the mesh cycle, and where the loss is made."""
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.facts import Facts, facts
+from pitchpoint.views.figures import (
+    Curve,
+    Curves,
+    Figure,
+    Panel,
+    Trace,
+    display,
+    laws,
+    layout,
+    line,
+    merged,
+    short_axis,
+)
+
+__all__ = ["along", "cycle_panel", "gapped", "loss_places", "path_panel"]
+
+# Nodes beside an event are closer than this; a segment shorter than the second is no segment.
+_EVENT, _SHORT = 1e-7, 1e-6
+_ALONG = {
+    "load_share": "",
+    "contact_force_ratio": "Normal force of the mesh over that without friction.",
+    "sliding_velocity": "Flank of gear 1 over flank of gear 2; zero at the pitch point C.",
+    "pressure": "",
+    "film_thickness": "",
+    "lambda_ratio": "Below 1 boundary, 1 to 3 mixed, above 3 full film.",
+    "friction": "",
+    "loss": "Loss of the one pair that is at this place.",
+}
+_REGIMES = ((0.0, 1.0, "#fbe9e2", "boundary"), (1.0, 3.0, "#fdf5dc", "mixed"))
+_PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
+
+Points = tuple[np.ndarray, np.ndarray]
+
+
+def path_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+    """Quantities of one pair on its way from A to E."""
+    seen = list(_seen(outcomes, known))
+    first = facts(next(iter(outcomes.values())))
+    figures = [_along_figure(name, seen, first) for name in _ALONG] if seen else []
+    return Panel("Along the path of contact", figures, [curve for curve, *_ in seen])
+
+
+def cycle_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+    """Efficiency and input torque over phase and time and against each other, friction of the pairs."""
+    seen = list(_seen(outcomes, known))
+    if not seen:
+        return Panel("Over the mesh cycle", [])
+    figures = [
+        _over("efficiency", "phase", seen),
+        _over("input_torque", "phase", seen),
+        _over("efficiency", "time", seen),
+        _over("input_torque", "time", seen),
+        _against(seen),
+        _pairs(seen),
+    ]
+    return Panel("Over the mesh cycle", figures, [curve for curve, *_ in seen])
+
+
+def loss_places(data: xr.Dataset, law: int, fact: Facts) -> dict[tuple[str, str], float]:
+    """Share of the loss that is made between neighbouring points of the path; empty without loss.
+
+    Args:
+        data: the mesh cycle.
+        law: position of the law.
+        fact: with the points.
+    """
+    place = data["path"].values.sum(axis=-1) / data.sizes["slice"]
+    loss = (data["sliding_loss"] + data["rolling_loss"]).values[law].sum(axis=-1)
+    energy = loss * data["weight"].values[:, None]
+    if not energy.sum() > 0.0:
+        return {}
+    ends = list(fact.points.items())
+    return {
+        (start, end): float(energy[(place >= low) & (place < high)].sum() / energy.sum())
+        for (start, low), (end, high) in pairwise(ends)
+        if high - low > _SHORT
+    }
+
+
+def gapped(x: np.ndarray, y: np.ndarray) -> Points:
+    """Points with a gap (NaN) at every event, so that no line crosses a jump."""
+    cuts = np.flatnonzero(np.abs(np.diff(x)) < _EVENT) + 1
+    parts = [
+        part for part in np.split(np.arange(x.size), cuts) if part.size and np.ptp(x[part]) > _SHORT
+    ]
+    if not parts:
+        return x[:0], y[:0]
+    gap = np.array([np.nan])
+    return (
+        np.concatenate([piece for part in parts for piece in (x[part], x[part[-1:]])]),
+        np.concatenate([piece for part in parts for piece in (y[part], gap)]),
+    )
+
+
+def along(data: xr.Dataset, name: str, law: int) -> Points:
+    """Place on the path [base pitches] and SI value, the pairs one after the other."""
+    values = _values(data, name)[law]
+    lanes = data.sizes["pair"]
+    by_pair = values[:, None].repeat(lanes, axis=1) if values.ndim == 1 else values.mean(axis=-1)
+    if name == "loss":
+        by_pair = values.sum(axis=-1)
+    active = data["active"].values[..., 0].T.ravel()
+    place = data["path"].values[..., 0].T.ravel()[active]
+    return gapped(place, by_pair.T.ravel()[active])
+
+
+def _values(data: xr.Dataset, name: str) -> np.ndarray:
+    if name == "loss":
+        return np.asarray((data["sliding_loss"] + data["rolling_loss"]).values)
+    return np.asarray(data[name].values)
+
+
+def _seen(
+    outcomes: Mapping[str, Outcome], known: Curves
+) -> Iterator[tuple[Curve, xr.Dataset, int, Facts]]:
+    """Curve, cycle, position of the law and facts for every law of every variant."""
+    for variant, outcome in outcomes.items():
+        if "cycle" in outcome.parts:
+            data, fact = outcome.parts["cycle"], facts(outcome)
+            for position, law in enumerate(laws(data)):
+                yield known[variant, law], data, position, fact
+
+
+def _along_figure(
+    name: str, seen: list[tuple[Curve, xr.Dataset, int, Facts]], first: Facts
+) -> Figure:
+    unit = show.unit(VARIABLES[name].display)
+    traces = []
+    for curve, data, law, _ in seen:
+        x, y = along(data, name, law)
+        traces.append(line(curve, x, display(name, y), unit))
+    shown, same = merged(traces)
+    look = layout(
+        "place on the path from A [base pitches]",
+        short_axis(name),
+        xaxis={"range": [-0.02 * first.contact_ratio, 1.02 * first.contact_ratio]},
+        yaxis={} if name == "sliding_velocity" else {"rangemode": "nonnegative"},
+        **_marks(first),
+    )
+    title = "Loss of the pair" if name == "loss" else _title(name)
+    if name == "lambda_ratio":
+        _add_regimes(look, shown)
+    return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (_ALONG[name], same))))
+
+
+def _title(name: str) -> str:
+    words = VARIABLES[name].long_name
+    return words[0].upper() + words[1:]
+
+
+def _marks(fact: Facts) -> dict[str, Any]:
+    """Vertical lines and letters at the points of the path."""
+    places: list[tuple[float, str]] = []
+    for letter, place in fact.points.items():
+        if places and place - places[-1][0] < 0.03 * fact.contact_ratio:
+            places[-1] = (places[-1][0], f"{places[-1][1]} {letter}")
+        else:
+            places.append((place, letter))
+    return {
+        "shapes": [
+            {
+                "type": "line",
+                "x0": place,
+                "x1": place,
+                "yref": "paper",
+                "y0": 0,
+                "y1": 1,
+                "layer": "below",
+                "line": {"color": "#b4bec5", "width": 1, "dash": "dot"},
+            }
+            for place in fact.points.values()
+        ],
+        "annotations": [
+            {"text": letter, "x": place, "yref": "paper", "y": 1, "yanchor": "bottom"}
+            | {"showarrow": False, "font": {"size": 12}}
+            for place, letter in places
+        ],
+    }
+
+
+def _add_regimes(look: dict[str, Any], traces: list[Trace]) -> None:
+    """Bands of the lubrication regimes behind the curves."""
+    highest = max((y for t in traces for y in t["y"] if y is not None), default=1.0)
+    top = max(1.25, 1.1 * highest)
+    look["yaxis"]["range"] = [0, top]
+    for low, high, colour, words in _REGIMES:
+        if low >= top:
+            continue
+        look["shapes"].insert(
+            0,
+            {"type": "rect", "xref": "paper", "x0": 0, "x1": 1, "y0": low, "y1": min(high, top)}
+            | {"fillcolor": colour, "line": {"width": 0}, "layer": "below"},
+        )
+        look["annotations"].append(
+            {"text": words, "xref": "paper", "x": 0.99, "xanchor": "right", "showarrow": False}
+            | {"y": min(high, top), "yanchor": "top", "font": {"size": 11, "color": "#7a6a4f"}}
+        )
+
+
+def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
+    abscissa = _phase if axis == "phase" else _time
+    unit = show.unit(VARIABLES[name].display)
+    traces = []
+    for curve, data, law, fact in seen:
+        x, y = abscissa(data, data[name].values[law], fact)
+        traces.append(line(curve, x, display(name, y), unit))
+    words = {"phase": "phase of the mesh cycle [base pitches]", "time": "time [ms]"}[axis]
+    title = {"phase": "over one base pitch", "time": "over time, two base pitches"}[axis]
+    note = "Time runs against the phase: the wheel drives." if seen[0][3].backwards else ""
+    return Figure(
+        f"cycle_{name}_{axis}",
+        f"{_title(name)} {title}",
+        traces,
+        layout(words, short_axis(name)),
+        note if axis == "time" else "",
+    )
+
+
+def _phase(data: xr.Dataset, values: np.ndarray, _: Facts) -> Points:
+    return gapped(data["phase"].values, values)
+
+
+def _time(data: xr.Dataset, values: np.ndarray, fact: Facts) -> Points:
+    phase = data["phase"].values
+    if fact.backwards:
+        phase, values = 1.0 - phase[::-1], values[::-1]
+    x, y = gapped(np.concatenate([phase, phase + 1.0]), np.tile(values, 2))
+    return x * fact.period * 1e3, y
+
+
+def _against(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
+    """Efficiency against input torque; curves lie on each other, so the first ones are wider."""
+    traces = []
+    for position, (curve, data, law, _) in enumerate(seen):
+        order = np.argsort(data["input_torque"].values[law], kind="stable")
+        trace = line(
+            curve,
+            display("input_torque", data["input_torque"].values[law][order]),
+            display("efficiency", data["efficiency"].values[law][order]),
+            "%",
+        )
+        trace["line"] = {"color": curve.colour, "width": 2 + 3 * (len(seen) - 1 - position)}
+        trace |= {"mode": "lines+markers", "marker": {"size": 3, "color": curve.colour}}
+        traces.append(trace)
+    return Figure(
+        "cycle_against",
+        "Instantaneous efficiency against input torque",
+        traces,
+        layout(short_axis("input_torque"), short_axis("efficiency")),
+        "With the output torque held, all laws lie on one curve and cover different parts of it; "
+        "the first laws are drawn wider.",
+    )
+
+
+def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
+    """Friction of all pairs that are in contact at a phase."""
+    traces = []
+    for curve, data, law, _ in seen:
+        for pair in range(data.sizes["pair"]):
+            active = data["active"].values[:, pair, 0]
+            friction = np.where(active, data["friction"].values[law][:, pair, 0], np.nan)
+            x, y = gapped(data["phase"].values, friction)
+            trace = line(curve, x, y, f"(pair {pair + 1})")
+            trace["line"] = {"color": curve.colour, "width": 2, "dash": _PAIR_DASHES[pair]}
+            traces.append(trace)
+    names = ", ".join(
+        f"{dash} for the pair that entered {_ago(pair)}"
+        for pair, dash in enumerate(_PAIR_DASHES[: seen[0][1].sizes["pair"]])
+    )
+    return Figure(
+        "cycle_friction",
+        "Friction coefficient of the pairs in contact",
+        traces,
+        layout("phase of the mesh cycle [base pitches]", "μ"),
+        f"Line styles here: {names}.",
+    )
+
+
+def _ago(pair: int) -> str:
+    return ("in this period", "one period before")[pair] if pair < 2 else f"{pair} periods before"

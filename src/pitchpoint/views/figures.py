@@ -1,0 +1,218 @@
+"""What figures are made of: curves with one colour throughout, traces, and layouts.
+
+Figures are plain mappings for plotly.js: building them as plotly's Python objects takes longer than
+computing a case.
+"""
+
+import html
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint import units
+from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+
+__all__ = [
+    "Choice",
+    "Curve",
+    "Curves",
+    "Figure",
+    "Panel",
+    "Trace",
+    "curves",
+    "display",
+    "law_title",
+    "laws",
+    "layout",
+    "line",
+    "merged",
+    "rounded",
+    "short_axis",
+    "text",
+]
+
+Trace = dict[str, Any]
+Curves = Mapping[tuple[str, str], "Curve"]
+
+# Okabe and Ito's palette, which people with colour vision deficiency can tell apart.
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#B07C00", "#56B4E9", "#5A5A5A")
+_DASHES = ("solid", "dash", "dot", "dashdot")
+INK = "#24303a"
+GRID = "#e6eaed"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One friction law in one variant, with one look in all figures."""
+
+    key: str
+    variant: str
+    law: str
+    label: str
+    colour: str
+    dash: str
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure for plotly.js with its name in the page, title and remark."""
+
+    name: str
+    title: str
+    data: list[Trace]
+    layout: dict[str, Any]
+    note: str = ""
+
+    @property
+    def drawn(self) -> bool:
+        """True if there is a finite value to draw."""
+        return any(_finite(trace.get("z") or trace.get("y") or []) for trace in self.data)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An entry of a menu: by name of the figure what to restyle, and what to lay out anew."""
+
+    label: str
+    changes: dict[str, list[Any]]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Figures that belong together, with the curves in them and a menu if there is one."""
+
+    title: str
+    figures: list[Figure]
+    curves: list[Curve] = field(default_factory=list)
+    choices: list[Choice] = field(default_factory=list)
+    note: str = ""
+    menu: str = ""
+
+
+def curves(outcomes: Mapping[str, Outcome]) -> dict[tuple[str, str], Curve]:
+    """Curve by variant and law, for every law of the results apart from the spread of the laws."""
+    names = list(dict.fromkeys(_variant_laws(outcomes)))
+    variants = list(outcomes)
+    return {
+        (variant, law): Curve(
+            key=f"c{position}",
+            variant=variant,
+            law=law,
+            label=law_title(outcomes[variant], law)
+            + (f" · {variant}" if len(variants) > 1 else ""),
+            colour=_COLOURS[position % len(_COLOURS)],
+            dash=_DASHES[(variants.index(variant) + position // len(_COLOURS)) % len(_DASHES)],
+        )
+        for position, (variant, law) in enumerate(names)
+    }
+
+
+def law_title(outcome: Outcome, law: str) -> str:
+    """Title of a friction law, or its name where nobody knows it any more."""
+    known = {entry["name"]: str(entry["title"]) for entry in outcome.manifest["laws"]}
+    if law in known:
+        return known[law]
+    return FRICTION[law].title if law in FRICTION else law
+
+
+def laws(data: xr.Dataset) -> list[str]:
+    """Names of the laws of a dataset."""
+    return [str(name) for name in data["law"].values]
+
+
+def rounded(values: Any, digits: int = 5) -> list[Any]:
+    """List of numbers with so many significant digits; None for what is not finite."""
+    array = np.asarray(values, dtype=float)
+    if array.ndim > 1:
+        return [rounded(row, digits) for row in array]
+    return [
+        float(f"{v:.{digits}g}") if finite else None
+        for v, finite in zip(array.tolist(), np.isfinite(array), strict=True)
+    ]
+
+
+def display(name: str, values: Any) -> np.ndarray:
+    """SI values of a variable in its display unit."""
+    variable = VARIABLES[name]
+    array = np.asarray(values, dtype=float)
+    return np.asarray(units.convert(array, variable.display, variable.kind))
+
+
+def line(curve: Curve, x: Any, y: Any, unit: str, **more: Any) -> Trace:
+    """Line of a curve; its values may contain gaps."""
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": text(curve.label),
+        "meta": curve.key,
+        "x": rounded(x, 6),
+        "y": rounded(y),
+        "line": {"color": curve.colour, "dash": curve.dash, "width": 2},
+        "hovertemplate": f"%{{y:.5~g}} {unit}<br>at %{{x:.4~g}}",
+        **more,
+    }
+
+
+def layout(x: str, y: str, **more: Any) -> dict[str, Any]:
+    """Layout with titles of the axes; `more` goes on top, axes are merged."""
+    axis = {
+        "gridcolor": GRID,
+        "zeroline": False,
+        "linecolor": "#9aa5ad",
+        "ticks": "outside",
+        "tickcolor": "#9aa5ad",
+        "automargin": True,
+        "exponentformat": "none",
+        "separatethousands": True,
+    }
+    return {
+        "xaxis": {**axis, "title": {"text": x, "standoff": 8}, **more.pop("xaxis", {})},
+        "yaxis": {**axis, "title": {"text": y, "standoff": 8}, **more.pop("yaxis", {})},
+        "showlegend": False,
+        "margin": {"l": 62, "r": 14, "t": 24, "b": 48},
+        "font": {"family": "system-ui, sans-serif", "size": 12, "color": INK},
+        "hoverlabel": {"font": {"size": 12}},
+        "paper_bgcolor": "#fff",
+        "plot_bgcolor": "#fff",
+        "separators": ".\u2009",
+        **more,
+    }
+
+
+def short_axis(name: str) -> str:
+    """Title of an axis: symbol and unit; the figure has the long name above it."""
+    variable = VARIABLES[name]
+    unit = show.unit(variable.display)
+    return f"{variable.symbol} [{unit}]" if unit else variable.symbol
+
+
+def text(words: str) -> str:
+    """Words for plotly.js, which reads tags in them otherwise."""
+    return html.escape(words, quote=False)
+
+
+def merged(traces: Sequence[Trace]) -> tuple[list[Trace], str]:
+    """One trace and a remark in place of several that lie on each other."""
+    first = traces[0] if traces else {}
+    same = all((t["x"], t["y"]) == (first["x"], first["y"]) for t in traces)
+    if len(traces) < 2 or not same:
+        return list(traces), ""
+    one = {**first, "name": "", "meta": "", "line": {"color": INK, "width": 2}}
+    return [one], "The same for every curve."
+
+
+def _variant_laws(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, str]]:
+    for variant, outcome in outcomes.items():
+        for name, data in outcome.parts.items():
+            if name != "laws" and "law" in data.coords:
+                yield from ((variant, law) for law in laws(data))
+
+
+def _finite(values: Sequence[Any]) -> bool:
+    return any(_finite(value) if isinstance(value, list) else value is not None for value in values)

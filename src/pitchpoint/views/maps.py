@@ -1,0 +1,116 @@
+"""Loss and efficiency over torque and speed."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.facts import facts
+from pitchpoint.views.figures import (
+    Choice,
+    Curves,
+    Figure,
+    Panel,
+    display,
+    laws,
+    layout,
+    rounded,
+)
+
+__all__ = ["map_panel"]
+
+_SHOWN = ("mean_loss", "mean_efficiency")
+_MOST = 60
+"""Largest number of values on an axis that goes into the page."""
+
+
+def map_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+    """Heat maps of loss and efficiency with a menu for law, variant and temperature."""
+    choices = list(_choices(outcomes, known))
+    if not choices:
+        return Panel("Loss map", [])
+    _, variant, position, law = min(choices, key=lambda choice: choice[0])
+    data = outcomes[variant].parts["loss_map"]
+    figures = [_figure(name, outcomes[variant], data, law, position) for name in _SHOWN]
+    ordered = sorted(choices, key=lambda choice: choice[1:] != (variant, position, law))
+    menu = [_choice(outcomes, known, *choice[1:]) for choice in ordered]
+    return Panel("Loss map", figures, choices=menu, menu="Shown for")
+
+
+def _choices(
+    outcomes: Mapping[str, Outcome], known: Curves
+) -> Iterator[tuple[float, str, int, int]]:
+    """Distance from the operating temperature, variant, temperature and law of every map."""
+    for variant, outcome in outcomes.items():
+        if "loss_map" in outcome.parts:
+            data, fact = outcome.parts["loss_map"], facts(outcome)
+            for law in range(data.sizes["law"]):
+                for position, degree in enumerate(data["temperature"].values):
+                    yield abs(float(degree) - fact.temperature), variant, position, law
+
+
+def _choice(
+    outcomes: Mapping[str, Outcome], known: Curves, variant: str, position: int, law: int
+) -> Choice:
+    data = outcomes[variant].parts["loss_map"]
+    curve = known[variant, laws(data)[law]]
+    degree = display("temperature", data["temperature"].values[position])
+    changes: dict[str, list[Any]] = {}
+    for name in _SHOWN:
+        heat = _heat(name, data, law, position)
+        changes[f"map_{name}"] = [{key: [values] for key, values in heat.items()}, {}, [0]]
+    unit = show.unit(VARIABLES["temperature"].display)
+    return Choice(f"{curve.label}, oil at {show.number(float(degree))} {unit}", changes)
+
+
+def _heat(name: str, data: xr.Dataset, law: int, temperature: int) -> dict[str, Any]:
+    """Axes and values, thinned where there are more than a page can show."""
+    values = data[name].transpose("law", "temperature", "torque", "speed").values[law, temperature]
+    rows, columns = (_thinned(size) for size in values.shape)
+    return {
+        "x": rounded(display("speed", data["speed"].values[columns])),
+        "y": rounded(display("torque", data["torque"].values[rows])),
+        "z": rounded(display(name, values[np.ix_(rows, columns)])),
+    }
+
+
+def _thinned(size: int) -> np.ndarray:
+    return np.unique(np.linspace(0, size - 1, min(size, _MOST)).round().astype(int))
+
+
+def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature: int) -> Figure:
+    variable, fact = VARIABLES[name], facts(outcome)
+    unit = show.unit(variable.display)
+    heat = {
+        "type": "heatmap",
+        **_heat(name, data, law, temperature),
+        "colorscale": "Cividis" if name == "mean_efficiency" else "YlOrRd",
+        "reversescale": name != "mean_efficiency",
+        "hoverongaps": False,
+        "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
+        "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}} rpm, %{{y:.4~g}} N m<extra></extra>",
+    }
+    point = {
+        "type": "scatter",
+        "mode": "markers",
+        "x": rounded(display("speed", [fact.speed])),
+        "y": rounded(display("torque", [fact.torque])),
+        "marker": {
+            "symbol": "x",
+            "size": 10,
+            "color": "#fff",
+            "line": {"color": "#222", "width": 1.5},
+        },
+        "hovertemplate": "operating point<extra></extra>",
+    }
+    return Figure(
+        f"map_{name}",
+        variable.long_name[0].upper() + variable.long_name[1:],
+        [heat, point],
+        layout("driver speed [rpm]", "output torque [N m]"),
+        "The cross marks the operating point.",
+    )

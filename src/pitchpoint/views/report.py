@@ -1,0 +1,531 @@
+"""The report: one HTML file that opens from disk and says what was computed, with what, and from whom."""
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from math import ceil, degrees, log10
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pitchpoint.cases.comparison import Row, counts
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.store import write_text
+from pitchpoint.views import show
+from pitchpoint.views.cycle import cycle_panel, loss_places, path_panel
+from pitchpoint.views.facts import Facts, facts, given, same_geometry
+from pitchpoint.views.figures import Curve, Curves, Panel, curves, law_title, laws
+from pitchpoint.views.geometry import dimensions, drawing
+from pitchpoint.views.maps import map_panel
+from pitchpoint.views.sweeps import study_panels, study_tables
+
+if TYPE_CHECKING:
+    import jinja2
+    import markupsafe
+
+__all__ = ["loss_sentence", "render", "write_report"]
+
+STATUSES = {
+    "printed": "stands in the source",
+    "derived": "follows from printed values",
+    "digitised": "read from a figure",
+    "assumed": "not stated anywhere, chosen",
+    "fitted": "tuned until a printed result was met",
+    "corrected": "differs from the source, with a reason",
+    "given": "stands in the case file or the catalogue",
+    "set": "set for this run",
+    "default": "not given, taken as usual",
+}
+AVERAGES = {
+    "base_pitch": "Averages run over one base pitch, after which the state repeats.",
+    "path": "Averages run over the path of one pair, so double contact counts twice, as published.",
+}
+KINDS = {
+    "predicted": "nothing was tuned to it",
+    "calibrated": "a constant or a reading of the model was found with it",
+    "fitted": "an input was tuned to it",
+    "trend": "only a direction was printed",
+    "excluded": "not computed, for the reason given",
+}
+_ORDER = {"miss": 0, "excluded": 1, "pass": 2}
+_SIDE_BY_SIDE = (
+    "mean_efficiency",
+    "min_efficiency",
+    "max_efficiency",
+    "mean_loss",
+    "mean_input_torque",
+    "torque_ripple",
+    "mean_friction",
+    "loss_factor",
+    "contact_ratio",
+)
+
+
+def write_report(outcomes: Mapping[str, Outcome], path: Path) -> None:
+    """Write the report; a reader never sees half of it.
+
+    Args:
+        outcomes: by variant, as `run` and `open_result` give them.
+        path: of the HTML file.
+    """
+    write_text(path, render(outcomes))
+
+
+def render(outcomes: Mapping[str, Outcome]) -> str:
+    """The report as text.
+
+    Args:
+        outcomes: by variant, at least one; parts that were not finished are left out.
+    """
+    from markupsafe import Markup
+    from plotly.offline import get_plotlyjs
+
+    known = curves(outcomes)
+    drawn = {name: one for name, one in outcomes.items() if "teeth" in one.parts}
+    panels = {
+        "path": path_panel(drawn, known) if drawn else Panel("", []),
+        "cycle": cycle_panel(drawn, known) if drawn else Panel("", []),
+        "map": map_panel(drawn, known) if drawn else Panel("", []),
+    }
+    sweeps = study_panels(outcomes, known)
+    first = next(iter(outcomes.values())).manifest
+    return (
+        _environment()
+        .get_template("report.html.jinja")
+        .render(
+            first=first,
+            variants=[_variant(name, one, known) for name, one in outcomes.items()],
+            several=len(outcomes) > 1,
+            inputs=_inputs(outcomes),
+            statuses=STATUSES,
+            teeth=_teeth(drawn),
+            panels=panels,
+            sweeps=sweeps,
+            tables=study_tables(outcomes, known),
+            losses=_losses(drawn, known),
+            point_notes=_point_notes(drawn),
+            cycle_words=_cycle_words(drawn),
+            rows=_rows(outcomes),
+            kinds=KINDS,
+            beside=_side_by_side(outcomes, known) if len(outcomes) > 1 else None,
+            source_keys={s["key"] for one in outcomes.values() for s in one.manifest["sources"]},
+            sources=_unique(
+                source for one in outcomes.values() for source in one.manifest["sources"]
+            ),
+            models=_models(outcomes),
+            parts=_parts(outcomes),
+            version=_version(outcomes),
+            data=Markup(_payload([*panels.values(), *sweeps])),
+            plotly=Markup(get_plotlyjs()),
+        )
+    )
+
+
+@cache
+def _environment() -> "jinja2.Environment":
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("pitchpoint.views"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["marked"] = _marked
+    return environment
+
+
+def _marked(words: str) -> "markupsafe.Markup":
+    """Words, escaped, with `code` set as code and units as printed."""
+    from markupsafe import Markup, escape
+
+    parts = [escape(part) for part in show.pretty(words).split("`")]
+    if len(parts) % 2 == 0:
+        return escape(show.pretty(words))
+    code = Markup("<code>{}</code>")
+    return Markup("").join(code.format(p) if k % 2 else p for k, p in enumerate(parts))
+
+
+def _payload(panels: Iterable[Panel]) -> str:
+    """Figures and menus for the script, with nothing in it that could end the script element."""
+    each = list(panels)
+    content = {
+        "figures": {
+            figure.name: {"data": figure.data, "layout": figure.layout}
+            for panel in each
+            for figure in panel.figures
+            if figure.drawn
+        },
+        "menus": {
+            panel.figures[0].name: [choice.changes for choice in panel.choices]
+            for panel in each
+            if panel.choices
+        },
+    }
+    text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    for sign in "<>&\u2028\u2029":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return text
+
+
+def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
+    """What the top of the page says about one variant."""
+    manifest, parts = outcome.manifest, outcome.parts
+    return {
+        "name": name,
+        "oil": manifest["oil"],
+        "oil_note": _oil_note(outcome),
+        "sharing": manifest["models"][0]["title"],
+        "averaging": AVERAGES.get(manifest["averaging"], manifest["averaging"]),
+        "operation": _operation(outcome),
+        "laws": manifest["laws"],
+        "warnings": _warnings(outcome),
+        "finished": manifest["finished"],
+        "settings": manifest["settings"],
+        "spread": _spread(outcome),
+        "answers": [
+            _answer(outcome, law, position, known[name, law])
+            for position, law in enumerate(laws(parts["operation"]))
+        ]
+        if "operation" in parts
+        else [],
+    }
+
+
+def _oil_note(outcome: Outcome) -> str:
+    """Viscosities of the oil as resolved, with their status."""
+    rows = [r for r in outcome.manifest["inputs"] if r["key"].startswith("kinematic viscosity")]
+    told = [f"{show.pretty(row['value'])} ({row['status']})" for row in rows]
+    ends = [show.pretty(given(outcome, "oil as resolved", f"{end} temperature")) for end in _ENDS]
+    return "; ".join(f"{value} at {end}" for value, end in zip(told, ends, strict=False) if end)
+
+
+_ENDS = ("lower", "upper")
+
+
+def _operation(outcome: Outcome) -> str:
+    """The operating point in words."""
+    value = {key: show.pretty(given(outcome, "operation", key)) for key in _POINT}
+    driven = "gear 1" if value["driver"] == "gear 2" else "gear 2"
+    return (
+        f"{value['driver']} drives at {value['speed']}, {driven} carries {value['torque']}, "
+        f"oil at {value['temperature']}"
+    )
+
+
+_POINT = ("driver", "speed", "torque", "temperature")
+
+
+def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str, Any]:
+    """Main figures of one law at the operating point, in words."""
+    data = outcome.parts["operation"]
+
+    def value(name: str) -> float:
+        return float(data[name].values[position, 0])
+
+    defined = bool(np.isfinite(value("mean_efficiency")))
+    return {
+        "curve": curve,
+        "title": law_title(outcome, law),
+        "defined": defined,
+        "efficiency": show.quantity("mean_efficiency", value("mean_efficiency")),
+        "range": _range("efficiency", value),
+        "loss": show.quantity("mean_loss", value("mean_loss")),
+        "torque": show.quantity("mean_input_torque", value("mean_input_torque")),
+        "torque_range": _range("input_torque", value),
+        "ripple": show.quantity("torque_ripple", value("torque_ripple")),
+        "locked": bool(data["locked"].values[position, 0]),
+        "back": _back_driving(outcome, law),
+    }
+
+
+def _range(name: str, value: Callable[[str], float]) -> str:
+    ends = f"min_{name}", f"max_{name}"
+    return show.span(*ends, [value(end) for end in ends])
+
+
+def _back_driving(outcome: Outcome, law: str) -> str:
+    """Efficiency with the other gear driving, or that friction locks the mesh."""
+    data = outcome.parts.get("back_driving")
+    if data is None or law not in laws(data):
+        return "not computed"
+    position = laws(data).index(law)
+    if bool(data["locked"].values[position, 0]):
+        return "self-locking: friction locks the mesh"
+    value = float(data["mean_efficiency"].values[position, 0])
+    if not np.isfinite(value):
+        return "undefined, no power"
+    return f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
+
+
+def _spread(outcome: Outcome) -> dict[str, Any] | None:
+    """How far the friction laws that apply disagree; None where that is not known."""
+    data = outcome.parts.get("laws")
+    if data is None or not data.sizes["law"]:
+        return None
+    locked = data["locked"].values[:, 0].astype(bool)
+    values = data["mean_efficiency"].values[:, 0]
+    known = values[np.isfinite(values) & ~locked]
+    rows = [
+        (law_title(outcome, law), *(_cell(data, name, k) for name in _SPREAD_SHOWN))
+        for k, law in enumerate(laws(data))
+    ]
+    if not known.size:
+        text = "all lock the mesh" if locked.all() else "undefined, no power"
+        return {"text": text, "rows": rows, "points": ""}
+    text = f"{100 * known.min():.2f} to {100 * known.max():.2f} %"
+    if locked.any():
+        names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
+        text += f"; locked by {', '.join(names)}"
+    return {"text": text, "rows": rows, "points": f"{100 * np.ptp(known):.2f}"}
+
+
+_SPREAD_SHOWN = ("mean_efficiency", "mean_loss", "mean_friction")
+
+
+def _cell(data: Any, name: str, law: int) -> str:
+    if name == "mean_efficiency" and bool(data["locked"].values[law, 0]):
+        return "locks the mesh"
+    return show.quantity(name, float(data[name].values[law, 0]))
+
+
+def _warnings(outcome: Outcome) -> list[str]:
+    """Sentences of the design and of the parts, each once."""
+    texts = list(outcome.manifest["warnings"])
+    for data in outcome.parts.values():
+        found = [str(text) for text in json.loads(data.attrs.get("warnings", "[]"))]
+        texts += [f"{data.attrs['title']}: {text}" for text in found if text not in texts]
+    return list(dict.fromkeys(texts))
+
+
+def _inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
+    """Inputs by table and key; one entry where the variants agree, one for each where they do not."""
+    rows: dict[tuple[str, str], dict[str, dict[str, str]]] = {}
+    for variant, outcome in outcomes.items():
+        for row in outcome.manifest["inputs"]:
+            rows.setdefault((row["table"], row["key"]), {})[variant] = row
+    tables: dict[str, list[dict[str, Any]]] = {}
+    for (table, key), by_variant in rows.items():
+        tables.setdefault(table, []).append(_input(show.pretty(key), by_variant, len(outcomes)))
+    return [{"table": table, "rows": inside} for table, inside in tables.items()]
+
+
+def _input(key: str, by_variant: Mapping[str, dict[str, str]], variants: int) -> dict[str, Any]:
+    cells: dict[tuple[str, ...], list[str]] = {}
+    for variant, row in by_variant.items():
+        mark = (show.pretty(row["value"]), row["status"], row["where"], row["note"])
+        cells.setdefault(mark, []).append(variant)
+    differs = len(cells) > 1 or len(by_variant) < variants
+    return {
+        "key": key,
+        "differs": differs,
+        "cells": [
+            {"variants": ", ".join(names) if differs else "", "value": mark[0], "status": mark[1]}
+            | {"where": mark[2], "note": mark[3]}
+            for mark, names in cells.items()
+        ],
+    }
+
+
+def _teeth(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
+    """Drawings, one for variants that share their teeth."""
+    groups: list[tuple[list[str], Outcome]] = []
+    for variant, outcome in outcomes.items():
+        for names, other in groups:
+            if same_geometry(other, outcome):
+                names.append(variant)
+                break
+        else:
+            groups.append(([variant], outcome))
+    return [
+        {
+            "variants": ", ".join(names) if len(outcomes) > 1 and len(groups) > 1 else "",
+            "picture": drawing(outcome).picture(f"mesh{position}"),
+            "dimensions": dimensions(outcome),
+            "fact": facts(outcome),
+        }
+        for position, (names, outcome) in enumerate(groups)
+    ]
+
+
+def _losses(outcomes: Mapping[str, Outcome], known: Curves) -> list[tuple[Curve, str]]:
+    """A sentence for each curve that says where in the mesh the loss is made."""
+    result = []
+    for variant, outcome in outcomes.items():
+        if "cycle" in outcome.parts:
+            data, fact = outcome.parts["cycle"], facts(outcome)
+            for position, law in enumerate(laws(data)):
+                sentence = loss_sentence(loss_places(data, position, fact), fact)
+                result.append((known[variant, law], sentence))
+    return result
+
+
+def loss_sentence(shares: Mapping[tuple[str, str], float], fact: Facts) -> str:
+    """Where the loss is made, in words.
+
+    Args:
+        shares: by the two points between which it is made.
+        fact: with the order of the points.
+    """
+    if not shares:
+        return "There is no loss."
+    told = ", ".join(f"{100 * share:.0f} % between {a} and {b}" for (a, b), share in shares.items())
+    if "C" not in fact.points:
+        return f"{told}. The pitch point lies outside the path."
+    middle = fact.points["C"]
+    before = sum(share for (_, end), share in shares.items() if fact.points[end] <= middle + 1e-9)
+    approach, recess = (1.0 - before, before) if fact.backwards else (before, 1.0 - before)
+    return (
+        f"{told}: {100 * approach:.0f} % before the pitch point C (approach) and "
+        f"{100 * recess:.0f} % after it (recess)."
+    )
+
+
+def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
+    """What the letters mean for this contact ratio and driver."""
+    if not outcomes:
+        return []
+    fact = facts(next(iter(outcomes.values())))
+    notes = [
+        "A and E are the ends of the path of contact, A at the tip of gear 2; C is the pitch point; "
+        "B and D lie one base pitch from E and A."
+    ]
+    if fact.contact_ratio > 2.0:
+        notes.append(
+            "With a contact ratio above 2 there is no single contact, and D comes before B."
+        )
+    else:
+        notes.append("Between B and D one pair carries the load, outside two share it.")
+    if fact.backwards:
+        notes.append("Gear 2 drives, so every pair runs from E to A, and the phase runs backwards.")
+    return notes
+
+
+def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
+    """Driver angle and time of one base pitch."""
+    seen: dict[str, list[str]] = {}
+    for variant, outcome in outcomes.items():
+        fact = facts(outcome)
+        angle, time = show.number(degrees(fact.period_angle)), show.number(1e3 * fact.period)
+        seen.setdefault(f"{angle}° of the driver, {time} ms", []).append(variant)
+    if len(seen) < 2:
+        return next(iter(seen), "")
+    return "; ".join(f"{words} ({', '.join(names)})" for words, names in seen.items())
+
+
+def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any] | None:
+    """Printed against computed, misses first; None without targets."""
+    rows = [row for outcome in outcomes.values() for row in outcome.rows]
+    if not rows:
+        return None
+    ordered = sorted(rows, key=lambda row: _ORDER.get(row.verdict, 0))
+    return {
+        "table": [_row(row) for row in ordered],
+        "counts": {kind: dict(verdicts) for kind, verdicts in counts(rows).items()},
+        "missed": [_row(row) for row in rows if row.verdict == "miss"],
+        "excluded": [_row(row) for row in rows if row.verdict == "excluded"],
+        "variant": next(name for name, outcome in outcomes.items() if outcome.rows),
+    }
+
+
+def _row(row: Row) -> dict[str, str]:
+    unit = show.unit(row.unit)
+    computed, deviation, tolerance = "not computed", "", ""
+    if row.computed is not None and row.deviation is not None:
+        digits = _decimals(row.tolerance)
+        computed = f"{row.computed:.{digits}f} {unit}".strip()
+        deviation = show.signed(row.deviation, digits)
+        tolerance = f"± {row.tolerance:g}"
+    return {
+        "quantity": show.pretty(row.quantity),
+        "where": row.where,
+        "printed": f"{row.printed:g} {unit}".strip(),
+        "computed": computed,
+        "deviation": deviation,
+        "tolerance": tolerance,
+        "kind": row.kind,
+        "verdict": row.verdict,
+        "reason": row.reason or ("no reason is known" if row.verdict == "miss" else ""),
+    }
+
+
+def _decimals(tolerance: float) -> int:
+    """Decimals that show a deviation to a tenth of the tolerance or finer."""
+    return max(ceil(-log10(tolerance)), 0) + 1 if tolerance > 0.0 else 4
+
+
+def _side_by_side(outcomes: Mapping[str, Outcome], known: Curves) -> dict[str, Any]:
+    """Main figures of all variants and laws in one table, with the spread of the laws."""
+    columns = [
+        (variant, outcome, position, law)
+        for variant, outcome in outcomes.items()
+        if "operation" in outcome.parts
+        for position, law in enumerate(laws(outcome.parts["operation"]))
+    ]
+    lines = [
+        (
+            show.axis_title(name),
+            [
+                show.quantity(
+                    name, float(one.parts["operation"][name].values[k, 0]), with_unit=False
+                )
+                for _, one, k, _ in columns
+            ],
+        )
+        for name in _SIDE_BY_SIDE
+    ]
+    spread = [(_spread(one) or {"text": "not computed"})["text"] for _, one, *_ in columns]
+    back = [_back_driving(one, law) for _, one, _, law in columns]
+    return {
+        "curves": [known[variant, law] for variant, _, _, law in columns],
+        "lines": [
+            *lines,
+            ("mean efficiency by the friction laws that apply", spread),
+            ("back-driving", back),
+        ],
+    }
+
+
+def _models(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
+    """Laws and models of all variants, each with the variants that use it."""
+    found: dict[str, dict[str, str]] = {}
+    for variant, outcome in outcomes.items():
+        manifest = outcome.manifest
+        named = [("friction", law) for law in manifest["laws"]]
+        named += list(zip(_EFFECTS, manifest["models"], strict=False))
+        for effect, model in named:
+            entry = found.setdefault(
+                f"{effect} {model['name']}",
+                {"effect": effect, "name": model["name"], "title": model["title"]}
+                | {"note": model["note"], "variants": ""},
+            )
+            entry["variants"] += ", " * bool(entry["variants"]) + variant
+    return list(found.values())
+
+
+_EFFECTS = ("load sharing", "rolling resistance", "film thickness")
+
+
+def _parts(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
+    """Files of the result with the fingerprint of what they were computed from."""
+    return [
+        {
+            "file": f"{variant}/{name}.nc",
+            "title": str(data.attrs.get("title", name)),
+            "fingerprint": str(data.attrs.get("fingerprint", "")),
+        }
+        for variant, outcome in outcomes.items()
+        for name, data in outcome.parts.items()
+    ]
+
+
+def _version(outcomes: Mapping[str, Outcome]) -> str:
+    """Versions of the package that computed the parts; one, unless an old result was completed."""
+    found = (data.attrs["version"] for one in outcomes.values() for data in one.parts.values())
+    return ", ".join(dict.fromkeys(str(version) for version in found))
+
+
+def _unique(sources: Iterable[dict[str, str]]) -> list[dict[str, str]]:
+    return list({source["key"]: source for source in sources}.values())

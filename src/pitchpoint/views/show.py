@@ -1,0 +1,112 @@
+"""Numbers and units as people read them."""
+
+import re
+from collections.abc import Sequence
+from math import floor, isfinite, log10
+
+from pitchpoint import units
+from pitchpoint.results.variables import VARIABLES
+
+__all__ = ["axis_title", "number", "pretty", "quantity", "signed", "span", "unit"]
+
+_UNITS = {
+    "um": "µm",
+    "degC": "°C",
+    "deg": "°",
+    "mm2/s": "mm²/s",
+    "kg/m3": "kg/m³",
+    "kg/m3/K": "kg/(m³ K)",
+    "N m": "N\u00a0m",
+    "1": "",
+}
+# Smaller values in display units are left by rounding.
+_NOISE = 1e-9
+_LAST_UNIT = re.compile(r"(?<=\d) (um|degC|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
+
+
+def unit(name: str) -> str:
+    """Unit as printed; empty for plain numbers.
+
+    Example:
+        >>> unit("um")
+        'µm'
+    """
+    return _UNITS.get(name, name)
+
+
+def pretty(text: str) -> str:
+    """Text in which units that follow a number are printed as in a book."""
+    return _LAST_UNIT.sub(lambda found: f" {_UNITS[found.group(1)]}", text)
+
+
+def number(value: float, digits: int = 4, *, trailing: bool = False) -> str:
+    """Number with so many significant digits, without an exponent where that can be read.
+
+    Args:
+        value: any; "undefined" if it is not finite.
+        digits: significant ones.
+        trailing: True to keep zeros at the end.
+
+    Example:
+        >>> number(0.74199)
+        '0.742'
+    """
+    if not isfinite(value):
+        return "undefined"
+    if value == 0.0:
+        return "0"
+    exponent = floor(log10(abs(value)))
+    if not -5 < exponent < 7:
+        return f"{value:.{digits - 1}e}"
+    text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
+    if "." in text and not trailing:
+        text = text.rstrip("0").rstrip(".")
+    return text.replace("-", "−")
+
+
+def signed(value: float, decimals: int) -> str:
+    """Number with its sign and so many decimals.
+
+    Example:
+        >>> signed(0.0042, 3)
+        '+0.004'
+    """
+    text = f"{value:+.{decimals}f}"
+    return text.replace("-", "−") if float(text) else "0"
+
+
+def quantity(name: str, value: float, *, with_unit: bool = True) -> str:
+    """Value of a variable of a result in its display unit [SI in].
+
+    Example:
+        >>> quantity("mean_efficiency", 0.99354)
+        '99.35 %'
+    """
+    variable = VARIABLES[name]
+    if not isfinite(value):
+        return "undefined, no power" if variable.display == "%" else "undefined"
+    shown = float(units.convert(value, variable.display, variable.kind))
+    if abs(shown) < _NOISE:
+        shown = 0.0
+    text = f"{shown:.2f}" if variable.display == "%" else number(shown, trailing=True)
+    return f"{text} {unit(variable.display)}".strip() if with_unit else text
+
+
+def span(low: str, high: str, values: Sequence[float]) -> str:
+    """Range of two variables that share their unit [SI in].
+
+    Example:
+        >>> span("min_efficiency", "max_efficiency", (0.9918, 1.0))
+        '99.18 to 100.00 %'
+    """
+    first, last = quantity(low, values[0]), quantity(high, values[1])
+    if first == last:
+        return first
+    return f"{quantity(low, values[0], with_unit=False)} to {last}"
+
+
+def axis_title(name: str) -> str:
+    """Long name and display unit of a variable."""
+    variable = VARIABLES[name]
+    shown = unit(variable.display)
+    return f"{variable.long_name} [{shown}]" if shown else variable.long_name

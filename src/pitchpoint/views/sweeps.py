@@ -1,0 +1,153 @@
+"""Figures and tables of the studies of a case."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint import units
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    Choice,
+    Curve,
+    Curves,
+    Figure,
+    Panel,
+    Trace,
+    display,
+    laws,
+    layout,
+    line,
+    short_axis,
+    text,
+)
+
+__all__ = ["study_panels", "study_tables"]
+
+_SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "torque_ripple")
+_TABLE = (
+    "contact_ratio",
+    "mean_efficiency",
+    "min_efficiency",
+    "max_efficiency",
+    "mean_loss",
+    "mean_input_torque",
+    "torque_ripple",
+    "mean_friction",
+)
+
+_WORDS = {
+    "operation.torque": "output torque",
+    "operation.speed": "driver speed",
+    "operation.temperature": "oil temperature",
+    "roughness.ra": "roughness Ra",
+    "gears.addendum": "addendum of both basic racks [modules]",
+}
+
+Seen = list[tuple[Curve, xr.Dataset, int]]
+
+
+def study_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
+    """A panel for each sweep."""
+    return [_panel(name, seen) for name, seen in _studies(outcomes, known) if "axis" in seen[0][1]]
+
+
+def study_tables(outcomes: Mapping[str, Outcome], known: Curves) -> list[dict[str, Any]]:
+    """Title, head and rows for each study of a single point."""
+    return [
+        {
+            "title": str(seen[0][1].attrs["title"]),
+            "head": [show.axis_title(name) for name in _TABLE],
+            "rows": [(curve, _cells(data, law)) for curve, data, law in seen],
+        }
+        for name, seen in _studies(outcomes, known)
+        if "axis" not in seen[0][1]
+    ]
+
+
+def _studies(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[str, Seen]]:
+    names = dict.fromkeys(
+        name for outcome in outcomes.values() for name in outcome.parts if name[:6] == "study_"
+    )
+    for name in names:
+        yield (
+            name,
+            [
+                (known[variant, law], outcome.parts[name], position)
+                for variant, outcome in outcomes.items()
+                if name in outcome.parts
+                for position, law in enumerate(laws(outcome.parts[name]))
+            ],
+        )
+
+
+def _cells(data: xr.Dataset, law: int) -> list[str]:
+    return [
+        show.quantity(name, float(data[name].values[law, 0]), with_unit=False) for name in _TABLE
+    ]
+
+
+def _panel(name: str, seen: Seen) -> Panel:
+    data = seen[0][1]
+    axes = [_swept, _ratio] if _ratio_varies(data) else [_swept]
+    figures = [_figure(f"{name}_{variable}", variable, seen, axes[-1]) for variable in _SHOWN]
+    choices = []
+    if len(axes) > 1:
+        choices = [_choice(axis, figures, seen) for axis in reversed(axes)]
+    note = f"Swept: {data.attrs['sweep_key']}."
+    return Panel(
+        str(data.attrs["title"]),
+        figures,
+        [curve for curve, *_ in seen],
+        choices,
+        note,
+        "Shown against",
+    )
+
+
+def _figure(name: str, variable: str, seen: Seen, axis: Any) -> Figure:
+    unit = show.unit(VARIABLES[variable].display)
+    title = VARIABLES[variable].long_name
+    return Figure(
+        name,
+        title[0].upper() + title[1:],
+        [_trace(curve, data, law, variable, axis, unit) for curve, data, law in seen],
+        layout(text(axis(seen[0][1])[1]), short_axis(variable)),
+    )
+
+
+def _trace(curve: Curve, data: xr.Dataset, law: int, variable: str, axis: Any, unit: str) -> Trace:
+    values = display(variable, data[variable].values[law])
+    marks = {"mode": "lines+markers", "marker": {"size": 5, "color": curve.colour}}
+    return line(curve, axis(data)[0], values, unit, **marks)
+
+
+def _choice(axis: Any, figures: list[Figure], seen: Seen) -> Choice:
+    x = [_trace(curve, data, law, _SHOWN[0], axis, "")["x"] for curve, data, law in seen]
+    title = axis(seen[0][1])[1]
+    change: list[Any] = [{"x": x}, {"xaxis.title.text": text(title)}]
+    return Choice(title, {figure.name: change for figure in figures})
+
+
+def _swept(data: xr.Dataset) -> tuple[np.ndarray, str]:
+    """Values of the swept key in its unit, and the title of their axis."""
+    values = data["axis"].values
+    key = str(data.attrs["sweep_key"])
+    words = _WORDS.get(key, key.replace("_", " ").replace(".", ", ", 1))
+    if not np.isfinite(values).all():
+        return np.arange(1.0, values.size + 1.0), f"{words} (number in the list)"
+    unit, kind = str(data.attrs["axis_unit"]), str(data.attrs["axis_kind"])
+    if kind:
+        values = np.asarray(units.convert(values, unit, kind))
+    return values, f"{words} [{show.unit(unit)}]" if show.unit(unit) else words
+
+
+def _ratio(data: xr.Dataset) -> tuple[np.ndarray, str]:
+    return data["contact_ratio"].values[0], "contact ratio"
+
+
+def _ratio_varies(data: xr.Dataset) -> bool:
+    return bool(np.ptp(data["contact_ratio"].values) > 1e-6)

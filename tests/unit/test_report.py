@@ -1,0 +1,440 @@
+"""The report: complete, safe with what a user typed, and its drawn teeth really touch."""
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from html.parser import HTMLParser
+from math import atan2, cos, pi, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pitchpoint.cases.run import Outcome, open_result, run
+from pitchpoint.views import show
+from pitchpoint.views.cycle import gapped, loss_places
+from pitchpoint.views.facts import facts
+from pitchpoint.views.figures import rounded
+from pitchpoint.views.geometry import Drawing, drawing
+from pitchpoint.views.report import loss_sentence, render, write_report
+
+Outcomes = dict[str, Outcome]
+
+TITLE = "<script>alert('title')</script>"
+PUBLISHED = f"""
+title = "{TITLE}"
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = {{ value = "15 mm", status = "assumed", note = "</script><b>" }}
+profile_shift = [0.4, -0.2]
+addendum = 1.4
+[lubricant]
+base = "mineral"
+viscosity_40 = "220 mm2/s"
+viscosity_100 = "19 mm2/s"
+[roughness]
+rq = "0.4 um"
+[operation]
+torque = "60 N m"
+speed = "900 rpm"
+temperature = "60 degC"
+[loss_map]
+count = 3
+[variants.as_published.models]
+friction = ["iso_tr_14179_2", "xu_2007"]
+averaging = "path"
+[variants.physical.models]
+friction = "constant"
+[studies.point]
+title = "One point"
+[studies.shape]
+title = "Shape"
+sweep = {{ key = "gears.addendum", start = 1.0, stop = 1.4, count = 3 }}
+[[targets]]
+quantity = "number out of reach"
+where = "Table 9"
+kind = "predicted"
+printed = 50.0
+unit = "%"
+tolerance = 0.01
+study = "point"
+variable = "mean_efficiency"
+reason = "made to miss"
+[[targets]]
+quantity = "number left out"
+where = "Table 9"
+kind = "excluded"
+printed = 1.0
+reason = "never computed"
+[[issues]]
+where = "eq. 1"
+issue = "<i>slip</i>"
+verdict = "`physical` differs"
+"""
+IDLE = """
+[gears]
+teeth = 17
+module = "2 mm"
+face_width = "15 mm"
+flank = "left"
+[lubricant]
+name = "75W90-A"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "0 N m"
+speed = "100 rpm"
+temperature = "60 degC"
+[loss_map]
+count = 2
+"""
+WHEEL = """
+[gears]
+teeth = [12, 120]
+module = "2 mm"
+face_width = "15 mm"
+profile_shift = [0.5, 0.0]
+[lubricant]
+name = "75W90-A"
+[roughness]
+ra = "0.4 um"
+[operation]
+driver = "gear 2"
+torque = "5 N m"
+speed = "100 rpm"
+temperature = "60 degC"
+[models]
+friction = "constant"
+[loss_map]
+count = 2
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("report")
+
+
+def computed(folder: Path, name: str, text: str) -> Outcomes:
+    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    return run(str(folder / f"{name}.toml"), folder=folder / name)
+
+
+@pytest.fixture(scope="module")
+def published(folder: Path) -> Outcomes:
+    return computed(folder, "published", PUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def idle(folder: Path) -> Outcomes:
+    return computed(folder, "idle", IDLE)
+
+
+@pytest.fixture(scope="module")
+def wheel(folder: Path) -> Outcomes:
+    return computed(folder, "wheel", WHEEL)
+
+
+@pytest.fixture(scope="module")
+def page(published: Outcomes) -> str:
+    return render(published)
+
+
+class Words(HTMLParser):
+    """What a reader sees, and the identities of the places for figures."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.words: list[str] = []
+        self.plots: list[str] = []
+        self.tags: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        known = dict(attrs)
+        if known.get("class") == "plot":
+            self.plots.append(str(known["id"]))
+
+    def handle_data(self, data: str) -> None:
+        if self.tags[-1:] not in (["script"], ["style"]):
+            self.words.append(data)
+
+    def handle_endtag(self, tag: str) -> None:
+        self.tags.append(f"/{tag}")
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+
+def payload(page: str) -> dict[str, Any]:
+    found = re.search(r'<script type="application/json" id="figures">(.*?)</script>', page, re.S)
+    assert found
+    return dict(json.loads(found.group(1)))
+
+
+def finite(trace: dict[str, Any]) -> bool:
+    return any(
+        value is not None for value in np.ravel(np.array(trace.get("z", trace["y"]), object))
+    )
+
+
+def test_every_figure_has_a_place_and_data(page: str) -> None:
+    figures, plots = payload(page)["figures"], Words(page).plots
+    assert sorted(plots) == sorted(figures)
+    assert len(plots) == 8 + 6 + 4 + 2
+    for name, figure in figures.items():
+        assert figure["data"], name
+        assert all(finite(trace) for trace in figure["data"]), name
+
+
+def test_a_menu_changes_traces_that_exist(page: str) -> None:
+    content = payload(page)
+    assert {len(choices) for choices in content["menus"].values()} == {2, 3 * 3}
+    for choices in content["menus"].values():
+        for name, change in ((n, c) for choice in choices for n, c in choice.items()):
+            traces = content["figures"][name]["data"]
+            which = change[2] if len(change) > 2 else range(len(traces))
+            assert all(len(values) == len(list(which)) for values in change[0].values())
+
+
+@pytest.mark.parametrize("case", ["published", "idle", "wheel"])
+def test_no_text_is_not_a_number(case: str, request: pytest.FixtureRequest) -> None:
+    page = render(request.getfixturevalue(case))
+    text = Words(page).text
+    assert not re.search(r"\b(nan|none|null|inf|infinity)\b", _unnamed(text), re.I)
+    payload(page)
+
+
+def _unnamed(text: str) -> str:
+    """Text without the names of models: `none` is that of no rolling resistance."""
+    return re.sub(r"rolling_resistance none|no rolling resistance none", "", text)
+
+
+def test_what_a_user_typed_is_text(page: str) -> None:
+    assert "<script>alert" not in page
+    assert "<i>slip" not in page
+    assert "</script><b>" not in page
+    words = Words(page)
+    assert TITLE in words.text
+    assert "</script><b>" in words.text
+    # Figures, plotly.js and the page's own script.
+    assert words.tags.count("script") == 3
+
+
+def test_names_of_variants_cannot_end_the_script(published: Outcomes) -> None:
+    evil = "</script><img src=x>"
+    page = render({evil: published["physical"], "other": published["as_published"]})
+    assert "<img" not in page.replace(_plotly(page), "")
+    names = {t.get("name") for f in payload(page)["figures"].values() for t in f["data"]}
+    assert any("&lt;/script&gt;" in str(name) for name in names)
+
+
+def _plotly(page: str) -> str:
+    return max(re.findall(r"<script>(.*?)</script>", page, re.S), key=len)
+
+
+def test_nothing_is_loaded_from_elsewhere(page: str) -> None:
+    own = page.replace(_plotly(page), "")
+    assert not re.search(r"""(src|href)=["'](?!#)""", own)
+    assert "default-src 'none'" in own
+
+
+def test_oil_laws_sharing_and_misses_stand_at_the_top(page: str) -> None:
+    text = Words(page).text
+    top = text[: text.index("Inputs as resolved")]
+    for words in (
+        "mineral oil by value",
+        "220 mm²/s (given) at 40 °C",
+        "ISO/TR 14179-2",
+        "Xu and Kahraman",
+        "equal load per length of contact line",
+        "gear 1 drives at 900 rpm, gear 2 carries 60 N m, oil at 60 °C",
+        "1 printed number was not met",
+        "number out of reach (made to miss)",
+        "number left out (never computed)",
+        "The teeth of gear 1 are",
+    ):
+        assert words in top, words
+
+
+def test_efficiency_and_the_spread_of_the_laws_stand_together(
+    published: Outcomes, page: str
+) -> None:
+    outcome = published["as_published"]
+    values = outcome.parts["laws"]["mean_efficiency"].values
+    low, high = 100.0 * values.min(), 100.0 * values.max()
+    text = Words(page).text
+    for value in outcome.parts["operation"]["mean_efficiency"].values[:, 0]:
+        shown = f"{100.0 * value:.2f} % mean efficiency"
+        assert f"{shown} friction laws that apply {low:.2f} to {high:.2f} %" in text
+
+
+def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:
+    text = Words(page).text
+    compared = text[text.index("Printed against computed") :]
+    assert compared.index("number out of reach") < compared.index("number left out")
+    assert "predicted 1 miss" in compared
+    assert "excluded 1 excluded" in compared
+
+
+def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:
+    rows = re.findall(r'<tr class="differs">(.*?)</tr>', page, re.S)
+    keys = {re.sub(r"<[^>]*>", "", row.split("</td>")[0]).strip() for row in rows}
+    assert keys == {"friction as_published", "averaging as_published", "physical"}
+
+
+def test_reopened_results_give_the_same_report(
+    published: Outcomes, page: str, folder: Path
+) -> None:
+    write_report(open_result(folder / "published"), folder / "report.html")
+    assert (folder / "report.html").read_text("utf-8") == page
+    assert [path.name for path in folder.glob(".report*")] == []
+
+
+def test_without_power_the_efficiency_is_undefined(idle: Outcomes) -> None:
+    page = render(idle)
+    assert "undefined, no power mean efficiency" in Words(page).text
+    assert "There is no loss." in page
+    assert "cycle_efficiency_phase" not in payload(page)["figures"]
+    for heading in ("Studies", "Printed against computed", "Issues"):
+        assert f"<h2>{heading}" not in page
+
+
+def test_a_locked_mesh_is_said(wheel: Outcomes) -> None:
+    assert "friction does not lock the mesh" in render(wheel)
+    outcome = wheel["default"]
+    back = outcome.parts["back_driving"].copy()
+    back["locked"] = back["locked"] | True
+    back["mean_efficiency"] = back["mean_efficiency"] * np.nan
+    locked = replace(outcome, parts={**outcome.parts, "back_driving": back})
+    assert "self-locking: friction locks the mesh" in render({"default": locked})
+
+
+def test_a_law_that_locks_is_named_beside_the_others(wheel: Outcomes) -> None:
+    outcome = wheel["default"]
+    laws = outcome.parts["laws"].copy(deep=True)
+    laws["locked"].values[0, 0] = True
+    one = replace(outcome, parts={**outcome.parts, "laws": laws})
+    assert "locked by ISO/TR 14179-2" in render({"default": one})
+
+
+@pytest.mark.parametrize("kept", [(), ("teeth",), ("teeth", "cycle"), ("teeth", "operation")])
+def test_an_interrupted_result_has_a_page(wheel: Outcomes, kept: tuple[str, ...]) -> None:
+    outcome = wheel["default"]
+    parts = {name: outcome.parts[name] for name in kept}
+    manifest = {**outcome.manifest, "finished": False, "parts": list(kept)}
+    page = render({"default": Outcome(manifest, parts)})
+    assert "its computation was interrupted" in page
+    assert sorted(Words(page).plots) == sorted(payload(page)["figures"])
+
+
+PHASES = np.linspace(0.0, 0.999, 9)
+
+
+@pytest.fixture(params=["published", "idle", "wheel"])
+def drawn(request: pytest.FixtureRequest) -> Drawing:
+    outcomes: Outcomes = request.getfixturevalue(request.param)
+    return drawing(next(iter(outcomes.values())))
+
+
+def teeth(drawn: Drawing, phase: float) -> Iterator[tuple[int, np.ndarray]]:
+    """Gear and corners in mm of every tooth as the page places it, y downwards."""
+    for gear, placed in enumerate(drawn.picture("p")["gears"]):
+        corners = np.array([p.split(",") for p in placed["tooth"].split()], float)
+        for turn in placed["turns"]:
+            angle = np.deg2rad(placed["turn"] + phase * placed["spin"] + turn)
+            turned = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
+            yield gear, corners @ turned.T + [0.0, placed["centre"]]
+
+
+def distance(point: np.ndarray, corners: np.ndarray) -> float:
+    """Distance of a point from a polyline."""
+    start, along = corners[:-1], np.diff(corners, axis=0)
+    length = np.maximum((along**2).sum(axis=1), 1e-12)
+    where = np.clip(((point - start) * along).sum(axis=1) / length, 0.0, 1.0)
+    return float(np.hypot(*(start + where[:, None] * along - point).T).min())
+
+
+def test_drawn_flanks_touch_where_the_contacts_are(drawn: Drawing) -> None:
+    motion = drawn.picture("p")["motion"]
+    touched = 0
+    for phase in PHASES:
+        placed = list(teeth(drawn, phase))
+        for lane in range(int(motion["ratio"] - phase) + 1):
+            point = np.array(motion["start"]) + np.array(motion["step"]) * (phase + lane)
+            for gear in (0, 1):
+                nearest = min(distance(point, corners) for one, corners in placed if one == gear)
+                assert nearest < 0.003, (phase, lane, gear)
+            touched += 1
+    assert touched / PHASES.size == pytest.approx(motion["ratio"], abs=0.2)
+
+
+def test_drawn_teeth_do_not_overlap(drawn: Drawing) -> None:
+    for phase in PHASES:
+        placed = list(teeth(drawn, phase))
+        for corners in (corners for gear, corners in placed if gear == 1):
+            assert depth(drawn, corners, phase) < 0.005
+
+
+def depth(drawn: Drawing, corners: np.ndarray, phase: float) -> float:
+    """How far corners lie inside the involutes of gear 1 [mm]."""
+    turn = drawn.rotations(phase)[0]
+    pitch = 2.0 * pi / drawn.fact.teeth[0]
+    radii = np.hypot(*corners.T) * 1e-3
+    near = (drawn.radius("base", 0) < radii) & (radii < drawn.radius("tip", 0))
+    deepest = 0.0
+    for radius, (x, y) in zip(radii[near], corners[near], strict=True):
+        off = abs((atan2(-x, -y) - turn + pitch / 2.0) % pitch - pitch / 2.0)
+        deepest = max(deepest, 1e3 * radius * (drawn.half_angle(0, radius) - off))
+    return deepest
+
+
+def test_path_is_tangent_to_both_base_circles(drawn: Drawing) -> None:
+    first, last = (np.array(drawn.on_line(s)) for s in (0.0, drawn.tangent_length))
+    along = last - first
+    for gear, point in enumerate((first, last)):
+        arm = point - [0.0, gear * drawn.distance]
+        assert np.hypot(*arm) == pytest.approx(drawn.radius("base", gear), rel=1e-12)
+        assert arm @ along == pytest.approx(0.0, abs=1e-12)
+
+
+def test_contact_moves_with_the_driving_flank(drawn: Drawing) -> None:
+    """Both flanks move along the line of action at the speed of the contact."""
+    start, stop = drawn.rotations(0.0), drawn.rotations(0.01)
+    step = 0.01 * float(drawn.teeth["base_pitch"])
+    assert (stop[0] - start[0]) * drawn.radius("base", 0) == pytest.approx(drawn.side * step)
+    assert (stop[1] - start[1]) * drawn.radius("base", 1) == pytest.approx(-drawn.side * step)
+
+
+def test_loss_places_add_up_and_follow_the_driver(published: Outcomes, wheel: Outcomes) -> None:
+    outcome = published["physical"]
+    shares = loss_places(outcome.parts["cycle"], 0, facts(outcome))
+    assert sum(shares.values()) == pytest.approx(1.0, abs=1e-6)
+    assert [start + end for start, end in shares] == ["AC", "CD", "DB", "BE"]
+    driven = facts(wheel["default"])
+    sentence = loss_sentence({("A", "C"): 0.25, ("C", "E"): 0.75}, driven)
+    assert "75 % before the pitch point" in sentence
+    assert "25 % before" in loss_sentence(
+        {("A", "C"): 0.25, ("C", "E"): 0.75}, replace(driven, driver=1)
+    )
+
+
+def test_lines_stop_at_jumps() -> None:
+    x, y = gapped(np.array([0.0, 0.5, 0.5 + 1e-9, 1.0]), np.array([1.0, 1.0, 2.0, 2.0]))
+    assert np.isnan(y).tolist() == [False, False, True, False, False, True]
+    assert x.size == 6
+
+
+def test_numbers_for_readers() -> None:
+    assert rounded([1.0 / 3.0, np.nan, np.inf]) == [0.33333, None, None]
+    assert show.number(-0.000123456) == "−0.0001235"
+    assert show.number(float("nan")) == "undefined"
+    assert show.quantity("mean_efficiency", float("nan")) == "undefined, no power"
+    assert show.quantity("torque_ripple", 6e-14) == "0 N\u00a0m"
+    assert show.signed(-0.00004, 3) == "0"
+    assert show.pretty("98 mm2/s at 40 degC, mm2/s alone") == "98 mm²/s at 40 °C, mm2/s alone"
