@@ -56,12 +56,15 @@ REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
 """One number out of values [law, point]."""
 
 
-def compare(targets: Sequence[Target], results: Mapping[str, xr.Dataset]) -> list[Row]:
+def compare(
+    targets: Sequence[Target], results: Mapping[str, xr.Dataset], name: str = ""
+) -> list[Row]:
     """A row for every target.
 
     Args:
         targets: of the case.
         results: datasets by name of the part.
+        name: of the file, for messages.
 
     Raises:
         InputError: a target that names no study, variable or law of the results.
@@ -72,7 +75,7 @@ def compare(targets: Sequence[Target], results: Mapping[str, xr.Dataset]) -> lis
             rows.append(_row(target, results))
         except InputError as error:
             key = ".".join(filter(None, (f"targets.{position}", error.key or "unit")))
-            raise error.at(key=key) from None
+            raise error.at(file=name, key=key) from None
     return rows
 
 

@@ -208,7 +208,7 @@ def compare_case(
             if job.name in needed:
                 progress.part(chosen, job.title, False)
                 parts[job.name] = _part(job, made, None, {}, progress)
-    return name, chosen, compare(built.case.targets, parts)
+    return name, chosen, compare(built.case.targets, parts, name)
 
 
 @contextmanager
@@ -285,7 +285,7 @@ def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
     """Targets belong to the reading of the paper; another variant is not measured by them."""
     if variant.variant not in ("as_published", "default"):
         return []
-    return compare(built.case.targets, parts)
+    return compare(built.case.targets, parts, variant.name)
 
 
 def _manifest(variant: Variant, built: Built) -> dict[str, Any]:

@@ -1,0 +1,518 @@
+"""One battery of checks that every gear family passes."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from itertools import pairwise
+from types import SimpleNamespace
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import along, total
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.discs import BallOnDisc, TwinDisc
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials import Roughness, lubricants
+
+LAW = {law.name: law for law in LAWS}
+LOCAL = ("constant", "xu_2007")
+WHOLE_MESH = (*LOCAL, "iso_tr_14179_2")
+
+
+def spur(teeth, module=3e-3, **options):
+    return build_cylindrical_pair(
+        teeth=teeth, module=module, pressure_angle=np.deg2rad(20.0), face_width=0.02, **options
+    )
+
+
+FAMILIES: Mapping[str, Callable[[], Mesh]] = {
+    "twin disc": lambda: TwinDisc(*map(jnp.asarray, ([0.02, 0.035], 0.008, 0.8))),
+    "twin disc, faster follower": lambda: TwinDisc(*map(jnp.asarray, ([0.03, 0.02], 0.01, 1.3))),
+    "ball on disc": lambda: BallOnDisc(*map(jnp.asarray, (0.0095, 0.04, 0.7))),
+    "18/36": lambda: spur((18, 36)),
+    "18/36, left flank": lambda: spur((18, 36), left_flank=True),
+    "18/36, wheel drives": lambda: spur((18, 36), driver=2),
+    "18/36, wheel drives, left flank": lambda: spur((18, 36), driver=2, left_flank=True),
+    "36/18, speed-increasing": lambda: spur((36, 18)),
+    "23/61, shifted": lambda: spur((23, 61), 2e-3, profile_shift=(0.4, -0.2)),
+    "23/61, high teeth": lambda: spur(
+        (23, 61), 2e-3, profile_shift=(0.4, -0.2), addendum=(1.4, 1.4)
+    ),
+    "17/17": lambda: spur((17, 17)),
+    "12/120": lambda: spur((12, 120), 1e-3, profile_shift=(0.5, 0.0)),
+    "20/60, pitch point in double contact": lambda: spur((20, 60), profile_shift=(0.8, -0.8)),
+}
+
+
+@eqx.filter_jit
+def contacts_of(mesh, phase):
+    return mesh.contacts(phase)
+
+
+@eqx.filter_jit
+def each_alone(mesh, phase):
+    return jax.lax.map(mesh.contacts, phase)
+
+
+@eqx.filter_jit
+def vectorised(mesh, phase):
+    return jax.vmap(mesh.contacts)(phase)
+
+
+@eqx.filter_jit
+def properties(mesh):
+    return {
+        "events": mesh.events(),
+        "motion": mesh.motion,
+        "driver": mesh.driver,
+        "loaded": mesh.loaded,
+        "period": mesh.period,
+        "contact_ratio": mesh.contact_ratio,
+    }
+
+
+@eqx.filter_jit
+def state_of(design, operation, phase, models):
+    found = state(design, operation, phase, models)
+    return {
+        "torque": found.balance.torque,
+        "force": found.balance.force,
+        "loss": found.loss,
+        "input_power": found.input_power,
+        "output_power": found.output_power,
+        "residual": found.balance.residual,
+        "locked": found.balance.locked,
+        "iterations": found.balance.iterations,
+        "rolling_loss": total(found.rolling_loss),
+        "sliding_losses": found.sliding_loss,
+    }
+
+
+@eqx.filter_jit
+def states_alone(design, operation, phase, models):
+    return jax.lax.map(lambda at: state(design, operation, at, models).balance.torque, phase)
+
+
+def floats(tree):
+    return eqx.filter(tree, eqx.is_inexact_array)
+
+
+@eqx.filter_jit
+def gradient_of_all_lanes(mesh, phase):
+    def whole(mesh):
+        return sum(jnp.sum(leaf) for leaf in jax.tree.leaves(floats(mesh.contacts(phase))))
+
+    return eqx.filter_value_and_grad(whole)(mesh)
+
+
+@eqx.filter_jit
+def gradient_of_state(design, operation, phase, models):
+    def whole(both):
+        found = state(both[0], both[1], phase, models)
+        at = found.conditions
+        kept = (found.balance.torque, found.balance.load, found.balance.friction)
+        lanes = (at.pressure, at.slide_roll_ratio, at.entrainment, at.sliding, at.radius)
+        lost = (found.sliding_loss, found.rolling_loss)
+        return sum(jnp.sum(leaf) for leaf in (*kept, *lanes, *lost))
+
+    return eqx.filter_value_and_grad(whole)((design, operation))
+
+
+def models_for(mesh, law="constant", rolling="none"):
+    names = LOCAL if mesh.reference is None else WHOLE_MESH
+    spur_pair = isinstance(mesh, CylindricalPair) and mesh.lanes == 2
+    return Models(
+        friction=tuple(LAW[name] for name in names),
+        choice=jnp.asarray(names.index(law)),
+        parameters={"constant": {"coefficient": jnp.asarray(0.07)}},
+        sharing=LOAD_SHARING["sanchez_2017" if spur_pair else "equal"],
+        rolling=ROLLING_RESISTANCE[rolling],
+    )
+
+
+def xu_alone(mesh):
+    return dataclasses.replace(models_for(mesh), friction=(LAW["xu_2007"],))
+
+
+def operation_for(mesh, load=None):
+    usual = 100.0 if isinstance(mesh, CylindricalPair) else 400.0
+    return Operation(*map(jnp.asarray, (usual if load is None else load, 150.0, 330.0)))
+
+
+def design_for(mesh):
+    return Design(
+        mesh,
+        jnp.asarray(226e9),
+        lubricants.find("pao-vg-220").build(),
+        Roughness.from_composite_rq(0.4e-6),
+    )
+
+
+@pytest.fixture(scope="module", params=FAMILIES, ids=list(FAMILIES))
+def family(request):
+    """A mesh with its answers on a grid that crosses all events, and close beside each of them.
+
+    On an event itself rounding decides which side it is: there only finite values are asked for.
+    """
+    mesh = FAMILIES[request.param]()
+    told = SimpleNamespace(**{k: np.asarray(v) for k, v in properties(mesh).items()})
+    events = np.resize(told.events, 3)
+    phase = np.concatenate(
+        [(np.arange(20) + 0.4) / 20.0, np.mod(np.append(events - 1e-7, events + 1e-7), 1.0)]
+    )
+    everywhere = jnp.asarray(np.concatenate([phase, events]))
+    found = jax.tree.map(np.asarray, contacts_of(mesh, jnp.asarray(phase)))
+    return SimpleNamespace(mesh=mesh, told=told, phase=phase, everywhere=everywhere, at=found)
+
+
+def test_active_contacts_keep_touching_on_the_nominal_motion(family):
+    closing = dot(family.told.motion, family.at.normal)
+    size = dot(np.abs(family.told.motion), np.abs(family.at.normal)) + 1e-300
+    assert family.at.active.any(axis=(0, 1)).all()
+    assert np.max(np.abs(closing / np.maximum(size, 1e-6))[family.at.active]) < 1e-14
+
+
+def test_sliding_is_the_difference_of_the_surface_speeds(family):
+    motion = family.told.motion
+    first, second = (np.asarray(along(arms, motion)) for arms in family.at.surface)
+    np.testing.assert_allclose(first, dot(motion, family.at.surface[0]), rtol=1e-14)
+    slip, roll = dot(motion, family.at.slip_arm), dot(motion, family.at.roll_arm)
+    np.testing.assert_allclose(slip, first - second, rtol=1e-13, atol=1e-16)
+    np.testing.assert_allclose(roll, first + second, rtol=1e-13, atol=1e-16)
+
+
+def test_driver_moves_by_one_radian_and_load_is_on_another_coordinate(family):
+    told = family.told
+    assert abs(told.driver @ told.motion) == pytest.approx(1.0, rel=1e-15)
+    assert told.driver @ told.loaded == 0.0
+    assert np.sum(told.driver) == np.sum(told.loaded) == 1.0
+
+
+def dot(rates, arms):
+    """Sum of rates times arms over the coordinates, which are the arms' first axis."""
+    return np.tensordot(rates, arms, axes=1)
+
+
+def laws(family):
+    return LOCAL if family.mesh.reference is None else WHOLE_MESH
+
+
+def check_energy(found):
+    """Power that the external torques put in is the power lost, and no friction gives any back."""
+    assert np.all(found["residual"] < 1e-12)
+    assert not np.any(found["locked"])
+    assert np.all(found["sliding_losses"] >= 0.0)
+    assert np.all(found["loss"] >= 0.0)
+
+
+@pytest.mark.parametrize("rolling", ["none", "wu_cheng_1991"])
+def test_torque_route_equals_loss_route(family, rolling):
+    if rolling != "none" and family.at.shape != "line":
+        pytest.skip("the formula is for line contacts")
+    design, operation = design_for(family.mesh), operation_for(family.mesh)
+    for law in laws(family):
+        found = state_of(
+            design, operation, jnp.asarray(family.phase), models_for(family.mesh, law, rolling)
+        )
+        found = {key: np.asarray(value) for key, value in found.items()}
+        check_energy(found)
+        rates = family.told.motion * float(operation.speed)
+        lost = dot(rates, found["torque"])
+        turnover = dot(np.abs(rates), np.abs(found["torque"]))
+        # At the pitch point nothing is lost: only rounding of the power that passes is left there.
+        assert np.all(np.abs(lost - found["loss"]) <= 1e-12 * found["loss"] + 1e-14 * turnover), law
+        between = found["input_power"] - found["output_power"]
+        assert np.all(np.abs(between - found["loss"]) <= 1e-11 * turnover), law
+        assert found["loss"].max() > 1e-4 * turnover.max()
+        assert (found["rolling_loss"].max() > 0.0) == (rolling != "none")
+
+
+# Flanks as curves in the fixed frame, in complex numbers, built from gear data alone.
+
+
+def tip_reach(mesh, index):
+    """Length of the base tangent up to the tip circle."""
+    z, m, x = float(mesh.teeth[index]), float(mesh.module), float(mesh.profile_shift[index])
+    tip = m * (z / 2.0 + float(mesh.addendum[index]) + x + float(mesh.tip_alteration[index]))
+    return np.sqrt(tip**2 - (z * m * np.cos(float(mesh.pressure_angle)) / 2.0) ** 2)
+
+
+class SpurFlanks:
+    """Involutes of both gears in contact at a phase, about the point where they should touch."""
+
+    def __init__(self, mesh, path):
+        teeth = np.asarray(mesh.teeth)
+        self.base = teeth * float(mesh.module) * np.cos(float(mesh.pressure_angle)) / 2.0
+        self.centres = np.array([0.0, float(mesh.centre_distance)])
+        self.angle = -np.arccos(self.base.sum() / self.centres[1])
+        tangent = -self.centres[1] * np.sin(self.angle)
+        start = tangent - tip_reach(mesh, 1)
+        self.length = start + path * 2.0 * np.pi * self.base[0] / teeth[0]
+        self.hand = -1.0 if bool(mesh.left_flank) else 1.0
+        # Both gears turn from phase 0 by their tooth numbers, not by where they should touch.
+        first = self.angle + start / self.base[0] + 2.0 * np.pi * path / teeth[0]
+        second = self.angle + (tangent - start) / self.base[1] - 2.0 * np.pi * path / teeth[1]
+        self.turned = (first, second)
+        # Steps stay far from the cusps, where the involutes start on their base circles.
+        rolls = np.array([self.length, tangent - self.length])
+        self.size = np.min(rolls * np.minimum(1.0, rolls / self.base))
+
+    @property
+    def touch(self):
+        return np.exp(1j * self.angle) * (self.base[0] + 1j * self.length)
+
+    def _point(self, member, roll):
+        string = self.base[member] * np.exp(1j * (self.turned[member] - roll)) * (1 + 1j * roll)
+        return string if member == 0 else self.centres[1] - string
+
+    def height(self, member, across):
+        """Position along the line of action of the flank's point that lies `across` from it."""
+        roll = np.full_like(across, self.turned[member] - self.angle)
+        for _ in range(30):
+            local = (self._point(member, roll) - self.touch) / np.exp(1j * self.angle)
+            turn = np.exp(1j * (self.turned[member] - roll - self.angle)).real
+            slope = self.base[member] * roll * turn * (1.0 if member == 0 else -1.0)
+            roll = roll - (local.real - across) / slope
+        return ((self._point(member, roll) - self.touch) / np.exp(1j * self.angle)).imag
+
+    def velocity(self, member):
+        """Closing and sliding velocity at the touching point for a unit rotation of one gear."""
+        turned = 1j * (self.touch - self.centres[member])
+        local = turned / np.exp(1j * self.angle) * self.hand * (1.0 if member == 0 else -1.0)
+        return local.imag, -local.real
+
+
+STEPS = np.arange(-4, 5)
+# Central differences of order eight for the second derivative.
+SECOND = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
+
+
+def second_derivative(heights, step):
+    return SECOND @ heights / step**2
+
+
+def circle(radius, across):
+    """Depth of a circle below its tangent."""
+    return across**2 / (radius + np.sqrt(radius**2 - across**2))
+
+
+def test_curvature_is_the_second_derivative_of_the_gap(family):
+    if isinstance(family.mesh, CylindricalPair):
+        check_spur_curvature(family)
+        return
+    first, second = principal_radii(family.mesh)
+    step = 0.02 * min(first[0], second[0])
+    across = STEPS * step
+    for direction in (0, 1):
+        each = [circle(r[direction], across) for r in (first, second)]
+        expected = [second_derivative(depth, step) for depth in each]
+        for found, one in zip(family.at.curvature[:, direction], expected, strict=True):
+            np.testing.assert_allclose(found, np.full(found.shape, one), 1e-8, 1e-12)
+        gap = second_derivative(sum(each), step)
+        np.testing.assert_allclose(family.at.relative_curvature[direction], gap, 1e-8, 1e-12)
+
+
+def principal_radii(mesh):
+    """Radii of both bodies along and across the rolling direction; a very large one for a plane."""
+    flat = 1e30
+    if isinstance(mesh, TwinDisc):
+        return tuple((float(r), flat) for r in mesh.radii)
+    return (float(mesh.ball_radius),) * 2, (flat, flat)
+
+
+def active_lanes(family):
+    for index in zip(*np.nonzero(family.at.active), strict=True):
+        pair, _, state = index
+        yield index, family.phase[state] + pair
+
+
+def check_spur_curvature(family):
+    count = 0
+    for index, path in active_lanes(family):
+        flanks = SpurFlanks(family.mesh, path)
+        step = 0.02 * flanks.size
+        first, second = (flanks.height(member, STEPS * step) for member in (0, 1))
+        scale = flanks.centres[1]
+        assert abs((second - first)[4]) < 1e-14 * scale, "the flanks do not touch"
+        assert np.all((second - first)[[0, 1, 2, 3, 5, 6, 7, 8]] > 0.0), "the flanks overlap"
+        members = [-second_derivative(first, step), second_derivative(second, step)]
+        rounding = 10.0 * 1e-16 * scale / step**2
+        np.testing.assert_allclose(
+            family.at.curvature[:, 0, *index], members, rtol=1e-8, atol=rounding
+        )
+        np.testing.assert_allclose(
+            family.at.relative_curvature[0, *index], sum(members), rtol=1e-8, atol=rounding
+        )
+        count += 1
+    assert count > len(family.phase) * 0.99
+    assert np.all(family.at.curvature[:, 1] == 0.0)
+
+
+def test_arms_are_the_velocities_of_the_turning_flanks(family):
+    if isinstance(family.mesh, CylindricalPair):
+        for index, path in active_lanes(family):
+            flanks = SpurFlanks(family.mesh, path)
+            closing, sliding = np.transpose([flanks.velocity(member) for member in (0, 1)])
+            np.testing.assert_allclose(family.at.normal[:, *index], closing, rtol=1e-12)
+            np.testing.assert_allclose(family.at.slip_arm[:, *index], sliding, rtol=1e-12)
+        return
+    turning = np.moveaxis(family.at.surface[:, :2], (0, 1), (-2, -1))
+    if isinstance(family.mesh, TwinDisc):
+        # Discs side by side: equal senses of rotation move the touching surfaces apart.
+        arms = np.diag(np.asarray(family.mesh.radii) * [1.0, -1.0])
+    else:
+        arms = np.diag([float(family.mesh.ball_radius), float(family.mesh.track_radius)])
+    np.testing.assert_allclose(turning, np.broadcast_to(arms, turning.shape), rtol=1e-15)
+    np.testing.assert_array_equal(family.at.normal[:2], 0.0)
+
+
+def test_contact_moves_along_each_flank_as_it_rolls(family):
+    inside = (np.arange(20) + 0.4) / 20.0
+    step = 1e-5
+    before, after = (
+        jax.tree.map(np.asarray, contacts_of(family.mesh, jnp.asarray(inside + move)))
+        for move in (-step, step)
+    )
+    rate = (after.flank - before.flank) / (2.0 * step)
+    active = before.active & after.active
+    for arms, moved in zip(
+        contacts_of(family.mesh, jnp.asarray(inside)).surface, rate, strict=True
+    ):
+        speed = dot(family.told.motion, arms)[active]
+        np.testing.assert_allclose(
+            np.abs(moved[active]), np.abs(speed * family.told.period), rtol=1e-8
+        )
+        signs = np.sign(moved[active] * speed)
+        assert np.all(signs == signs[0]), "the sense changes on the way"
+
+
+def leaves_of(found):
+    return {
+        field.name: np.asarray(getattr(found, field.name))
+        for field in dataclasses.fields(found)
+        if field.name != "shape"
+    }
+
+
+@pytest.mark.parametrize("turns", [-1.0, 1.0, 6.0])
+def test_one_period_later_all_is_the_same(family, turns):
+    inside = (np.arange(20) + 0.4) / 20.0
+    here = leaves_of(contacts_of(family.mesh, jnp.asarray(inside)))
+    there = leaves_of(contacts_of(family.mesh, jnp.asarray(inside + turns)))
+    for name, values in here.items():
+        np.testing.assert_allclose(there[name], values, rtol=1e-12, atol=1e-15, err_msg=name)
+
+
+def test_pairs_move_up_by_one_where_a_period_ends(family):
+    near = 1e-9
+    end, start = (
+        leaves_of(contacts_of(family.mesh, jnp.full(20, at))) for at in (1.0 - near, near)
+    )
+    pairs = end["active"].shape[0]
+    moved = pairs - 1 if pairs > 1 else 1  # a rig keeps its only contact
+    shift = slice(1, None) if pairs > 1 else slice(None)
+    both = end["active"][:moved] & start["active"][shift]
+    assert both.any()
+    for name in ("path", "curvature", "surface", "normal", "flank", "gap", "weight", "width"):
+        if pairs == 1 and name in ("path", "flank"):
+            continue  # a rig counts turns anew
+        before, after = (
+            values.reshape(-1, *end["active"].shape)[:, part][:, both]
+            for values, part in ((end[name], slice(moved)), (start[name], shift))
+        )
+        np.testing.assert_allclose(before, after, rtol=1e-6, atol=1e-9, err_msg=name)
+
+
+def test_batch_equals_loop(family):
+    phase = jnp.asarray(family.phase)
+    alone, mapped = each_alone(family.mesh, phase), vectorised(family.mesh, phase)
+    square = contacts_of(family.mesh, phase[:20].reshape(4, 5))
+    for name, values in leaves_of(family.at).items():
+        for other in (alone, mapped):
+            np.testing.assert_allclose(
+                np.moveaxis(getattr(other, name), 0, -1),
+                values,
+                rtol=1e-14,
+                atol=1e-17,
+                err_msg=name,
+            )
+        shaped = values[..., :20].reshape(*values.shape[:-1], 4, 5)
+        np.testing.assert_allclose(
+            np.asarray(getattr(square, name)), shaped, rtol=1e-14, atol=1e-17, err_msg=name
+        )
+
+
+def test_states_together_equal_states_alone(family):
+    mesh, phase = family.mesh, jnp.asarray(family.phase)
+    given = (design_for(mesh), operation_for(mesh), phase)
+    together = state_of(*given, models_for(mesh, "xu_2007"))["torque"]
+    alone = states_alone(*given, xu_alone(mesh))
+    np.testing.assert_allclose(np.transpose(alone), together, rtol=1e-11, atol=1e-14)
+
+
+def test_every_lane_is_finite_with_its_gradient(family):
+    value, gradient = gradient_of_all_lanes(family.mesh, family.everywhere)
+    assert np.isfinite(value)
+    for leaf in leaves_of(family.at).values():
+        assert np.all(np.isfinite(leaf))
+    for path, leaf in jax.tree_util.tree_leaves_with_path(floats(gradient)):
+        assert np.all(np.isfinite(leaf)), jax.tree_util.keystr(path)
+
+
+@pytest.mark.parametrize("load", [0.0, None], ids=["no load", "loaded"])
+def test_every_state_is_finite_with_its_gradient(family, load):
+    mesh = family.mesh
+    value, gradient = gradient_of_state(
+        design_for(mesh), operation_for(mesh, load), family.everywhere, xu_alone(mesh)
+    )
+    assert np.isfinite(value)
+    for path, leaf in jax.tree_util.tree_leaves_with_path(floats(gradient)):
+        assert np.all(np.isfinite(leaf)), jax.tree_util.keystr(path)
+
+
+def test_rigid_flanks_touch_where_they_are_active(family):
+    assert np.all(family.at.gap >= 0.0)
+    assert np.all(family.at.gap[family.at.active] == 0.0)
+
+
+def test_number_of_pairs_changes_at_events_only(family):
+    events = family.told.events
+    assert events.shape == jax.eval_shape(type(family.mesh).events, family.mesh).shape
+    assert np.all((events >= 0.0) & (events < 1.0))
+    assert np.all(np.diff(events) >= 0.0)
+    edges = np.unique(np.concatenate([[0.0], events, [1.0]]))
+    counts = []
+    for low, high in pairwise(edges):
+        inside = low + (high - low) * np.linspace(1e-6, 1.0 - 1e-6, 20)
+        pairs = np.asarray(contacts_of(family.mesh, jnp.asarray(inside)).active).any(1).sum(0)
+        assert np.all(pairs == pairs[0])
+        counts.append(pairs[0] * (high - low))
+    assert sum(counts) == pytest.approx(float(family.told.contact_ratio), rel=1e-12)
+
+
+def test_sliding_changes_its_sense_at_events_only(family):
+    edges = np.unique(np.concatenate([[0.0], family.told.events, [1.0]]))
+    for low, high in pairwise(edges):
+        inside = low + (high - low) * np.linspace(1e-6, 1.0 - 1e-6, 20)
+        at = contacts_of(family.mesh, jnp.asarray(inside))
+        slip = np.sign(dot(family.told.motion, at.slip_arm))
+        slip = np.where(np.asarray(at.active), slip, 0.0)
+        assert np.all(slip == slip[..., :1])
+
+
+def test_the_pairs_are_what_their_names_say():
+    told = {
+        name: float(properties(FAMILIES[name]())["contact_ratio"])
+        for name in ("18/36", "23/61, high teeth")
+    }
+    assert 1.0 < told["18/36"] < 2.0 < told["23/61, high teeth"] < 3.0
+    mesh = FAMILIES["20/60, pitch point in double contact"]()
+    base_pitch = np.pi * 3e-3 * np.cos(np.deg2rad(20.0))
+    phase = (mesh.pitch_position - mesh.limits[0]) / base_pitch
+    assert int(contacts_of(mesh, jnp.full(20, phase)).active[..., 0].sum()) == 2

@@ -1,0 +1,776 @@
+"""Every way in which a case file or a command line can be wrong gets one clear sentence.
+
+The broken case files are made by walking the schema: a field that is added to it is tested here
+by itself, or fails `test_the_walk_reaches_every_table`.
+"""
+
+import copy
+import datetime
+import json
+import math
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import UnionType
+from typing import Any, Literal, Union, get_args, get_origin
+
+import pytest
+from pydantic import BaseModel, BeforeValidator
+
+from pitchpoint import cli, units
+from pitchpoint.cases import schema
+from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.quantities import Pair, Quantity
+from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.conditions import arguments
+
+BASE = tomllib.loads("""
+title = "a title"
+summary = "a summary"
+source = "tian_2024"
+
+[gears]
+family = "cylindrical"
+teeth = [23, 61]
+module = "2 mm"
+face_width = "20 mm"
+
+[materials]
+gear_1 = { young = "206 GPa", poisson = 0.3, density = "7830 kg/m3" }
+gear_2 = { young = "206 GPa", poisson = 0.3, density = "7830 kg/m3" }
+
+[lubricant]
+base = "mineral"
+viscosity_40 = "220 mm2/s"
+viscosity_100 = "19 mm2/s"
+
+[roughness]
+ra = "0.4 um"
+
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+driver = "gear 1"
+
+[models]
+friction = [{ name = "constant", coefficient = 0.05 }, "xu_2007"]
+
+[studies.scan]
+title = "a sweep"
+sweep = { key = "gears.module", start = "1.9 mm", stop = "2.1 mm", count = 2 }
+
+[studies.list]
+sweep = { key = "gears.module", values = ["2 mm"] }
+
+[studies.list.change.operation]
+torque = "40 N m"
+
+[loss_map]
+temperatures = ["60 degC"]
+
+[[targets]]
+quantity = "contact ratio"
+where = "Table 1"
+kind = "predicted"
+printed = 1.6
+study = "scan"
+variable = "contact_ratio"
+law = [0]
+
+[[issues]]
+where = "Table 1"
+issue = "a misprint"
+verdict = "corrected"
+""")
+
+Path_ = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class Site:
+    """A place in the schema: its path, and what belongs there."""
+
+    path: Path_
+    annotation: Any
+    marks: tuple[Any, ...]
+
+    @property
+    def key(self) -> str:
+        return ".".join(map(str, self.path))
+
+    def mark(self, kind: type) -> Any:
+        return next((mark for mark in self.marks if isinstance(mark, kind)), None)
+
+
+@dataclass(frozen=True)
+class Bad:
+    """A broken case: what is put where, and what the message must contain."""
+
+    name: str
+    path: Path_
+    value: Any
+    words: tuple[str, ...]
+    key: str
+
+
+# ---- walking the schema
+
+
+def marks_in(annotation: Any) -> Iterator[Any]:
+    yield from getattr(annotation, "__metadata__", ())
+    for inner in get_args(annotation):
+        if not isinstance(inner, str):
+            yield from marks_in(inner)
+
+
+def tables_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for inner in get_args(annotation):
+        yield from tables_in(inner)
+
+
+def containers(annotation: Any) -> set[Any]:
+    """Which of dict and tuple stand between a field and its values; a pair is no list."""
+    found = {get_origin(annotation)} & {dict, tuple}
+    if get_origin(annotation) in (Union, UnionType) or hasattr(annotation, "__metadata__"):
+        found |= set().union(*(containers(inner) for inner in get_args(annotation)))
+    return found
+
+
+def inside(site: Site) -> Path_:
+    """Path of the first member of a table or list of tables, as BASE has it."""
+    node = at(BASE, site.path)
+    if containers(site.annotation) & {tuple}:
+        return (*site.path, 0)
+    return (*site.path, next(iter(node))) if dict in containers(site.annotation) else site.path
+
+
+def sites(model: type[BaseModel] = schema.Case, path: Path_ = ()) -> Iterator[Site]:
+    for name, info in model.model_fields.items():
+        marks = (*info.metadata, *marks_in(info.annotation))
+        site = Site((*path, name), info.annotation, marks)
+        yield site
+        for table in tables_in(info.annotation):
+            yield from sites(table, inside(site))
+
+
+def tables(
+    model: type[BaseModel] = schema.Case, path: Path_ = ()
+) -> Iterator[tuple[type[BaseModel], Path_]]:
+    yield model, path
+    for name, info in model.model_fields.items():
+        for table in tables_in(info.annotation):
+            yield from tables(table, inside(Site((*path, name), info.annotation, ())))
+
+
+def at(tree: Any, path: Path_) -> Any:
+    for part in path:
+        tree = tree[part]
+    return tree
+
+
+def put(path: Path_, value: Any) -> dict[str, Any]:
+    tree = copy.deepcopy(BASE)
+    at(tree, path[:-1])[path[-1]] = value
+    return tree
+
+
+# ---- what can be wrong at each kind of place
+
+LIST, TABLE, DATE = [1, 2, 3], {"a": 1}, datetime.date(2024, 1, 31)
+SHAPES = {
+    "list": (LIST, "[1, 2, 3]"),
+    "table": (TABLE, "{ a = 1 }"),
+    "bool": (True, "true"),
+    "date": (DATE, "2024-01-31"),
+}
+NUMBERS = {**SHAPES, "text": ("plenty", '"plenty"'), "empty": ("", '""')}
+NAMES = {**SHAPES, "number": (7, "7"), "nan": (math.nan, "nan")}
+
+
+def of_quantity(quantity: Quantity) -> Iterator[tuple[str, Any, str]]:
+    """Name, value and shown value of everything that is no such quantity."""
+    unit = units.si_unit(quantity.kind)
+
+    def written(number: float) -> Any:
+        return f"{number!r} {unit}" if unit else number
+
+    for name, (value, shown) in NUMBERS.items():
+        yield name, value, shown
+    yield "nan", math.nan, "nan"
+    yield "infinite", math.inf, "inf"
+    yield "nan text", f"nan {unit}", "nan"
+    yield "huge", 10**400, "more than 40 digits"
+    yield "wrong dimension", "3 kg", '"3 kg"'
+    yield "decimal comma", f"0,5 {unit}", "0,5"
+    if unit:
+        yield "missing unit", 3, '"3" has no unit'
+        yield "missing unit in text", "3", '"3" has no unit'
+        yield "unknown unit", "3 furlong", '"3 furlong"'
+    if quantity.low > -math.inf:
+        low = written(quantity.low - 0.5 * abs(quantity.low) - 1.0)
+        yield "below", low, str(low)
+    if quantity.open_low:
+        yield "at the open end", written(quantity.low), str(written(quantity.low))
+    if quantity.high < math.inf:
+        high = written(1.5 * quantity.high + 1.0)
+        yield "above", high, str(high)
+    if quantity.whole:
+        yield "not whole", written(quantity.low + 0.5), str(written(quantity.low + 0.5))
+
+
+def of_name(known: list[str]) -> Iterator[tuple[str, Any, str, str]]:
+    yield "misspelt", f"{known[0]}x", f'"{known[0]}x"', known[0]
+    yield "unknown", "qqqq", '"qqqq"', f"known are {', '.join(known)}"
+    for name, (value, shown) in NAMES.items():
+        yield name, value, shown, known[0]
+
+
+def named_list(site: Site) -> list[str] | None:
+    """Names that a registry field takes: what its own message lists."""
+    reader = site.mark(BeforeValidator)
+    if reader is None or "named.<locals>" not in getattr(reader.func, "__qualname__", ""):
+        return None
+    with pytest.raises(Exception, match="known are") as caught:
+        reader.func("qqqq")
+    return str(caught.value).partition("known are ")[2].split(", ")
+
+
+def bads_at(site: Site) -> Iterator[Bad]:
+    quantity, pair, known = site.mark(Quantity), site.mark(Pair), named_list(site)
+    if pair is not None:
+        yield from bad_pairs(site, pair.each)
+    elif quantity is not None:
+        inner = (0,) if containers(site.annotation) & {tuple} else ()
+        for name, value, shown in of_quantity(quantity):
+            yield Bad(name, (*site.path, *inner), value, (shown, quantity.allowed), site.key)
+        if inner:
+            for name, value in (("number", 3), ("text", "x"), ("table", TABLE)):
+                yield Bad(f"no list but {name}", site.path, value, ("list",), site.key)
+    elif known is not None:
+        by_value = bool(list(tables_in(site.annotation)))
+        for name, value, *words in of_name(known):
+            if not (by_value and name == "table"):
+                yield Bad(name, site.path, value, tuple(words), site.key.partition(".0.name")[0])
+    elif get_origin(site.annotation) is Literal:
+        options = get_args(site.annotation)
+        for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
+            yield Bad(name, site.path, value, (shown, *options), site.key)
+    elif site.annotation is str:
+        for name, (value, shown) in NAMES.items():
+            yield Bad(name, site.path, value, (shown, "text"), site.key)
+    elif list(tables_in(site.annotation)) or containers(site.annotation):
+        yield from bad_structures(site)
+    else:
+        assert site.annotation is Any, f"{site.key} is of a kind that this test does not know"
+
+
+def bad_pairs(site: Site, each: Quantity) -> Iterator[Bad]:
+    for name, value, shown in of_quantity(each):
+        yield Bad(name, site.path, value, (shown, each.allowed), site.key)
+        if name != "list":
+            yield Bad(f"{name} in list", site.path, [value, value], (shown, each.allowed), site.key)
+    yield Bad("list of none", site.path, [], ("0 values", each.allowed), site.key)
+
+
+def bad_structures(site: Site) -> Iterator[Bad]:
+    given = {"number": (3, "3"), "text": ("qqqq", '"qqqq"'), "bool": (True, "true")}
+    given |= {"nan": (math.nan, "nan")}
+    if site.path != ("models", "friction"):  # a single law may be given as it is
+        shape = (
+            (LIST, "[1, 2, 3]") if not containers(site.annotation) & {tuple} else (TABLE, "a = 1")
+        )
+        given["other shape"] = shape
+    for name, (value, shown) in given.items():
+        yield Bad(name, site.path, value, (shown,), site.key)
+
+
+def bad_keys() -> Iterator[Bad]:
+    for model, path in tables():
+        if model is schema.FrictionChoice:
+            continue  # its keys are parameters, see below
+        first = next(iter(model.model_fields))
+        wrong = f"{first}x"
+        key = ".".join(map(str, (*path, wrong)))
+        for name, value in (("key", 1), ("table", TABLE)):
+            yield Bad(f"unknown {name}", (*path, wrong), value, (name, first), key)
+
+
+def bad_sweeps() -> Iterator[Bad]:
+    sweep = ("studies", "scan", "sweep")
+    for name, value, shown in of_quantity(schema.MODULE):
+        for end in ("start", "stop"):
+            words = (shown, schema.MODULE.allowed, "gears.module")
+            yield Bad(f"{end} {name}", (*sweep, end), value, words, ".".join(sweep))
+        listed = ("studies", "list", "sweep", "values")
+        yield Bad(f"values {name}", listed, [value], words, "studies.list.sweep")
+    for wrong, words in {
+        "gears.modul": ("module",),
+        "gaers.module": ("gears",),
+        "gears.module.deep": ("gears.module.deep",),
+        "title": ("cannot be swept", "operation"),
+        "models.load_sharing": ("cannot be swept", "operation"),
+        "loss_map.torque": ("cannot be swept", "operation"),
+        "operation.driver": ("no number", "values"),
+        "": ("gears",),
+    }.items():
+        yield Bad(f"key {wrong}", (*sweep, "key"), wrong, words, ".".join(sweep))
+    for key in ("start", "stop"):
+        whole = {"key": "gears.module", key: "2 mm"}
+        yield Bad(f"only {key}", sweep, whole, ("start and stop, or values",), ".".join(sweep))
+    both = {**at(BASE, sweep), "values": ["2 mm"]}
+    yield Bad("both", sweep, both, ("start and stop, or values",), ".".join(sweep))
+    empty = {"key": "gears.module", "values": []}
+    yield Bad("no values", sweep, empty, ("0 values", "1 to 100000"), ".".join(sweep))
+
+
+def bad_parameters() -> Iterator[Bad]:
+    path = ("models", "friction")
+    for law in FRICTION.values():
+        own = arguments(law.function)[1]
+        table = {"name": law.name, "qqqq": 1}
+        words = ("no parameter", law.name, *own)
+        yield Bad(f"{law.name} unknown", path, table, words, "models.friction.qqqq")
+        for key in own:
+            for name, value, shown in of_quantity(schema.COEFFICIENT):
+                words = (shown, schema.COEFFICIENT.allowed)
+                where = f"models.friction.{key}"
+                yield Bad(
+                    f"{law.name} {key} {name}", path, {"name": law.name, key: value}, words, where
+                )
+    yield Bad("none", path, [], ("0 friction laws", "1 to 12"), "models.friction")
+    yield Bad("many", path, ["constant"] * 13, ("13 friction laws", "1 to 12"), "models.friction")
+    yield Bad("twice", path, ["xu_2007", "xu_2007"], ('"xu_2007"', "once"), "models.friction")
+
+
+def bad_oils() -> Iterator[Bad]:
+    by_value = at(BASE, ("lubricant",))
+    for name, change, words, key in [
+        ("nothing", {"base": None, "viscosity_40": None, "viscosity_100": None}, ("name",), ""),
+        ("no base", {"base": None}, ("mineral", "pao"), ""),
+        ("one viscosity", {"viscosity_100": None}, ("viscosity_40 and viscosity_100",), ""),
+        ("rising", {"viscosity_100": "300 mm2/s"}, ("above",), ".viscosity_40"),
+        ("ends", {"temperature_min": "90 degC", "temperature_max": "80 degC"}, ("below",), ""),
+    ]:
+        oil = {k: v for k, v in {**by_value, **change}.items() if v is not None}
+        yield Bad(f"oil {name}", ("lubricant",), oil, words, f"lubricant{key}")
+
+
+def bad_surfaces() -> Iterator[Bad]:
+    two = {"ra": "0.4 um", "rq": "0.5 um"}
+    yield Bad("two", ("roughness",), two, ("2 roughness", "exactly one"), "roughness")
+    yield Bad("none", ("roughness",), {}, ("no roughness", "exactly one"), "roughness")
+
+
+def bad_marks() -> Iterator[Bad]:
+    for value in ("guessed", 3, LIST, TABLE):
+        mark = {"value": "2 mm", "status": value}
+        yield Bad(
+            f"status {value}", ("gears", "module"), mark, ("printed", "assumed"), "gears.module"
+        )
+    table = {"value": "2 mm", "unit": "mm"}
+    yield Bad("no mark", ("gears", "module"), table, (schema.MODULE.allowed,), "gears.module")
+
+
+def bad_targets() -> Iterator[Bad]:
+    yield Bad("unit", ("targets", 0, "unit"), "parsec", ('"parsec"', "unit"), "targets.0.unit")
+    yield Bad("study", ("targets", 0, "study"), "scam", ('"scam"', "scan"), "targets.0.study")
+
+
+def bad_names() -> Iterator[Bad]:
+    words = ("letters, digits",)
+    for name in ("../up", "a/b", "a b", "", "x" * 61, "a\nb", ".."):
+        yield Bad(f"study {name!r}", ("studies",), {name: {}}, words, "studies")
+        yield Bad(f"variant {name!r}", ("variants",), {name: {}}, words, "variants")
+    yield Bad("variants", ("variants",), 3, ("3", "table"), "variants")
+    yield Bad("variant", ("variants",), {"a": 3}, ("3", "table"), "variants.a")
+
+
+WALKED = [bad for site in sites() for bad in bads_at(site)]
+LISTED = [
+    *bad_keys(),
+    *bad_sweeps(),
+    *bad_parameters(),
+    *bad_oils(),
+    *bad_surfaces(),
+    *bad_marks(),
+    *bad_targets(),
+    *bad_names(),
+]
+REQUIRED = [
+    (*path, name)
+    for model, path in tables()
+    for name, info in model.model_fields.items()
+    if info.is_required()
+]
+
+
+# ---- writing and running
+
+
+def toml(value: Any) -> str:
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{json.dumps(k)} = {toml(v)}' for k, v in value.items())} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(toml, value))}]"
+    if isinstance(value, str | bool):
+        return json.dumps(value)
+    return str(value)
+
+
+def written(tree: dict[str, Any], folder: Path) -> Path:
+    path = folder / "bad.toml"
+    path.write_text("".join(f"{json.dumps(k)} = {toml(v)}\n" for k, v in tree.items()), "utf-8")
+    return path
+
+
+@pytest.fixture
+def refuse(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> Callable[..., str]:
+    """Run a command that must be refused; gives its one sentence."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: object, status: int = 2) -> str:
+        monkeypatch.setattr(sys, "argv", ["pitchpoint", *map(str, arguments)])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        told = capsys.readouterr()
+        assert caught.value.code == status
+        assert told.out == ""
+        assert told.err.count("\n") == 1
+        assert told.err.startswith("error: ")
+        assert len(told.err) < 700
+        assert "Traceback" not in told.err
+        return told.err
+
+    return run
+
+
+def test_the_whole_case_is_sound(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "show", str(written(BASE, tmp_path)), "--json"])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 0
+    assert json.loads(capsys.readouterr().out)[0]["title"] == "a title"
+
+
+def test_the_walk_reaches_every_table() -> None:
+    defined = {
+        each
+        for each in vars(schema).values()
+        if isinstance(each, type) and issubclass(each, BaseModel)
+    }
+    assert {model for model, _ in tables()} == defined - {BaseModel, schema.Table}
+    tested = {bad.path[: len(site.path)] for site in sites() for bad in WALKED + LISTED}
+    assert tested >= {site.path for site in sites() if site.annotation is not Any}
+
+
+@pytest.mark.parametrize("bad", WALKED + LISTED, ids=lambda bad: f"{bad.path}-{bad.name}")
+def test_a_wrong_value(bad: Bad, refuse: Callable[..., str], tmp_path: Path) -> None:
+    told = refuse("show", written(put(bad.path, bad.value), tmp_path))
+    assert f"bad.toml: {bad.key}" in told
+    for word in bad.words:
+        assert word in told
+
+
+@pytest.mark.parametrize("path", REQUIRED, ids=lambda path: ".".join(map(str, path)))
+def test_a_missing_key(path: Path_, refuse: Callable[..., str], tmp_path: Path) -> None:
+    tree = copy.deepcopy(BASE)
+    if path == ("gears", "teeth"):
+        assert path in REQUIRED
+    del at(tree, path[:-1])[path[-1]]
+    told = refuse("show", written(tree, tmp_path))
+    assert f"bad.toml: {'.'.join(map(str, path))}: is missing; " in told
+
+
+# ---- files that are wrong as a whole
+
+SMALL = """
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = "20 mm"
+[lubricant]
+name = "75W90-A"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+"""
+
+GEAR_WORDS = {
+    "pointed tooth": (
+        ("gears", {"profile_shift": [1.5, 0.0], "teeth": [12, 61]}),
+        "gears.addendum: the tip circle of gear 1",
+        "where the flanks cross; it may be",
+    ),
+    "contact ratio below one": (
+        ("gears", {"addendum": 0.4}),
+        "gears.addendum: the contact ratio of gear 1 and gear 2 is 0.7",
+        "must be at least 1",
+    ),
+    "interference": (
+        ("gears", {"teeth": [40, 120], "addendum": [1.5, 1.0], "dedendum": 1.2}),
+        "gears.dedendum: the tip of gear 1 runs into the root of gear 2",
+        "must be positive",
+    ),
+    "interference with the fillet": (
+        ("gears", {"teeth": [40, 120], "addendum": [1.0, 1.5], "dedendum": 1.2}),
+        "gears.addendum: the tip of gear 2 meets the fillet of gear 1",
+        "parts them",
+    ),
+    "overlapping flanks": (
+        ("gears", {"centre_distance": "83 mm"}),
+        "gears.centre_distance: the flanks of gear 1 and gear 2 overlap",
+        "at least 84 mm",
+    ),
+    "too cold": (
+        ("operation", {"temperature": "-40 degC"}),
+        "operation.temperature: -40 degC is outside the range of 75W90-A",
+        "degC to 120 degC",
+    ),
+    "loss map too hot": (
+        ("loss_map", {"temperatures": ["60 degC", "130 degC"]}),
+        "loss_map.temperatures: 130 degC is outside the range of 75W90-A",
+        "degC to 120 degC",
+    ),
+    "sharing beyond two": (
+        ("gears", {"addendum": 1.4, "profile_shift": [0.4, -0.2]}),
+        "models.load_sharing: 'sanchez_2017' holds for contact ratios between 1 and 2, this pair has 2",
+        "equal, single",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", GEAR_WORDS)
+def test_gears_that_cannot_run(name: str, refuse: Callable[..., str], tmp_path: Path) -> None:
+    (table, change), *words = GEAR_WORDS[name]
+    tree = {**tomllib.loads(SMALL), "models": {"load_sharing": "sanchez_2017"}}
+    tree[table] = {**tree.get(table, {}), **change}
+    told = refuse("show", written(tree, tmp_path))
+    assert "bad.toml: " in told
+    for word in words:
+        assert word in told
+
+
+def deep(levels: int) -> bytes:
+    return f"a{'.a' * levels} = 1".encode()
+
+
+FILES = {
+    "not TOML": (b"[gears\nteeth = 3", "is not a TOML file: ", "at line 1"),
+    "two of a kind": (b"a = 1\na = 2", "is not a TOML file: ", "overwrite"),
+    "binary": (b"\x00\x01\x02", "is not a TOML file", "line 1"),
+    "not UTF-8": ("title = 'é'".encode("latin-1"), "is not UTF-8 text", "TOML"),
+    "empty": (b"", "gears: is missing", "gears, lubricant, roughness, operation"),
+    "only a remark": (b"# nothing", "gears: is missing", "gears, lubricant, roughness, operation"),
+    "deep tables": (deep(50_000), "is nested more than 16 levels", "most allowed"),
+    "deep tables in a line": (b"a = {" + deep(50_000) + b"}", "is nested more than 16", "allowed"),
+    "many keys": (b"".join(b"k%d = 1\n" % i for i in range(90_000)), "k0: is not a known key", "g"),
+    "a misspelt table": (b"[gaers]\nteeth = 20", "gaers: is not a known table", "mean gears?"),
+    "deep lists": (b"a = " + b"[" * 50_000, "is nested more than 16 levels", "most allowed"),
+    "closed lists": (b"a = " + b"[" * 40 + b"]" * 40, "is nested more than", "16 levels"),
+    "too many digits": (b"a = " + b"9" * 5000, "is not a TOML file", "digit"),
+    "many hexadecimal digits": (b"title = 0x" + b"f" * 9000, "title: a whole number", "text"),
+    "control characters": (b'"a\\nb\\u001b[1m" = 1', "a\\nb\\x1b[1m", "known key"),
+    "a long key": (b"k" * 100_000 + b" = 1", "kkk...: is not a known key", "gears"),
+    "a long text": (b"gears = '" + b"k" * 100_000 + b"'", "gears: ", "where a table belongs"),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_files_that_are_no_case(name: str, refuse: Callable[..., str], tmp_path: Path) -> None:
+    content, *words = FILES[name]
+    path = tmp_path / "bad.toml"
+    path.write_bytes(content)
+    told = refuse("show", path)
+    assert told.startswith("error: bad.toml: ")
+    for word in words:
+        assert word in told
+
+
+def test_a_byte_order_mark_does_no_harm(refuse: Callable[..., str], tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_bytes(b"\xef\xbb\xbf[gears]\nteeth = -1")
+    assert "gears.teeth: -1 is out of range; allowed is 3 to 10000" in refuse("show", path)
+
+
+def test_a_file_of_a_gigabyte(refuse: Callable[..., str], tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    with path.open("wb") as file:
+        file.truncate(10**9)
+    assert "bad.toml: has 1000 MB; a case file has at most 1 MB" in refuse("run", path)
+
+
+@pytest.mark.parametrize("command", ["show", "run", "compare"])
+def test_no_such_file(command: str, refuse: Callable[..., str], tmp_path: Path) -> None:
+    assert "gone.toml: there is no such case file" in refuse(command, tmp_path / "gone.toml")
+    assert "is a folder" in refuse(command, tmp_path)
+    assert "'tian2042' is neither a shipped case nor a file" in (
+        told := refuse(command, "tian2042")
+    )
+    assert "did you mean tian2024?" in told
+    assert "variants" in refuse(command, "tian2024", "--variant", "as_publisht")
+    assert refuse(command, "x" * 5000)
+    assert refuse(command, f"{'x' * 5000}.toml")
+    assert "no such case file" in refuse(command, "/dev/null")
+
+
+def test_a_case_without_targets(refuse: Callable[..., str], tmp_path: Path) -> None:
+    path = written(tomllib.loads(SMALL), tmp_path)
+    assert "bad.toml: has no targets to compare with" in refuse("compare", path)
+
+
+@pytest.mark.parametrize("name", ["missing", "empty", "other", "broken"])
+def test_nothing_to_cite(name: str, refuse: Callable[..., str], tmp_path: Path) -> None:
+    folder = tmp_path / name
+    if name != "missing":
+        (folder / "default").mkdir(parents=True)
+    if name in ("other", "broken"):
+        text = '{"parts": 3}' if name == "other" else '{"parts": ['
+        (folder / "default" / "manifest.json").write_text(text)
+    told = refuse("cite", folder)
+    assert name in told
+    assert "pitchpoint" in told
+
+
+# ---- command lines
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--set", "gears.modul=2 mm"], ["bad.toml: gears.modul: ", "did you mean module?"]),
+        (["--set", "geers.module=2 mm"], ["bad.toml: geers: ", "did you mean gears?"]),
+        (["--set", "gears.module=2"], ["gears.module: ", '"2" has no unit', "100 mm"]),
+        (["--set", "gears.module=-2 mm"], ["gears.module: ", '"-2 mm"', "100 mm"]),
+        (["--set", "gears.module.a=2 mm"], ["gears.module.a: ", '"module" is a value']),
+        (["--set", "gears.teeth.3=20"], ["gears.teeth.3: ", "no gear 3; use 1 or 2"]),
+        (["--set", "gears.teeth.1=2"], ["gears.teeth: ", "2 is out of range", "3 to 10000"]),
+        (["--set", "gears=3"], ["gears: ", "3 was given where a table belongs"]),
+        (["--set", "operation.torque=[1, 2]"], ["operation.torque: ", "the list [1, 2]"]),
+        (["--set", f"operation.torque={'9' * 5000}"], ["operation.torque: ", "1e+08 N m"]),
+        (["--set", f"operation.torque={'[' * 5000}"], ["operation.torque: ", "1e+08 N m"]),
+        (["--set", "operation.torque"], ["--set: ", "operation.torque", "KEY=VALUE"]),
+        (["--set", "=3"], ["--set: ", "=3", "KEY=VALUE"]),
+        (["--set", ""], ["--set: ", "KEY=VALUE"]),
+        (["--set", ".=3"], ["bad.toml: ", "known are", "gears"]),
+        (["--set", "variants.a.b=3"], ["variants: ", "known", "gears"]),
+        (["--sweep", "gears.modul=1 mm:2 mm:3"], ["--sweep: gears.modul: ", "module"]),
+        (["--sweep", "gears.module=1:2 mm:3"], ["--sweep: gears.module: ", '"1" has no unit']),
+        (["--sweep", "gears.module=1 mm:2 kg:3"], ["--sweep: gears.module: ", '"2 kg"', "100 mm"]),
+        (["--sweep", "gears.module=1 mm:2 mm:0"], ["--sweep: ", "1 mm:2 mm:0", "1 to 100000"]),
+        (["--sweep", "gears.module=1 mm:2 mm:100001"], ["--sweep: ", "1 to 100000"]),
+        (["--sweep", "gears.module=1 mm:2 mm:²"], ["--sweep: ", "1 to 100000"]),
+        (["--sweep", "gears.module=1 mm:2 mm"], ["--sweep: ", "KEY=START:STOP:COUNT"]),
+        (["--sweep", "gears.module"], ["--sweep: ", "KEY=START:STOP:COUNT"]),
+        (["--sweep", "=1 mm:2 mm:3"], ["--sweep: ", "known are", "gears"]),
+        (["--sweep", "operation.driver=1:2:3"], ["--sweep: operation.driver: ", "no number"]),
+        (["--sweep", "title=1:2:3"], ["--sweep: title: cannot be swept", "gears, materials"]),
+        (["--sweep", "models.friction=1:2:3"], ["--sweep: models.friction: cannot be swept"]),
+        (["--sweep", "gears.addendum=1:2.1:3"], ["--sweep: at gears.addendum = 2.1: ", "2.158"]),
+        (["--bogus"], ["No such option: --bogus; see pitchpoint --help"]),
+        (["--variant"], ["--variant", "requires an argument; see pitchpoint --help"]),
+        (["--variant", "x"], ['variants: "x" is not a variant', "known are default"]),
+        (["extra"], ["extra", "see pitchpoint --help"]),
+    ],
+    ids=lambda given: " ".join(given)[:50],
+)
+def test_command_lines(
+    arguments: list[str], words: list[str], refuse: Callable[..., str], tmp_path: Path
+) -> None:
+    told = refuse("run", written(tomllib.loads(SMALL), tmp_path), *arguments)
+    for word in words:
+        assert word in told
+    assert not (tmp_path / "results").exists()
+
+
+def test_no_such_command(refuse: Callable[..., str]) -> None:
+    assert "No such command 'frobnicate'" in refuse("frobnicate")
+    assert "Missing argument 'CASE'" in refuse("run")
+
+
+def test_a_study_that_goes_wrong_half_way() -> None:
+    tree = tomllib.loads(SMALL)
+    sweep = {"key": "gears.profile_shift.1", "values": [0.0, 1.4, 0.1]}
+    tree["studies"] = {"shift": {"sweep": sweep}}
+    tree["gears"]["teeth"] = [12, 61]
+    made = jobs(Variant(tree, "bad.toml", "default"), {})
+    study = next(job for job in made if job.name == "study_shift")
+    with pytest.raises(InputError) as caught:
+        study.pieces[0](lambda _: None)
+    told = str(caught.value)
+    assert "bad.toml: studies.shift.sweep: at gears.profile_shift.1 = 1.4: " in told
+    assert "gears.addendum: the tip circle of gear 1" in told
+    assert "it may be" in told
+
+
+def test_a_change_that_goes_wrong(refuse: Callable[..., str], tmp_path: Path) -> None:
+    tree = tomllib.loads(SMALL)
+    tree["studies"] = {"hot": {"change": {"operation": {"temperature": "200 degC"}}}}
+    told = refuse("show", written(tree, tmp_path))
+    assert "bad.toml: studies.hot: operation.temperature: 200 degC is outside" in told
+    tree["studies"] = {"hot": {"change": {"operation": {"temperatur": "90 degC"}}}}
+    told = refuse("show", written(tree, tmp_path))
+    assert "studies.hot: operation.temperatur: is not a known key; did you mean temperature" in told
+
+
+def test_a_folder_that_cannot_be_written(refuse: Callable[..., str], tmp_path: Path) -> None:
+    path = written(tomllib.loads(SMALL), tmp_path)
+    (tmp_path / "file").write_text("in the way")
+    told = refuse("run", path, "-o", tmp_path / "file")
+    assert f"{tmp_path / 'file'}: cannot be written to: " in told
+    assert "file/in/it: cannot be written to: " in refuse(
+        "run", path, "-o", tmp_path / "file/in/it"
+    )
+    assert (tmp_path / "file").read_text() == "in the way"
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_without_permission(refuse: Callable[..., str], tmp_path: Path) -> None:
+    path = written(tomllib.loads(SMALL), tmp_path)
+    (tmp_path / "closed").mkdir(mode=0o500)
+    assert "cannot be written to: Permission denied" in refuse(
+        "run", path, "-o", tmp_path / "closed"
+    )
+
+
+# ---- the same from outside
+
+
+@pytest.mark.parametrize(
+    ("content", "arguments", "words"),
+    [
+        (SMALL.replace('"2 mm"', '"[bold]2 mm[/bold]"'), [], ['"[bold]2 mm[/bold]"', "100 mm"]),
+        (SMALL, ["--bogus"], ["No such option: --bogus"]),
+    ],
+    ids=["markup", "option"],
+)
+def test_a_process(content: str, arguments: list[str], words: list[str], tmp_path: Path) -> None:
+    (tmp_path / "bad.toml").write_text(content)
+    command = [
+        sys.executable,
+        "-c",
+        "from pitchpoint.cli import main; main()",
+        "run",
+        "bad.toml",
+        *arguments,
+    ]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    for word in words:
+        assert word in done.stderr

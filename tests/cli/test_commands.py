@@ -1,0 +1,398 @@
+"""The commands from the outside: what they print, what they leave on disk, how they end."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from pitchpoint import cli
+from pitchpoint.cases.run import open_result
+from pitchpoint.materials import lubricants
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+COLUMNS = ["quantity", "where", "printed", "computed", "tolerance", "kind", "verdict", "reason"]
+PARTS = {"teeth", "cycle", "operation", "laws", "loss_map", "back_driving"}
+
+TINY = """
+title = "A [bold]pair[/bold] of <b>gears</b>"
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = "20 mm"
+[lubricant]
+name = "75W90-A"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+[models]
+friction = ["xu_2007", "frictionless"]
+[loss_map]
+count = 3
+[studies.speed]
+sweep = { key = "operation.speed", start = "500 rpm", stop = "1500 rpm", count = 3 }
+[studies.smooth.change.roughness]
+ra = "0.2 um"
+"""
+
+
+@dataclass(frozen=True)
+class Told:
+    status: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> object:
+        return json.loads(self.out)
+
+
+@pytest.fixture
+def pitchpoint(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> Callable[..., Told]:
+    """Run a command in this process, so that programs are compiled once; reports are not written."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder: None)
+    monkeypatch.setenv("COLUMNS", "200")
+
+    def run(*arguments: object) -> Told:
+        monkeypatch.setattr(sys, "argv", ["pitchpoint", *map(str, arguments)])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        out, err = capsys.readouterr()
+        return Told(int(caught.value.code or 0), out, err)
+
+    return run
+
+
+@pytest.fixture
+def tiny(tmp_path: Path) -> Path:
+    path = tmp_path / "tiny.toml"
+    path.write_text(TINY)
+    return path
+
+
+def times(folder: Path) -> dict[str, int]:
+    return {path.stem: path.stat().st_mtime_ns for path in folder.glob("default/*.nc")}
+
+
+# ---- listing and showing
+
+
+def test_cases(pitchpoint: Callable[..., Told]) -> None:
+    assert pitchpoint("cases", "--json").json[0]["case"] == "tian2024"
+    assert "tian2024" in pitchpoint("cases").out
+
+
+def test_show(pitchpoint: Callable[..., Told], tiny: Path) -> None:
+    shown = pitchpoint("show", "tian2024", "--variant", "physical", "--json").json
+    assert [one["variant"] for one in shown] == ["physical"]
+    rows = {(row["table"], row["key"]): row for row in shown[0]["inputs"]}
+    assert rows["gears", "module"]["value"] == "3 mm"
+    assert rows["gears", "module"]["status"] == "printed"
+    assert rows["gears", "module"]["where"] == "Table 1"
+    assert rows["gears", "flank"]["status"] == "default"
+    assert shown[0]["issues"]
+    told = pitchpoint("show", "tian2024")
+    assert told.status == 0
+    assert all(issue["where"] in told.out for issue in shown[0]["issues"])
+
+
+def test_text_of_the_user_is_shown_as_typed(pitchpoint: Callable[..., Told], tiny: Path) -> None:
+    assert "A [bold]pair[/bold] of <b>gears</b>" in pitchpoint("show", tiny).out
+
+
+def test_models(pitchpoint: Callable[..., Told]) -> None:
+    rows = pitchpoint("models", "--json").json
+    kinds = {row["kind"] for row in rows}
+    assert kinds >= {"friction", "load_sharing", "rolling_resistance", "lubricant", "material"}
+    sharing = next(row for row in rows if row["name"] == "sanchez_2017")
+    assert sharing["range"] == "1 < contact ratio < 2"
+    assert all(row["name"] in pitchpoint("models").out for row in rows[:3])
+
+
+# ---- running
+
+
+def test_run_leaves_results_that_are_not_computed_twice(
+    pitchpoint: Callable[..., Told], tiny: Path, tmp_path: Path
+) -> None:
+    first = pitchpoint("run", tiny, "--json")
+    assert first.status == 0
+    figures = first.json["default"]
+    assert set(figures["operation"]) == {"xu_2007", "frictionless"}
+    assert 0.9 < figures["operation"]["xu_2007"]["mean_efficiency"] < 1.0
+    assert figures["operation"]["frictionless"]["mean_efficiency"] == pytest.approx(1.0, abs=1e-12)
+    assert len(figures["studies"]["speed"]["axis"]["values"]) == 3
+    assert figures["studies"]["smooth"]["xu_2007"]["mean_loss"] > 0.0
+    made = times(tmp_path / "results" / "tiny")
+    assert set(made) == PARTS | {"study_speed", "study_smooth"}
+    outcome = open_result(tmp_path / "results" / "tiny")["default"]
+    assert outcome.manifest["finished"]
+    assert outcome.parts["operation"]["mean_efficiency"].attrs["units"] == "1"
+
+    again = pitchpoint("run", tiny)
+    assert again.status == 0
+    assert "A [bold]pair[/bold] of <b>gears</b>" in again.out
+    assert "xu_2007" in again.out
+    assert times(tmp_path / "results" / "tiny") == made
+
+    smooth = ("--set", "roughness.ra=0.2 um", "--sweep", "operation.torque=10 N m:50 N m:2")
+    other = pitchpoint("run", tiny, *smooth, "--json").json["default"]
+    loss = other["operation"]["xu_2007"]["mean_loss"]
+    assert loss == pytest.approx(figures["studies"]["smooth"]["xu_2007"]["mean_loss"], rel=1e-12)
+    assert other["studies"]["operation_torque"]["axis"]["values"] == [10.0, 50.0]
+    changed = times(tmp_path / "results" / "tiny")
+    assert changed["operation"] != made["operation"]
+
+
+def test_damaged_parts_are_computed_again(
+    pitchpoint: Callable[..., Told], tiny: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "out"
+    before = pitchpoint("run", tiny, "-o", folder, "--json")
+    made = times(folder)
+    parts = folder / "default"
+    (parts / "operation.nc").write_bytes(b"no dataset at all")
+    whole = (parts / "cycle.nc").read_bytes()
+    (parts / "cycle.nc").write_bytes(whole[: len(whole) // 2])
+    (parts / "laws.nc").write_bytes(b"")
+    (parts / "teeth.nc").unlink()
+    refused = pitchpoint("cite", folder)
+    assert refused.status == 2
+    assert refused.out == ""
+    assert refused.err.count("\n") == 1
+    assert ".nc: " in refused.err
+    after = pitchpoint("run", tiny, "-o", folder, "--json")
+    assert after.json == before.json
+    kept = {name for name, stamp in times(folder).items() if stamp == made.get(name)}
+    assert kept == {"loss_map", "back_driving", "study_speed", "study_smooth"}
+
+
+def test_cite(pitchpoint: Callable[..., Told], tiny: Path, tmp_path: Path) -> None:
+    pitchpoint("run", tiny, "-o", tmp_path / "out")
+    sources = pitchpoint("cite", tmp_path / "out", "--json").json
+    assert "xu_2007" in [source["key"] for source in sources]
+    assert "xu_2007: " in pitchpoint("cite", tmp_path / "out").out
+    assert "{xu_2007," in pitchpoint("cite", tmp_path / "out", "--bibtex").out
+
+
+def test_a_mesh_that_friction_locks(pitchpoint: Callable[..., Told], tiny: Path) -> None:
+    changes = [
+        'models.friction={name="constant", coefficient=2.0}',
+        "operation.driver=gear 2",
+        "gears.profile_shift=[0.8, -0.6]",
+    ]
+    told = pitchpoint("run", tiny, *(part for change in changes for part in ("--set", change)))
+    assert told.status == 3
+    assert told.out == ""
+    assert told.err.count("\n") == 1
+    assert "friction locks the mesh with constant" in told.err
+    assert "50 N m" in told.err
+
+
+# ---- the print against the computation
+
+
+def published(tmp_path: Path, old: str = "", new: str = "") -> Path:
+    text = (resources.files("pitchpoint.cases") / "tian2024" / "case.toml").read_text("utf-8")
+    assert old in text
+    path = tmp_path / "copy.toml"
+    path.write_text(text.replace(old, new, 1), "utf-8")
+    return path
+
+
+def test_compare(pitchpoint: Callable[..., Told]) -> None:
+    told = pitchpoint("compare", "tian2024", "--json")
+    assert told.status == 0
+    assert set(told.json) == {"case", "variant", "rows"}
+    assert (told.json["case"], told.json["variant"]) == ("tian2024", "as_published")
+    for row in told.json["rows"]:
+        assert [key for key in row if key != "unit"] == COLUMNS
+        assert row["verdict"] in ("pass", "excluded")
+        assert (row["computed"] is None) == (row["verdict"] == "excluded")
+        assert row["reason"] or row["verdict"] == "pass"
+    table = pitchpoint("compare", "tian2024")
+    assert table.status == 0
+    assert "deviation" in table.out
+
+
+def test_a_rougher_flank_is_noticed(pitchpoint: Callable[..., Told], tmp_path: Path) -> None:
+    path = published(tmp_path, 'value = "0.8 um"', 'value = "0.808 um"')
+    told = pitchpoint("compare", path, "--json")
+    assert told.status == 1
+    assert sum(row["verdict"] == "miss" for row in told.json["rows"]) >= 1
+
+
+def test_a_thicker_oil_is_noticed(pitchpoint: Callable[..., Told], tmp_path: Path) -> None:
+    oil = lubricants.find("75W90-A")
+    thicker = "".join(
+        f'{key} = "{1.03 * nu.value!r} m2/s"\n'
+        for key, nu in (("viscosity_40", oil.nu_1), ("viscosity_100", oil.nu_2))
+    )
+    told = pitchpoint("compare", published(tmp_path, "[lubricant]\n", f"[lubricant]\n{thicker}"))
+    assert told.status == 1
+    assert "miss" in told.out
+
+
+def test_targets_that_name_what_is_not_there(
+    pitchpoint: Callable[..., Told], tmp_path: Path
+) -> None:
+    target = (
+        '\n[[targets]]\nquantity="q"\nwhere="w"\nkind="predicted"\nprinted=1.0\nstudy="smooth"\n'
+    )
+    path = tmp_path / "target.toml"
+    for change, words in {
+        'variable = "phase"': ("targets.0.variable", "phase"),
+        "law = [5]": ("targets.0.law", "[5]", "2 friction laws"),
+        "law = []": ("targets.0.law", "[]"),
+        'reduce = "max_difference"': ("targets.0.law", "takes 2"),
+        'unit = "N m"': ("targets.0.unit", "N m"),
+    }.items():
+        known = "" if "variable" in change else 'variable = "mean_efficiency"\n'
+        path.write_text(f"{TINY}{target}{known}{change}\n")
+        told = pitchpoint("compare", path)
+        assert told.status == 2, change
+        assert told.err.count("\n") == 1
+        for word in ("target.toml: ", *words):
+            assert word in told.err
+
+
+# ---- pairs that no paper holds
+
+
+def test_the_examples_are_short() -> None:
+    assert len(list(EXAMPLES.glob("*.toml"))) >= 6
+    for path in EXAMPLES.glob("*.toml"):
+        assert len(path.read_text("utf-8").splitlines()) <= 16
+
+
+def contact_ratio(teeth: xr.Dataset, count: int | list[int]) -> float:
+    """Closed form between the tip circles, module 2 mm at 20 deg, by the drawn radii."""
+    z = np.array([count, count] if isinstance(count, int) else count)
+    base = z * 0.002 * np.cos(np.radians(20.0)) / 2.0
+    working = np.sqrt(float(teeth["centre_distance"]) ** 2 - base.sum() ** 2)
+    path = np.sqrt(teeth["tip_radius"].values ** 2 - base**2).sum() - working
+    return float(path / (2.0 * np.pi * base[0] / z[0]))
+
+
+@pytest.mark.parametrize(
+    ("name", "warning"),
+    [
+        ("pair_23_61", ""),
+        ("pair_23_61_high_contact_ratio", ""),
+        ("pair_17_17", ""),
+        ("pair_12_120", ""),
+        ("pair_12_120_undercut", "The flanks of gear 1 are undercut"),
+        ("wheel_drives", ""),
+    ],
+)
+def test_pairs_that_no_paper_holds(
+    name: str, warning: str, pitchpoint: Callable[..., Told], tmp_path: Path
+) -> None:
+    told = pitchpoint("run", EXAMPLES / f"{name}.toml", "-o", tmp_path / "out", "--json")
+    assert told.status == 0, told.err
+    operation = told.json["default"]["operation"]["xu_2007"]
+    assert 0.9 < operation["mean_efficiency"] < 1.0
+    assert any(text.startswith(warning) for text in [*told.json["default"]["warnings"], ""])
+    parts = open_result(tmp_path / "out")["default"].parts
+    found = float(parts["operation"]["contact_ratio"].values[0, 0])
+    gears = tomllib.loads((EXAMPLES / f"{name}.toml").read_text("utf-8"))["gears"]
+    between_tips = contact_ratio(parts["teeth"], gears["teeth"])
+    if warning:
+        assert 1.2 < found < between_tips - 0.2
+    else:
+        assert found == pytest.approx(between_tips, rel=1e-3)
+    ratio = 1.0 if isinstance(gears["teeth"], int) else gears["teeth"][1] / gears["teeth"][0]
+    expected = 50.0 * ratio if name == "wheel_drives" else 50.0 / ratio
+    assert operation["mean_input_torque"] == pytest.approx(
+        expected / operation["mean_efficiency"], rel=1e-9
+    )
+
+
+# ---- interruptions
+
+
+CODE = """
+import pitchpoint.cli as cli
+cli._write_report = lambda outcomes, folder: None
+cli.main()
+"""
+COMMAND = [sys.executable, "-c", CODE, "run", "tiny.toml", "-o", "out"]
+LONG = ["--sweep", "operation.torque=10 N m:50 N m:800"]
+
+
+def started(folder: Path, wanted: str, gone: int = 0) -> "subprocess.Popen[str]":
+    """A run that has put a part on disk."""
+    process = subprocess.Popen(
+        [*COMMAND, *LONG], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    limit = time.monotonic() + 120.0
+    while len(list(folder.glob(f"out/default/{wanted}"))) <= gone:
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < limit
+        time.sleep(0.02)
+    return process
+
+
+def test_interrupted_runs_go_on_where_they_were(tiny: Path, tmp_path: Path) -> None:
+    pieces = "study_operation_torque.0*.nc"
+    process = started(tmp_path, pieces)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert err.startswith("interrupted: ")
+    assert "finished parts are in out" in err
+    assert "the same command goes on from there" in err
+    outcome = open_result(tmp_path / "out")["default"]
+    assert not outcome.manifest["finished"]
+    assert {"teeth", "cycle", "operation", "laws", "study_speed"} <= set(outcome.parts)
+    assert not list(tmp_path.glob("out/default/.*"))
+    kept = times(tmp_path / "out")
+
+    process = started(tmp_path, pieces, gone=len(list(tmp_path.glob(f"out/default/{pieces}"))))
+    process.kill()
+    process.communicate(timeout=60)
+    open_result(tmp_path / "out")
+    killed = times(tmp_path / "out")
+    assert {name: killed[name] for name in kept} == kept
+
+    done = subprocess.run([*COMMAND, *LONG, "--json"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    finished = times(tmp_path / "out")
+    assert {name: finished[name] for name in finished if name in kept} == {
+        name: stamp for name, stamp in kept.items() if ".0" not in name
+    }
+    axis = json.loads(done.stdout)["default"]["studies"]["operation_torque"]["axis"]["values"]
+    assert len(axis) == 800
+    assert axis == sorted(axis)
+    assert "study_operation_torque" in finished
+
+
+def test_a_reader_that_stops_early(tiny: Path, tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", CODE, "models"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert process.stdout is not None
+    process.stdout.close()
+    assert process.stderr is not None
+    with process.stderr:
+        err = process.stderr.read()
+    process.wait(60)
+    assert b"Traceback" not in err
+    assert process.returncode in (0, 1)
