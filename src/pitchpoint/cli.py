@@ -112,13 +112,10 @@ def run(
     json_: AsJson = False,
 ) -> None:
     """Compute a case: tables on screen, results and report.html in a folder."""
-    from pitchpoint.cases.run import describe
     from pitchpoint.cases.run import run as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
     folder = output or Path("results") / Path(case).stem
-    describe(case, variant or [], settings=settings, studies=studies)  # before anything is written
-    _writable(folder)
     with _progress(folder) as progress:
         outcomes = compute(
             case,
@@ -234,15 +231,6 @@ def _write_report(outcomes: "dict[str, Outcome]", folder: Path) -> None:
     from pitchpoint.views.report import write_report
 
     write_report(outcomes, folder / "report.html")
-
-
-def _writable(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / ".writable").touch()
-        (folder / ".writable").unlink()
-    except OSError as error:
-        raise InputError(f"cannot be written to: {error.strerror}", file=str(folder)) from None
 
 
 @contextmanager

@@ -77,7 +77,7 @@ def gears(draw: st.DrawFn) -> dict[str, Any]:
     if draw(st.integers(0, 5)) == 0:
         table["fillet_radius"] = draw(pair(between(0.0, 0.4)))
     if draw(st.integers(0, 5)) == 0:
-        table["flank"] = "left"
+        table["flank"] = "right"
     return table
 
 

@@ -79,7 +79,7 @@ IDLE = """
 teeth = 17
 module = "2 mm"
 face_width = "15 mm"
-flank = "left"
+flank = "right"
 [lubricant]
 name = "75W90-A"
 [roughness]

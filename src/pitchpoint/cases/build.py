@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import cos, pi, sin, tan
+from typing import Any, cast, get_args
 
 from pitchpoint._jax import jnp
 from pitchpoint.cases.document import Document
@@ -16,7 +17,7 @@ from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
-from pitchpoint.materials._leaves import Datum
+from pitchpoint.materials._leaves import Datum, Status
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
 
@@ -91,13 +92,15 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
 def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
     """Models with every law compiled in, the first law of the case acting, and the indices of its laws.
 
-    The laws of the library are always among them: their spread is shown beside every efficiency.
+    The fitted laws of the library are always among them: their spread is shown beside every
+    efficiency.
     """
     case = built.case
     chosen = [FRICTION[choice.name] for choice in case.models.friction]
     published = case.source in {law.sources[0] for law in CASE_LAWS}
     extra = CASE_LAWS if published or any(law in CASE_LAWS for law in chosen) else ()
-    laws: tuple[FrictionLaw, ...] = (*LAWS, *extra)
+    fitted = [law for law in LAWS if law.sources or law in chosen]
+    laws: tuple[FrictionLaw, ...] = (*fitted, *extra)
     if built.own is not None:
         chosen, laws = [built.own], (*laws, built.own)
     indices = tuple(laws.index(law) for law in chosen)
@@ -153,7 +156,7 @@ def _pair(gears: Gears, driver: int) -> CylindricalPair:
         tip_alteration=gears.tip_alteration,
         centre_distance=gears.centre_distance,
         driver=driver,
-        left_flank=gears.flank == "left",
+        right_flank=gears.flank == "right",
     )
 
 
@@ -182,17 +185,19 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
         "T_min": oil.temperature_min,
         "T_max": oil.temperature_max,
     }
-    given = {key: value for key, value in values.items() if value is not None}
     if oil.pressure_viscosity is not None:
-        given["gold_s"], given["gold_t"] = lubricants.constant_alpha(oil.pressure_viscosity)
+        values["gold_s"], values["gold_t"] = lubricants.constant_alpha(oil.pressure_viscosity)
+    given = {
+        key: _datum(value, f"lubricant.{_OIL_KEYS[key]}", document)
+        for key, value in values.items()
+        if value is not None
+    }
     try:
         if oil.name is not None:
-            return lubricants.find(oil.name).with_values(**given)
+            found: dict[str, Any] = dict(given)
+            return replace(lubricants.find(oil.name), **found)
         assert oil.base is not None
-        data = {
-            **lubricants.base_oils()[oil.base],
-            **{key: Datum(value=value) for key, value in given.items()},
-        }
+        data = {**lubricants.base_oils()[oil.base], **given}
         return lubricants.LubricantRecord(
             name="oil by value", title=f"{oil.base} oil by value", base=oil.base, **data
         )
@@ -205,12 +210,21 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
         raise InputError(message, file=document.name, key=where) from None
 
 
+def _datum(value: float, key: str, document: Document) -> Datum:
+    """Value of the case file with the mark that it carries there."""
+    mark = document.provenance.get(key)
+    if mark is None or mark.status not in get_args(Status):
+        return Datum(value=value)
+    return Datum(value=value, status=cast("Status", mark.status), note=mark.note)
+
+
 _OIL_KEYS = {
     "nu_1": "viscosity_40",
     "nu_2": "viscosity_100",
     "density_15": "density",
     "density_slope": "density_slope",
     "gold_s": "pressure_viscosity",
+    "gold_t": "pressure_viscosity",
     "lubricant_factor": "lubricant_factor",
     "T_min": "temperature_min",
     "T_max": "temperature_max",

@@ -23,7 +23,7 @@ from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.results.store import fingerprint, load, save, write_text
+from pitchpoint.results.store import fingerprint, load, make_folder, save, write_text
 
 __all__ = ["Outcome", "Progress", "open_result", "run", "run_variant"]
 
@@ -90,24 +90,33 @@ def run(
     name, tree = find(case)
     chosen = list(only) or variants(tree)
     own = None if friction is None else _own(friction)
+    made = [Variant(tree, name, variant, dict(settings or {}), own) for variant in chosen]
+    work = {variant.variant: (variant, list(jobs(variant, studies or {}))) for variant in made}
+    if folder is not None:
+        make_folder(folder)  # only now: a wrong input leaves nothing behind
     return {
-        variant: run_variant(
-            Variant(tree, name, variant, dict(settings or {}), own),
-            folder=None if folder is None else folder / variant,
+        one: run_variant(
+            *prepared,
+            folder=None if folder is None else folder / one,
             studies=studies or {},
             progress=progress or Progress(),
         )
-        for variant in chosen
+        for one, prepared in work.items()
     }
 
 
 def run_variant(
-    variant: Variant, *, folder: Path | None, studies: Mapping[str, Study], progress: Progress
+    variant: Variant,
+    work: Sequence[Job],
+    *,
+    folder: Path | None,
+    studies: Mapping[str, Study],
+    progress: Progress,
 ) -> Outcome:
     """Compute all parts of one variant; finished parts found in the folder are read."""
     built = variant.built({})
     outcome = Outcome(_manifest(variant, built))
-    for job in jobs(variant, studies):
+    for job in work:
         outcome.parts[job.name] = part = _part(job, variant, folder, studies, progress)
         told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
         outcome.manifest["warnings"] = list(dict.fromkeys(told))

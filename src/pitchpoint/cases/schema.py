@@ -135,7 +135,7 @@ class Gears(Table):
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
     tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
     centre_distance: Annotated[float, DISTANCE] | None = None
-    flank: Literal["right", "left"] = "right"
+    flank: Literal["left", "right"] = "left"
 
 
 class SolidValues(Table):

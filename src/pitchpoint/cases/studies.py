@@ -208,9 +208,7 @@ def _laws(built: Built) -> xr.Dataset:
     """Every law of the library at the operating point: how far the models themselves disagree."""
     models, _ = laws_of(built)
     every = [
-        index
-        for index, law in enumerate(models.friction)
-        if law not in CASE_LAWS and law.name not in ("constant", "frictionless")
+        index for index, law in enumerate(models.friction) if law not in CASE_LAWS and law.sources
     ]
     return _summaries([built], models, every, {}, title="friction laws that apply", may_lock=True)
 
@@ -467,12 +465,12 @@ def _film_warnings(built: Built, law: FrictionLaw, run: Mapping[str, Any]) -> li
     if law.full_film and built.case.operation.torque > 0.0 and thinnest < 1.0:
         highest = float(np.asarray(run["friction"]).max())
         told.append(
-            f"{law.name} describes contacts with a full film, but the film is down to {thinnest:.2g} "
+            f"{law.title}: it describes contacts with a full film, but the film is down to {thinnest:.2g} "
             f"of the composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an "
             "extrapolation."
         )
     for name in law.ranges:
         share = float(np.mean(run[f"outside {law.name} {name}"]))
         if share > 0.0:
-            told.append(f"{law.name}: {name} leaves the fitted range in part of the mesh cycle.")
+            told.append(f"{law.title}: {name} leaves the fitted range in part of the mesh cycle.")
     return told

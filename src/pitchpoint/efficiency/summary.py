@@ -38,7 +38,10 @@ def summary(design: Design, operation: Operation, models: Models) -> dict[str, A
     """Figures of one cycle; powers in W, torques in N m, the rest dimensionless."""
     result = cycle(design, operation, models)
     state = result.state
-    low, high = result.extremes(_defined(state.efficiency))
+    efficiency = _defined(state.efficiency)
+    low, high = result.extremes(efficiency)
+    # Between the nodes the interpolation may overshoot; no state is better than free of loss.
+    high = jnp.minimum(high, jnp.maximum(1.0, jnp.max(efficiency, axis=-1)))
     torque_low, torque_high = result.extremes(state.input_torque)
     return {
         "contact_ratio": design.mesh.contact_ratio,

@@ -63,7 +63,8 @@ class CylindricalPair(Mesh):
         face_width: common to both [m].
         centre_distance: in operation [m].
         wheel_drives: True if gear 2 drives and gear 1 carries the load; the same flanks touch.
-        left_flank: True if the opposite flanks of both gears touch.
+        right_flank: False while gear 1 pushes with its left flanks (seen with the tip up), turning
+            counter-clockwise when it drives; True for the other ones.
         undercut: for each gear whether the rack undercuts its flanks; static.
         crossing: for each gear where the undercut crosses the involute, see `InvoluteGear`.
         lanes: static count of pairs held, at least the contact ratio rounded up.
@@ -80,7 +81,7 @@ class CylindricalPair(Mesh):
     face_width: Float[Array, ""]
     centre_distance: Float[Array, ""]
     wheel_drives: Bool[Array, ""]
-    left_flank: Bool[Array, ""]
+    right_flank: Bool[Array, ""]
     undercut: tuple[bool, bool] = eqx.field(static=True)
     crossing: Float[Array, "2"]
     lanes: int = eqx.field(static=True)
@@ -242,7 +243,7 @@ class CylindricalPair(Mesh):
 
     @property
     def _side(self) -> Float[Array, ""]:
-        return jnp.where(self.left_flank, -1.0, 1.0)
+        return jnp.where(self.right_flank, -1.0, 1.0)
 
     def _gear(self, index: int) -> InvoluteGear:
         return InvoluteGear(
@@ -294,7 +295,7 @@ def build_cylindrical_pair(
     tip_alteration: tuple[float, float] | None = None,
     centre_distance: float | None = None,
     driver: int = 1,
-    left_flank: bool = False,
+    right_flank: bool = False,
 ) -> CylindricalPair:
     """Pair from what an engineer knows; the rest by ISO 21771.
 
@@ -307,7 +308,7 @@ def build_cylindrical_pair(
             addendum + 0.25.
         tip_alteration: k1, k2; keeps the rack's tip clearance by default.
         driver: 1 or 2, the gear that drives.
-        left_flank: True for the opposite flanks.
+        right_flank: True if the right flanks of both gears touch.
 
     Raises:
         InputError: the flanks cannot meet at all; `check_cylindrical` says what else is wrong.
@@ -324,7 +325,7 @@ def build_cylindrical_pair(
         face_width=_array(face_width),
         centre_distance=_array(centre_distance or 0.0),
         wheel_drives=jnp.asarray(driver == 2),
-        left_flank=jnp.asarray(left_flank),
+        right_flank=jnp.asarray(right_flank),
         undercut=(False, False),
         crossing=jnp.full(2, jnp.asarray(pressure_angle, dtype=jnp.float64)),
         lanes=2,

@@ -15,7 +15,7 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["dataset", "fingerprint", "load", "save", "write_text"]
+__all__ = ["dataset", "fingerprint", "load", "make_folder", "save", "write_text"]
 
 
 def dataset(
@@ -61,6 +61,15 @@ def fingerprint(*parts: Any) -> str:
 def save(data: xr.Dataset, path: Path) -> None:
     """Write a dataset; a reader never sees half a file, whatever happens meanwhile."""
     _whole(path, lambda part: data.to_netcdf(part, engine="h5netcdf"))
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for results; InputError if it cannot be written to."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise InputError(f"cannot be written to: {error.strerror}", file=str(folder)) from None
 
 
 def write_text(path: Path, text: str) -> None:

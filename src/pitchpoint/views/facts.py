@@ -17,14 +17,14 @@ class Facts:
 
     Attributes:
         driver: 1 or 2.
-        left_flank: True if the opposite flanks touch.
+        right_flank: True if the right flanks touch.
         torque, speed, temperature: of the operating point [N m, rad/s, K].
         teeth: of both gears.
         points: by letter, positions on the path from A in base pitches, in order.
     """
 
     driver: int
-    left_flank: bool
+    right_flank: bool
     torque: float
     speed: float
     temperature: float
@@ -63,7 +63,7 @@ def facts(outcome: Outcome) -> Facts:
     inside = {str(name): place for place, name in named if -1e-9 <= place <= ratio + 1e-9}
     return Facts(
         driver=2 if given(outcome, "operation", "driver") == "gear 2" else 1,
-        left_flank=given(outcome, "gears", "flank") == "left",
+        right_flank=given(outcome, "gears", "flank") == "right",
         torque=_read(outcome, "torque", "torque"),
         speed=_read(outcome, "speed", "rotational speed"),
         temperature=_read(outcome, "temperature", "temperature"),

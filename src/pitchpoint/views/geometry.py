@@ -38,7 +38,7 @@ class Drawing:
     @property
     def side(self) -> float:
         """-1 for the opposite flanks, which mirror the drawing."""
-        return -1.0 if self.fact.left_flank else 1.0
+        return -1.0 if self.fact.right_flank else 1.0
 
     @property
     def distance(self) -> float:
