@@ -1,21 +1,21 @@
 """Printed numbers against computed ones."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from pitchpoint import units
 from pitchpoint.cases.quantities import shown
+from pitchpoint.cases.reductions import REDUCTIONS
 from pitchpoint.cases.schema import Target
 from pitchpoint.errors import InputError
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["REDUCTIONS", "Row", "compare", "counts"]
+__all__ = ["Row", "compare", "counts"]
 
 
 @dataclass(frozen=True)
@@ -40,20 +40,6 @@ class Row:
     def as_json(self) -> dict[str, Any]:
         """The row for machines."""
         return asdict(self)
-
-
-REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
-    "value": lambda v: float(v[0, 0]),
-    "first": lambda v: float(v[0, 0]),
-    "last": lambda v: float(v[0, -1]),
-    "min": lambda v: float(v[0].min()),
-    "max": lambda v: float(v[0].max()),
-    "drop": lambda v: float(v[0, 0] - v[0, -1]),
-    "gain": lambda v: float(v[0, -1] - v[0, 0]),
-    "relative_drop": lambda v: float(1.0 - v[0, -1] / v[0, 0]),
-    "max_difference": lambda v: float(np.abs(v[0] - v[1]).max()),
-}
-"""One number out of values [law, point]."""
 
 
 def compare(

@@ -62,7 +62,7 @@ def _unit(value: Any) -> str:
 
 
 def _reductions() -> list[str]:
-    from pitchpoint.cases.comparison import REDUCTIONS
+    from pitchpoint.cases.reductions import REDUCTIONS
 
     return list(REDUCTIONS)
 
