@@ -36,9 +36,9 @@ FAMILIES: Mapping[str, Callable[[], Mesh]] = {
     "twin disc, faster follower": lambda: TwinDisc(*map(jnp.asarray, ([0.03, 0.02], 0.01, 1.3))),
     "ball on disc": lambda: BallOnDisc(*map(jnp.asarray, (0.0095, 0.04, 0.7))),
     "18/36": lambda: spur((18, 36)),
-    "18/36, left flank": lambda: spur((18, 36), left_flank=True),
+    "18/36, right flank": lambda: spur((18, 36), right_flank=True),
     "18/36, wheel drives": lambda: spur((18, 36), driver=2),
-    "18/36, wheel drives, left flank": lambda: spur((18, 36), driver=2, left_flank=True),
+    "18/36, wheel drives, right flank": lambda: spur((18, 36), driver=2, right_flank=True),
     "36/18, speed-increasing": lambda: spur((36, 18)),
     "23/61, shifted": lambda: spur((23, 61), 2e-3, profile_shift=(0.4, -0.2)),
     "23/61, high teeth": lambda: spur(
@@ -254,7 +254,7 @@ class SpurFlanks:
         tangent = -self.centres[1] * np.sin(self.angle)
         start = tangent - tip_reach(mesh, 1)
         self.length = start + path * 2.0 * np.pi * self.base[0] / teeth[0]
-        self.hand = -1.0 if bool(mesh.left_flank) else 1.0
+        self.hand = -1.0 if bool(mesh.right_flank) else 1.0
         # Both gears turn from phase 0 by their tooth numbers, not by where they should touch.
         first = self.angle + start / self.base[0] + 2.0 * np.pi * path / teeth[0]
         second = self.angle + (tangent - start) / self.base[1] - 2.0 * np.pi * path / teeth[1]

@@ -33,10 +33,15 @@ def pair(teeth, **options):
     )
 
 
+def number(value):
+    """A strongly typed scalar: one that is not would be compiled anew when it is moved."""
+    return jnp.asarray(value, dtype=float)
+
+
 def design_of(mesh):
     return Design(
         mesh,
-        jnp.asarray(226e9),
+        number(226e9),
         lubricants.find("pao-vg-220").build(),
         Roughness(ra_1=0.4e-6, ra_2=0.5e-6, rq_1=0.3e-6, rq_2=0.4e-6),
     )
@@ -48,7 +53,7 @@ def design():
 
 
 def operation(load=120.0, speed=150.0):
-    return Operation(*map(jnp.asarray, (load, speed, 330.0)))
+    return Operation(*map(number, (load, speed, 330.0)))
 
 
 def models(choice=0, mu=0.06, laws=("xu_2007", "iso_tr_14179_2", "constant"), rolling="none"):
@@ -108,18 +113,27 @@ CASES = {
 }
 
 
-def check_gradients(inputs, chosen):
+def check_gradients(inputs, choice):
+    chosen = models(choice)
     numbers = np.asarray(ravel_pytree(floats(inputs))[0])
     rows, steps = moved(numbers)
     found = gradients(inputs, chosen)
     assert found.shape == (3, numbers.size), "a continuous input has no derivative"
-    at = np.asarray(figures_of_many(jnp.asarray(rows * 0.0 + numbers), inputs, chosen))[0]
-    expected = differences(np.asarray(figures_of_many(jnp.asarray(rows), inputs, chosen)), steps)
-    rounding = 1e-12 * np.abs(at)[:, None] / steps
+    values = np.asarray(figures_of_many(jnp.asarray(np.vstack([rows, numbers])), inputs, chosen))
+    loss, _, torque = values[-1]
+    expected = differences(values[:-1], steps)
+    # The ripple is a difference of torques, and rounded like them.
+    rounding = 1e-12 * np.array([[loss], [torque], [torque]]) / steps
+    relative = np.full((3, 1), 1e-6)
+    if choice == 1:
+        # The mean coefficient leaves a smooth maximum of the torque, which the ripple reads at
+        # points: another one is the largest within the difference.
+        relative[1] = 3e-3
     np.testing.assert_array_less(
-        np.abs(found - expected), 1e-6 * np.abs(expected) + rounding, err_msg=str(names(inputs))
+        np.abs(found - expected), relative * np.abs(expected) + rounding, err_msg=str(names(inputs))
     )
-    assert np.all(np.sum(np.abs(found) > 0.0, axis=1) >= 12), "most inputs must matter"
+    most = 9 if choice == 2 else 12  # oil and roughness do not enter constant friction
+    assert np.all(np.sum(np.abs(found) > 0.0, axis=1) >= most), "most inputs must matter"
 
 
 def names(inputs):
@@ -135,11 +149,7 @@ def names(inputs):
 @pytest.mark.parametrize("choice", [0, 1, 2], ids=["xu", "iso", "constant"])
 @pytest.mark.parametrize("name", CASES)
 def test_gradients_equal_differences(name, choice):
-    # Weakly typed scalars would be compiled anew when they are moved.
-    inputs = jax.tree.map(
-        lambda x: jnp.asarray(np.asarray(x)), (design_of(CASES[name]()), operation())
-    )
-    check_gradients(inputs, models(choice))
+    check_gradients((design_of(CASES[name]()), operation()), choice)
 
 
 @pytest.mark.parametrize("figure", [mean_loss_gradient, ripple_gradient])
@@ -170,10 +180,10 @@ def pitch_from_single_contact(design, shift):
 
 def ripple_slope(design, shift, chosen):
     """Ripple's derivative along the shift, by the library and by a difference."""
-    found = ripple_gradient(shifted(design, jnp.asarray(shift)), operation(), chosen)
+    found = ripple_gradient(shifted(design, number(shift)), operation(), chosen)
     first, second = found[0].mesh.profile_shift
     step = 1e-5
-    ahead, behind = (float(ripple(design, jnp.asarray(shift + s), chosen)) for s in (step, -step))
+    ahead, behind = (float(ripple(design, number(shift + s), chosen)) for s in (step, -step))
     return float(first - second), (ahead - behind) / (2.0 * step)
 
 
@@ -257,6 +267,7 @@ def energy(design, operation, phase, chosen):
 
 
 @settings(max_examples=50, deadline=None)
+@example(mu=0.0, load=1e-3, speed=355.0, phase=0.4, choice=0)
 @given(
     mu=st.floats(0.0, 0.5),
     load=st.floats(1e-3, 1e4),

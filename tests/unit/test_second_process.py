@@ -1,0 +1,90 @@
+"""What one process has compiled, no later one compiles again."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CASE = """
+[gears]
+teeth = [18, 36]
+module = "3 mm"
+face_width = "20 mm"
+
+[materials]
+gear_1 = "steel"
+gear_2 = "steel"
+
+[lubricant]
+name = "pao-vg-220"
+
+[roughness]
+ra = "0.4 um"
+
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+
+[models]
+friction = "constant"
+"""
+
+# Runs a case, and tells how often a program was asked for, found and compiled.
+SCRIPT = """
+import sys
+from collections import Counter
+
+from pitchpoint._jax import jax
+from pitchpoint.cases.run import run
+
+told = Counter()
+jax.monitoring.register_event_listener(lambda event, **_: told.update([event]))
+run(sys.argv[1])
+cache = "/jax/compilation_cache/"
+print(*(told[cache + name] for name in ("compile_requests_use_cache", "cache_hits", "cache_misses")))
+"""
+
+
+def run_once(case: Path, home: Path) -> tuple[int, int, int]:
+    """Programs that a process of its own asked for, found in the cache, and had to compile."""
+    environment = {**os.environ, "XDG_CACHE_HOME": str(home), "JAX_PLATFORMS": "cpu"}
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT, str(case)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    asked, found, missed = map(int, done.stdout.split()[-3:])
+    return asked, found, missed
+
+
+def programs(home: Path) -> set[str]:
+    """Compiled programs on disk; the files beside them hold the time of last use."""
+    return {path.name for path in home.rglob("*") if path.is_file() and "-atime" not in path.name}
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[tuple[int, int, int], set[str]]]:
+    folder = tmp_path_factory.mktemp("second_process")
+    case, home = folder / "case.toml", folder / "cache"
+    case.write_text(CASE, encoding="utf-8")
+    return [(run_once(case, home), programs(home)) for _ in range(2)]
+
+
+def test_the_first_process_keeps_what_it_compiles(runs):
+    (_, _, missed), kept = runs[0]
+    assert missed > 0
+    assert len(kept) == missed
+
+
+def test_the_second_process_compiles_nothing(runs):
+    (first, kept), (second, kept_after) = runs
+    asked, found, missed = second
+    assert missed == 0
+    assert found == asked == first[0] > 0
+    assert kept_after == kept
