@@ -236,13 +236,19 @@ class Cycle(eqx.Module):
     def extremes(self, values: Float[Array, "*b node"]) -> tuple[Each, Each]:
         """Smallest and largest value of the cycle, between the nodes too; piecewise differentiable.
 
-        A polynomial through the nodes of each segment is read at points between them: jumps lie at
-        the ends of segments, where there are nodes.
+        A polynomial through the nodes of each segment is read at points between them, and at its
+        vertex beside a point where it is level: jumps lie at the ends of segments, where there are
+        nodes.
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
         segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
-        dense = segments @ _between(self.nodes)
-        return jnp.min(dense, axis=(-2, -1)), jnp.max(dense, axis=(-2, -1))
+        at, *derivatives, spacing = _between(self.nodes)
+        dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
+        level = jnp.abs(slope) < jnp.abs(curve) * spacing
+        step = -slope / jnp.where(level, curve, 1.0)
+        vertex = dense + slope * step / 2.0 + third * step**3 / 6.0
+        found = jnp.stack([dense, jnp.where(level, vertex, dense)])
+        return jnp.min(found, axis=(0, -2, -1)), jnp.max(found, axis=(0, -2, -1))
 
     @property
     def mean_loss(self) -> Each:
@@ -327,12 +333,17 @@ def _lobatto(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @cache
-def _between(count: int) -> np.ndarray:
-    """Matrix from values at the nodes to values at them and at seven points between neighbours."""
-    nodes = np.arccos(1.0 - 2.0 * _lobatto(count)[0])
-    angles = np.interp(np.arange(8 * (count - 1) + 1) / 8.0, np.arange(count), nodes)
-    return np.linalg.solve(_modes(np.cos(nodes), count).T, _modes(np.cos(angles), count).T)
+def _between(count: int) -> list[np.ndarray]:
+    """Matrices from values at the nodes to a polynomial and its derivatives at points between.
 
-
-def _modes(x: np.ndarray, count: int) -> np.ndarray:
-    return np.polynomial.legendre.legvander(-x, count - 1)
+    The points are the nodes and seven more between neighbours, on [-1, 1]; last comes their
+    spacing, zero at the ends, where a level tangent means nothing.
+    """
+    nodes = 2.0 * _lobatto(count)[0] - 1.0
+    place = np.arange(8 * (count - 1) + 1) / 8.0
+    x = -np.cos(np.interp(place, np.arange(count), np.arccos(-nodes)))
+    spacing = np.concatenate([[0.0], np.maximum(x[2:] - x[1:-1], x[1:-1] - x[:-2]), [0.0]])
+    modes = np.polynomial.legendre.legvander(nodes, count - 1)
+    polynomials = [np.polynomial.Legendre.basis(degree) for degree in range(count)]
+    rows = [[p.deriv(order)(x) if order else p(x) for p in polynomials] for order in range(4)]
+    return [*(np.linalg.solve(modes.T, np.array(row)) for row in rows), spacing]

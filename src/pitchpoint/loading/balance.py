@@ -96,7 +96,9 @@ def balance(
         rolled = total(resistance * roll) / safe_load
         return ratio * leverage(coefficient) + rolled - 1.0
 
-    start = jnp.ones(jnp.broadcast_shapes(frictionless.shape, share.shape[2:]))
+    one = jnp.ones(jnp.broadcast_shapes(frictionless.shape, share.shape[2:]))
+    # Under a light load rolling resistance is most of the force: begin with it carried.
+    start = one if rolling is None else one - total(laws(one)[2] * roll) / safe_load
     ratio, iterations = root(unbalance, start, unrolled=unrolled)
     force, coefficient, resistance = laws(ratio)
     torque = jnp.stack(
