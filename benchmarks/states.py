@@ -92,7 +92,7 @@ def main() -> None:
     blocks = run(inputs, phase)
     theirs = rival.cache_blocked(positions, points)
     force = np.concatenate([block.force for block in blocks]).T
-    residual = max(float(block.residual) for block in blocks)
+    residual = max(block.residual for block in blocks)
     print(
         f"agreement: force {np.abs(force / theirs.force - 1.0).max():.1e}, residual {residual:.1e}"
     )

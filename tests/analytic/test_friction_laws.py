@@ -8,7 +8,6 @@ from pitchpoint.lubrication.conditions import UNITS, arguments
 from pitchpoint.lubrication.friction_coefficient import (
     LAWS,
     iso_tr_14179_2,
-    matsumoto_morikawa_2014,
     xu_2007,
 )
 
@@ -111,15 +110,3 @@ def test_laws_are_finite_and_never_negative(law, scale):
     assert np.isfinite(found)
     assert float(found) >= 0.0
     assert all(np.isfinite(slope) for slope in slopes.values())
-
-
-def test_mixed_friction_lies_between_boundary_and_film():
-    given = {"roughness_height": 2e-6, "boundary_coefficient": 0.09, "fluid_coefficient": 0.01}
-
-    def mixed(film):
-        return value(matsumoto_morikawa_2014, given, film_thickness=film)
-
-    assert mixed(2e-6) == mixed(9e-6) == pytest.approx(0.01, rel=1e-14)
-    assert mixed(0.2e-6) == pytest.approx(0.05, rel=1e-12)
-    assert mixed(0.02e-6) == pytest.approx(0.09, rel=1e-12)
-    assert mixed(1e-9) == pytest.approx(0.09, rel=1e-14)

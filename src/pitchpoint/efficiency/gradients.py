@@ -3,7 +3,9 @@
 import equinox as eqx
 from jaxtyping import Array, Float
 
+from pitchpoint._jax import jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
+from pitchpoint.errors import ConvergenceError
 
 __all__ = ["input_torque_gradient", "mean_loss_gradient", "ripple_gradient"]
 
@@ -21,8 +23,11 @@ def mean_loss_gradient(design: Design, operation: Operation, models: Models) -> 
     Returns:
         A design and an operation that hold the derivative in place of each continuous value, in W
         over its SI unit; None in place of the others.
+
+    Raises:
+        ConvergenceError: friction locks the mesh, there is no balance.
     """
-    return _gradient((design, operation), "mean_loss", models)
+    return _told(*_gradient((design, operation), "mean_loss", models))
 
 
 def ripple_gradient(design: Design, operation: Operation, models: Models) -> Inputs:
@@ -31,7 +36,7 @@ def ripple_gradient(design: Design, operation: Operation, models: Models) -> Inp
     The ripple is piecewise differentiable: where the extreme state moves from one segment of the
     cycle to another, the derivative jumps. Arguments and result as in `mean_loss_gradient`.
     """
-    return _gradient((design, operation), "ripple", models)
+    return _told(*_gradient((design, operation), "ripple", models))
 
 
 def input_torque_gradient(
@@ -42,23 +47,30 @@ def input_torque_gradient(
     Arguments and result as in `mean_loss_gradient`. The torque jumps at entry and exit of a pair: on
     an event itself the derivative is that of one side.
     """
-    return _at_phase((design, operation), models, phase)
+    return _told(*_at_phase((design, operation), models, phase))
+
+
+def _told(value: Array, derivatives: Inputs) -> Inputs:
+    """Derivatives, unless there is no balance to differentiate."""
+    if not bool(jnp.isfinite(value)):
+        raise ConvergenceError("friction locks the mesh or no balance was found: no derivatives")
+    return derivatives
 
 
 @eqx.filter_jit
-def _gradient(inputs: Inputs, figure: str, models: Models) -> Inputs:
+def _gradient(inputs: Inputs, figure: str, models: Models) -> tuple[Array, Inputs]:
     def value(inputs: Inputs) -> Array:
         result: Array = getattr(cycle(*inputs, models), figure)
         return result
 
-    derivatives: Inputs = eqx.filter_grad(value)(inputs)
-    return derivatives
+    found: tuple[Array, Inputs] = eqx.filter_value_and_grad(value)(inputs)
+    return found
 
 
 @eqx.filter_jit
-def _at_phase(inputs: Inputs, models: Models, phase: Float[Array, ""]) -> Inputs:
+def _at_phase(inputs: Inputs, models: Models, phase: Float[Array, ""]) -> tuple[Array, Inputs]:
     def torque(inputs: Inputs) -> Array:
         return state(*inputs, phase, models).input_torque
 
-    derivatives: Inputs = eqx.filter_grad(torque)(inputs)
-    return derivatives
+    found: tuple[Array, Inputs] = eqx.filter_value_and_grad(torque)(inputs)
+    return found

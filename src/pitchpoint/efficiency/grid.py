@@ -15,7 +15,10 @@ __all__ = ["Block", "state_grid"]
 
 TOLERANCE = 1e-10
 ROWS = 256
-"""Operating points of one block."""
+"""Most operating points of one block."""
+
+COLUMNS = 4096
+"""Most positions of one block."""
 
 _CACHED = 2048
 """States solved together: their work arrays stay in the cache of a core."""
@@ -25,21 +28,23 @@ _STEPS = 2
 
 @dataclass(frozen=True)
 class Block:
-    """States of some operating points [point] at all positions [position].
+    """States of some operating points [point] at some positions [position].
 
     Attributes:
-        first: index of the first operating point.
-        force: normal force of the mesh [N], shape [point, position].
+        first: index of the first operating point and of the first position.
+        force: normal force of the mesh [N], shape [point, position]; NaN where friction locks it.
         input_torque: torque of the driver [N m].
         efficiency: output over input power; NaN where no power is transmitted.
-        residual: largest relative residual of the torque balance in the block.
+        residual: largest relative residual of the torque balance among the states that have one.
+        locked: number of states without a balance.
     """
 
-    first: int
+    first: tuple[int, int]
     force: Float[Array, "point position"]
     input_torque: Float[Array, "point position"]
     efficiency: Float[Array, "point position"]
-    residual: Float[Array, ""]
+    residual: float
+    locked: int
 
 
 def state_grid(
@@ -54,26 +59,40 @@ def state_grid(
         models: laws.
 
     Yields:
-        Blocks of at most `ROWS` operating points; what is kept of them bounds the memory. Two
-        written-out steps solve the balance; a block whose residual is then above 1e-10 is solved
-        again, iterating to convergence.
+        Blocks of at most `ROWS` operating points and `COLUMNS` positions; what is kept of them
+        bounds the memory. Two written-out steps solve the balance; a block that has then a residual
+        above 1e-10 is solved again, iterating to convergence.
     """
-    count = int(operation.load.shape[0])
-    for first in range(0, count, ROWS):
-        used = min(ROWS, count - first)
-        rows = np.minimum(np.arange(first, first + ROWS), count - 1)
-        part, points = _taken((design, operation), rows, count)
-        block = _block(part, points, phase, models, _STEPS)
-        if not bool(block[-1] <= TOLERANCE):
-            block = _block(part, points, phase, models, 0)
-        force, torque, efficiency, residual = block
-        yield Block(first, force[:used], torque[:used], efficiency[:used], residual)
+    count, places = int(operation.load.shape[0]), int(phase.shape[0])
+    rows = min(ROWS, 1 << (count - 1).bit_length())
+    columns = min(COLUMNS, places)
+    for first in range(0, count, rows):
+        taken = np.minimum(np.arange(first, first + rows), count - 1)
+        part = _taken((design, operation), taken, count)
+        for start in range(0, places, columns):
+            at = phase[np.minimum(np.arange(start, start + columns), places - 1)]
+            found = _solved(part, at, models)
+            wide, tall = min(columns, places - start), min(rows, count - first)
+            force, torque, efficiency, residual = (values[:tall, :wide] for values in found)
+            solved = jnp.isfinite(force)
+            largest = float(jnp.max(jnp.where(solved, residual, 0.0)))
+            locked = int(jnp.sum(~solved))
+            yield Block((first, start), force, torque, efficiency, largest, locked)
 
 
-def _taken(
-    inputs: tuple[Design, Operation], rows: np.ndarray, count: int
-) -> tuple[Design, Operation]:
-    """Rows of everything that has one value for each operating point."""
+Columns = tuple[Array, Array, Array, Array]
+Inputs = tuple[Design, Operation]
+
+
+def _solved(inputs: Inputs, phase: Array, models: Models) -> Columns:
+    quick = _block(inputs, phase, models, _STEPS)
+    if bool(jnp.all(quick[-1] <= TOLERANCE)):
+        return quick
+    return _block(inputs, phase, models, 0)
+
+
+def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
+    """Rows of everything that has one value for each operating point, batch axes last but one."""
 
     def take(leaf: Array) -> Array:
         return leaf[rows] if jnp.ndim(leaf) and leaf.shape[0] == count else leaf
@@ -87,27 +106,20 @@ def _taken(
 
 
 @eqx.filter_jit
-def _block(
-    design: Design, points: Operation, phase: Array, models: Models, steps: int
-) -> tuple[Array, Array, Array, Array]:
-    together = max(1, min(ROWS, _CACHED // phase.shape[0]))
+def _block(inputs: Inputs, phase: Array, models: Models, steps: int) -> Columns:
+    rows = inputs[1].load.shape[0]
+    together = min(rows, 1 << max(0, (_CACHED // phase.shape[0]).bit_length() - 1))
 
-    def solve(rows: tuple[Design, Operation]) -> tuple[Array, Array, Array, Array]:
-        found = state(rows[0], rows[1], phase, models, unrolled=steps)
-        return (
-            found.balance.force,
-            found.input_torque,
-            found.efficiency,
-            jnp.max(found.balance.residual),
-        )
+    def solve(part: Inputs) -> Columns:
+        found = state(*part, phase, models, unrolled=steps)
+        balance = found.balance
+        return balance.force, found.input_torque, found.efficiency, balance.residual
 
-    rowwise, whole = eqx.partition((design, points), _per_row)
+    def per_row(leaf: Any) -> bool:
+        return eqx.is_array(leaf) and jnp.ndim(leaf) == 2 and leaf.shape[0] == rows
+
+    rowwise, whole = eqx.partition(inputs, per_row)
     stacked = jax.tree.map(lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), rowwise)
-    out = jax.lax.map(lambda rows: solve(eqx.combine(rows, whole)), stacked)
-    force, torque, efficiency, residual = out
-    shape = (ROWS, phase.shape[0])
-    return force.reshape(shape), torque.reshape(shape), efficiency.reshape(shape), jnp.max(residual)
-
-
-def _per_row(leaf: Any) -> bool:
-    return eqx.is_array(leaf) and jnp.ndim(leaf) == 2 and leaf.shape[0] == ROWS
+    out: Columns = jax.lax.map(lambda part: solve(eqx.combine(part, whole)), stacked)
+    force, torque, efficiency, residual = (x.reshape(rows, phase.shape[0]) for x in out)
+    return force, torque, efficiency, residual

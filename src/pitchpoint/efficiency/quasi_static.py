@@ -316,7 +316,8 @@ def cycle_nodes(
     edges = mesh.events()
     if sharing.hand_over is not None:
         edges = jnp.concatenate([edges, sharing.hand_over(mesh.contact_ratio)])
-    edges = jnp.concatenate([jnp.sort(edges), jnp.ones(1)])
+    edges = jnp.sort(edges)
+    edges = jnp.concatenate([edges, edges[:1] + 1.0])
     start, length = edges[:-1, None], jnp.diff(edges)[:, None]
     unit, weight = _lobatto(nodes)
     return (start + length * unit).ravel(), (length * weight).ravel()

@@ -38,10 +38,9 @@ def summary(design: Design, operation: Operation, models: Models) -> dict[str, A
     """Figures of one cycle; powers in W, torques in N m, the rest dimensionless."""
     result = cycle(design, operation, models)
     state = result.state
-    efficiency = _defined(state.efficiency)
-    low, high = result.extremes(efficiency)
+    low, high = result.extremes(state.efficiency)
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
-    high = jnp.minimum(high, jnp.maximum(1.0, jnp.max(efficiency, axis=-1)))
+    high = jnp.minimum(high, jnp.maximum(1.0, jnp.max(state.efficiency, axis=-1)))
     torque_low, torque_high = result.extremes(state.input_torque)
     return {
         "contact_ratio": design.mesh.contact_ratio,
@@ -99,11 +98,6 @@ def _chunks(points: Sequence[Point]) -> Iterator[tuple[Point, int]]:
         part = list(points[start : start + CHUNK])
         padded = part + [part[-1]] * (CHUNK - len(part))
         yield jax.tree.map(lambda *leaves: np.stack(leaves), *padded), len(part)
-
-
-def _defined(efficiency: Array) -> Array:
-    """Efficiency with one in place of the undefined, so that extremes stay finite."""
-    return jnp.where(jnp.isnan(efficiency), 1.0, efficiency)
 
 
 def _mean_friction(result: Cycle) -> Array:

@@ -13,6 +13,12 @@ __all__ = ["Balance", "balance"]
 
 Lanes = Float[Array, "pair slice *b"]
 
+LARGEST_RATIO = 20.0
+"""Contact force over that without friction beyond which the mesh counts as locked."""
+
+UNSOLVED = 1e-8
+"""Relative residual above which a state is no balance and its forces are NaN."""
+
 
 class Balance(eqx.Module):
     """Forces in equilibrium.
@@ -26,7 +32,8 @@ class Balance(eqx.Module):
         torque: external torque or force on each coordinate [N m or N].
         residual: relative error of the balance.
         iterations: of the solver, common to the states that were solved together.
-        locked: True where friction alone holds the load: no force moves it.
+        locked: True where friction holds the load: no force up to `LARGEST_RATIO` times the
+            frictionless one moves it. Forces and torques are NaN there.
     """
 
     force: Float[Array, "*b"]
@@ -99,7 +106,7 @@ def balance(
     one = jnp.ones(jnp.broadcast_shapes(frictionless.shape, share.shape[2:]))
     # Under a light load rolling resistance is most of the force: begin with it carried.
     start = one if rolling is None else one - total(laws(one)[2] * roll) / safe_load
-    ratio, iterations = root(unbalance, start, unrolled=unrolled)
+    ratio, iterations = root(unbalance, start, LARGEST_RATIO, unrolled=unrolled)
     force, coefficient, resistance = laws(ratio)
     torque = jnp.stack(
         [
@@ -110,17 +117,25 @@ def balance(
             for k in range(motion.shape[0])
         ]
     )
+    residual = jnp.abs(jnp.abs(along(torque, loaded)) - load) / safe_load
+    locked = (ratio > 0.999 * LARGEST_RATIO) | (leverage(coefficient) <= 0.0)
+    solved = (residual <= UNSOLVED) & (ratio > 0.0) & ~locked
     return Balance(
-        force=ratio * frictionless,
+        force=_where(solved, ratio * frictionless),
         frictionless=frictionless,
-        load=force,
+        load=_where(solved, force),
         friction=coefficient,
         rolling=resistance,
-        torque=torque,
-        residual=jnp.abs(jnp.abs(along(torque, loaded)) - load) / safe_load,
+        torque=_where(solved, torque),
+        residual=residual,
         iterations=iterations,
-        locked=leverage(coefficient) <= 0.0,
+        locked=locked,
     )
+
+
+def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Array, "..."]:
+    """Values where there is a balance, NaN elsewhere."""
+    return jnp.where(solved, values, jnp.nan)
 
 
 def _sign(value: Lanes, scale: Lanes) -> Lanes:

@@ -11,26 +11,33 @@ __all__ = ["TOLERANCE", "root"]
 TOLERANCE = 1e-12
 """Largest residual at which the iteration stops; a last step follows."""
 
-MOST = 40
-"""Largest number of steps."""
+NEAR = 1e-2
+"""Residual below which a state is near a root; others stay where the iteration left them."""
+
+MOST = 60
+"""Largest number of steps: enough for bisection alone."""
 
 Each = Float[Array, "*b"]
+Carry = tuple[Each, Each, Each, Each, Array]
 
 
 def root(
-    function: Callable[[Each], Each], guess: Each, *, unrolled: int = 0
+    function: Callable[[Each], Each], guess: Each, most: float, *, unrolled: int = 0
 ) -> tuple[Each, Int[Array, ""]]:
     """Root of an equation that each state solves for itself, and the steps it took.
 
-    The iteration itself is not differentiated: the last step, from the root that was found, carries
-    the derivatives with respect to everything that the function closes over. So the compiled
-    program holds no callback and is kept between processes, which an implicit adjoint of a
-    library's solver does not allow. Written-out steps are 1.4 times faster than a loop, because
-    what does not depend on the unknown is computed once (`benchmarks/states.py`).
+    Newton's steps are kept in a bracket that begins as (0, most), with bisection where they leave
+    it; without a root there the result ends at `most`. The iteration itself is not differentiated:
+    the last step, from the root that was found, carries the first derivatives with respect to
+    everything that the function closes over (no second ones). So the compiled program holds no
+    callback and is kept between processes, which an implicit adjoint of a library's solver does not
+    allow. Written-out steps are 1.4 times faster than the loop, because what does not depend on the
+    unknown is computed once (`benchmarks/states.py`); they are not bracketed.
 
     Args:
-        function: residual of order one at each state, smooth, elementwise.
+        function: residual of order one at each state, negative at zero, elementwise.
         guess: start values.
+        most: largest root that counts.
         unrolled: number of third-order steps to write out; 0 iterates until all states have
             converged.
 
@@ -43,24 +50,34 @@ def root(
         for _ in range(unrolled - 1):
             found = _halley(function, found)
     else:
-        found, steps = _iterate(function, start)
+        found, steps = _iterate(function, jnp.minimum(start, most), most)
     found = jax.lax.stop_gradient(found)
     value, slope = _tangent(function, found)
-    return found - value / jax.lax.stop_gradient(slope), steps
+    step = _quotient(value, jax.lax.stop_gradient(slope))
+    return found - jnp.where(jnp.abs(value) < NEAR, step, 0.0), steps
 
 
-def _iterate(function: Callable[[Each], Each], start: Each) -> tuple[Each, Int[Array, ""]]:
-    def unfinished(carry: tuple[Each, Each, Array]) -> Array:
-        _, residual, steps = carry
-        return (steps < MOST) & jnp.any(jnp.abs(residual) > TOLERANCE)
+def _iterate(
+    function: Callable[[Each], Each], start: Each, most: float
+) -> tuple[Each, Int[Array, ""]]:
+    def unfinished(carry: Carry) -> Array:
+        _, low, high, residual, steps = carry
+        open_ = (jnp.abs(residual) > TOLERANCE) & (high - low > 1e-15 * high)
+        return (steps < MOST) & jnp.any(open_)
 
-    def step(carry: tuple[Each, Each, Array]) -> tuple[Each, Each, Array]:
-        at, _, steps = carry
+    def step(carry: Carry) -> Carry:
+        at, low, high, _, steps = carry
         value, slope = _tangent(function, at)
-        return at - value / slope, value, steps + 1
+        low, high = jnp.where(value < 0.0, at, low), jnp.where(value < 0.0, high, at)
+        newton = at - _quotient(value, slope)
+        inside = (newton > low) & (newton < high)
+        further = jnp.where(inside, newton, (low + high) / 2.0)
+        done = jnp.abs(value) <= TOLERANCE
+        return jnp.where(done, at, further), low, high, value, steps + 1
 
-    begin = (start, jnp.full_like(start, jnp.inf), jnp.asarray(0))
-    found, _, steps = jax.lax.while_loop(unfinished, step, begin)
+    low, high = jnp.zeros_like(start), jnp.full_like(start, most)
+    begin = (start, low, high, jnp.full_like(start, jnp.inf), jnp.asarray(0))
+    found, _, _, _, steps = jax.lax.while_loop(unfinished, step, begin)
     return found, steps
 
 
@@ -75,4 +92,9 @@ def _halley(function: Callable[[Each], Each], at: Each) -> Each:
     (value, slope), (_, curve) = jax.jvp(
         lambda x: _tangent(function, x), (at,), (jnp.ones_like(at),)
     )
-    return jnp.asarray(at - value * slope / (slope**2 - 0.5 * value * curve))
+    return at - _quotient(value * slope, slope**2 - 0.5 * value * curve)
+
+
+def _quotient(over: Each, under: Each) -> Each:
+    """Quotient, zero where the divisor is."""
+    return jnp.where(under == 0.0, 0.0, over / jnp.where(under == 0.0, 1.0, under))

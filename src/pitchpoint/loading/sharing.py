@@ -112,7 +112,7 @@ LOAD_SHARING = Registry(
         "single",
         "whole load on the pair nearest to the middle of the path",
         single,
-        ("iso_21771_2007",),
+        (),
         hand_over=lambda ratio: jnp.mod((ratio + 1.0) / 2.0, 1.0)[None],
         note="A bound: what a pair would carry if its neighbours did not help.",
     ),

@@ -23,7 +23,6 @@ __all__ = [
     "constant",
     "frictionless",
     "iso_tr_14179_2",
-    "matsumoto_morikawa_2014",
     "xu_2007",
 ]
 
@@ -210,44 +209,6 @@ def xu_2007(
         # Far beyond any sense already; without the limit a rough flank overflows.
         exponent=jnp.minimum(f, 50.0),
     )
-
-
-def matsumoto_morikawa_2014(
-    *,
-    film_thickness: ArrayLike,
-    roughness_height: ArrayLike,
-    boundary_coefficient: ArrayLike,
-    fluid_coefficient: ArrayLike,
-) -> Float[Array, "..."]:
-    """Mixed coefficient: boundary and fluid friction shared by the ratio of roughness to film.
-
-    The asperities carry the share log10(roughness/film)/2, held between 0 (film as thick as the
-    roughness is high) and 1 (a hundredth of it). The law needs a film thickness and the friction of
-    the film, which a caller computes first; for that reason it is not in `LAWS`.
-
-    Args:
-        film_thickness: minimum EHL film thickness [m].
-        roughness_height: sum of the maximum heights Rz of the two surfaces [m].
-        boundary_coefficient: coefficient where the asperities carry all load [-].
-        fluid_coefficient: coefficient where the film carries all load [-].
-
-    Returns:
-        Friction coefficient at the contact [-].
-
-    References:
-        Matsumoto and Morikawa 2014 (`matsumoto2014`), as given by Arana et al. 2019, equation 5 and
-        Table 1 (`arana2019`).
-
-    Example:
-        >>> mu = matsumoto_morikawa_2014(film_thickness=0.2e-6, roughness_height=2e-6,
-        ...     boundary_coefficient=0.09, fluid_coefficient=0.01)
-        >>> round(float(mu), 6)
-        0.05
-    """
-    ratio = jnp.log(_floored(roughness_height)) - jnp.log(_floored(film_thickness))
-    share = jnp.clip(0.5 * ratio / jnp.log(10.0), 0.0, 1.0)
-    fluid = jnp.asarray(fluid_coefficient)
-    return fluid + share * (jnp.asarray(boundary_coefficient) - fluid)
 
 
 LAWS: Final[tuple[FrictionLaw, ...]] = (
