@@ -137,11 +137,17 @@ def run(
 
 
 @app.command()
-def compare(case: CaseName, variant: Variants = None, json_: AsJson = False) -> None:
+def compare(
+    case: CaseName,
+    variant: Annotated[
+        str | None, typer.Option("--variant", help="as_published by default.")
+    ] = None,
+    json_: AsJson = False,
+) -> None:
     """Compare a published case with its print; exit status 1 when a row misses."""
     from pitchpoint.cases.run import compare_case
 
-    name, chosen, rows = compare_case(case, variant[0] if variant else None, _progress)
+    name, chosen, rows = compare_case(case, variant, _progress)
     if json_:
         keep = [
             "quantity",
@@ -223,7 +229,10 @@ def _studies(texts: list[str]) -> dict[str, "Study"]:
             )
         start, stop, count = parts
         sweep = Sweep(key=key.strip(), start=start, stop=stop, count=float(count))
-        studies[key.strip().replace(".", "_")] = Study(title=key.strip(), sweep=sweep)
+        name = f"sweep_{key.strip().replace('.', '_')}"
+        if name in studies:
+            raise InputError(f"'{key.strip()}' is swept twice", key="--sweep")
+        studies[name] = Study(title=f"Sweep of {key.strip()}", sweep=sweep)
     return studies
 
 
@@ -338,7 +347,9 @@ def _warn(warnings: list[str]) -> None:
 
 
 def _emit(value: Any) -> None:
-    typer.echo(json.dumps(value, ensure_ascii=False, indent=1, allow_nan=False))
+    from pitchpoint.results.store import without_nan
+
+    typer.echo(json.dumps(without_nan(value), ensure_ascii=False, indent=1, allow_nan=False))
 
 
 def _complain(text: str) -> None:

@@ -1,5 +1,6 @@
 """Tables for people and machines: what can be chosen by name, and the main figures of a result."""
 
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials._leaves import Datum
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = ["entries", "figures", "summary_table"]
@@ -116,6 +118,7 @@ def _by_law(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
     if "axis" in data:
         result["axis"] = {
             "key": data.attrs["sweep_key"],
+            "unit": data["axis"].attrs.get("units", ""),
             "values": _numbers(data["axis"].values),
         }
     return result
@@ -133,7 +136,20 @@ def _entry(kind: str, model: Any, limits: str) -> dict[str, str]:
 
 
 def _record(kind: str, record: Any, limits: str) -> dict[str, str]:
-    return dict(kind=kind, name=record.name, title=record.title, range=limits, sources="", note="")
+    return dict(
+        kind=kind,
+        name=record.name,
+        title=record.title,
+        range=limits,
+        sources=_sources(record),
+        note="",
+    )
+
+
+def _sources(record: Any) -> str:
+    values = [getattr(record, one.name) for one in fields(record)]
+    found = [value.source for value in values if isinstance(value, Datum) and value.source]
+    return ", ".join(dict.fromkeys(found))
 
 
 def _friction_range(law: FrictionLaw) -> str:

@@ -15,7 +15,7 @@ from pitchpoint.cases.comparison import Row, compare
 from pitchpoint.cases.document import Tree, variants
 from pitchpoint.cases.library import find
 from pitchpoint.cases.schema import Study
-from pitchpoint.cases.studies import Job, Variant, jobs
+from pitchpoint.cases.studies import Job, Variant, few, jobs
 from pitchpoint.citations import cite
 from pitchpoint.errors import InputError
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -23,11 +23,22 @@ from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.results.store import fingerprint, load, make_folder, save, write_text
+from pitchpoint.results.store import (
+    fingerprint,
+    load,
+    make_folder,
+    package_state,
+    save,
+    without_nan,
+    write_text,
+)
 
 __all__ = ["Outcome", "Progress", "open_result", "run", "run_variant"]
 
 MANIFEST = "manifest.json"
+
+RUN = "run.json"
+"""Case and variants of the last run into a folder."""
 
 
 class Progress:
@@ -61,7 +72,7 @@ class Outcome:
 def run(
     case: str,
     *,
-    folder: Path | None = None,
+    folder: str | Path | None = None,
     only: Sequence[str] = (),
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
@@ -92,12 +103,14 @@ def run(
     own = None if friction is None else _own(friction)
     made = [Variant(tree, name, variant, dict(settings or {}), own) for variant in chosen]
     work = {variant.variant: (variant, list(jobs(variant, studies or {}))) for variant in made}
-    if folder is not None:
-        make_folder(folder)  # only now: a wrong input leaves nothing behind
+    where = None if folder is None else Path(folder)
+    if where is not None:
+        make_folder(where)  # only now: a wrong input leaves nothing behind
+        write_text(where / RUN, json.dumps({"case": name, "variants": [*work]}))
     return {
         one: run_variant(
             *prepared,
-            folder=None if folder is None else folder / one,
+            folder=None if where is None else where / one,
             studies=studies or {},
             progress=progress or Progress(),
         )
@@ -133,21 +146,21 @@ def _own(function: Callable[..., Any]) -> FrictionLaw:
     return FrictionLaw(name, f"{name}, the user's own", function, (), ({}, 0.0))
 
 
-def open_result(folder: Path) -> dict[str, Outcome]:
+def open_result(folder: str | Path) -> dict[str, Outcome]:
     """Outcomes of a folder that `run` wrote, by variant.
 
     Raises:
         InputError: the folder holds no result.
     """
-    manifests = sorted(folder.glob(f"*/{MANIFEST}"))
-    if not manifests:
-        raise InputError("holds no result of pitchpoint", file=str(folder))
-    outcomes = {path.parent.name: _opened(path) for path in manifests}
-    order = [name for one in outcomes.values() for name in one.manifest["variants"]]
-    return {name: outcomes[name] for name in dict.fromkeys(order) if name in outcomes}
+    try:
+        names = json.loads((Path(folder) / RUN).read_text(encoding="utf-8"))["variants"]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError("holds no result of pitchpoint", file=str(folder)) from None
+    paths = {name: Path(folder) / name / MANIFEST for name in names}
+    return {name: _opened(path) for name, path in paths.items() if path.is_file()}
 
 
-def manifests(folder: Path) -> list[dict[str, Any]]:
+def manifests(folder: str | Path) -> list[dict[str, Any]]:
     """Manifests of a result, one for each variant.
 
     Raises:
@@ -242,7 +255,7 @@ def _part(
     progress: Progress,
 ) -> xr.Dataset:
     extra = {name: study.model_dump() for name, study in studies.items()}
-    mark = fingerprint(variant.document().tree, job.name, extra.get(job.name[6:]))
+    mark = fingerprint(package_state(), variant.document().tree, job.name, extra.get(job.name[6:]))
     labels = {"case": variant.name, "variant": variant.variant, "fingerprint": mark}
     whole = None if folder is None else folder / f"{job.name}.nc"
     found = None if variant.own is not None else _found(whole, mark)
@@ -260,11 +273,19 @@ def _part(
                 _keep(piece, path)
         pieces.append(piece)
         progress.points(sum(part.sizes.get("point", 0) for part in pieces))
-    data = pieces[0] if len(pieces) == 1 else xr.concat(pieces, "point", combine_attrs="override")
+    data = pieces[0] if len(pieces) == 1 else _joined(pieces)
     _keep(data, whole)
     if folder is not None:
         for path in folder.glob(f"{job.name}.[0-9][0-9][0-9][0-9].nc"):
             path.unlink()
+    return data
+
+
+def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Pieces of a sweep as one; their warnings too."""
+    data = xr.concat(pieces, "point", combine_attrs="override")
+    told = [text for piece in pieces for text in json.loads(piece.attrs["warnings"])]
+    data.attrs["warnings"] = json.dumps(few([*dict.fromkeys(told)]))
     return data
 
 
@@ -287,7 +308,10 @@ def _keep(data: xr.Dataset, path: Path | None) -> None:
 def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
     outcome.manifest.update(parts=list(outcome.parts), finished=finished)
     if folder is not None:
-        write_text(folder / MANIFEST, json.dumps(outcome.manifest, indent=1, ensure_ascii=False))
+        write_text(
+            folder / MANIFEST,
+            json.dumps(without_nan(outcome.manifest), indent=1, ensure_ascii=False),
+        )
 
 
 def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:

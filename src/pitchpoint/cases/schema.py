@@ -256,7 +256,7 @@ class Choices(Table):
     """Which law stands for which effect."""
 
     friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(_choices)] = (
-        FrictionChoice(name="xu_2007"),
+        FrictionChoice(name="iso_tr_14179_2"),
     )
     load_sharing: Annotated[str, BeforeValidator(named(_sharings, "load sharing model"))] = "equal"
     rolling_resistance: Annotated[str, BeforeValidator(named(_rollings, "rolling resistance"))] = (

@@ -32,6 +32,7 @@ from pitchpoint.gears.cylindrical import CylindricalPair
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.store import dataset
+from pitchpoint.units import si_unit
 
 __all__ = ["Job", "Variant", "jobs"]
 
@@ -42,6 +43,8 @@ _TOLD = ("targets", "issues", "studies")
 
 SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
+
+_SHOWN = 3
 
 TOLERANCE = 1e-10
 """Largest relative residual of the torque balance that counts as converged."""
@@ -119,6 +122,8 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
         InputError: before the first part, for the case and for the ends of every sweep.
     """
     built = variant.built({})
+    for name in built.case.studies.keys() & extra.keys():
+        raise InputError("is a study of the case already", file=variant.name, key=f"studies.{name}")
     studies = [_study(variant, n, study, f"studies.{n}") for n, study in built.case.studies.items()]
     studies += [_study(variant, name, study, "--sweep") for name, study in extra.items()]
     yield Job("teeth", "teeth", (lambda _: _teeth(built),))
@@ -251,6 +256,8 @@ def _points(
         models, chosen = laws_of(points[0])
         data = _summaries(points, models, chosen, axis, progress, title=title)
         data.attrs.update(told)
+        if told.get("axis_kind"):
+            data["axis"].attrs.update(units=si_unit(told["axis_kind"]), long_name=swept)
         return data
 
     return compute
@@ -307,12 +314,10 @@ def _loss_map(built: Built, progress: Progress) -> xr.Dataset:
         for load, rate, degree in zip(torque.flat, speed.flat, temperature.flat, strict=True)
     ]
     shape = torque.shape
-    losses, efficiencies = [], []
+    losses, efficiencies, warnings = [], [], []
     for law in chosen:
         out = summarise(points, _choose(models, law), progress)
-        locked = out["locked"][None, :]
-        _demand_motion(locked, [built], [models.friction[law].name])
-        _demand_convergence(out["residual"][None, :], [built], [models.friction[law].name])
+        warnings += _lock_warning(models.friction[law], out["locked"] & (torque > 0.0).ravel())
         losses.append(np.where(speed > 0.0, out["mean_loss"].reshape(shape), 0.0))
         efficiencies.append(np.where(speed > 0.0, out["mean_efficiency"].reshape(shape), np.nan))
     dims = ("law", "torque", "speed", "temperature")
@@ -323,6 +328,7 @@ def _loss_map(built: Built, progress: Progress) -> xr.Dataset:
             **{name: (name, values) for name, values in zip(dims[1:], axes, strict=True)},
         },
         title="loss map",
+        warnings=warnings,
         note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
     )
 
@@ -368,10 +374,10 @@ def _summaries(
     title: str,
     may_lock: bool = False,
 ) -> xr.Dataset:
-    """Figures of points under several laws; with `may_lock` a locked mesh is an answer (NaN)."""
+    """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN."""
     runs = [_grouped(points, _choose(models, law), progress) for law in laws]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
-    if not may_lock:
+    if not may_lock and len(points) == 1:
         _demand_motion(out["locked"], points, _names(models, laws))
     for name, values in out.items():
         if values.dtype.kind == "f" and name not in ("contact_ratio", "loss_factor"):
@@ -385,13 +391,30 @@ def _summaries(
     out["efficiency_fluctuation"] = out["max_efficiency"] - out["min_efficiency"]
     out["torque_ripple"] = out["max_input_torque"] - out["min_input_torque"]
     out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
-    warnings = sorted({text for point in points for text in point.warnings})
+    told = dict.fromkeys(text for point in points for text in point.warnings)
+    warnings = few([*told])
+    if not may_lock:
+        for law, locked in zip(laws, out["locked"], strict=True):
+            warnings += _lock_warning(models.friction[law], locked)
     return dataset(
         {**{name: (("law", "point"), values) for name, values in out.items()}, **extra},
         {"law": _names(models, laws)},
         title=title,
         warnings=warnings,
     )
+
+
+def few(sentences: list[str]) -> list[str]:
+    """The first warnings of a sweep, and how many more there are."""
+    rest = len(sentences) - _SHOWN
+    more = [f"... and {rest} more warnings of this kind in the sweep."] if rest > 0 else []
+    return sentences[:_SHOWN] + more
+
+
+def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
+    if not locked.any():
+        return []
+    return [f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."]
 
 
 def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[str, np.ndarray]:
@@ -427,8 +450,9 @@ def _number(value: Any) -> float:
 
 def _demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:
     """ConvergenceError if a balance [law, point] was not found: no numbers are returned."""
-    if not (residual <= TOLERANCE).all():
-        law, point = divmod(int(np.argmax(residual > TOLERANCE)), residual.shape[1])
+    failed = ~(residual <= TOLERANCE)
+    if failed.any():
+        law, point = divmod(int(np.argmax(failed)), residual.shape[1])
         raise ConvergenceError(
             f"the torque balance did not converge (relative residual {residual[law, point]:.2g}, "
             f"allowed {TOLERANCE:g}) with {laws[law]} {_where(points[min(point, len(points) - 1)])}"

@@ -1,5 +1,7 @@
 """Derivatives of the main figures with respect to every continuous input, geometry included."""
 
+import dataclasses
+
 import equinox as eqx
 from jaxtyping import Array, Float
 
@@ -22,7 +24,9 @@ def mean_loss_gradient(design: Design, operation: Operation, models: Models) -> 
 
     Returns:
         A design and an operation that hold the derivative in place of each continuous value, in W
-        over its SI unit; None in place of the others.
+        over its SI unit; None in place of the others. Dimensions that follow from others (a centre
+        distance without backlash, tip alterations that keep the clearance) are taken along: their
+        own derivative is zero. The acting law is `models.choice`.
 
     Raises:
         ConvergenceError: friction locks the mesh, there is no balance.
@@ -57,10 +61,15 @@ def _told(value: Array, derivatives: Inputs) -> Inputs:
     return derivatives
 
 
+def _completed(inputs: Inputs) -> Inputs:
+    design, operation = inputs
+    return dataclasses.replace(design, mesh=design.mesh.completed()), operation
+
+
 @eqx.filter_jit
 def _gradient(inputs: Inputs, figure: str, models: Models) -> tuple[Array, Inputs]:
     def value(inputs: Inputs) -> Array:
-        result: Array = getattr(cycle(*inputs, models), figure)
+        result: Array = getattr(cycle(*_completed(inputs), models), figure)
         return result
 
     found: tuple[Array, Inputs] = eqx.filter_value_and_grad(value)(inputs)
@@ -70,7 +79,7 @@ def _gradient(inputs: Inputs, figure: str, models: Models) -> tuple[Array, Input
 @eqx.filter_jit
 def _at_phase(inputs: Inputs, models: Models, phase: Float[Array, ""]) -> tuple[Array, Inputs]:
     def torque(inputs: Inputs) -> Array:
-        return state(*inputs, phase, models).input_torque
+        return state(*_completed(inputs), phase, models).input_torque
 
     found: tuple[Array, Inputs] = eqx.filter_value_and_grad(torque)(inputs)
     return found

@@ -1,6 +1,7 @@
 """Pair of external involute spur gears: geometry by ISO 21771 names, and its travelling contacts."""
 
 import dataclasses
+from typing import Self
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
@@ -65,6 +66,8 @@ class CylindricalPair(Mesh):
         wheel_drives: True if gear 2 drives and gear 1 carries the load; the same flanks touch.
         right_flank: False while gear 1 pushes with its left flanks (seen with the tip up), turning
             counter-clockwise when it drives; True for the other ones.
+        follows: static; whether centre distance (without backlash) and tip alterations (rack's tip
+            clearance) follow from the other dimensions.
         undercut: for each gear whether the rack undercuts its flanks; static.
         crossing: for each gear where the undercut crosses the involute, see `InvoluteGear`.
         lanes: static count of pairs held, at least the contact ratio rounded up.
@@ -82,9 +85,22 @@ class CylindricalPair(Mesh):
     centre_distance: Float[Array, ""]
     wheel_drives: Bool[Array, ""]
     right_flank: Bool[Array, ""]
+    follows: tuple[bool, bool] = eqx.field(static=True)
     undercut: tuple[bool, bool] = eqx.field(static=True)
     crossing: Float[Array, "2"]
     lanes: int = eqx.field(static=True)
+
+    def completed(self) -> Self:
+        """The pair with centre distance and tip alterations as they follow from the rest."""
+        pair, (distance_follows, tips_follow) = self, self.follows
+        rack = {"teeth": self.teeth, "module": self.module, "profile_shift": self.profile_shift}
+        if distance_follows:
+            distance = zero_backlash_centre_distance(**rack, pressure_angle=self.pressure_angle)
+            pair = dataclasses.replace(pair, centre_distance=distance)
+        if tips_follow:
+            change = clearance_keeping_tip_alteration(**rack, centre_distance=pair.centre_distance)
+            pair = dataclasses.replace(pair, tip_alteration=jnp.stack([change, change]))
+        return pair
 
     @property
     def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
@@ -326,11 +342,12 @@ def build_cylindrical_pair(
         centre_distance=_array(centre_distance or 0.0),
         wheel_drives=jnp.asarray(driver == 2),
         right_flank=jnp.asarray(right_flank),
+        follows=(centre_distance is None, tip_alteration is None),
         undercut=(False, False),
         crossing=jnp.full(2, jnp.asarray(pressure_angle, dtype=jnp.float64)),
         lanes=2,
     )
-    pair, limit = _complete(pair, centre_distance is None, tip_alteration is None)
+    pair, limit = _complete(pair)
     first, second = (bool(one) for one in pair.profile_shift < limit)
     if first or second:
         pair = _with_crossings(dataclasses.replace(pair, undercut=(first, second)))
@@ -346,17 +363,9 @@ def _contact_ratio(pair: CylindricalPair) -> Float[Array, ""]:
 
 
 @eqx.filter_jit
-def _complete(
-    pair: CylindricalPair, without_backlash: bool, keep_clearance: bool
-) -> tuple[CylindricalPair, Float[Array, "2"]]:
+def _complete(pair: CylindricalPair) -> tuple[CylindricalPair, Float[Array, "2"]]:
     """Pair with the dimensions that follow from the others, and the undercut limits of both gears."""
-    rack = {"teeth": pair.teeth, "module": pair.module, "profile_shift": pair.profile_shift}
-    if without_backlash:
-        distance = zero_backlash_centre_distance(**rack, pressure_angle=pair.pressure_angle)
-        pair = dataclasses.replace(pair, centre_distance=distance)
-    if keep_clearance:
-        change = clearance_keeping_tip_alteration(**rack, centre_distance=pair.centre_distance)
-        pair = dataclasses.replace(pair, tip_alteration=jnp.stack([change, change]))
+    pair = pair.completed()
     return pair, jnp.stack([gear.undercut_limit for gear in pair.gears])
 
 

@@ -17,13 +17,15 @@ def involute(angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
 
 
 def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
-    """Angle [rad] whose involute function is `value`, for value > 0."""
-    guess = jnp.arctan(value + jnp.minimum(jnp.cbrt(3.0 * value), 1.5))
+    """Angle [rad] whose involute function is `value`, for value > 0; differentiable by its last step."""
+    fixed = jax.lax.stop_gradient(value)
+    guess = jnp.arctan(fixed + jnp.minimum(jnp.cbrt(3.0 * fixed), 1.5))
     solver: optx.Newton[Any, Any, Any] = optx.Newton(rtol=1e-14, atol=1e-14)
     solution: optx.Solution[Any, Any] = optx.root_find(
-        lambda angle, target: involute(angle) - target, solver, guess, value, throw=False
+        lambda angle, target: involute(angle) - target, solver, guess, fixed, throw=False
     )
-    return jnp.asarray(solution.value)
+    angle = jax.lax.stop_gradient(solution.value)
+    return jnp.asarray(angle - (involute(angle) - value) / jnp.tan(angle) ** 2)
 
 
 class InvoluteGear(eqx.Module):

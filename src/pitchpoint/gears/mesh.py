@@ -1,6 +1,7 @@
 """What every gear family answers."""
 
 import abc
+from typing import Self
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -32,6 +33,13 @@ class Mesh(eqx.Module):
     One period of `phase` is one engagement: the state of the mesh repeats with it. Coordinates are
     rotations counter-clockwise [rad], or translations [m] where a family has them.
     """
+
+    def completed(self) -> Self:
+        """The same mesh with dimensions that follow from others computed from them again.
+
+        Derivatives with respect to one dimension then see what follows from it.
+        """
+        return self
 
     @abc.abstractmethod
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:

@@ -87,13 +87,16 @@ def balance(
     arm = total(normal)
     frictionless = load / arm
     safe_load = jnp.where(load > 0.0, load, 1.0)
+    # Laws never see a load of zero, where their slopes may be infinite.
+    loaded_lanes = contacts.active & (share > 0.0) & (load > 0.0)
 
     def laws(ratio: Float[Array, "*b"]) -> tuple[Lanes, Lanes, Lanes]:
         """Load, friction coefficient and rolling resistance of each slice at F = ratio F0."""
         force = share * (ratio * frictionless)
-        coefficient = jnp.where(contacts.active, friction(force), 0.0)
-        resistance = rolling(force) if rolling is not None else jnp.zeros_like(force)
-        return force, coefficient, jnp.where(contacts.active & (force > 0.0), resistance, 0.0)
+        safe = jnp.where(loaded_lanes & (force > 0.0), force, safe_load / arm)
+        coefficient = jnp.where(loaded_lanes, friction(safe), 0.0)
+        resistance = rolling(safe) if rolling is not None else jnp.zeros_like(force)
+        return force, coefficient, jnp.where(loaded_lanes, resistance, 0.0)
 
     def leverage(coefficient: Lanes) -> Float[Array, "*b"]:
         return 1.0 + total(share * coefficient * slip) / arm

@@ -2,9 +2,11 @@
 
 import hashlib
 import json
+import math
 import os
 import tempfile
 from collections.abc import Callable, Mapping
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,16 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["dataset", "fingerprint", "load", "make_folder", "save", "write_text"]
+__all__ = [
+    "dataset",
+    "fingerprint",
+    "load",
+    "make_folder",
+    "package_state",
+    "save",
+    "without_nan",
+    "write_text",
+]
 
 
 def dataset(
@@ -47,15 +58,27 @@ def dataset(
     return data
 
 
-def attribute(data: xr.Dataset, name: str) -> Any:
-    """Attribute that was stored as JSON."""
-    return json.loads(data.attrs[name])
-
-
 def fingerprint(*parts: Any) -> str:
     """Short digest of inputs: equal inputs of one version of the package, equal digest."""
     text = json.dumps([version("pitchpoint"), *parts], sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@cache
+def package_state() -> list[tuple[str, int, int]]:
+    """Size and time of every file of the package: changed code or data computes again."""
+    root = Path(__file__).parents[1]
+    kept = sorted(path for path in root.rglob("*") if path.suffix in (".py", ".toml"))
+    return [(path.name, path.stat().st_size, path.stat().st_mtime_ns) for path in kept]
+
+
+def without_nan(value: Any) -> Any:
+    """The same tree with None in place of numbers that JSON cannot say."""
+    if isinstance(value, dict):
+        return {key: without_nan(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_nan(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def save(data: xr.Dataset, path: Path) -> None:

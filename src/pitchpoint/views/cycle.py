@@ -274,7 +274,11 @@ def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
             friction = np.where(active, data["friction"].values[law][:, pair, 0], np.nan)
             x, y = gapped(data["phase"].values, friction)
             trace = line(curve, x, y, f"(pair {pair + 1})")
-            trace["line"] = {"color": curve.colour, "width": 2, "dash": _PAIR_DASHES[pair]}
+            trace["line"] = {
+                "color": curve.colour,
+                "width": 2,
+                "dash": _PAIR_DASHES[pair % len(_PAIR_DASHES)],
+            }
             traces.append(trace)
     names = ", ".join(
         f"{dash} for the pair that entered {_ago(pair)}"

@@ -62,14 +62,14 @@ _SIDE_BY_SIDE = (
 )
 
 
-def write_report(outcomes: Mapping[str, Outcome], path: Path) -> None:
+def write_report(outcomes: Mapping[str, Outcome], path: str | Path) -> None:
     """Write the report; a reader never sees half of it.
 
     Args:
         outcomes: by variant, as `run` and `open_result` give them.
         path: of the HTML file.
     """
-    write_text(path, render(outcomes))
+    write_text(Path(path), render(outcomes))
 
 
 def render(outcomes: Mapping[str, Outcome]) -> str:
