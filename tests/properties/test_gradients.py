@@ -68,8 +68,10 @@ def models(choice=0, mu=0.06, laws=("xu_2007", "iso_tr_14179_2", "constant"), ro
 
 def figures(inputs, chosen):
     """Mean loss, ripple, and input torque at one phase."""
-    found = cycle(*inputs, chosen)
-    torque = state(*inputs, PHASE, chosen).input_torque
+    design, point = inputs
+    design = dataclasses.replace(design, mesh=design.mesh.completed())
+    found = cycle(design, point, chosen)
+    torque = state(design, point, PHASE, chosen).input_torque
     return jnp.stack([found.mean_loss, found.ripple, torque])
 
 
@@ -346,3 +348,26 @@ def test_units_of_length_mass_and_time_scale_every_result(design, length, mass, 
         np.testing.assert_allclose(
             there[name], expected, rtol=1e-9, atol=1e-11 * np.abs(expected).max(), err_msg=name
         )
+
+
+def test_a_dimension_takes_along_what_follows_from_it():
+    """As if the pair were built anew: without backlash the module moves the centre distance."""
+    point, step = operation(), 1e-6
+
+    def loss(module):
+        mesh = build_cylindrical_pair(
+            teeth=(21, 55),
+            module=module,
+            pressure_angle=np.deg2rad(20.0),
+            face_width=0.014,
+            profile_shift=(0.35, -0.1),
+        )
+        inputs = (design_of(mesh), point)
+        return inputs, float(
+            figures_of_many(ravel_pytree(floats(inputs))[0][None], inputs, models(1))[0, 0]
+        )
+
+    slope = (loss(3e-3 + step)[1] - loss(3e-3 - step)[1]) / (2.0 * step)
+    by_design, _ = mean_loss_gradient(*loss(3e-3)[0], models(1))
+    assert float(by_design.mesh.module) == pytest.approx(slope, rel=1e-6)
+    assert float(by_design.mesh.centre_distance) == 0.0

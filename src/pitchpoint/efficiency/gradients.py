@@ -5,7 +5,7 @@ import dataclasses
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import ConvergenceError
 
@@ -56,7 +56,7 @@ def input_torque_gradient(
 
 def _told(value: Array, derivatives: Inputs) -> Inputs:
     """Derivatives, unless there is no balance to differentiate."""
-    if not bool(jnp.isfinite(value)):
+    if not isinstance(value, jax.core.Tracer) and not bool(jnp.isfinite(value)):
         raise ConvergenceError("friction locks the mesh or no balance was found: no derivatives")
     return derivatives
 

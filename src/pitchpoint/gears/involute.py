@@ -1,12 +1,10 @@
 """One involute gear cut by a basic rack: circles, thickness, form circle, outline (ISO 21771)."""
 
-from typing import Any
-
 import equinox as eqx
-import optimistix as optx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.roots import root
 
 __all__ = ["InvoluteGear", "inverse_involute", "involute"]
 
@@ -17,15 +15,9 @@ def involute(angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
 
 
 def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
-    """Angle [rad] whose involute function is `value`, for value > 0; differentiable by its last step."""
-    fixed = jax.lax.stop_gradient(value)
-    guess = jnp.arctan(fixed + jnp.minimum(jnp.cbrt(3.0 * fixed), 1.5))
-    solver: optx.Newton[Any, Any, Any] = optx.Newton(rtol=1e-14, atol=1e-14)
-    solution: optx.Solution[Any, Any] = optx.root_find(
-        lambda angle, target: involute(angle) - target, solver, guess, fixed, throw=False
-    )
-    angle = jax.lax.stop_gradient(solution.value)
-    return jnp.asarray(angle - (involute(angle) - value) / jnp.tan(angle) ** 2)
+    """Angle [rad] whose involute function is `value`, for value > 0."""
+    guess = jnp.arctan(value + jnp.minimum(jnp.cbrt(3.0 * value), 1.5))
+    return root(lambda angle: involute(angle) / value - 1.0, guess, jnp.pi / 2.0)[0]
 
 
 class InvoluteGear(eqx.Module):
@@ -159,12 +151,9 @@ class InvoluteGear(eqx.Module):
         span = jnp.pi / 2.0 - self.pressure_angle
         scan = self.pressure_angle + span * jnp.linspace(0, 1, 200) ** 3
         first = jnp.argmax(self._removed(scan[1:]) > 0.0)
-        guess = (scan[first] + scan[first + 1]) / 2.0
-        solver: optx.Newton[Any, Any, Any] = optx.Newton(rtol=1e-13, atol=1e-13)
-        solution: optx.Solution[Any, Any] = optx.root_find(
-            lambda angle, _: self._removed(angle), solver, guess, throw=False
-        )
-        return jnp.asarray(solution.value)
+        guess = (scan[first] + scan[first + 1]) / 2.0 - self.pressure_angle
+        beyond, _ = root(lambda x: self._removed(self.pressure_angle + x), guess, span)
+        return self.pressure_angle + beyond
 
     @property
     def _fillet_end(self) -> Float[Array, ""]:

@@ -5,16 +5,16 @@ from collections.abc import Callable
 import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.loading.root import root
+from pitchpoint.roots import root
 
 __all__ = ["Balance", "balance"]
 
 Lanes = Float[Array, "pair slice *b"]
 
 LARGEST_RATIO = 20.0
-"""Contact force over that without friction beyond which the mesh counts as locked."""
+"""Contact force over that without sliding friction beyond which the mesh counts as locked."""
 
 UNSOLVED = 1e-8
 """Relative residual above which a state is no balance and its forces are NaN."""
@@ -106,10 +106,11 @@ def balance(
         rolled = total(resistance * roll) / safe_load
         return ratio * leverage(coefficient) + rolled - 1.0
 
-    one = jnp.ones(jnp.broadcast_shapes(frictionless.shape, share.shape[2:]))
-    # Under a light load rolling resistance is most of the force: begin with it carried.
-    start = one if rolling is None else one - total(laws(one)[2] * roll) / safe_load
-    ratio, iterations = root(unbalance, start, LARGEST_RATIO, unrolled=unrolled)
+    start = jnp.ones(jnp.broadcast_shapes(frictionless.shape, share.shape[2:]))
+    if rolling is not None:  # under a light load it is most of the force
+        start = jnp.maximum(start, start - total(laws(start)[2] * roll) / safe_load)
+    most = LARGEST_RATIO * jax.lax.stop_gradient(start)
+    ratio, iterations = root(unbalance, start, most, unrolled=unrolled)
     force, coefficient, resistance = laws(ratio)
     torque = jnp.stack(
         [
@@ -121,7 +122,7 @@ def balance(
         ]
     )
     residual = jnp.abs(jnp.abs(along(torque, loaded)) - load) / safe_load
-    locked = (ratio > 0.999 * LARGEST_RATIO) | (leverage(coefficient) <= 0.0)
+    locked = (ratio > 0.999 * most) | (leverage(coefficient) <= 0.0)
     solved = (residual <= UNSOLVED) & (ratio > 0.0) & ~locked
     return Balance(
         force=_where(solved, ratio * frictionless),

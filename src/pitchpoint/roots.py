@@ -22,7 +22,11 @@ Carry = tuple[Each, Each, Each, Each, Array]
 
 
 def root(
-    function: Callable[[Each], Each], guess: Each, most: float, *, unrolled: int = 0
+    function: Callable[[Each], Each],
+    guess: Each,
+    most: float | Float[Array, ""],
+    *,
+    unrolled: int = 0,
 ) -> tuple[Each, Int[Array, ""]]:
     """Root of an equation that each state solves for itself, and the steps it took.
 
@@ -58,7 +62,7 @@ def root(
 
 
 def _iterate(
-    function: Callable[[Each], Each], start: Each, most: float
+    function: Callable[[Each], Each], start: Each, most: float | Float[Array, ""]
 ) -> tuple[Each, Int[Array, ""]]:
     def unfinished(carry: Carry) -> Array:
         _, low, high, residual, steps = carry
