@@ -154,7 +154,7 @@ def test_run_leaves_results_that_are_not_computed_twice(
     other = pitchpoint("run", tiny, *smooth, "--json").json["default"]
     loss = other["operation"]["xu_2007"]["mean_loss"]
     assert loss == pytest.approx(figures["studies"]["smooth"]["xu_2007"]["mean_loss"], rel=1e-12)
-    assert other["studies"]["operation_torque"]["axis"]["values"] == [10.0, 50.0]
+    assert other["studies"]["sweep_operation_torque"]["axis"]["values"] == [10.0, 50.0]
     changed = times(tmp_path / "results" / "tiny")
     assert changed["operation"] != made["operation"]
 
@@ -305,7 +305,7 @@ def test_pairs_that_no_paper_holds(
 ) -> None:
     told = pitchpoint("run", EXAMPLES / f"{name}.toml", "-o", tmp_path / "out", "--json")
     assert told.status == 0, told.err
-    operation = told.json["default"]["operation"]["xu_2007"]
+    operation = told.json["default"]["operation"]["iso_tr_14179_2"]
     assert 0.9 < operation["mean_efficiency"] < 1.0
     assert any(text.startswith(warning) for text in [*told.json["default"]["warnings"], ""])
     parts = open_result(tmp_path / "out")["default"].parts
@@ -349,7 +349,7 @@ def started(folder: Path, wanted: str, gone: int = 0) -> "subprocess.Popen[str]"
 
 
 def test_interrupted_runs_go_on_where_they_were(tiny: Path, tmp_path: Path) -> None:
-    pieces = "study_operation_torque.0*.nc"
+    pieces = "study_sweep_operation_torque.0*.nc"
     process = started(tmp_path, pieces)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
@@ -378,10 +378,10 @@ def test_interrupted_runs_go_on_where_they_were(tiny: Path, tmp_path: Path) -> N
     assert {name: finished[name] for name in finished if name in kept} == {
         name: stamp for name, stamp in kept.items() if ".0" not in name
     }
-    axis = json.loads(done.stdout)["default"]["studies"]["operation_torque"]["axis"]["values"]
+    axis = json.loads(done.stdout)["default"]["studies"]["sweep_operation_torque"]["axis"]["values"]
     assert len(axis) == 800
     assert axis == sorted(axis)
-    assert "study_operation_torque" in finished
+    assert "study_sweep_operation_torque" in finished
 
 
 def test_a_reader_that_stops_early(tiny: Path, tmp_path: Path) -> None:
