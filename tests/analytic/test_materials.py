@@ -1,6 +1,7 @@
 """Material laws against closed forms, and the catalogue against its own check values."""
 
 import tomllib
+from dataclasses import replace
 from importlib import resources
 
 import equinox as eqx
@@ -11,9 +12,10 @@ import pytest
 
 from pitchpoint import citations
 from pitchpoint.errors import InputError
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import Roughness, SolidRecord, lubricants, solids
+from pitchpoint.materials._leaves import Datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
-from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.materials.solids import ModulusPoint, Solid, reduced_modulus
 from pitchpoint.materials.surfaces import composite_rq
 from pitchpoint.materials.viscosity import astm_d341
 
@@ -38,6 +40,86 @@ def test_steel_gives_the_elasticity_factor_of_iso_6336_2():
     steel = solids.find("steel").build()
     factor = jnp.sqrt(reduced_modulus(steel, steel) / 1e6 / (2.0 * jnp.pi))
     assert float(factor) == pytest.approx(189.8, abs=0.05)
+
+
+STRAIGHT = SolidRecord(
+    name="straight",
+    young=Datum(value=3e9),
+    poisson=Datum(value=0.4),
+    density=Datum(value=1300.0),
+    young_temperature=Datum(value=293.15),
+    young_at=(
+        ModulusPoint(temperature=273.15, young=Datum(value=3.2e9)),
+        ModulusPoint(temperature=323.15, young=Datum(value=2.7e9)),
+        ModulusPoint(temperature=373.15, young=Datum(value=0.7e9)),
+    ),
+)
+
+
+def test_modulus_is_interpolated_between_its_temperatures():
+    built = STRAIGHT.build(jnp.array([273.15, 293.15, 323.15, 348.15, 373.15]))
+    np.testing.assert_allclose(built.young, [3.2e9, 3.0e9, 2.7e9, 1.7e9, 0.7e9], rtol=1e-14)
+    assert float(built.poisson) == 0.4
+    assert float(STRAIGHT.build().young) == 3e9
+
+
+@pytest.mark.parametrize(
+    ("temperature", "words"),
+    [(400.15, "127 degC"), (272.15, "-1 degC"), (float("nan"), "nan degC")],
+)
+def test_modulus_outside_its_table_is_refused(temperature, words):
+    with pytest.raises(InputError) as caught:
+        STRAIGHT.build(temperature)
+    assert str(caught.value) == (
+        "the modulus of straight is known from 0 degC to 100 degC and is not extrapolated: "
+        f"a temperature of {words} is not allowed"
+    )
+    with pytest.raises(InputError, match=words):
+        STRAIGHT.build(np.array([300.0, temperature]))
+
+
+def test_a_single_modulus_serves_at_every_temperature_and_says_so():
+    peek = solids.find("PEEK")
+    assert float(peek.build(393.15).young) == peek.young.value
+    assert peek.young_range is None
+    assert peek.modulus_known == "its modulus is known at 23 degC only"
+    assert solids.find("steel").modulus_known.endswith(
+        "at one temperature only, which is not stated"
+    )
+    assert STRAIGHT.modulus_known == "its modulus is known from 0 degC to 100 degC"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"young_at": STRAIGHT.young_at[:1]}, "young_at: a table of moduli needs two temperatures"),
+        ({"young_at": STRAIGHT.young_at[::-1]}, "young_at: the temperatures must rise"),
+        (
+            {"young": Datum(value=2e9)},
+            "young_at: the table must give the single modulus at 20 degC",
+        ),
+        ({"young_temperature": Datum(value=400.0)}, "the single modulus at 126.9 degC"),
+        ({"conductivity": Datum(value=-0.2)}, "conductivity: -0.2 is not a positive number"),
+        ({"poisson": Datum(value=0.6)}, "poisson: 0.6 is not between -1 and 0.5"),
+    ],
+)
+def test_impossible_solid_is_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        replace(STRAIGHT, **change)
+
+
+@pytest.mark.parametrize("name", ["PA66", "PA66-3.54", "POM-H", "PBT", "PEEK"])
+def test_plastics_of_the_catalogue_are_plastics(name):
+    record = solids.find(name)
+    assert 2e9 < record.young.value < 4.1e9
+    assert 1e3 < record.density.value < 1.5e3
+    assert record.conductivity is not None
+    assert 0.15 < record.conductivity.value < 0.4
+    assert record.young_temperature is not None
+    at_room = record.build(record.young_temperature.value)
+    assert float(at_room.young) == pytest.approx(record.young.value, rel=1e-12)
+    softer = [point.young.value for point in record.young_at]
+    assert softer == sorted(softer, reverse=True)
 
 
 def test_d341_passes_through_its_two_points():
@@ -125,8 +207,7 @@ def test_gradient_of_viscosity_equals_finite_difference():
 
 def test_every_value_has_a_known_source_or_an_assumed_status():
     records = [*lubricants.catalogue().values(), *solids.catalogue().values()]
-    data = [getattr(r, key) for r in records for key in r.__dataclass_fields__]
-    data = [d for d in data if hasattr(d, "status")]
+    data = [datum for record in records for datum in record.data().values()]
     assert len(data) > 200
     for datum in data:
         assert datum.source in {"", *citations.available()}

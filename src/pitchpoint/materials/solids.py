@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import equinox as eqx
+import numpy as np
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
+from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError, unknown_name
 from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
 
-__all__ = ["Solid", "SolidRecord", "catalogue", "find", "reduced_modulus"]
+__all__ = [
+    "ModulusPoint",
+    "Solid",
+    "SolidRecord",
+    "catalogue",
+    "celsius",
+    "find",
+    "reduced_modulus",
+]
+
+ZERO_CELSIUS = 273.15
 
 
 class Solid(eqx.Module):
@@ -65,18 +78,41 @@ def reduced_modulus(a: Solid, b: Solid) -> Float[Array, "..."]:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ModulusPoint:
+    """One point of a table of modulus against temperature.
+
+    Args:
+        temperature: temperature [K].
+        young: Young's modulus at it [Pa], with status and source.
+    """
+
+    temperature: float
+    young: Datum
+
+
+@dataclass(frozen=True, kw_only=True)
 class SolidRecord:
     """A solid with its name and the origin of each value; `build()` gives the bare numbers.
 
     Args:
         name: name in the catalogue.
         title: what it is, in words.
-        young: Young's modulus [Pa].
+        young: Young's modulus, the one that is used where no temperature is given [Pa].
         poisson: Poisson's ratio [1], between -1 and 0.5.
         density: density [kg/m3].
+        young_temperature: temperature to which `young` belongs [K], if known.
+        young_at: modulus against temperature, two points or more from cold to hot, or none.
+        conductivity: thermal conductivity [W/m/K], if known.
+        specific_heat: specific heat [J/kg/K], if known.
 
     Raises:
-        InputError: a value is out of its physical range.
+        InputError: a value is out of its physical range, or the table is not in order.
+
+    Example:
+        >>> find("POM-H").modulus_known
+        'its modulus is known from -40 degC to 100 degC'
+        >>> find("PEEK").modulus_known
+        'its modulus is known at 23 degC only'
     """
 
     name: str
@@ -84,17 +120,119 @@ class SolidRecord:
     young: Datum
     poisson: Datum
     density: Datum
+    young_temperature: Datum | None = None
+    young_at: tuple[ModulusPoint, ...] = ()
+    conductivity: Datum | None = None
+    specific_heat: Datum | None = None
 
     def __post_init__(self) -> None:
-        check_positive(self.name, [("young", self.young), ("density", self.density)])
+        positive = [item for item in self.data().items() if item[0] != "poisson"]
+        check_positive(self.name, positive)
         if not -1.0 < self.poisson.value <= 0.5:
             raise InputError(
                 f"{self.poisson.value} is not between -1 and 0.5", key=f"{self.name}.poisson"
             )
+        if self.young_at:
+            _check_table(self)
 
-    def build(self) -> Solid:
-        """Return the numbers alone, for a computation."""
-        return Solid(young=self.young.value, poisson=self.poisson.value, density=self.density.value)
+    def data(self) -> dict[str, Datum]:
+        """Return the values that are known, by name, each with its status and source."""
+        every = {
+            "young": self.young,
+            "poisson": self.poisson,
+            "density": self.density,
+            "young_temperature": self.young_temperature,
+            "conductivity": self.conductivity,
+            "specific_heat": self.specific_heat,
+        }
+        table = {f"young_at {celsius(p.temperature)}": p.young for p in self.young_at}
+        return {key: datum for key, datum in every.items() if datum is not None} | table
+
+    @property
+    def young_range(self) -> tuple[float, float] | None:
+        """Lowest and highest temperature of the table of moduli [K], None without a table."""
+        if not self.young_at:
+            return None
+        return self.young_at[0].temperature, self.young_at[-1].temperature
+
+    @property
+    def modulus_known(self) -> str:
+        """At which temperatures the modulus is known, in words."""
+        if self.young_range is not None:
+            low, high = map(celsius, self.young_range)
+            return f"its modulus is known from {low} to {high}"
+        if self.young_temperature is None:
+            return "its modulus is known at one temperature only, which is not stated"
+        return f"its modulus is known at {celsius(self.young_temperature.value)} only"
+
+    def build(self, temperature: ArrayLike | None = None) -> Solid:
+        """Return the numbers alone, for a computation.
+
+        Args:
+            temperature: of the solid, shape (...) [K]; values, not tracers. The modulus is
+                interpolated linearly in the table; without a table, or without a temperature, it
+                is the single value, and `modulus_known` says at which temperature that holds.
+
+        Returns:
+            Solid with a modulus of shape (...).
+
+        Raises:
+            InputError: a temperature is outside the table; nothing is extrapolated.
+
+        Example:
+            >>> round(float(find("POM-H").build(333.15).young) / 1e9, 2)
+            2.02
+        """
+        return Solid(
+            young=self._young(temperature),
+            poisson=self.poisson.value,
+            density=self.density.value,
+        )
+
+    def _young(self, temperature: ArrayLike | None) -> ArrayLike:
+        if temperature is None or not self.young_at:
+            return self.young.value
+        _check_inside(self, temperature)
+        places = [point.temperature for point in self.young_at]
+        moduli = [point.young.value for point in self.young_at]
+        return jnp.interp(as_array(temperature), jnp.asarray(places), jnp.asarray(moduli))
+
+
+def celsius(temperature: float) -> str:
+    """Temperature [K] in words, to the tenth of a degree."""
+    return f"{round(temperature - ZERO_CELSIUS, 1) + 0.0:g} degC"
+
+
+def _check_inside(record: SolidRecord, temperature: ArrayLike) -> None:
+    low, high = record.young_at[0].temperature, record.young_at[-1].temperature
+    given = np.asarray(temperature, dtype=float)
+    outside = given[~((given >= low) & (given <= high))]
+    if outside.size:
+        raise InputError(
+            f"the modulus of {record.name} is known from {celsius(low)} to {celsius(high)} and is "
+            f"not extrapolated: a temperature of {celsius(float(outside[0]))} is not allowed",
+            value=float(outside[0]),
+        )
+
+
+def _check_table(record: SolidRecord) -> None:
+    points, key = record.young_at, f"{record.name}.young_at"
+    if len(points) < 2:
+        raise InputError("a table of moduli needs two temperatures or more", key=key)
+    if not all(a.temperature < b.temperature for a, b in pairwise(points)):
+        raise InputError("the temperatures must rise from one to the next", key=key)
+    known = record.young_temperature
+    if known is not None and not _on_table(record, known.value):
+        raise InputError(
+            f"the table must give the single modulus at {celsius(known.value)}", key=key
+        )
+
+
+def _on_table(record: SolidRecord, temperature: float) -> bool:
+    places = [point.temperature for point in record.young_at]
+    moduli = [point.young.value for point in record.young_at]
+    young = np.interp(temperature, places, moduli, left=np.nan, right=np.nan)
+    return bool(np.isclose(young, record.young.value, rtol=1e-9))
 
 
 @lru_cache(maxsize=1)
@@ -103,13 +241,33 @@ def _records() -> dict[str, SolidRecord]:
 
 
 def _record(name: str, entry: dict[str, Any]) -> SolidRecord:
+    known = entry.get("young_temperature_degC")
     return SolidRecord(
         name=name,
         title=entry["title"],
         young=read_datum(entry["young_GPa"], scale=1e9),
         poisson=read_datum(entry["poisson"]),
         density=read_datum(entry["density_kg_m3"]),
+        young_temperature=None if known is None else _from_celsius(read_datum(known)),
+        young_at=tuple(_point(row) for row in entry.get("young_at_GPa", ())),
+        conductivity=_optional(entry, "conductivity_W_mK"),
+        specific_heat=_optional(entry, "specific_heat_J_kgK"),
     )
+
+
+def _optional(entry: dict[str, Any], column: str) -> Datum | None:
+    return read_datum(entry[column]) if column in entry else None
+
+
+def _point(row: dict[str, Any]) -> ModulusPoint:
+    return ModulusPoint(
+        temperature=float(row["temperature_degC"]) + ZERO_CELSIUS,
+        young=read_datum(row, scale=1e9),
+    )
+
+
+def _from_celsius(datum: Datum) -> Datum:
+    return replace(datum, value=datum.value + ZERO_CELSIUS)
 
 
 def catalogue() -> dict[str, SolidRecord]:
