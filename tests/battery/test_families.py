@@ -31,6 +31,13 @@ def spur(teeth, module=3e-3, **options):
     )
 
 
+def helical(teeth, helix, module=3e-3, **options):
+    return spur(teeth, module, helix_angle=np.deg2rad(helix), slices=6, **options)
+
+
+RING = {"fillet_radius": (0.38, 0.2), "profile_shift": (0.3, 0.2)}
+
+
 FAMILIES: Mapping[str, Callable[[], Mesh]] = {
     "twin disc": lambda: TwinDisc(*map(jnp.asarray, ([0.02, 0.035], 0.008, 0.8))),
     "twin disc, faster follower": lambda: TwinDisc(*map(jnp.asarray, ([0.03, 0.02], 0.01, 1.3))),
@@ -47,6 +54,18 @@ FAMILIES: Mapping[str, Callable[[], Mesh]] = {
     "17/17": lambda: spur((17, 17)),
     "12/120": lambda: spur((12, 120), 1e-3, profile_shift=(0.5, 0.0)),
     "20/60, pitch point in double contact": lambda: spur((20, 60), profile_shift=(0.8, -0.8)),
+    "helical 20/30": lambda: helical((20, 30), 15.0),
+    "helical 4/51, eps_alpha below one": lambda: helical(
+        (4, 51), 20.0, 1.5e-3, profile_shift=(0.74, 0.05), least_tip=0.25
+    ),
+    "helical 20/30, narrow, wheel drives, right flank": lambda: helical(
+        (20, 30), 8.0, driver=2, right_flank=True
+    ),
+    "ring 20/-60": lambda: spur((20, -60), **RING),
+    "ring 20/-60, wheel drives": lambda: spur((20, -60), driver=2, **RING),
+    "helical ring 18/-71, right flank": lambda: helical(
+        (18, -71), 25.0, 1e-3, right_flank=True, **RING
+    ),
 }
 
 
@@ -126,7 +145,7 @@ def gradient_of_state(design, operation, phase, models):
 
 def models_for(mesh, law="constant", rolling="none"):
     names = LOCAL if mesh.reference is None else WHOLE_MESH
-    spur_pair = isinstance(mesh, CylindricalPair) and mesh.lanes == 2
+    spur_pair = isinstance(mesh, CylindricalPair) and mesh.lanes == 2 and not mesh.helical
     return Models(
         friction=tuple(LAW[name] for name in names),
         choice=jnp.asarray(names.index(law)),
@@ -236,20 +255,34 @@ def test_torque_route_equals_loss_route(family, rolling):
 # Flanks as curves in the fixed frame, in complex numbers, built from gear data alone.
 
 
+def transverse(mesh):
+    """Transverse module and pressure angle, cosine of the base helix angle."""
+    helix, angle = float(mesh.helix_angle), float(mesh.pressure_angle)
+    across = np.arctan(np.tan(angle) / np.cos(helix))
+    on_base = np.arctan(np.tan(helix) * np.cos(across))
+    return float(mesh.module) / np.cos(helix), across, np.cos(on_base)
+
+
 def tip_reach(mesh, index):
-    """Length of the base tangent up to the tip circle."""
+    """Length of the base tangent up to the tip circle; negative on a ring."""
     z, m, x = float(mesh.teeth[index]), float(mesh.module), float(mesh.profile_shift[index])
-    tip = m * (z / 2.0 + float(mesh.addendum[index]) + x + float(mesh.tip_alteration[index]))
-    return np.sqrt(tip**2 - (z * m * np.cos(float(mesh.pressure_angle)) / 2.0) ** 2)
+    module, angle, _ = transverse(mesh)
+    tip = module * z / 2 + m * (float(mesh.addendum[index]) + x + float(mesh.tip_alteration[index]))
+    return np.sign(z) * np.sqrt(tip**2 - (z * module * np.cos(angle) / 2.0) ** 2)
 
 
-class SpurFlanks:
-    """Involutes of both gears in contact at a phase, about the point where they should touch."""
+class Flanks:
+    """Involutes of both gears in a transverse section, about the point where they should touch.
+
+    A ring has its centre on the other side, negative radii and a negative roll.
+    """
 
     def __init__(self, mesh, path):
         teeth = np.asarray(mesh.teeth)
-        self.base = teeth * float(mesh.module) * np.cos(float(mesh.pressure_angle)) / 2.0
-        self.centres = np.array([0.0, float(mesh.centre_distance)])
+        module, angle, _ = transverse(mesh)
+        self.base = teeth * module * np.cos(angle) / 2.0
+        side = -1.0 if teeth[1] < 0 else 1.0
+        self.centres = np.array([0.0, side * float(mesh.centre_distance)])
         self.angle = -np.arccos(self.base.sum() / self.centres[1])
         tangent = -self.centres[1] * np.sin(self.angle)
         start = tangent - tip_reach(mesh, 1)
@@ -260,8 +293,8 @@ class SpurFlanks:
         second = self.angle + (tangent - start) / self.base[1] - 2.0 * np.pi * path / teeth[1]
         self.turned = (first, second)
         # Steps stay far from the cusps, where the involutes start on their base circles.
-        rolls = np.array([self.length, tangent - self.length])
-        self.size = np.min(rolls * np.minimum(1.0, rolls / self.base))
+        rolls = np.abs([self.length, tangent - self.length])
+        self.size = np.min(rolls * np.minimum(1.0, rolls / np.abs(self.base)))
 
     @property
     def touch(self):
@@ -304,7 +337,7 @@ def circle(radius, across):
 
 def test_curvature_is_the_second_derivative_of_the_gap(family):
     if isinstance(family.mesh, CylindricalPair):
-        check_spur_curvature(family)
+        check_involute_curvature(family)
         return
     first, second = principal_radii(family.mesh)
     step = 0.02 * min(first[0], second[0])
@@ -328,20 +361,22 @@ def principal_radii(mesh):
 
 def active_lanes(family):
     for index in zip(*np.nonzero(family.at.active), strict=True):
-        pair, _, state = index
-        yield index, family.phase[state] + pair
+        yield index, family.at.path[index]
 
 
-def check_spur_curvature(family):
+def check_involute_curvature(family):
     count = 0
+    slope = transverse(family.mesh)[2]
     for index, path in active_lanes(family):
-        flanks = SpurFlanks(family.mesh, path)
+        flanks = Flanks(family.mesh, path)
         step = 0.02 * flanks.size
         first, second = (flanks.height(member, STEPS * step) for member in (0, 1))
-        scale = flanks.centres[1]
+        scale = abs(flanks.centres[1])
         assert abs((second - first)[4]) < 1e-14 * scale, "the flanks do not touch"
         assert np.all((second - first)[[0, 1, 2, 3, 5, 6, 7, 8]] > 0.0), "the flanks overlap"
+        # Across the line of contact a gap in the transverse section is smaller by the cosine.
         members = [-second_derivative(first, step), second_derivative(second, step)]
+        members = [slope * one for one in members]
         rounding = 10.0 * 1e-16 * scale / step**2
         np.testing.assert_allclose(
             family.at.curvature[:, 0, *index], members, rtol=1e-8, atol=rounding
@@ -356,11 +391,12 @@ def check_spur_curvature(family):
 
 def test_arms_are_the_velocities_of_the_turning_flanks(family):
     if isinstance(family.mesh, CylindricalPair):
+        slope = transverse(family.mesh)[2]
         for index, path in active_lanes(family):
-            flanks = SpurFlanks(family.mesh, path)
+            flanks = Flanks(family.mesh, path)
             closing, sliding = np.transpose([flanks.velocity(member) for member in (0, 1)])
-            np.testing.assert_allclose(family.at.normal[:, *index], closing, rtol=1e-12)
-            np.testing.assert_allclose(family.at.slip_arm[:, *index], sliding, rtol=1e-12)
+            np.testing.assert_allclose(family.at.normal[:, *index], slope * closing, rtol=1e-12)
+            np.testing.assert_allclose(family.at.slip_arm[:, *index], sliding, 1e-12, 1e-17)
         return
     turning = np.moveaxis(family.at.surface[:, :2], (0, 1), (-2, -1))
     if isinstance(family.mesh, TwinDisc):
@@ -379,8 +415,13 @@ def test_contact_moves_along_each_flank_as_it_rolls(family):
         jax.tree.map(np.asarray, contacts_of(family.mesh, jnp.asarray(inside + move)))
         for move in (-step, step)
     )
-    rate = (after.flank - before.flank) / (2.0 * step)
-    active = before.active & after.active
+    # Slices of a helical contact line move along it; at a fixed place of the face the path grows by
+    # one in a period.
+    passed = (after.path - before.path) / (2.0 * step)
+    moves = np.abs(passed) > 1e-2
+    rate = (after.flank - before.flank) / (2.0 * step) / np.where(moves, passed, 1.0)
+    active = before.active & after.active & moves
+    assert np.mean(active[before.active]) > 0.2
     for arms, moved in zip(
         contacts_of(family.mesh, jnp.asarray(inside)).surface, rate, strict=True
     ):
@@ -390,6 +431,19 @@ def test_contact_moves_along_each_flank_as_it_rolls(family):
         )
         signs = np.sign(moved[active] * speed)
         assert np.all(signs == signs[0]), "the sense changes on the way"
+
+
+def test_contact_lines_are_straight_in_the_plane_of_action(family):
+    if not isinstance(family.mesh, CylindricalPair):
+        pytest.skip("no plane of action")
+    mesh, at = family.mesh, family.at
+    module, angle, slope = transverse(mesh)
+    pair = np.arange(float(mesh.lanes))[:, None, None]
+    behind = (at.width + float(mesh.face_width) / 2.0) * np.tan(np.arccos(slope))
+    expected = family.phase + pair - mesh.helical * behind / (np.pi * module * np.cos(angle))
+    np.testing.assert_allclose(at.path[at.active], expected[at.active], rtol=1e-10, atol=1e-10)
+    ratio = float(mesh.transverse_contact_ratio)
+    assert np.all((at.path[at.active] > -1e-8) & (at.path[at.active] < ratio + 1e-8))
 
 
 def leaves_of(found):

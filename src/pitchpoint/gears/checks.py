@@ -12,6 +12,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
+from pitchpoint.roots import root
 
 if TYPE_CHECKING:
     from pitchpoint.gears.cylindrical import CylindricalPair
@@ -20,20 +21,27 @@ __all__ = ["check_cylindrical"]
 
 _THIN_TIP = 0.2  # modules
 _SMALL_CLEARANCE = 0.1  # modules
-_LARGEST_CONTACT_RATIO = 9.0
+_LARGEST_CONTACT_RATIO = 24.0
 _GIVEN = ("module", "profile_shift", "addendum", "dedendum", "fillet_radius")
 # Drawings round the centre distance; an overlap this small is no fault [modules].
 _ROUNDED_DISTANCE = 1e-4
+# Points on the path of a tip corner: its curvature between two of them is of no account.
+_SAMPLES = 400
 # The usual fillet radius 0.38 is rounded up from 0.25/(1 - sin 20 deg) [modules].
 _ROUNDED_FILLET = 1e-3
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class _Gear:
-    """Plain numbers of one gear: diameters and lengths [m], those of the rack in modules."""
+    """Plain numbers of one gear: positive diameters and lengths [m], those of the rack in modules.
+
+    Lengths on the line of action are counted from the gear's own base circle.
+    """
 
     number: int
     undercut: bool
+    internal: bool
+    helical: bool
     tip_diameter: float
     root_diameter: float
     base_diameter: float
@@ -49,7 +57,13 @@ class _Gear:
     largest_fillet_radius: float
     clearance: float
     form_length: float
-    lowest_contact: float
+    mate_reach: float
+    missing: float
+    fillet_overlap: float
+
+    @property
+    def modules(self) -> str:
+        return _unit(self.helical)
 
     @property
     def name(self) -> str:
@@ -62,93 +76,122 @@ class _Gear:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class _Pair:
-    """Plain numbers of the pair: lengths [m]; the zero-backlash distance is NaN if none exists."""
+    """Plain numbers of the pair: lengths [m]; the zero-backlash distance is NaN if none exists.
 
+    The base sum is that of signed radii, without its sign; the gaps are those of a ring [modules].
+    """
+
+    internal: bool
+    helical: bool
     module: float
     base_pitch: float
     centre_distance: float
     zero_backlash: float
     base_sum: float
     shift_sum: float
-    lowest_shift_sum: float
+    limit_shift_sum: float
+    transverse_ratio: float
     contact_ratio: float
+    pinion_teeth: float
+    wheel_teeth: float
+    tip_gap: float = 0.0
+    radial_gap: float = 0.0
+
+    @property
+    def modules(self) -> str:
+        return _unit(self.helical)
+
+
+def _unit(helical: bool) -> str:
+    return "normal modules" if helical else "modules"
 
 
 def check_cylindrical(pair: CylindricalPair) -> list[str]:
     """Warnings for a design that runs but should not be made so; an error for one that cannot run.
 
     Args:
-        pair: two external spur gears.
+        pair: two external gears, or a pinion and a ring; spur or helical.
 
     Returns:
         One sentence for each warning: undercut, a tip thinner than 0.2 modules, a tip clearance
-        below 0.1 modules. Empty for a sound pair.
+        below 0.1 modules, a transverse contact ratio below 1, a pinion that cannot be put into its
+        ring radially. Empty for a sound pair.
 
     Raises:
         InputError: the flanks overlap or never meet, a tip is pointed, a tip runs into the mate's
-            root or fillet, the tool is impossible, or the contact ratio is not from 1 to 9. Its
-            key is the entry of the gears table to change.
+            root, fillet or (in a ring) tip, tool or fillet are impossible, or the contact ratio is
+            not from 1 to 24. Its key is the entry of the gears table to change.
 
-    Validity: the fillet of an undercut gear is not checked against the tip of its mate. Backlash is
-    not limited.
+    Validity: backlash is not limited.
 
     Source: geometry of ISO 21771:2007; tool tip of ISO 53:1998.
     """
     whole, gears = _measure(pair)
     _check_finite(whole, gears, only=_GIVEN)
+    _check_teeth(whole)
     _check_distance(whole)
     for gear in gears:
-        _check_tool(gear)
+        _check_ring_root(gear) if gear.internal else _check_tool(gear)
         _check_circles(gear)
     for gear in gears:
         _check_meeting(whole, gear)
     _check_contact_ratio(whole, gears)
+    _check_tips(whole)
     _check_finite(whole, gears)  # whatever the checks above did not think of
-    return [text for gear in gears for text in _warnings(whole, gear)]
+    found = [text for gear in gears for text in _warnings(whole, gear)]
+    return found + _pair_warnings(whole)
 
 
 def _measure(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
-    lanes = 2  # of no account here: one program for all
-    numbers = jax.device_get(_measures(dataclasses.replace(pair, lanes=lanes)))
+    alike = dataclasses.replace(pair, lanes=2, slices=1)  # of no account here: few programs
+    numbers = jax.device_get(_measures(alike))
     whole, *gears = [{key: float(x) for key, x in part.items()} for part in numbers]
-    return _Pair(**whole), [
-        _Gear(number=i + 1, undercut=pair.undercut[i], **gear) for i, gear in enumerate(gears)
+    return _Pair(internal=pair.internal, helical=pair.helical, **whole), [
+        _Gear(
+            number=i + 1,
+            undercut=pair.undercut[i],
+            internal=pair.internal and i == 1,
+            helical=pair.helical,
+            **gear,
+        )
+        for i, gear in enumerate(gears)
     ]
 
 
 @eqx.filter_jit
 def _measures(pair: CylindricalPair) -> list[dict[str, Float[Array, ""]]]:
     """Measures of the pair and of each gear, under the names of their plain classes."""
-    gears = pair.gears
+    first, second = pair.gears
     return [
-        _pair_measures(pair),
-        _gear_measures(gears[0]) | _meeting_measures(pair, gears[0], gears[1]),
-        _gear_measures(gears[1]) | _meeting_measures(pair, gears[1], gears[0]),
+        _pair_measures(pair) | (_ring_gaps(pair) if pair.internal else {}),
+        _gear_measures(first) | _meeting_measures(pair, first, second),
+        _gear_measures(second) | _meeting_measures(pair, second, first),
     ]
 
 
 def _pair_measures(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
-    angle = pair.pressure_angle
+    transverse = involute(pair.transverse_pressure_angle)
     return {
         "module": pair.module,
         "base_pitch": pair.base_pitch,
         "centre_distance": pair.centre_distance,
         "zero_backlash": pair.zero_backlash_centre_distance,
-        "base_sum": jnp.sum(pair.base_radii),
+        "base_sum": jnp.abs(jnp.sum(pair.base_radii)),
         "shift_sum": jnp.sum(pair.profile_shift),
-        "lowest_shift_sum": -involute(angle) * jnp.sum(pair.teeth) / (2.0 * jnp.tan(angle)),
+        "limit_shift_sum": -transverse * jnp.sum(pair.teeth) / (2.0 * jnp.tan(pair.pressure_angle)),
+        "transverse_ratio": pair.transverse_contact_ratio,
         "contact_ratio": pair.contact_ratio,
+        "pinion_teeth": pair.teeth[0],
+        "wheel_teeth": jnp.abs(pair.teeth[1]),
     }
 
 
 def _gear_measures(gear: InvoluteGear) -> dict[str, Float[Array, ""]]:
-    angle = gear.pressure_angle
-    # Half the tool's tip land if its corners were sharp [modules].
-    land = jnp.pi / 4.0 - gear.dedendum * jnp.tan(angle)
+    deepest, largest = _room_at_ring_root(gear) if gear.internal else _room_at_tool_tip(gear)
     return {
-        "tip_diameter": 2.0 * gear.tip_radius,
-        "root_diameter": 2.0 * gear.root_radius,
-        "base_diameter": 2.0 * gear.base_radius,
+        "tip_diameter": 2.0 * gear.side * gear.tip_radius,
+        "root_diameter": 2.0 * gear.side * gear.root_radius,
+        "base_diameter": 2.0 * gear.side * gear.base_radius,
         "form_diameter": 2.0 * jnp.hypot(gear.base_radius, gear.form_roll_length),
         "pointed_diameter": 2.0 * _pointed_radius(gear),
         "tip_thickness": gear.tip_thickness / gear.module,
@@ -157,26 +200,133 @@ def _gear_measures(gear: InvoluteGear) -> dict[str, Float[Array, ""]]:
         "addendum": gear.addendum,
         "dedendum": gear.dedendum,
         "fillet_radius": gear.fillet_radius,
-        "deepest_dedendum": jnp.pi / 4.0 / jnp.tan(angle),
-        "largest_fillet_radius": land * jnp.cos(angle) / (1.0 - jnp.sin(angle)),
+        "deepest_dedendum": deepest,
+        "largest_fillet_radius": largest,
         "form_length": gear.form_roll_length,
     }
+
+
+def _room_at_tool_tip(gear: InvoluteGear) -> tuple[Float[Array, ""], Float[Array, ""]]:
+    """Dedendum at which the rack's flanks cross, and radius that rounds its whole tip [modules]."""
+    angle = gear.pressure_angle
+    land = jnp.pi / 4.0 - gear.dedendum * jnp.tan(angle)
+    return jnp.pi / 4.0 / jnp.tan(angle), land * jnp.cos(angle) / (1.0 - jnp.sin(angle))
+
+
+def _room_at_ring_root(gear: InvoluteGear) -> tuple[Float[Array, ""], Float[Array, ""]]:
+    """Dedendum at which the flanks of a ring's space cross, and radius that rounds its whole root.
+
+    Both in modules. The flanks cross where the tooth fills the pitch.
+    """
+    base = jnp.abs(gear.base_radius)
+    value = gear.pitch_half_angle - gear.half_thickness_angle(base)
+    reference = jnp.abs(gear.reference_radius)
+    crossing = base / jnp.cos(inverse_involute(jnp.where(value > 0.0, value, 1.0)))
+    deepest = (crossing - reference) / gear.module + gear.profile_shift
+
+    def filled(rounding: Float[Array, ""]) -> Float[Array, ""]:
+        rounded = dataclasses.replace(gear, fillet_radius=rounding)
+        return -rounded.root_land_angle / gear.pitch_half_angle
+
+    most = (jnp.abs(gear.root_radius) - base) / gear.module
+    largest = root(filled, jnp.minimum(0.1, most / 2.0), most)[0]
+    return deepest, largest
 
 
 def _meeting_measures(
     pair: CylindricalPair, gear: InvoluteGear, mate: InvoluteGear
 ) -> dict[str, Float[Array, ""]]:
     """Tip clearance, and where on the line of action the mate's tip circle ends the contact."""
-    distance = pair.centre_distance - gear.tip_radius - mate.root_radius
-    reach = jnp.sqrt(mate.tip_radius**2 - mate.base_radius**2)
-    return {"clearance": distance / pair.module, "lowest_contact": pair.tangent_length - reach}
+    distance = -pair.centre_distance if pair.internal else pair.centre_distance
+    clearance = distance - gear.tip_radius - mate.root_radius
+    reach = gear.side * (pair.tangent_length - mate.side * mate.tip_roll_length)
+    return {
+        "clearance": clearance / pair.module,
+        "mate_reach": reach,
+        "missing": gear.side * (gear.form_roll_length - reach),
+        "fillet_overlap": _fillet_overlap(pair, gear, mate, reach) / pair.module
+        if gear.undercut
+        else jnp.zeros(()),
+    }
+
+
+def _fillet_overlap(
+    pair: CylindricalPair, gear: InvoluteGear, mate: InvoluteGear, reach: Float[Array, ""]
+) -> Float[Array, ""]:
+    """Depth to which the mate's tip corner enters the undercut fillet of an external gear [m].
+
+    Positions are complex numbers: the gear's centre is the origin, the line of centres the real axis.
+    """
+    direction = jnp.exp(-1j * pair.working_pressure_angle)
+    centre = mate.side * pair.centre_distance
+    start = (gear.base_radius + 1j * reach) * direction - centre
+    way = jnp.linspace(0.0, 2.0, _SAMPLES) * jnp.angle(start / -mate.side)
+    corner = centre + start * jnp.exp(-1j * way)
+    turned = way * mate.side * jnp.abs(mate.teeth) / gear.teeth
+    axis = turned + reach / gear.base_radius - pair.working_pressure_angle
+    radius = jnp.abs(corner)
+    fillet, half = gear._fillet(jnp.linspace(0.0, 1.0, _SAMPLES))
+    inside = jnp.interp(radius, fillet, half) - jnp.angle(
+        corner * jnp.exp(1j * (gear.half_thickness_angle(gear.base_radius) - axis))
+    )
+    return jnp.max(jnp.where(radius < fillet[-1], inside * radius, 0.0))
+
+
+def _ring_gaps(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
+    """Gaps between the corners of both tips where their circles cross, and on the way out radially."""
+    pinion, ring = (jnp.abs(radius) for radius in pair.tip_radii)
+    distance, scale = pair.centre_distance, ring / pair.module
+    difference = ring**2 - pinion**2
+    at_pinion = _arccos((difference - distance**2) / (2.0 * pinion * distance))
+    at_ring = _arccos((difference + distance**2) / (2.0 * ring * distance))
+    return {
+        "tip_gap": scale * (_ring_corner(pair, at_pinion) - at_ring),
+        "radial_gap": _radial_gap(pair) / pair.module,
+    }
+
+
+def _ring_corner(pair: CylindricalPair, pinion_corner: Float[Array, "*b"]) -> Float[Array, "*b"]:
+    """Angle of a ring's tip corner for the angle of the pinion's tip corner, flanks touching [rad].
+
+    Both are counted from the line of centres, about their own gear.
+    """
+    cosines = jnp.abs(pair.base_radii / pair.tip_radii)
+    pinion, ring = involute(_arccos(cosines))
+    working = involute(pair.working_pressure_angle)
+    turned = pinion_corner + pinion - working
+    return turned * pair.teeth[0] / jnp.abs(pair.teeth[1]) + working - ring
+
+
+def _radial_gap(pair: CylindricalPair) -> Float[Array, ""]:
+    """Least distance by which a pinion's tip corner, moved out radially, passes that of the ring [m]."""
+    corner = jnp.linspace(0.0, jnp.pi / 2.0, _SAMPLES)
+    mate = _ring_corner(pair, corner)
+    pinion, ring = (jnp.abs(radius) for radius in pair.tip_radii)
+    still_to_pass = pinion * jnp.cos(corner) + pair.centre_distance > ring * jnp.cos(mate)
+    apart = ring * jnp.sin(mate) - pinion * jnp.sin(corner)
+    return jnp.min(jnp.where(still_to_pass, apart, pinion))
+
+
+def _arccos(cosine: Float[Array, "*b"]) -> Float[Array, "*b"]:
+    return jnp.arccos(jnp.clip(cosine, -1.0, 1.0))
 
 
 def _pointed_radius(gear: InvoluteGear) -> Float[Array, ""]:
     """Radius at which the flanks of a tooth cross [m]; the base radius if they do so within it."""
-    value = gear.half_thickness_angle(gear.base_radius)
+    base = jnp.abs(gear.base_radius)
+    value = gear.side * gear.half_thickness_angle(base)
     crossing = inverse_involute(jnp.where(value > 0.0, value, 1.0))
-    return gear.base_radius / jnp.where(value > 0.0, jnp.cos(crossing), 1.0)
+    return base / jnp.where(value > 0.0, jnp.cos(crossing), 1.0)
+
+
+def _check_teeth(pair: _Pair) -> None:
+    if pair.internal and pair.pinion_teeth >= pair.wheel_teeth:
+        _refuse(
+            "teeth",
+            pair.wheel_teeth,
+            f"the ring, gear 2, has {pair.wheel_teeth:g} teeth and must have more than gear 1, "
+            f"which has {pair.pinion_teeth:g}",
+        )
 
 
 def _check_distance(pair: _Pair) -> None:
@@ -187,33 +337,41 @@ def _check_distance(pair: _Pair) -> None:
             "centre_distance",
             pair.centre_distance,
             f"the centre distance {_mm(pair.centre_distance)} of gear 1 and gear 2 must be larger "
-            f"than the sum of their base radii, {_mm(pair.base_sum)}; there is no working pressure "
-            "angle",
+            f"than the {'difference' if pair.internal else 'sum'} of their base radii, "
+            f"{_mm(pair.base_sum)}; there is no working pressure angle",
         )
     overlap = pair.zero_backlash - pair.centre_distance
-    if overlap > _ROUNDED_DISTANCE * pair.module:
+    if (-overlap if pair.internal else overlap) > _ROUNDED_DISTANCE * pair.module:
+        allowed = "allow at most" if pair.internal else "need at least"
         _refuse(
             "centre_distance",
             pair.centre_distance,
             f"the flanks of gear 1 and gear 2 overlap at the centre distance "
-            f"{_mm(pair.centre_distance)}; these teeth need at least {_mm(pair.zero_backlash)}, "
+            f"{_mm(pair.centre_distance)}; these teeth {allowed} {_mm(pair.zero_backlash)}, "
             "which is without backlash",
         )
 
 
 def _check_shift_sum(pair: _Pair) -> None:
     told = f"the profile shifts of gear 1 and gear 2 sum to {pair.shift_sum:.4g}"
-    if pair.shift_sum > 0.0:
+    if pair.internal and pair.shift_sum >= pair.limit_shift_sum:
+        _refuse(
+            "profile_shift",
+            pair.shift_sum,
+            f"{told}, which must be below {pair.limit_shift_sum:.4g}: above it the flanks overlap "
+            "at any centre distance",
+        )
+    if (-pair.shift_sum if pair.internal else pair.shift_sum) > 0.0:
         _refuse(
             "profile_shift",
             pair.shift_sum,
             f"{told}; the working pressure angle would be above 65 degrees",
         )
-    if math.isnan(pair.centre_distance) and pair.shift_sum <= pair.lowest_shift_sum:
+    if math.isnan(pair.centre_distance) and pair.shift_sum <= pair.limit_shift_sum:
         _refuse(
             "profile_shift",
             pair.shift_sum,
-            f"{told}, which must be above {pair.lowest_shift_sum:.4g}: below it the teeth have "
+            f"{told}, which must be above {pair.limit_shift_sum:.4g}: below it the teeth have "
             "backlash at any centre distance",
         )
 
@@ -223,27 +381,49 @@ def _check_tool(gear: _Gear) -> None:
         _refuse(
             "dedendum",
             gear.dedendum,
-            f"the dedendum of {gear.name} is {gear.dedendum:.4g} modules and must be larger than "
-            f"its fillet radius, {gear.fillet_radius:.4g} modules",
+            f"the dedendum of {gear.name} is {gear.dedendum:.4g} {gear.modules} and must be larger "
+            f"than its fillet radius, {gear.fillet_radius:.4g} {gear.modules}",
         )
     if gear.dedendum >= gear.deepest_dedendum:
         _refuse(
             "dedendum",
             gear.dedendum,
             f"the rack that cuts {gear.name} has no tip left at the dedendum {gear.dedendum:.4g} "
-            f"modules; it may be {gear.deepest_dedendum:.4g} modules at most",
+            f"{gear.modules}; it may be {gear.deepest_dedendum:.4g} {gear.modules} at most",
         )
+    _check_fillet_radius(gear, "the tip of its rack has")
+
+
+def _check_ring_root(gear: _Gear) -> None:
+    if gear.root_diameter <= gear.base_diameter:
+        _refuse(
+            "dedendum",
+            gear.dedendum,
+            f"the root circle of {gear.name} ({_mm(gear.root_diameter)}) lies inside its base "
+            f"circle ({_mm(gear.base_diameter)}); it must be larger",
+        )
+    if gear.dedendum >= gear.deepest_dedendum:
+        _refuse(
+            "dedendum",
+            gear.dedendum,
+            f"the flanks of {gear.name} cross in the space between its teeth at the dedendum "
+            f"{gear.dedendum:.4g} {gear.modules}; it may be {gear.deepest_dedendum:.4g} "
+            f"{gear.modules} at most",
+        )
+    _check_fillet_radius(gear, "the root of its spaces has")
+
+
+def _check_fillet_radius(gear: _Gear, where: str) -> None:
     if gear.fillet_radius > gear.largest_fillet_radius * (1.0 + 1e-9):
         _refuse(
             "fillet_radius",
             gear.fillet_radius,
-            f"the fillet radius of {gear.name} is {gear.fillet_radius:.4g} modules, but the tip of "
-            f"its rack has room for {gear.largest_fillet_radius:.4g} modules at most",
+            f"the fillet radius of {gear.name} is {gear.fillet_radius:.4g} {gear.modules}, but "
+            f"{where} room for {gear.largest_fillet_radius:.4g} {gear.modules} at most",
         )
 
 
 def _check_circles(gear: _Gear) -> None:
-    tip = f"the tip circle of {gear.name} ({_mm(gear.tip_diameter)})"
     if gear.root_diameter <= 0.0:
         _refuse(
             "dedendum",
@@ -251,27 +431,55 @@ def _check_circles(gear: _Gear) -> None:
             f"the root circle of {gear.name} has the diameter {_mm(gear.root_diameter)}; it must "
             "be positive",
         )
+    _check_ring_tip(gear) if gear.internal else _check_tip(gear)
+    if gear.tip_thickness < 0.0:
+        _refuse(
+            "addendum",
+            gear.addendum,
+            f"{_tip_circle(gear)} lies beyond the point of the teeth, where the flanks cross; it "
+            f"may be {_mm(gear.pointed_diameter)} at {'least' if gear.internal else 'most'}",
+        )
+    left = gear.tip_diameter - gear.form_diameter
+    if (-left if gear.internal else left) <= 0.0:
+        _refuse(
+            "profile_shift",
+            gear.profile_shift,
+            f"no involute is left on {gear.name}: its form circle ({_mm(gear.form_diameter)}) must "
+            f"lie {'outside' if gear.internal else 'inside'} its tip circle "
+            f"({_mm(gear.tip_diameter)})",
+        )
+
+
+def _check_tip(gear: _Gear) -> None:
     for name, diameter in (("root", gear.root_diameter), ("base", gear.base_diameter)):
         if gear.tip_diameter <= diameter:
             _refuse(
                 "addendum",
                 gear.addendum,
-                f"{tip} lies inside its {name} circle ({_mm(diameter)}); it must be larger",
+                f"{_tip_circle(gear)} lies inside its {name} circle ({_mm(diameter)}); it must be "
+                "larger",
             )
-    if gear.tip_thickness < 0.0:
+
+
+def _check_ring_tip(gear: _Gear) -> None:
+    if gear.tip_diameter >= gear.root_diameter:
         _refuse(
             "addendum",
             gear.addendum,
-            f"{tip} lies beyond the point of the teeth, where the flanks cross; it may be "
-            f"{_mm(gear.pointed_diameter)} at most",
+            f"{_tip_circle(gear)} lies outside its root circle ({_mm(gear.root_diameter)}); that "
+            "of a ring must be smaller",
         )
-    if gear.form_diameter >= gear.tip_diameter:
+    if gear.tip_diameter <= gear.base_diameter:
         _refuse(
-            "profile_shift",
-            gear.profile_shift,
-            f"no involute is left on {gear.name}: its form circle ({_mm(gear.form_diameter)}) must "
-            f"lie inside its tip circle ({_mm(gear.tip_diameter)})",
+            "addendum",
+            gear.addendum,
+            f"{_tip_circle(gear)} lies inside its base circle ({_mm(gear.base_diameter)}), where "
+            "there is no involute; it must be larger",
         )
+
+
+def _tip_circle(gear: _Gear) -> str:
+    return f"the tip circle of {gear.name} ({_mm(abs(gear.tip_diameter))})"
 
 
 def _check_meeting(pair: _Pair, gear: _Gear) -> None:
@@ -280,36 +488,69 @@ def _check_meeting(pair: _Pair, gear: _Gear) -> None:
             "dedendum",
             gear.clearance,
             f"the tip of {gear.name} runs into the root of {gear.mate}: the tip clearance is "
-            f"{gear.clearance:.4g} modules and must be positive",
+            f"{gear.clearance:.4g} {gear.modules} and must be positive",
         )
-    missing = gear.form_length - gear.lowest_contact
-    if not gear.undercut and missing > _ROUNDED_FILLET * pair.module:
+    if gear.fillet_overlap > _ROUNDED_FILLET:
         _refuse(
             "addendum",
-            gear.lowest_contact,
+            gear.fillet_overlap,
+            f"the tip of {gear.mate} runs into the undercut fillet of {gear.name}: they overlap by "
+            f"{gear.fillet_overlap:.3g} {gear.modules}; a shorter addendum of {gear.mate} or a "
+            f"larger profile shift of {gear.name} parts them",
+        )
+    if not gear.undercut and gear.missing > _ROUNDED_FILLET * pair.module:
+        out, ends = ("out", "ends") if gear.internal else ("down", "begins")
+        _refuse(
+            "addendum",
+            gear.mate_reach,
             f"the tip of {gear.mate} meets the fillet of {gear.name}: on the line of action, "
-            f"counted from the base circle of {gear.name}, it reaches down to "
-            f"{_mm(gear.lowest_contact)}, but the involute begins at {_mm(gear.form_length)}; a "
+            f"counted from the base circle of {gear.name}, it reaches {out} to "
+            f"{_mm(gear.mate_reach)}, but the involute {ends} at {_mm(gear.form_length)}; a "
             f"shorter addendum of {gear.mate} or a larger dedendum of {gear.name} parts them",
         )
 
 
 def _check_contact_ratio(pair: _Pair, gears: list[_Gear]) -> None:
-    told = f"the contact ratio of gear 1 and gear 2 is {pair.contact_ratio:.4g}"
+    lost = sum(_lost_ratio(pair, gear) for gear in gears)
+    if pair.helical and pair.transverse_ratio <= 0.0:
+        _refuse_contact_ratio(pair, "transverse contact ratio", pair.transverse_ratio, 0.0, lost)
     if pair.contact_ratio < 1.0:
-        lost = sum(_lost_ratio(pair, gear) for gear in gears)
-        undercut = f"; undercut takes {lost:.3g} away" if lost > 0.0 else ""
-        _refuse(
-            "profile_shift" if pair.contact_ratio + lost >= 1.0 else "addendum",
-            pair.contact_ratio,
-            f"{told} and must be at least 1{undercut}; longer addenda, more teeth, a smaller "
-            "pressure angle or a smaller centre distance raise it",
-        )
+        name = "total contact ratio" if pair.helical else "contact ratio"
+        _refuse_contact_ratio(pair, name, pair.contact_ratio, 1.0, lost)
     if pair.contact_ratio >= _LARGEST_CONTACT_RATIO:
         _refuse(
             "addendum",
             pair.contact_ratio,
-            f"{told} and must be below {_LARGEST_CONTACT_RATIO:g}; shorter addenda lower it",
+            f"the contact ratio of gear 1 and gear 2 is {pair.contact_ratio:.4g} and must be below "
+            f"{_LARGEST_CONTACT_RATIO:g}; shorter addenda "
+            f"{'or a narrower face lower' if pair.helical else 'lower'} it",
+        )
+
+
+def _refuse_contact_ratio(
+    pair: _Pair, name: str, value: float, least: float, lost: float
+) -> NoReturn:
+    allowed = f"at least {least:g}" if least else "positive"
+    undercut = f"; undercut takes {lost:.3g} away" if lost > 0.0 else ""
+    wider = "a wider face, " if pair.helical and least else ""
+    change = "larger" if pair.internal else "smaller"
+    _refuse(
+        "profile_shift" if value + lost >= least else "addendum",
+        value,
+        f"the {name} of gear 1 and gear 2 is {value:.4g} and must be {allowed}{undercut}; {wider}"
+        f"longer addenda, more teeth, a smaller pressure angle or a {change} centre distance "
+        "raise it",
+    )
+
+
+def _check_tips(pair: _Pair) -> None:
+    if pair.internal and pair.tip_gap < 0.0:
+        _refuse(
+            "addendum",
+            pair.tip_gap,
+            f"the tips of gear 1 and gear 2 run into each other where their tip circles cross: "
+            f"they overlap by {-pair.tip_gap:.3g} {pair.modules}; shorter addenda, fewer teeth of "
+            "gear 1 or more teeth of gear 2 part them",
         )
 
 
@@ -328,15 +569,31 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[str]:
     found = []
     if gear.tip_thickness < _THIN_TIP:
         found.append(
-            f"The teeth of {gear.name} are {gear.tip_thickness:.3g} modules thick at the tip; "
-            f"at least {_THIN_TIP:g} modules are usual."
+            f"The teeth of {gear.name} are {gear.tip_thickness:.3g} {gear.modules} thick at the "
+            f"tip; at least {_THIN_TIP:g} {gear.modules} are usual."
         )
     if gear.undercut:
         found.append(_undercut_warning(pair, gear))
     if gear.clearance < _SMALL_CLEARANCE:
         found.append(
             f"The tip of {gear.name} clears the root of {gear.mate} by {gear.clearance:.3g} "
-            f"modules; at least {_SMALL_CLEARANCE:g} modules are usual."
+            f"{gear.modules}; at least {_SMALL_CLEARANCE:g} {gear.modules} are usual."
+        )
+    return found
+
+
+def _pair_warnings(pair: _Pair) -> list[str]:
+    found = []
+    if pair.transverse_ratio < 1.0:
+        overlap = pair.contact_ratio - pair.transverse_ratio
+        found.append(
+            f"The transverse contact ratio of gear 1 and gear 2 is {pair.transverse_ratio:.3g}: it "
+            f"is the overlap ratio, {overlap:.3g}, that keeps the teeth in contact."
+        )
+    if pair.internal and pair.radial_gap < 0.0:
+        found.append(
+            "Gear 1 cannot be put into gear 2 radially, only along its axis: on the way the tips "
+            f"overlap by {-pair.radial_gap:.3g} {pair.modules}."
         )
     return found
 
@@ -358,8 +615,7 @@ def _undercut_warning(pair: _Pair, gear: _Gear) -> str:
 
 def _lost_ratio(pair: _Pair, gear: _Gear) -> float:
     """Contact ratio between the mate's tip circle and the form circle of an undercut gear."""
-    missing = gear.form_length - gear.lowest_contact
-    return max(missing, 0.0) / pair.base_pitch if gear.undercut else 0.0
+    return max(gear.missing, 0.0) / pair.base_pitch if gear.undercut else 0.0
 
 
 def _refuse(entry: str, value: float, message: str) -> NoReturn:

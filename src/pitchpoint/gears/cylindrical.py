@@ -1,4 +1,4 @@
-"""Pair of external involute spur gears: geometry by ISO 21771 names, and its travelling contacts."""
+"""Pair of involute gears on parallel axes, external or internal, spur or helical, and its contacts."""
 
 import dataclasses
 from typing import Self
@@ -12,11 +12,23 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
 from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.roots import root
 
 __all__ = ["CylindricalPair", "zero_backlash_centre_distance"]
 
-# Beyond this the pair is unloaded anyway; it only bounds the padding of the pair axis.
-_LANES_FOR_RATIO_BELOW = (2.0, 3.0, 4.0, 6.0, 9.0)
+# Few values, so that few programs are compiled for many pairs.
+_LANES_FOR_RATIO_BELOW = (2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 24.0)
+
+SLICES = 12
+"""Slices of each contact line of helical gears, an even number: midpoints, so errors fall with its square."""
+
+RIM_RATIO = 1.0 / 0.3
+"""Root radius over bore radius where no bore is given."""
+
+# Share of the face width that a contact line has at least while it is in mesh: a length of zero has
+# no load per length.
+_SHORTEST = 1e-9
 
 
 def zero_backlash_centre_distance(
@@ -24,6 +36,7 @@ def zero_backlash_centre_distance(
     teeth: Float[Array, "2"],
     module: Float[Array, ""],
     pressure_angle: Float[Array, ""],
+    helix_angle: Float[Array, ""],
     profile_shift: Float[Array, "2"],
 ) -> Float[Array, ""]:
     """Centre distance at which the flanks touch on both sides [m].
@@ -32,74 +45,91 @@ def zero_backlash_centre_distance(
     pressure angle would be above 65 degrees.
 
     Args:
-        teeth: numbers of teeth z1, z2.
-        module: [m].
-        pressure_angle: of the basic rack [rad].
+        teeth: numbers of teeth z1, z2; z2 negative for a ring.
+        module: normal module [m].
+        pressure_angle: normal pressure angle of the basic rack [rad].
+        helix_angle: [rad].
         profile_shift: coefficients x1, x2.
 
-    Source: ISO 21771:2007, inv(alpha_w) = inv(alpha) + 2 tan(alpha) (x1 + x2)/(z1 + z2).
+    Source: ISO 21771:2007, inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x1 + x2)/(z1 + z2).
     """
     total = jnp.sum(teeth)
-    value = (
-        involute(pressure_angle) + 2.0 * jnp.tan(pressure_angle) * jnp.sum(profile_shift) / total
-    )
+    transverse = jnp.arctan(jnp.tan(pressure_angle) / jnp.cos(helix_angle))
+    value = involute(transverse) + 2.0 * jnp.tan(pressure_angle) * jnp.sum(profile_shift) / total
     working = inverse_involute(value)
-    distance = total * module / 2.0 * jnp.cos(pressure_angle) / jnp.cos(working)
+    reference = jnp.abs(total) * module / (2.0 * jnp.cos(helix_angle))
+    distance = reference * jnp.cos(transverse) / jnp.cos(working)
     return jnp.where((value > 0.0) & (value < 1.0), distance, jnp.nan)
 
 
 class CylindricalPair(Mesh):
-    """Two external spur gears on fixed axes. Coordinates: rotation of gear 1 and of gear 2.
+    """Two gears on fixed parallel axes. Coordinates: rotation of gear 1 and of gear 2.
 
-    Lengths along the line of action are counted from N1, the point where it touches the base circle
-    of gear 1. A is the end of the path of contact near N1, where gear 2 has its tip; E the other end.
+    Gear 2 may be a ring: then its number of teeth and its radii are negative, as in ISO 21771, and
+    all formulas hold as they stand. Lengths along the line of action are transverse and counted from
+    N1, the point where it touches the base circle of gear 1. A is the end of the path of contact
+    near N1, where gear 2 has its tip; E the other end. A contact line enters the plane of action at
+    one end face and leaves at the other; a spur pair has one slice, a line over the whole face.
 
     Attributes:
-        teeth: numbers of teeth z1, z2.
-        module: [m].
-        pressure_angle: of the basic rack [rad].
+        teeth: numbers of teeth z1, z2; z2 negative for a ring.
+        module: normal module [m].
+        pressure_angle: normal pressure angle of the basic rack [rad].
+        helix_angle: on the reference cylinders, without its hand [rad].
         profile_shift: coefficients x1, x2.
         tip_alteration: coefficients k1, k2; negative shortens the tips (ISO 21771).
-        addendum, dedendum, fillet_radius: of the basic racks, in modules, one for each gear.
+        addendum, dedendum, fillet_radius: of the basic racks, in normal modules, one for each gear.
+        least_tip: tip thickness in the normal section, in modules, that shortened tips keep.
         face_width: common to both [m].
-        centre_distance: in operation [m].
+        centre_distance: in operation, positive [m].
+        rim_ratio: root radius over bore radius (outer over root radius of a ring), for each gear.
         wheel_drives: True if gear 2 drives and gear 1 carries the load; the same flanks touch.
         right_flank: False while gear 1 pushes with its left flanks (seen with the tip up), turning
             counter-clockwise when it drives; True for the other ones.
         follows: static; whether centre distance (without backlash) and tip alterations (rack's tip
             clearance) follow from the other dimensions.
+        shortened: for each gear whether its tip is shortened to `least_tip`; static.
         undercut: for each gear whether the rack undercuts its flanks; static.
         crossing: for each gear where the undercut crosses the involute, see `InvoluteGear`.
+        helical: False if the helix angle is zero; static.
+        internal: True if gear 2 is a ring; static.
         lanes: static count of pairs held, at least the contact ratio rounded up.
+        slices: static count of slices of each contact line; even, or one.
     """
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
     pressure_angle: Float[Array, ""]
+    helix_angle: Float[Array, ""]
     profile_shift: Float[Array, "2"]
     tip_alteration: Float[Array, "2"]
     addendum: Float[Array, "2"]
     dedendum: Float[Array, "2"]
     fillet_radius: Float[Array, "2"]
+    least_tip: Float[Array, ""]
     face_width: Float[Array, ""]
     centre_distance: Float[Array, ""]
+    rim_ratio: Float[Array, "2"]
     wheel_drives: Bool[Array, ""]
     right_flank: Bool[Array, ""]
     follows: tuple[bool, bool] = eqx.field(static=True)
+    shortened: tuple[bool, bool] = eqx.field(static=True)
     undercut: tuple[bool, bool] = eqx.field(static=True)
     crossing: Float[Array, "2"]
+    helical: bool = eqx.field(static=True)
+    internal: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
+    slices: int = eqx.field(static=True)
 
     def completed(self) -> Self:
         """The pair with centre distance and tip alterations as they follow from the rest."""
         pair, (distance_follows, tips_follow) = self, self.follows
-        rack = {"teeth": self.teeth, "module": self.module, "profile_shift": self.profile_shift}
         if distance_follows:
-            distance = zero_backlash_centre_distance(**rack, pressure_angle=self.pressure_angle)
-            pair = dataclasses.replace(pair, centre_distance=distance)
+            pair = dataclasses.replace(pair, centre_distance=self.zero_backlash_centre_distance)
         if tips_follow:
-            change = clearance_keeping_tip_alteration(**rack, centre_distance=pair.centre_distance)
+            change = pair.clearance_keeping_tip_alteration
             pair = dataclasses.replace(pair, tip_alteration=jnp.stack([change, change]))
+            pair = dataclasses.replace(pair, tip_alteration=pair._shortened_tips())
         return pair
 
     @property
@@ -108,9 +138,25 @@ class CylindricalPair(Mesh):
         return self._gear(0), self._gear(1)
 
     @property
+    def sections(self) -> tuple[ToothSection, ToothSection]:
+        """Teeth of both gears in the normal section."""
+        first, second = self.gears
+        return first.section(self.rim_ratio[0]), second.section(self.rim_ratio[1])
+
+    @property
+    def transverse_pressure_angle(self) -> Float[Array, ""]:
+        """Pressure angle in the transverse section alpha_t [rad]."""
+        return jnp.arctan(jnp.tan(self.pressure_angle) / jnp.cos(self.helix_angle))
+
+    @property
+    def base_helix_angle(self) -> Float[Array, ""]:
+        """Helix angle on the base cylinders beta_b [rad]."""
+        return jnp.arcsin(jnp.sin(self.helix_angle) * jnp.cos(self.pressure_angle))
+
+    @property
     def base_radii(self) -> Float[Array, "2"]:
         """Base radii r_b1, r_b2 [m]."""
-        return self.teeth * self.module * jnp.cos(self.pressure_angle) / 2.0
+        return jnp.stack([gear.base_radius for gear in self.gears])
 
     @property
     def tip_radii(self) -> Float[Array, "2"]:
@@ -124,35 +170,43 @@ class CylindricalPair(Mesh):
             teeth=self.teeth,
             module=self.module,
             pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
             profile_shift=self.profile_shift,
         )
 
     @property
+    def clearance_keeping_tip_alteration(self) -> Float[Array, ""]:
+        """Tip alteration coefficient k that keeps the rack's tip clearance; never lengthens (ISO 21771)."""
+        reference = jnp.sum(self.teeth) * self.module / (2.0 * jnp.cos(self.helix_angle))
+        change = (self._distance - reference) / self.module - jnp.sum(self.profile_shift)
+        return jnp.minimum(change, 0.0)
+
+    @property
     def working_radii(self) -> Float[Array, "2"]:
         """Radii of the pitch circles in operation r_w1, r_w2 [m]."""
-        return self.centre_distance * self.teeth / jnp.sum(self.teeth)
+        return self._distance * self.teeth / jnp.sum(self.teeth)
 
     @property
     def working_pressure_angle(self) -> Float[Array, ""]:
-        """Pressure angle in operation [rad]: cos(alpha_w) = (r_b1 + r_b2)/a."""
-        return jnp.arccos(jnp.sum(self.base_radii) / self.centre_distance)
+        """Transverse pressure angle in operation [rad]: cos(alpha_wt) = (r_b1 + r_b2)/a."""
+        return jnp.arccos(jnp.sum(self.base_radii) / self._distance)
 
     @property
     def base_pitch(self) -> Float[Array, ""]:
-        """Pitch on the line of action p_b = pi m cos(alpha) [m]."""
-        return jnp.pi * self.module * jnp.cos(self.pressure_angle)
+        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
+        return 2.0 * jnp.pi * self.base_radii[0] / self.teeth[0]
 
     @property
     def tangent_length(self) -> Float[Array, ""]:
-        """Length N1 N2 between the base circles [m]."""
-        return self.centre_distance * jnp.sin(self.working_pressure_angle)
+        """Length N1 N2 between the base circles [m]; negative if gear 2 is a ring."""
+        return self._distance * jnp.sin(self.working_pressure_angle)
 
     @property
     def limits(self) -> Float[Array, "2"]:
         """Positions of A and E from N1 [m]: tip circle or form circle of an undercut, the nearer one."""
-        reach = jnp.sqrt(self.tip_radii**2 - self.base_radii**2)
-        start, end = self.tangent_length - reach[1], reach[0]
         first, second = self.gears
+        start = self.tangent_length - second.side * second.tip_roll_length
+        end = first.tip_roll_length
         if first.undercut:
             start = jnp.maximum(start, first.form_roll_length)
         if second.undercut:
@@ -173,10 +227,20 @@ class CylindricalPair(Mesh):
         )
 
     @property
-    def contact_ratio(self) -> Float[Array, ""]:
+    def transverse_contact_ratio(self) -> Float[Array, ""]:
         """Transverse contact ratio eps_alpha."""
         start, end = self.limits
         return jnp.asarray((end - start) / self.base_pitch)
+
+    @property
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+        return self.face_width * jnp.sin(self.helix_angle) / (jnp.pi * self.module)
+
+    @property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
+        return self.transverse_contact_ratio + self.overlap_ratio
 
     def specific_sliding(self, position: Float[Array, "*b"]) -> Float[Array, "*b 2"]:
         """Sliding speed over own rolling speed of each gear at positions from N1 [m] (ISO 21771).
@@ -197,7 +261,7 @@ class CylindricalPair(Mesh):
         """Rates of both gears for one radian of the driver."""
         ratio = self.teeth[0] / self.teeth[1]
         gear_1_drives = jnp.stack([jnp.ones_like(ratio), -ratio])
-        return self._side * jnp.where(self.wheel_drives, -1.0 / ratio, 1.0) * gear_1_drives
+        return self._side * jnp.where(self.wheel_drives, -1.0 / jnp.abs(ratio), 1.0) * gear_1_drives
 
     @property
     def driver(self) -> Float[Array, "2"]:
@@ -212,60 +276,127 @@ class CylindricalPair(Mesh):
     @property
     def period(self) -> Float[Array, ""]:
         """Driver angle of one base pitch [rad]."""
-        return 2.0 * jnp.pi / jnp.sum(self.driver * self.teeth)
+        return 2.0 * jnp.pi / jnp.sum(self.driver * jnp.abs(self.teeth))
 
     @property
     def reference(self) -> Reference:
         """Values at the pitch point C."""
-        angle = self.working_pressure_angle
-        speed = jnp.sum(self.driver * self.working_radii)
+        angle, slope = self.working_pressure_angle, jnp.cos(self.base_helix_angle)
+        speed = jnp.sum(self.driver * jnp.abs(self.working_radii))
         first, second = self.pitch_position, self.tangent_length - self.pitch_position
         return Reference(
             width=self.face_width,
-            radius=first * second / self.tangent_length,
+            line_length=self.face_width / slope,
+            radius=first * second / self.tangent_length / slope,
             sum_speed=2.0 * speed * jnp.sin(angle),
             pitch_line_speed=speed,
         )
 
-    def events(self) -> Float[Array, "3"]:
-        """Phases of entry, exit and pitch point."""
-        start = self.limits[0]
-        pitch = (self.pitch_position - start) / self.base_pitch
-        zero = jnp.zeros_like(pitch)
-        return jnp.sort(jnp.mod(jnp.stack([zero, self.contact_ratio, pitch]), 1.0))
+    def events(self) -> Float[Array, " event"]:
+        """Phases of entry, exit and pitch point.
+
+        Of helical teeth also those at which a contact line stops growing and begins to shrink, and
+        at which the pitch line enters and leaves it.
+        """
+        pitch = self._pitch_path
+        found = [jnp.zeros_like(pitch), self.contact_ratio, pitch]
+        if self.helical:
+            overlap = self.overlap_ratio
+            found += [self.transverse_contact_ratio, overlap, pitch + overlap]
+        return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
-        path = jnp.mod(phase, 1.0) + number
-        active = path <= self.contact_ratio
+        entered = jnp.mod(phase, 1.0) + number
+        across, share = self._lines(entered)
+        path = entered - self.overlap_ratio * across if self.helical else entered
+        active = jnp.broadcast_to(entered <= self.contact_ratio, jnp.shape(path))
         position = jnp.where(active, self.limits[0] + path * self.base_pitch, self.pitch_position)
         rolling = jnp.stack([position, self.tangent_length - position])
         none, lanes = jnp.zeros_like(position), jnp.shape(position)
         first, second = self._side * rolling[0], -self._side * rolling[1]
-        arms = self._side * self.base_radii
+        slope = jnp.cos(self.base_helix_angle)
+        arms = self._side * self.base_radii * slope
         return Contacts(
             active=active,
             path=path,
-            width=none,
-            weight=jnp.broadcast_to(self.face_width, lanes),
-            curvature=jnp.stack([1.0 / rolling, jnp.zeros_like(rolling)], axis=1),
+            width=self.face_width * (across - 0.5) + none,
+            weight=jnp.broadcast_to(self.face_width * share / slope, lanes),
+            curvature=jnp.stack([slope / rolling, jnp.zeros_like(rolling)], axis=1),
             surface=jnp.stack([jnp.stack([first, none]), jnp.stack([none, second])]),
             normal=jnp.stack([jnp.broadcast_to(arm, lanes) for arm in arms]),
             gap=none,
-            flank=jnp.stack([rolling[k] ** 2 / (2.0 * self.base_radii[k]) for k in (0, 1)]),
+            flank=jnp.stack(
+                [rolling[k] ** 2 / (2.0 * jnp.abs(self.base_radii[k])) for k in (0, 1)]
+            ),
             shape="line",
         )
+
+    def _lines(
+        self, entered: Float[Array, "pair 1 *b"]
+    ) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
+        """Middles of the slices of each contact line, and the share of the face that each slice takes.
+
+        Both are parts of the face width, counted from the end that enters first. Half of the slices
+        lie on each side of the pitch line, so that sliding changes its sense in no slice.
+
+        Args:
+            entered: base pitches since the pair entered.
+        """
+        if not self.helical:
+            return jnp.full_like(entered, 0.5), jnp.ones_like(entered)
+        overlap = self.overlap_ratio
+        low = jnp.clip((entered - self.transverse_contact_ratio) / overlap, 0.0, 1.0)
+        high = jnp.clip(entered / overlap, 0.0, 1.0)
+        if self.slices == 1:
+            return (low + high) / 2.0, jnp.maximum(high - low, _SHORTEST)
+        pitch_line = jnp.clip((entered - self._pitch_path) / overlap, low, high)
+        parts = [
+            _sliced(*ends, self.slices // 2) for ends in ((low, pitch_line), (pitch_line, high))
+        ]
+        middles, shares = zip(*parts, strict=True)
+        return jnp.concatenate(middles, axis=1), jnp.concatenate(shares, axis=1)
+
+    @property
+    def _pitch_path(self) -> Float[Array, ""]:
+        """Position of the pitch point from A [base pitches]."""
+        return (self.pitch_position - self.limits[0]) / self.base_pitch
 
     @property
     def _side(self) -> Float[Array, ""]:
         return jnp.where(self.right_flank, -1.0, 1.0)
+
+    @property
+    def _distance(self) -> Float[Array, ""]:
+        """Centre distance with the sign that the sum of the radii has [m]."""
+        return -self.centre_distance if self.internal else self.centre_distance
+
+    def _shortened_tips(self) -> Float[Array, "2"]:
+        """Tip alterations at which the tips that are to be shortened are as thick as asked."""
+        return jnp.stack(
+            [
+                gear.tip_alteration - (self._shortening(gear) if short else 0.0)
+                for gear, short in zip(self.gears, self.shortened, strict=True)
+            ]
+        )
+
+    def _shortening(self, gear: InvoluteGear) -> Float[Array, ""]:
+        """Modules by which a tip is cut back to the least thickness in the normal section."""
+
+        def missing(cut: Float[Array, ""]) -> Float[Array, ""]:
+            shorter = dataclasses.replace(gear, tip_alteration=gear.tip_alteration - cut)
+            return shorter.tip_thickness / gear.module - self.least_tip
+
+        most = (jnp.abs(gear.tip_radius) - jnp.abs(gear.base_radius)) / gear.module
+        return root(missing, 0.2 * most, most)[0]
 
     def _gear(self, index: int) -> InvoluteGear:
         return InvoluteGear(
             teeth=self.teeth[index],
             module=self.module,
             pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
             profile_shift=self.profile_shift[index],
             tip_alteration=self.tip_alteration[index],
             addendum=self.addendum[index],
@@ -273,7 +404,17 @@ class CylindricalPair(Mesh):
             fillet_radius=self.fillet_radius[index],
             undercut=self.undercut[index],
             crossing=self.crossing[index],
+            internal=self.internal and index == 1,
         )
+
+
+def _sliced(
+    low: Float[Array, "pair 1 *b"], high: Float[Array, "pair 1 *b"], count: int
+) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
+    """Middles and lengths of equal slices between two ends."""
+    share = jnp.maximum(high - low, _SHORTEST) / count
+    middle = (jnp.arange(count) + 0.5).reshape(-1, *([1] * (low.ndim - 2)))
+    return low + middle * share, jnp.broadcast_to(share, (low.shape[0], count, *low.shape[2:]))
 
 
 def lanes_for(contact_ratio: float) -> int:
@@ -281,21 +422,8 @@ def lanes_for(contact_ratio: float) -> int:
     for limit in _LANES_FOR_RATIO_BELOW:
         if contact_ratio < limit:
             return int(limit)
-    message = f"contact ratio {contact_ratio:.3g} is out of reach of external spur gears"
+    message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
     raise InputError(message, key="gears", value=contact_ratio)
-
-
-def clearance_keeping_tip_alteration(
-    *,
-    teeth: Float[Array, "2"],
-    module: Float[Array, ""],
-    profile_shift: Float[Array, "2"],
-    centre_distance: Float[Array, ""],
-) -> Float[Array, ""]:
-    """Tip alteration coefficient k that keeps the rack's tip clearance; never lengthens (ISO 21771)."""
-    reference = jnp.sum(teeth) * module / 2.0
-    change = (centre_distance - reference) / module - jnp.sum(profile_shift)
-    return jnp.minimum(change, 0.0)
 
 
 def build_cylindrical_pair(
@@ -304,53 +432,74 @@ def build_cylindrical_pair(
     module: float,
     pressure_angle: float,
     face_width: float,
+    helix_angle: float = 0.0,
     profile_shift: tuple[float, float] = (0.0, 0.0),
     addendum: tuple[float, float] = (1.0, 1.0),
     dedendum: tuple[float, float] | None = None,
     fillet_radius: tuple[float, float] = (0.38, 0.38),
     tip_alteration: tuple[float, float] | None = None,
+    least_tip: float = 0.0,
     centre_distance: float | None = None,
+    rim_ratio: tuple[float, float] = (RIM_RATIO, RIM_RATIO),
     driver: int = 1,
     right_flank: bool = False,
+    slices: int = SLICES,
 ) -> CylindricalPair:
     """Pair from what an engineer knows; the rest by ISO 21771.
 
     Args:
-        teeth: z1, z2.
-        module, face_width, centre_distance: [m]; without backlash if no centre distance is given.
-        pressure_angle: of the basic rack [rad].
+        teeth: z1, z2; z2 negative for a ring with internal teeth.
+        module: normal module [m].
+        face_width, centre_distance: [m]; without backlash if no centre distance is given.
+        pressure_angle, helix_angle: of the basic rack and of the reference cylinders [rad].
         profile_shift: x1, x2.
         addendum, dedendum, fillet_radius: of the basic racks in modules; dedendum defaults to
             addendum + 0.25.
         tip_alteration: k1, k2; keeps the rack's tip clearance by default.
+        least_tip: thickness in the normal section, in modules, to which tips that would be thinner
+            are shortened; for tip alterations that are not given.
+        rim_ratio: root radius over bore radius of each gear.
         driver: 1 or 2, the gear that drives.
         right_flank: True if the right flanks of both gears touch.
+        slices: of each contact line, for helical gears; even, or one for its middle alone.
 
     Raises:
         InputError: the flanks cannot meet at all; `check_cylindrical` says what else is wrong.
     """
+    helical = bool(helix_angle != 0.0)
     pair = CylindricalPair(
         teeth=_array(teeth),
         module=_array(module),
         pressure_angle=_array(pressure_angle),
+        helix_angle=_array(helix_angle),
         profile_shift=_array(profile_shift),
         tip_alteration=_array(tip_alteration or (0.0, 0.0)),
         addendum=_array(addendum),
         dedendum=_array(dedendum or (addendum[0] + 0.25, addendum[1] + 0.25)),
         fillet_radius=_array(fillet_radius),
+        least_tip=_array(least_tip),
         face_width=_array(face_width),
         centre_distance=_array(centre_distance or 0.0),
+        rim_ratio=_array(rim_ratio),
         wheel_drives=jnp.asarray(driver == 2),
         right_flank=jnp.asarray(right_flank),
         follows=(centre_distance is None, tip_alteration is None),
+        shortened=(False, False),
         undercut=(False, False),
         crossing=jnp.full(2, jnp.asarray(pressure_angle, dtype=jnp.float64)),
+        helical=helical,
+        internal=bool(teeth[1] < 0),
         lanes=2,
+        slices=slices if helical else 1,
     )
-    pair, limit = _complete(pair)
+    pair, limit, thickness = _complete(pair)
     first, second = (bool(one) for one in pair.profile_shift < limit)
-    if first or second:
-        pair = _with_crossings(dataclasses.replace(pair, undercut=(first, second)))
+    if first or (second and not pair.internal):
+        undercut = (first, second and not pair.internal)
+        pair = _with_crossings(dataclasses.replace(pair, undercut=undercut))
+    short = tuple(bool(one < least_tip) and tip_alteration is None for one in thickness)
+    if any(short):
+        pair, _, _ = _complete(dataclasses.replace(pair, shortened=(short[0], short[1])))
     ratio = float(_contact_ratio(pair))
     if not 0.0 < ratio < _LANES_FOR_RATIO_BELOW[-1]:
         check_cylindrical(pair)  # says why, in gear words
@@ -363,10 +512,16 @@ def _contact_ratio(pair: CylindricalPair) -> Float[Array, ""]:
 
 
 @eqx.filter_jit
-def _complete(pair: CylindricalPair) -> tuple[CylindricalPair, Float[Array, "2"]]:
-    """Pair with the dimensions that follow from the others, and the undercut limits of both gears."""
+def _complete(
+    pair: CylindricalPair,
+) -> tuple[CylindricalPair, Float[Array, "2"], Float[Array, "2"]]:
+    """Pair with the dimensions that follow from the others, undercut limits, tip thicknesses in modules."""
     pair = pair.completed()
-    return pair, jnp.stack([gear.undercut_limit for gear in pair.gears])
+    return (
+        pair,
+        jnp.stack([gear.undercut_limit for gear in pair.gears]),
+        jnp.stack([gear.tip_thickness for gear in pair.gears]) / pair.module,
+    )
 
 
 @eqx.filter_jit

@@ -1,12 +1,20 @@
-"""One involute gear cut by a basic rack: circles, thickness, form circle, outline (ISO 21771)."""
+"""One involute gear, external or internal, spur or helical: circles, thickness, outline (ISO 21771)."""
+
+import dataclasses
+from functools import cache
+from typing import Self
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.roots import root
 
 __all__ = ["InvoluteGear", "inverse_involute", "involute"]
+
+_FILLET_STATIONS = 16
 
 
 def involute(angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
@@ -21,23 +29,30 @@ def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
 
 
 class InvoluteGear(eqx.Module):
-    """One spur gear cut by a basic rack.
+    """One cylindrical gear: an external one cut by a basic rack, or a ring with internal teeth.
+
+    Circles and outline are those of the transverse section. A ring has a negative number of teeth
+    and negative radii (ISO 21771); its fillet is a circular arc that touches flank and root circle,
+    since no rack cuts it.
 
     Attributes:
-        teeth: number of teeth z.
-        module: [m].
-        pressure_angle: of the basic rack [rad].
+        teeth: number of teeth z, negative for a ring.
+        module: normal module m_n [m].
+        pressure_angle: normal pressure angle alpha_n of the basic rack [rad].
+        helix_angle: beta on the reference cylinder, without its hand [rad].
         profile_shift: coefficient x.
         tip_alteration: coefficient k; negative shortens the tip (ISO 21771).
-        addendum, dedendum, fillet_radius: of the basic rack, in modules (h_aP*, h_fP*, rho_fP*).
+        addendum, dedendum, fillet_radius: of the basic rack, in normal modules (h_aP*, h_fP*, rho_fP*).
         undercut: True if the rack undercuts the flank; static, so that sound gears compile to little.
         crossing: normal angle of the fillet point where an undercut crosses the involute [rad], as
             `crossing_angle` finds it; any value without undercut.
+        internal: True for a ring; static.
     """
 
     teeth: Float[Array, ""]
     module: Float[Array, ""]
     pressure_angle: Float[Array, ""]
+    helix_angle: Float[Array, ""]
     profile_shift: Float[Array, ""]
     tip_alteration: Float[Array, ""]
     addendum: Float[Array, ""]
@@ -45,16 +60,32 @@ class InvoluteGear(eqx.Module):
     fillet_radius: Float[Array, ""]
     undercut: bool = eqx.field(static=True)
     crossing: Float[Array, ""]
+    internal: bool = eqx.field(static=True)
+
+    @property
+    def side(self) -> float:
+        """1 for an external gear, -1 for a ring."""
+        return -1.0 if self.internal else 1.0
+
+    @property
+    def transverse_pressure_angle(self) -> Float[Array, ""]:
+        """Pressure angle in the transverse section alpha_t [rad]."""
+        return jnp.arctan(jnp.tan(self.pressure_angle) / jnp.cos(self.helix_angle))
+
+    @property
+    def base_helix_angle(self) -> Float[Array, ""]:
+        """Helix angle on the base cylinder beta_b [rad]."""
+        return jnp.arcsin(jnp.sin(self.helix_angle) * jnp.cos(self.pressure_angle))
 
     @property
     def reference_radius(self) -> Float[Array, ""]:
-        """Radius of the reference circle r = z m / 2 [m]."""
-        return self.teeth * self.module / 2.0
+        """Radius of the reference circle r = z m_n / (2 cos beta) [m]."""
+        return self.teeth * self.module / (2.0 * jnp.cos(self.helix_angle))
 
     @property
     def base_radius(self) -> Float[Array, ""]:
         """Radius of the base circle [m]."""
-        return self.reference_radius * jnp.cos(self.pressure_angle)
+        return self.reference_radius * jnp.cos(self.transverse_pressure_angle)
 
     @property
     def tip_radius(self) -> Float[Array, ""]:
@@ -72,32 +103,99 @@ class InvoluteGear(eqx.Module):
     def undercut_limit(self) -> Float[Array, ""]:
         """Smallest profile shift without undercut: the straight rack flank ends on the base tangent."""
         straight = self.dedendum - self.fillet_radius * (1.0 - jnp.sin(self.pressure_angle))
-        return straight - self.teeth * jnp.sin(self.pressure_angle) ** 2 / 2.0
+        sine = jnp.sin(self.transverse_pressure_angle)
+        return straight - self.teeth * sine**2 / (2.0 * jnp.cos(self.helix_angle))
 
     @property
     def form_roll_length(self) -> Float[Array, ""]:
         """Involute length at the form circle, where fillet and involute meet [m].
 
-        Without undercut the rack's straight flank ends there; with undercut fillet and involute cross.
+        Without undercut the rack's straight flank ends there; with undercut fillet and involute cross;
+        in a ring the arc of the fillet touches the involute there.
         """
+        if self.internal:
+            rounding = self.fillet_radius * self.module
+            centre = jnp.abs(self.root_radius) - rounding
+            return rounding + jnp.sqrt(centre**2 - self.base_radius**2)
         if not self.undercut:
             margin = self.profile_shift - self.undercut_limit
-            return margin * self.module / jnp.sin(self.pressure_angle)
+            return margin * self.module / jnp.sin(self.transverse_pressure_angle)
         radius = self._point(self._fillet_end)[0]
         return jnp.sqrt(jnp.maximum(radius**2 - self.base_radius**2, 1e-30))
 
+    @property
+    def tip_roll_length(self) -> Float[Array, ""]:
+        """Involute length at the tip circle [m]."""
+        return jnp.sqrt(self.tip_radius**2 - self.base_radius**2)
+
+    @property
+    def pitch_half_angle(self) -> Float[Array, ""]:
+        """Half the angle of one tooth and one space [rad]."""
+        return jnp.pi / jnp.abs(self.teeth)
+
     def half_thickness_angle(self, radius: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        """Half the tooth's angle [rad] at a radius [m] on the involute; negative beyond the pointed tip."""
-        cosine = jnp.clip(self.base_radius / radius, -1.0, 1.0)
+        """Half the tooth's angle [rad] at a radius [m] on the involute; negative beyond the pointed tip.
+
+        Args:
+            radius: with or without the sign of a ring's radii.
+        """
+        cosine = jnp.clip(jnp.abs(self.base_radius / radius), 0.0, 1.0)
         at_reference = jnp.pi / 2.0 + 2.0 * self.profile_shift * jnp.tan(self.pressure_angle)
-        return (
-            at_reference / self.teeth + involute(self.pressure_angle) - involute(jnp.arccos(cosine))
+        angle = self.transverse_pressure_angle
+        return self.side * (
+            at_reference / self.teeth + involute(angle) - involute(jnp.arccos(cosine))
         )
 
     @property
     def tip_thickness(self) -> Float[Array, ""]:
-        """Tooth thickness on the tip circle s_a [m]; negative if the flanks cross below it."""
-        return 2.0 * self.tip_radius * self.half_thickness_angle(self.tip_radius)
+        """Tooth thickness on the tip circle in the normal section s_an [m]; negative beyond the point."""
+        transverse = 2.0 * jnp.abs(self.tip_radius) * self.half_thickness_angle(self.tip_radius)
+        tangent = jnp.tan(self.helix_angle) * self.tip_radius / self.reference_radius
+        return transverse / jnp.sqrt(1.0 + tangent**2)
+
+    @property
+    def virtual_spur_gear(self) -> Self:
+        """Spur gear with the teeth of the normal section: z_n = z/(cos^2 beta_b cos beta).
+
+        Its base circle makes curvatures those of the flank lines' normal section; where a rack
+        undercuts the helical gear, it undercuts this one.
+
+        Source: ISO 21771:2007, virtual number of teeth.
+        """
+        number = self.teeth / (jnp.cos(self.base_helix_angle) ** 2 * jnp.cos(self.helix_angle))
+        gear = dataclasses.replace(self, teeth=number, helix_angle=jnp.zeros_like(number))
+        if self.undercut:
+            gear = dataclasses.replace(gear, crossing=gear.crossing_angle())
+        return gear
+
+    def section(self, rim_ratio: Float[Array, ""]) -> ToothSection:
+        """Tooth in the normal section, as a beam on its body.
+
+        Args:
+            rim_ratio: root radius over bore radius.
+        """
+        normal = self.virtual_spur_gear
+        unit, weight = _gauss(_FILLET_STATIONS)
+        points, slopes = jax.jvp(normal._fillet_place, (unit,), (jnp.ones_like(unit),))
+        # Radii of curvature in the normal section are those of the transverse one over cos(beta_b).
+        ends = jnp.stack([self.form_roll_length, self.tip_roll_length])
+        place = jnp.asarray(chebyshev_nodes())
+        span = (ends[1] - ends[0]) / 2.0 / jnp.cos(self.base_helix_angle)
+        length = ends[0] / jnp.cos(self.base_helix_angle) + span * (place + 1.0)
+        flank, slope = jax.jvp(normal._flank_place, (length,), (jnp.ones_like(length),))
+        start = normal._fillet(jnp.zeros(1))
+        return ToothSection(
+            fillet=points,
+            step=slopes[1] * weight,
+            flank=flank,
+            slope=slope[1] * span,
+            load_angle=normal._load_angle(length),
+            reach=ends / jnp.sqrt(2.0 * jnp.abs(self.base_radius)),
+            root_radius=jnp.abs(normal.root_radius),
+            root_half_angle=start[1, 0],
+            rim_ratio=rim_ratio,
+            internal=self.internal,
+        )
 
     def outline(self, count: int = 24) -> Float[Array, "point 2"]:
         """One tooth with half a space on each side, tooth axis along y, origin at the gear's centre [m].
@@ -106,44 +204,96 @@ class InvoluteGear(eqx.Module):
             count: points on each fillet, involute and arc.
         """
         unit = jnp.linspace(0.0, 1.0, count)
-        start = self._fillet_end
-        fillet = self._fillet(jnp.pi / 2.0 + (start - jnp.pi / 2.0) * unit)
-        lengths = self.form_roll_length + (self._tip_roll_length - self.form_roll_length) * unit
+        fillet = self._fillet(unit)
+        lengths = self.form_roll_length + (self.tip_roll_length - self.form_roll_length) * unit
         flank_radius = jnp.hypot(self.base_radius, lengths)
         flank = jnp.stack([flank_radius, self.half_thickness_angle(flank_radius)])
-        tip = jnp.stack([jnp.full(count, self.tip_radius), flank[1, -1] * (1.0 - unit)])
-        root = jnp.stack(
-            [
-                jnp.full(count, self.root_radius),
-                jnp.pi / self.teeth + (fillet[1, 0] - jnp.pi / self.teeth) * unit,
-            ]
+        tip = jnp.stack([jnp.full(count, jnp.abs(self.tip_radius)), flank[1, -1] * (1.0 - unit)])
+        half = self.pitch_half_angle
+        base = jnp.stack(
+            [jnp.full(count, jnp.abs(self.root_radius)), half + (fillet[1, 0] - half) * unit]
         )
-        half = jnp.concatenate([root, fillet, flank, tip], axis=1)
-        whole = jnp.concatenate([half * jnp.array([[1.0], [-1.0]]), jnp.flip(half, axis=1)], axis=1)
+        side = jnp.concatenate([base, fillet, flank, tip], axis=1)
+        whole = jnp.concatenate([side * jnp.array([[1.0], [-1.0]]), jnp.flip(side, axis=1)], axis=1)
         return jnp.stack([whole[0] * jnp.sin(whole[1]), whole[0] * jnp.cos(whole[1])], axis=-1)
 
-    @property
-    def _tip_roll_length(self) -> Float[Array, ""]:
-        return jnp.sqrt(self.tip_radius**2 - self.base_radius**2)
+    def _flank_place(self, length: Float[Array, " point"]) -> Float[Array, "2 point"]:
+        """Half thickness and height of the involute at roll lengths [m]."""
+        radius = jnp.hypot(self.base_radius, length)
+        return self._place(jnp.stack([radius, self.half_thickness_angle(radius)]))
 
-    def _fillet(self, angle: Float[Array, " point"]) -> Float[Array, "2 point"]:
-        """Radius and angle from the tooth axis of the fillet that the rack's rounded corner cuts."""
+    def _fillet_place(self, unit: Float[Array, " point"]) -> Float[Array, "2 point"]:
+        """Half thickness and height of the fillet [m], from the root at 0 to the involute at 1."""
+        return self._place(self._fillet(unit))
+
+    def _place(self, polar: Float[Array, "2 point"]) -> Float[Array, "2 point"]:
+        radius, angle = polar
+        return jnp.stack([radius * jnp.sin(angle), self.side * radius * jnp.cos(angle)])
+
+    def _load_angle(self, length: Float[Array, " point"]) -> Float[Array, " point"]:
+        """Angle between the flank's normal and the perpendicular to the tooth's axis [rad]."""
+        base = jnp.abs(self.base_radius)
+        half = self.half_thickness_angle(jnp.hypot(base, length))
+        return jnp.arctan(length / base) - self.side * half
+
+    def _fillet(self, unit: Float[Array, " point"]) -> Float[Array, "2 point"]:
+        """Radius and angle from the tooth axis along the fillet, from the root at 0 to the involute at 1."""
+        if self.internal:
+            return self._ring_fillet(unit)
+        angle = jnp.pi / 2.0 + (self._fillet_end - jnp.pi / 2.0) * unit
         radius, from_space = self._point(angle)
-        return jnp.stack([radius, jnp.pi / self.teeth - from_space])
+        return jnp.stack([radius, self.pitch_half_angle - from_space])
+
+    def _ring_fillet(self, unit: Float[Array, " point"]) -> Float[Array, "2 point"]:
+        """Arc between root circle and involute of a ring, see `_fillet`."""
+        rounding = self.fillet_radius * self.module
+        tangent, centre = self._ring_fillet_angles
+        distance = jnp.abs(self.root_radius) - rounding
+        # Seen from its centre the arc runs from the radial direction to the normal of the flank.
+        turn = centre + (tangent + jnp.pi / 2.0 - centre) * unit
+        along = distance * jnp.cos(centre) + rounding * jnp.cos(turn)
+        across = distance * jnp.sin(centre) + rounding * jnp.sin(turn)
+        return jnp.stack(
+            [jnp.hypot(along, across), self.pitch_half_angle - jnp.arctan2(across, along)]
+        )
+
+    @property
+    def _ring_fillet_angles(self) -> tuple[Float[Array, ""], Float[Array, ""]]:
+        """Angles from the space's axis to the form circle's base tangent point and to the arc's centre."""
+        base, form = jnp.abs(self.base_radius), self.form_roll_length
+        radius = jnp.hypot(base, form)
+        space = self.pitch_half_angle - self.half_thickness_angle(radius)
+        tangent = space - jnp.arctan(form / base)
+        return tangent, tangent + jnp.arctan((form - self.fillet_radius * self.module) / base)
+
+    @property
+    def root_land_angle(self) -> Float[Array, ""]:
+        """Half the angle of the root circle between two fillets [rad]; negative if they do not fit."""
+        return self.pitch_half_angle - self._fillet(jnp.zeros(1))[1, 0]
 
     def _point(self, angle: Float[Array, "*b"]) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:
-        """Fillet point whose normal makes `angle` with the pitch line: radius, angle from the space axis."""
+        """Fillet point cut by the point of the rack's corner whose normal makes `angle` with the pitch line.
+
+        The angle is that of the normal section, where the corner is an arc; the transverse section
+        stretches the rack along the pitch line by 1/cos(beta).
+
+        Returns:
+            Radius, and angle from the space axis.
+        """
+        stretch = 1.0 / jnp.cos(self.helix_angle)
         rounding = self.fillet_radius * self.module
         depth = (self.dedendum - self.profile_shift - self.fillet_radius) * self.module
-        corner = (
+        corner = stretch * (
             jnp.pi * self.module / 4.0
             - (self.dedendum - self.fillet_radius) * self.module * jnp.tan(self.pressure_angle)
             - rounding / jnp.cos(self.pressure_angle)
         )
-        along = depth * jnp.cos(angle) / jnp.sin(angle)
-        x = along + rounding * jnp.cos(angle)
-        y = self.reference_radius - depth - rounding * jnp.sin(angle)
-        return jnp.hypot(x, y), jnp.arctan2(x, y) - (along - corner) / self.reference_radius
+        cosine, sine = jnp.cos(angle), jnp.sin(angle)
+        below = depth + rounding * sine
+        x = below * cosine / (sine * stretch)  # the normal passes through the pitch point
+        centre = x - stretch * rounding * cosine
+        y = self.reference_radius - below
+        return jnp.hypot(x, y), jnp.arctan2(x, y) - (centre - corner) / self.reference_radius
 
     def crossing_angle(self) -> Float[Array, ""]:
         """Normal angle of the fillet point where an undercut crosses the involute [rad]."""
@@ -172,4 +322,11 @@ class InvoluteGear(eqx.Module):
         """Angle by which the fillet point lies inside the tooth that the involute bounds [rad]."""
         radius, from_space = self._point(angle)
         radius = jnp.maximum(radius, self.base_radius * (1.0 + 1e-15))
-        return from_space - (jnp.pi / self.teeth - self.half_thickness_angle(radius))
+        return from_space - (self.pitch_half_angle - self.half_thickness_angle(radius))
+
+
+@cache
+def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre nodes and weights on [0, 1]."""
+    x, weight = np.polynomial.legendre.leggauss(count)
+    return (x + 1.0) / 2.0, weight / 2.0

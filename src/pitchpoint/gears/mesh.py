@@ -7,6 +7,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.gears.tooth_section import ToothSection
 
 __all__ = ["Mesh", "Reference"]
 
@@ -16,12 +17,15 @@ class Reference(eqx.Module):
 
     Attributes:
         width: face width [m].
+        line_length: length of a contact line across the whole face [m]: longer than the face on
+            helical teeth.
         radius: relative radius of curvature at the pitch point [m].
         sum_speed: sum of the surface speeds there per radian of the driver [m/rad].
         pitch_line_speed: speed of the pitch circles per radian of the driver [m/rad].
     """
 
     width: Float[Array, ""]
+    line_length: Float[Array, ""]
     radius: Float[Array, ""]
     sum_speed: Float[Array, ""]
     pitch_line_speed: Float[Array, ""]
@@ -40,6 +44,11 @@ class Mesh(eqx.Module):
         Derivatives with respect to one dimension then see what follows from it.
         """
         return self
+
+    @property
+    def sections(self) -> tuple[ToothSection, ToothSection] | None:
+        """Teeth of the two members as they yield, or None where there are no teeth."""
+        return None
 
     @abc.abstractmethod
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:

@@ -122,7 +122,7 @@ class Conditions(eqx.Module):
     @property
     def reference_line_load(self) -> Each:
         """Tangential force at the base circle over the face width F_bt/b, without friction [N/m]."""
-        return self.nominal_load / self._pitch_point.width
+        return self.nominal_load / self._pitch_point.line_length
 
     @property
     def reference_sum_speed(self) -> Each:
