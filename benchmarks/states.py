@@ -31,7 +31,7 @@ from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness
 
 XU = next(law for law in LAWS if law.name == "xu_2007")
@@ -56,7 +56,7 @@ def ours(points: rival.Points) -> tuple[Design, Operation, Models]:
         build_cylindrical_pair(
             teeth=(18, 36), module=3e-3, pressure_angle=np.radians(20.0), face_width=26.7e-3
         ),
-        reduced_modulus(steel, steel),
+        (steel, steel),
         GivenViscosity(jnp.asarray(points.viscosity * 1e-3)[:, None], jnp.asarray(1.0)),
         Roughness(ra_1=rq, ra_2=rq, rq_1=rq, rq_2=rq),
     )

@@ -179,6 +179,34 @@ _KINDS: dict[str, _Kind] = {
         "500 N",
         {"N": "newton", "kN": "kilonewton", "mN": "millinewton", "lbf": "force_pound"},
     ),
+    "stiffness": _Kind(
+        "a stiffness",
+        "10 N/um",
+        {
+            "N/m": "newton/meter",
+            "N/um": "newton/micrometer",
+            "N/mm": "newton/millimeter",
+            "kN/mm": "kilonewton/millimeter",
+        },
+    ),
+    "moment of inertia": _Kind(
+        "a moment of inertia",
+        "2 kg cm2",
+        {
+            "kg m2": "kilogram*meter**2",
+            "kg cm2": "kilogram*centimeter**2",
+            "kg mm2": "kilogram*millimeter**2",
+            "g cm2": "gram*centimeter**2",
+        },
+    ),
+    "area": _Kind(
+        "an area",
+        "0.05 m2",
+        {"m2": "meter**2", "cm2": "centimeter**2", "mm2": "millimeter**2"},
+    ),
+    "thermal resistance": _Kind(
+        "a thermal resistance", "0.06 K m2/W", {"K m2/W": "kelvin*meter**2/watt"}
+    ),
     "line load": _Kind(
         "a load per length",
         "150 N/mm",

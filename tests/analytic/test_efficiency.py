@@ -11,7 +11,9 @@ from pitchpoint.gears.discs import TwinDisc
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw, xu_2007
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE, wu_cheng_1991
-from pitchpoint.materials import Roughness, lubricants
+from pitchpoint.materials import Roughness, lubricants, solids
+
+STEEL = solids.find("steel").build()
 
 LAW = {law.name: law for law in LAWS}
 MODULUS = 206e9 / 0.91
@@ -66,7 +68,7 @@ def design():
 
 def built(mesh):
     oil = lubricants.find("pao-vg-220").build()
-    return Design(mesh, jnp.asarray(MODULUS), oil, Roughness.from_composite_rq(0.8e-6))
+    return Design(mesh, (STEEL, STEEL), oil, Roughness.from_composite_rq(0.8e-6))
 
 
 def operation(load=159.0, speed=157.0, temperature=328.15):

@@ -18,7 +18,9 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants
+from pitchpoint.materials import Roughness, lubricants, solids
+
+STEEL = solids.find("steel").build()
 
 LAW = {law.name: law for law in LAWS}
 LOCAL = ("constant", "xu_2007")
@@ -167,7 +169,7 @@ def operation_for(mesh, load=None):
 def design_for(mesh):
     return Design(
         mesh,
-        jnp.asarray(226e9),
+        (STEEL, STEEL),
         lubricants.find("pao-vg-220").build(),
         Roughness.from_composite_rq(0.4e-6),
     )

@@ -21,7 +21,9 @@ from pitchpoint.loading.balance import balance
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants
+from pitchpoint.materials import Roughness, lubricants, solids
+
+STEEL = solids.find("steel").build()
 
 # Rotations: wave generator, flexspline, circular spline.
 BODIES = ("wave generator", "flexspline", "circular spline")
@@ -171,7 +173,7 @@ class StrainWave(Mesh):
         return eqx.tree_at(lambda c: c.normal, raw, raw.normal - elastic)
 
 
-def cosine_share(contacts, contact_ratio):
+def cosine_share(contacts, contact_ratio, stiffness=None):
     """Load over each zone as a half wave."""
     middle = contact_ratio / 4.0
     load = jnp.cos(0.5 * jnp.pi * (contacts.path - middle) / middle) + 0.05
@@ -332,7 +334,7 @@ def test_torque_route_equals_loss_route(case):
 def test_the_whole_chain_runs_on_it(case):
     design = Design(
         case.mesh,
-        jnp.asarray(226e9),
+        (STEEL, STEEL),
         lubricants.find("pao-vg-220").build(),
         Roughness.from_composite_rq(0.4e-6),
     )

@@ -21,7 +21,9 @@ from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants
+from pitchpoint.materials import Roughness, lubricants, solids
+
+STEEL = solids.find("steel").build()
 
 LAW = {law.name: law for law in LAWS}
 PHASE = jnp.asarray(0.37)
@@ -41,7 +43,7 @@ def number(value):
 def design_of(mesh):
     return Design(
         mesh,
-        number(226e9),
+        (STEEL, STEEL),
         lubricants.find("pao-vg-220").build(),
         Roughness(ra_1=0.4e-6, ra_2=0.5e-6, rq_1=0.3e-6, rq_2=0.4e-6),
     )
@@ -224,7 +226,7 @@ def contacts_on(path, active):
 @eqx.filter_jit
 def shares(sharing, ratio, phase, lanes):
     path = (phase + jnp.arange(float(lanes)))[:, None]
-    return sharing.function(contacts_on(path, path <= ratio), ratio), path <= ratio
+    return sharing.function(contacts_on(path, path <= ratio), ratio, None), path <= ratio
 
 
 def check_shares(name, ratio, phase, lanes):
@@ -323,7 +325,10 @@ def test_units_of_length_mass_and_time_scale_every_result(design, length, mass, 
         face_width=mesh.face_width * L,
         centre_distance=mesh.centre_distance * L,
     )
-    scaled = dataclasses.replace(design, mesh=mesh, modulus=design.modulus * stress)
+    solids = tuple(
+        dataclasses.replace(solid, young=solid.young * stress) for solid in design.solids
+    )
+    scaled = dataclasses.replace(design, mesh=mesh, solids=solids)
     here = results(design, operation(), chosen)
     there = results(scaled, operation(120.0 * force * L, 150.0 / T), chosen)
     dimension = {

@@ -39,6 +39,27 @@ def test_sound_pairs_pass_in_silence(teeth, changes):
     assert check_cylindrical(build(teeth, **changes)) == []
 
 
+BETA = math.radians(20.0)
+RING = {"profile_shift": (0.3, -0.3), "addendum": (1.0, 0.8), "dedendum": (1.25, 1.25)} | {
+    "fillet_radius": (0.38, 0.25)
+}
+FEW = {"module": 1.5e-3, "helix_angle": BETA, "face_width": 16e-3, "least_tip": 0.25} | {
+    "profile_shift": (0.74, 0.05)
+}
+RING_CLEAN = [
+    ((20, -60), {}),
+    ((20, -60), {"helix_angle": BETA}),
+    ((20, -60), {"centre_distance": 59.9e-3}),  # a ring has backlash at a smaller distance
+    ((20, -60), {"centre_distance": 60.0001e-3}),  # rounded on a drawing
+    ((50, -90), {}),
+]
+
+
+@pytest.mark.parametrize(("teeth", "changes"), RING_CLEAN)
+def test_sound_rings_pass_in_silence(teeth, changes):
+    assert check_cylindrical(build(teeth, **(RING | changes))) == []
+
+
 def test_undercut_tells_limit_and_lost_contact_ratio():
     pair = build((12, 120))
     (text,) = check_cylindrical(pair)
@@ -76,6 +97,30 @@ def test_small_tip_clearance(dedendum, gear, mate):
     )
 
 
+def test_overlap_ratio_alone_keeps_the_teeth_in_contact():
+    (text,) = check_cylindrical(build((4, 51), **FEW))
+    assert text == (
+        "The transverse contact ratio of gear 1 and gear 2 is 0.888: it is the overlap ratio, "
+        "1.16, that keeps the teeth in contact."
+    )
+
+
+def test_helical_gears_are_measured_in_normal_modules():
+    text, _ = check_cylindrical(build((4, 51), **(FEW | {"least_tip": 0.1})))
+    assert text == (
+        "The teeth of gear 1 are 0.1 normal modules thick at the tip; "
+        "at least 0.2 normal modules are usual."
+    )
+
+
+def test_pinion_that_goes_into_its_ring_along_the_axis_only():
+    (text,) = check_cylindrical(build((52, -60), **(RING | {"profile_shift": (0.3, -0.37)})))
+    assert text == (
+        "Gear 1 must be put into gear 2 along its axis: moved in radially, the tips overlap by "
+        "up to 0.151 modules."
+    )
+
+
 def test_centre_distance_below_base_radii():
     error = refusal(centre_distance=70e-3)
     base_sum = 1.5 * 54 * math.cos(math.radians(20))
@@ -98,6 +143,19 @@ def test_the_allowed_centre_distance_is_accepted_as_printed():
     error = refusal(centre_distance=82e-3, **shifted)
     allowed = re.search(r"at least (\S+) mm", error.message)[1]
     assert check_cylindrical(build(centre_distance=float(allowed) / 1e3, **shifted)) == []
+
+
+@pytest.mark.parametrize("distance", [60.001e-3, 61e-3])
+def test_overlapping_flanks_of_a_ring(distance):
+    error = refusal((20, -60), **RING, centre_distance=distance)
+    assert error.key == "gears.centre_distance"
+    assert f"{1e3 * distance:.8g} mm; these teeth allow at most 60 mm" in error.message
+
+
+def test_centre_distance_below_the_base_radii_of_a_ring():
+    error = refusal((20, -60), **RING, centre_distance=55e-3)
+    difference = 1.5 * 40 * math.cos(math.radians(20))
+    assert f"than the difference of their base radii, {difference:.8g} mm" in error.message
 
 
 def test_no_distance_without_backlash():
@@ -187,9 +245,124 @@ REFUSED = [
         {"addendum": (7.0, 7.0), "fillet_radius": (0.1, 0.1)}
         | {"teeth": (3000, 3000), "degrees": 5.0},
         "gears.addendum",
-        "and must be below 9; shorter addenda lower it",
+        "and must be below 24; shorter addenda lower it",
     ),
 ]
+
+
+REFUSED_RINGS = [
+    (
+        {"teeth": (60, -60)},
+        "gears.teeth",
+        "the ring, gear 2, has 60 teeth and must have more than gear 1, which has 60",
+    ),
+    (
+        {"profile_shift": (2.0, 0.1)},  # 20 inv(20 deg)/tan(20 deg)
+        "gears.profile_shift",
+        "sum to 2.1, which must be below 0.819: above it the flanks overlap at any centre distance",
+    ),
+    (
+        {"profile_shift": (0.0, -70.0)},
+        "gears.profile_shift",
+        "sum to -70; the working pressure angle would be above 65 degrees",
+    ),
+    (
+        {"profile_shift": (0.3, -0.5), "fillet_radius": (0.38, 0.38)},
+        "gears.fillet_radius",
+        "radius of gear 2 is 0.38 modules, but the root of its spaces has room for 0.3623 modules",
+    ),
+    (
+        {"dedendum": (1.25, 2.3)},
+        "gears.dedendum",
+        "flanks of gear 2 cross in the space between its teeth at the dedendum 2.3 modules; it may "
+        "be 1.73 modules at most",
+    ),
+    (
+        {"addendum": (1.0, -1.3)},
+        "gears.addendum",
+        "tip circle of gear 2 (189.6 mm) lies outside its root circle (189.3 mm)",
+    ),
+    (
+        {"addendum": (1.0, 2.2)},
+        "gears.addendum",
+        "tip circle of gear 2 (168.6 mm) lies inside its base circle (169.14467 mm), where there "
+        "is no involute",
+    ),
+    (
+        {"teeth": (20, -200), "profile_shift": (0.0, -2.0), "addendum": (1.0, 3.2)},
+        "gears.addendum",
+        "lies beyond the point of the teeth, where the flanks cross; it may be",
+    ),
+    (
+        {"addendum": (1.0, 1.0)},
+        "gears.addendum",
+        "tip of gear 2 meets the fillet of gear 1: on the line of action, counted from the base "
+        "circle of gear 1, it reaches down to 3.4356277 mm, but the involute begins at 4.1208988",
+    ),
+    (
+        {"teeth": (40, -60), "addendum": (1.2, 0.8), "fillet_radius": (0.3, 0.3)},
+        "gears.addendum",
+        "tip of gear 1 meets the fillet of gear 2: on the line of action, counted from the base "
+        "circle of gear 2, it reaches out to 41.58743 mm, but the involute ends at 41.354697 mm; a "
+        "shorter addendum of gear 1 or a larger dedendum of gear 2 parts them",
+    ),
+    (
+        {"addendum": (1.29, 0.8)},
+        "gears.dedendum",
+        "tip of gear 1 runs into the root of gear 2: the tip clearance is -0.04 modules",
+    ),
+    (
+        {"teeth": (86, -90), "profile_shift": (0.39, -0.49)},
+        "gears.addendum",
+        "tips of gear 1 and gear 2 run into each other where their tip circles cross: they overlap "
+        "by 0.104 modules",
+    ),
+    (
+        {"teeth": (16, -30), "profile_shift": (0.0, -0.29), "addendum": (1.0, 1.0)},
+        "gears.addendum",
+        "tip of gear 2 runs into the undercut fillet of gear 1: they overlap by 0.00867 modules",
+    ),
+    (
+        {"addendum": (0.3, 0.2)},
+        "gears.addendum",
+        "contact ratio of gear 1 and gear 2 is 0.4051 and must be at least 1; longer addenda, more "
+        "teeth, a smaller pressure angle or a larger centre distance raise it",
+    ),
+]
+REFUSED_HELICAL = [
+    (
+        {"least_tip": 0.0},
+        "gears.addendum",
+        "tip circle of gear 1 (11.434564 mm) lies beyond the point of the teeth",
+    ),
+    (
+        {"face_width": 1e-3},
+        "gears.addendum",
+        "total contact ratio of gear 1 and gear 2 is 0.9605 and must be at least 1; a wider face, ",
+    ),
+    (
+        {"addendum": (0.1, 0.1), "dedendum": (1.25, 1.25)},
+        "gears.addendum",
+        "transverse contact ratio of gear 1 and gear 2 is -0.08671 and must be positive; longer",
+    ),
+    (
+        {"face_width": 0.5},
+        "gears.face_width",
+        "must be below 24; shorter addenda or a narrower face lower it",
+    ),
+    (
+        {"fillet_radius": (0.5, 0.3)},
+        "gears.fillet_radius",
+        "0.5 normal modules, but the tip of its rack has room for 0.4719 normal modules",
+    ),
+    (
+        {"teeth": (12, 12), "profile_shift": (-0.6, -0.6)},
+        "gears.profile_shift",
+        "sum to -1.2, which must be above -0.5866",  # 12 inv(alpha_t)/tan(20 deg)
+    ),
+]
+REFUSED += [({"teeth": (20, -60)} | RING | changes, *told) for changes, *told in REFUSED_RINGS]
+REFUSED += [({"teeth": (4, 51)} | FEW | changes, *told) for changes, *told in REFUSED_HELICAL]
 
 
 @pytest.mark.parametrize(("changes", "key", "told"), REFUSED, ids=[told for *_, told in REFUSED])
@@ -198,6 +371,34 @@ def test_refused(changes, key, told):
     assert told in error.message
     assert error.key == key
     assert math.isfinite(error.value)
+
+
+ALLOWED = [
+    ("dedendum", "it may be", {"dedendum": (1.25, 2.3), "fillet_radius": (0.38, 0.0)}, 1.25),
+    ("fillet_radius", "room for", {"fillet_radius": (0.38, 0.6)}, 0.38),
+]
+
+
+@pytest.mark.parametrize(("entry", "before", "changes", "first"), ALLOWED)
+def test_what_a_ring_allows_is_what_it_says(entry, before, changes, first):
+    allowed = float(
+        re.search(before + r" (\S+) modules", refusal((20, -60), **(RING | changes)).message)[1]
+    )
+    for value, accepted in ((0.999 * allowed, True), (1.001 * allowed, False)):
+        pair = build((20, -60), **(RING | changes | {entry: (first, value)}))
+        assert (float(pair.gears[1].root_land_angle) > 0.0) == accepted
+
+
+def test_a_ring_tip_as_small_as_the_pointed_one_is_accepted():
+    changes = {"profile_shift": (0.0, -2.0), "addendum": (1.0, 3.2)}
+    message = refusal((20, -200), **(RING | changes)).message
+    tip, pointed = (
+        float(x) for x in re.search(r"2 \((\S+) mm\).* (\S+) mm at least", message).groups()
+    )
+    for diameter, sign in ((pointed + 1e-3, 1.0), (pointed - 1e-3, -1.0)):
+        shorter = (tip - diameter) / 2.0 / 3.0
+        pair = build((20, -200), **(RING | changes), tip_alteration=(0.0, shorter))
+        assert 0.0 < sign * float(pair.gears[1].tip_thickness) < 1e-5
 
 
 def test_a_tip_as_large_as_the_pointed_one_is_accepted():
@@ -239,7 +440,7 @@ def test_the_build_itself_refuses_flanks_that_cannot_meet(distance):
         build(centre_distance=distance)
 
 
-@pytest.mark.parametrize("ratio", [math.nan, 9.0])
+@pytest.mark.parametrize("ratio", [math.nan, 24.0])
 def test_no_lanes_for_an_impossible_contact_ratio(ratio):
     with pytest.raises(InputError, match="out of reach"):
         lanes_for(ratio)

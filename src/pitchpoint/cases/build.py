@@ -3,27 +3,32 @@
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import cos, pi, sin, tan
-from typing import Any, cast, get_args
+from typing import Any
+
+import equinox as eqx
 
 from pitchpoint._jax import jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
-from pitchpoint.cases.schema import TEMPERATURE, Case, Gears, Materials, Oil, SolidValues, Surface
+from pitchpoint.cases.schema import TEMPERATURE, Case, Gears, Oil, Surface
+from pitchpoint.cases.solids import SolidInUse, datum, heated, solids_in_use
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import lubricants, solids
-from pitchpoint.materials._leaves import Datum, Status
-from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 
 __all__ = ["Built", "build", "laws_of"]
 
 _AVAILABLE_FILLET = 0.38
+_RING_FILLET = 0.2  # fits the narrow spaces of most rings
 
 
 @dataclass(frozen=True)
@@ -34,6 +39,7 @@ class Built:
         case: as validated.
         design, operation: what the kernels take.
         lubricant: record of the oil with the origin of its values.
+        solids: of both gears, with the temperature at which they are taken.
         warnings: sentences about the design.
         own: friction law of the user's own that takes the place of those of the case.
     """
@@ -42,6 +48,7 @@ class Built:
     design: Design
     operation: Operation
     lubricant: lubricants.LubricantRecord
+    solids: tuple[SolidInUse, SolidInUse]
     warnings: tuple[str, ...]
     own: FrictionLaw | None = None
 
@@ -60,24 +67,24 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
             does not hold for this pair; with file and key.
     """
     try:
-        pair, warnings, contact_ratio = _checked(case.gears, case.operation.driver)
+        pair, warnings = _checked(case.gears, case.operation.driver)
     except InputError as error:
         inside = (
             error.key if not error.key or error.key.startswith("gears") else f"gears.{error.key}"
         )
         raise error.at(file=document.name, key=inside or "gears") from None
+    used = solids_in_use(case.materials, document, case.operation.temperature)
     record = _oil(case.lubricant, document)
     _check_temperature(case.operation.temperature, record, document, "operation.temperature")
     for temperature in (case.loss_map and case.loss_map.temperatures) or ():
         _check_temperature(temperature, record, document, "loss_map.temperatures")
-    sharing = LOAD_SHARING[case.models.load_sharing]
     try:
-        sharing.check(contact_ratio)
+        LOAD_SHARING[case.models.load_sharing].check(pair)
     except InputError as error:
         raise error.at(file=document.name, key="models.load_sharing") from None
     design = Design(
         mesh=pair,
-        modulus=_modulus(case.materials),
+        solids=(used[0].solid, used[1].solid),
         lubricant=_built_oil(record),
         roughness=_roughness(case.roughness),
     )
@@ -86,7 +93,23 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         speed=jnp.asarray(case.operation.speed),
         temperature=jnp.asarray(case.operation.temperature),
     )
-    return Built(case, design, operation, record, warnings, own)
+    built = Built(case, design, operation, record, used, warnings + _yielding(case, pair), own)
+    return built if case.models.tooth_temperature == "isothermal" else warmed(built, document)
+
+
+def warmed(built: Built, document: Document) -> Built:
+    """The case with its gears at the temperature that their own loss gives them.
+
+    Raises:
+        InputError: the temperature is outside what is known of a material.
+    """
+    models, _ = laws_of(built)
+    found = summarise([(built.design, built.operation)], models)
+    figures = {name: float(found[name][0]) for name in ("mean_friction", "loss_factor")}
+    used = heated(built.case, built.solids, found=figures, document=document)
+    design = replace(built.design, solids=(used[0].solid, used[1].solid))
+    told = (one.told for one in used if one.told)
+    return replace(built, design=design, solids=used, warnings=(*built.warnings, *told))
 
 
 def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
@@ -110,6 +133,7 @@ def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
         parameters=_parameters(case, laws),
         sharing=LOAD_SHARING[case.models.load_sharing],
         rolling=ROLLING_RESISTANCE[case.models.rolling_resistance],
+        compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance],
     )
     return models, indices
 
@@ -133,46 +157,74 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
 
 
 @lru_cache(maxsize=256)
-def _checked(gears: Gears, driver: str) -> tuple[CylindricalPair, tuple[str, ...], float]:
-    """Pair, its warnings and its contact ratio; a sweep that leaves the gears alone builds them once."""
+def _checked(gears: Gears, driver: str) -> tuple[CylindricalPair, tuple[str, ...]]:
+    """Pair and its warnings; a sweep that leaves the gears alone builds them once."""
     pair = _pair(gears, driver=2 if driver == "gear 2" else 1)
-    return pair, tuple(check_cylindrical(pair)), float(pair.contact_ratio)
+    return pair, tuple(check_cylindrical(pair))
+
+
+def _yielding(case: Case, pair: CylindricalPair) -> tuple[str, ...]:
+    """What the model of tooth compliance does not cover, where it is used."""
+    sharing = LOAD_SHARING[case.models.load_sharing]
+    if case.dynamics is None and not sharing.by_stiffness:
+        return ()
+    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(_sections(pair))
+
+
+@eqx.filter_jit
+def _sections(pair: CylindricalPair) -> tuple[ToothSection, ToothSection]:
+    return pair.sections
 
 
 def _pair(gears: Gears, driver: int) -> CylindricalPair:
     dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
     fillet = gears.fillet_radius or tuple(
-        min(_AVAILABLE_FILLET, _largest_fillet(depth, gears.pressure_angle)) for depth in dedendum
+        _RING_FILLET
+        if teeth < 0
+        else min(_AVAILABLE_FILLET, _largest_fillet(depth, gears.pressure_angle))
+        for teeth, depth in zip(gears.teeth, dedendum, strict=True)
     )
-    return build_cylindrical_pair(
+    pair = build_cylindrical_pair(
         teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
         module=gears.module,
         pressure_angle=gears.pressure_angle,
+        helix_angle=gears.helix_angle,
         face_width=gears.face_width,
         profile_shift=gears.profile_shift,
         addendum=gears.addendum,
         dedendum=dedendum,
         fillet_radius=(fillet[0], fillet[1]),
         tip_alteration=gears.tip_alteration,
+        least_tip=gears.least_tip_thickness,
         centre_distance=gears.centre_distance,
         driver=driver,
         right_flank=gears.flank == "right",
     )
+    if gears.bore_diameter is None:
+        return pair
+    return replace(pair, rim_ratio=jnp.asarray(_rim_ratios(pair, gears.bore_diameter)))
+
+
+def _rim_ratios(pair: CylindricalPair, bores: tuple[float, float]) -> list[float]:
+    """Root over bore radius of each gear; of a ring its outer radius over the root radius."""
+    found = []
+    for number, (gear, bore) in enumerate(zip(pair.gears, bores, strict=True), 1):
+        root = 2.0 * abs(float(gear.root_radius))
+        ratio = bore / root if gear.internal else root / bore
+        if ratio <= 1.0:
+            side = "larger" if gear.internal else "smaller"
+            raise InputError(
+                f"the bore diameter of gear {number} is {1e3 * bore:.6g} mm; it must be {side} than "
+                f"its root circle, {1e3 * root:.6g} mm",
+                key="bore_diameter",
+            )
+        found.append(ratio)
+    return found
 
 
 def _largest_fillet(dedendum: float, angle: float) -> float:
     """Corner rounding of the rack that leaves no flat on its tip, in modules (ISO 53)."""
     return max((pi / 4 - dedendum * tan(angle)) * cos(angle) / (1.0 - sin(angle)), 0.0)
-
-
-def _modulus(materials: Materials) -> jnp.ndarray:
-    return reduced_modulus(_solid(materials.gear_1), _solid(materials.gear_2))
-
-
-def _solid(given: SolidValues | str) -> Solid:
-    if isinstance(given, str):
-        return solids.find(given).build()
-    return Solid(young=given.young, poisson=given.poisson, density=given.density)
 
 
 def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
@@ -188,7 +240,7 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
     if oil.pressure_viscosity is not None:
         values["gold_s"], values["gold_t"] = lubricants.constant_alpha(oil.pressure_viscosity)
     given = {
-        key: _datum(value, f"lubricant.{_OIL_KEYS[key]}", document)
+        key: datum(value, f"lubricant.{_OIL_KEYS[key]}", document)
         for key, value in values.items()
         if value is not None
     }
@@ -208,14 +260,6 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
             message = message.replace(name, word)
         where = f"lubricant.{key}".rstrip(".")
         raise InputError(message, file=document.name, key=where) from None
-
-
-def _datum(value: float, key: str, document: Document) -> Datum:
-    """Value of the case file with the mark that it carries there."""
-    mark = document.provenance.get(key)
-    if mark is None or mark.status not in get_args(Status):
-        return Datum(value=value)
-    return Datum(value=value, status=cast("Status", mark.status), note=mark.note)
 
 
 _OIL_KEYS = {

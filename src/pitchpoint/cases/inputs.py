@@ -8,10 +8,13 @@ from pitchpoint import units
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.solids import SolidInUse
 
 __all__ = ["resolved"]
 
 _TABLES = ("gears", "materials", "lubricant", "roughness", "operation", "models")
+
+_SOLID = {"young": "Young's modulus", "poisson": "Poisson's ratio", "density": "density"}
 
 _OIL = {
     "nu_1": ("kinematic viscosity at the lower temperature", "mm2/s", "kinematic viscosity"),
@@ -36,6 +39,7 @@ def resolved(built: Built, document: Document) -> list[dict[str, str]]:
         document: it came from; keys that it does not hold are defaults.
     """
     rows = [row for table in _TABLES for row in _rows(built, document, table)]
+    rows += [row for gear, used in enumerate(built.solids, 1) for row in _solid(gear, used)]
     return rows + [
         {
             "table": "oil as resolved",
@@ -47,6 +51,27 @@ def resolved(built: Built, document: Document) -> list[dict[str, str]]:
         }
         for name, (label, unit, kind) in _OIL.items()
     ]
+
+
+def _solid(gear: int, used: SolidInUse) -> list[dict[str, str]]:
+    """Values of a material at the temperature at which they are used."""
+    values = {"young": ("GPa", "pressure"), "poisson": ("1", "dimensionless")}
+    values["density"] = ("kg/m3", "density")
+    rows = []
+    for name, (unit, kind) in values.items():
+        origin = used.record.data()[name]
+        number = float(getattr(used.solid, name))
+        rows.append(
+            {
+                "table": "materials as resolved",
+                "key": f"gear {gear}, {_SOLID[name]}",
+                "value": _shown(number, unit, kind),
+                "status": origin.status,
+                "where": origin.source,
+                "note": (used.told if name == "young" else "") or origin.note,
+            }
+        )
+    return rows
 
 
 def _rows(built: Built, document: Document, table: str) -> list[dict[str, str]]:

@@ -4,7 +4,14 @@ from collections.abc import Iterator, Mapping
 from math import inf, pi
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    ValidationError,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 
 from pitchpoint import units
@@ -17,15 +24,25 @@ __all__ = ["Case", "quantity_at", "validate"]
 
 _ZERO_CELSIUS = 273.15
 
-TEETH = Quantity("dimensionless", 3, 10_000, whole=True)
+TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
 MODULE = Quantity("length", 1e-5, 0.1, "mm")
 WIDTH = Quantity("length", 1e-5, 10.0, "mm")
 DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
+HELIX = Quantity("angle", 0.0, 60 * pi / 180, "deg")
 ANGLE = Quantity("angle", 5 * pi / 180, 45 * pi / 180, "deg")
 SHIFT = Quantity("dimensionless", -2.0, 3.0)
 RACK = Quantity("dimensionless", 0.1, 4.0)
 FILLET = Quantity("dimensionless", 0.0, 1.0)
 TIP = Quantity("dimensionless", -2.0, 2.0)
+LEAST_TIP = Quantity("dimensionless", 0.0, 1.5)
+BORE = Quantity("length", 1e-5, 100.0, "mm")
+INERTIA = Quantity("moment of inertia", 0.0, 1e9, "kg m2", open_low=True)
+RATIO = Quantity("dimensionless", 0.0, 1.0, open_low=True)
+DEVIATION = Quantity("length", 0.0, 1e-2, "um")
+PHASE = Quantity("angle", -4 * pi, 4 * pi, "deg")
+ORDER = Quantity("dimensionless", 1, 1000, whole=True)
+CONDUCTIVITY = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
+AREA = Quantity("area", 1e-8, 1e4, "m2")
 MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
 POISSON = Quantity("dimensionless", 0.0, 0.5)
 DENSITY = Quantity("density", 100.0, 30_000.0, "kg/m3")
@@ -35,6 +52,7 @@ ALPHA = Quantity("pressure-viscosity coefficient", 1e-10, 1e-6, "1/GPa")
 FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
 TORQUE = Quantity("torque", 0.0, 1e8, "N m")
+LOADED = Quantity("torque", 0.0, 1e8, "N m", open_low=True)
 SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
 MAP_SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm")
 TEMPERATURE = Quantity("temperature", 150.0, 600.0, "degC")
@@ -85,6 +103,24 @@ def _sharings() -> list[str]:
     return list(LOAD_SHARING)
 
 
+def _compliances() -> list[str]:
+    from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+
+    return list(TOOTH_COMPLIANCE)
+
+
+def _contact_laws() -> list[str]:
+    from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+
+    return list(CONTACT_LAWS)
+
+
+def _tooth_temperatures() -> list[str]:
+    from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
+
+    return list(TOOTH_TEMPERATURE)
+
+
 def _rollings() -> list[str]:
     from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
@@ -121,20 +157,42 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+FEWEST_TEETH = 2
+FEWEST_RING_TEETH = 10
+
+
+def _teeth(value: tuple[float, float]) -> tuple[float, float]:
+    first, second = value
+    if first < FEWEST_TEETH:
+        raise InputError(
+            f"gear 1 was given {first:.0f} teeth; allowed are {FEWEST_TEETH} or more, and only gear 2 "
+            "may be a ring, with its number of teeth negative"
+        )
+    if -FEWEST_RING_TEETH < second < FEWEST_TEETH:
+        raise InputError(
+            f"gear 2 was given {second:.0f} teeth; allowed are {FEWEST_TEETH} or more, or for a ring "
+            f"with internal teeth -{FEWEST_RING_TEETH} or less"
+        )
+    return value
+
+
 class Gears(Table):
-    """A pair of external involute spur gears."""
+    """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring."""
 
     family: Literal["cylindrical"] = "cylindrical"
-    teeth: Annotated[tuple[float, float], Pair(TEETH)]
+    teeth: Annotated[tuple[float, float], Pair(TEETH), AfterValidator(_teeth)]
     module: Annotated[float, MODULE]
     face_width: Annotated[float, WIDTH]
     pressure_angle: Annotated[float, ANGLE] = pi / 9
+    helix_angle: Annotated[float, HELIX] = 0.0
     profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] = (0.0, 0.0)
     addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
     tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
+    least_tip_thickness: Annotated[float, LEAST_TIP] = 0.0
     centre_distance: Annotated[float, DISTANCE] | None = None
+    bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
     flank: Literal["left", "right"] = "left"
 
 
@@ -265,7 +323,65 @@ class Choices(Table):
     film_thickness: Annotated[str, BeforeValidator(named(_films, "film thickness law"))] = (
         "dowson_higginson_1959"
     )
+    tooth_compliance: Annotated[
+        str, BeforeValidator(named(_compliances, "tooth compliance model"))
+    ] = "beam_foundation_weber"
+    tooth_temperature: Annotated[
+        str, BeforeValidator(named(_tooth_temperatures, "tooth temperature model"))
+    ] = "isothermal"
+    tooth_contact: Annotated[str, BeforeValidator(named(_contact_laws, "law of tooth contact"))] = (
+        "linear"
+    )
     averaging: Literal["base_pitch", "path"] = "base_pitch"
+
+
+class Housing(Table):
+    """How a plastic gear gets rid of its heat, for models of the tooth temperature."""
+
+    thermal_resistance: Annotated[float, CONDUCTIVITY] = 0.0
+    area: Annotated[float, AREA] | None = None
+    duty: Annotated[float, RATIO] = 1.0
+
+    @model_validator(mode="after")
+    def _both(self) -> "Housing":
+        if (self.thermal_resistance > 0.0) != (self.area is not None):
+            raise InputError("thermal_resistance and area of a housing belong together")
+        return self
+
+
+class Deviation(Table):
+    """One order of the composite profile error, repeated with every mesh period."""
+
+    order: Annotated[float, ORDER]
+    amplitude: Annotated[float, DEVIATION]
+    phase: Annotated[float, PHASE] = 0.0
+
+
+class Speeds(Table):
+    """Driver speeds through which resonances are looked for, upwards and downwards."""
+
+    start: Annotated[float, SPEED]
+    stop: Annotated[float, SPEED]
+    count: Annotated[float, Quantity("dimensionless", 2, 2000, whole=True)] = 60.0
+
+    @model_validator(mode="after")
+    def _rising(self) -> "Speeds":
+        if self.start >= self.stop:
+            raise InputError(
+                f"speeds run from {SPEED.show(self.start)} to {SPEED.show(self.stop)}; stop must be "
+                "the larger"
+            )
+        return self
+
+
+class Dynamics(Table):
+    """Vibration of the pair along its line of action."""
+
+    damping_ratio: Annotated[float, RATIO] = 0.1
+    inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
+    profile_error: tuple[Deviation, ...] = ()
+    torques: tuple[Annotated[float, LOADED], ...] = ()
+    speeds: Speeds | None = None
 
 
 class Sweep(Table):
@@ -308,7 +424,7 @@ class Target(Table):
 
     quantity: Text
     where: Text
-    kind: Literal["predicted", "fitted", "calibrated", "trend", "excluded"]
+    kind: Literal["predicted", "fitted", "calibrated", "trend", "reference", "excluded"]
     printed: Annotated[float, ANY]
     unit: Unit = "1"
     tolerance: Annotated[float, NOT_NEGATIVE] = 0.0
@@ -345,6 +461,8 @@ class Case(Table):
     roughness: Surface
     operation: Operating
     models: Choices = Choices()
+    housing: Housing = Housing()
+    dynamics: Dynamics | None = None
     studies: Annotated[dict[str, Study], BeforeValidator(_named)] = {}
     loss_map: LossMap | None = None
     targets: tuple[Target, ...] = ()

@@ -24,11 +24,13 @@ from pitchpoint.cases.schema import (
     quantity_at,
     validate,
 )
+from pitchpoint.cases.vibration import figures_of, resonance_part, stiffness_part, vibration_part
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears.cylindrical import CylindricalPair
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.store import dataset
@@ -45,6 +47,14 @@ SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
 
 _SHOWN = 3
+
+_WITH_FRICTION = {
+    f"{kind}_{name}{ending}"
+    for kind in ("mean", "min", "max")
+    for name in ("loss", "efficiency", "input_torque", "friction")
+    for ending in ("", "_path")
+}
+"""Figures that are undefined where friction locks the mesh."""
 
 TOLERANCE = 1e-10
 """Largest relative residual of the torque balance that counts as converged."""
@@ -130,6 +140,12 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     yield Job("cycle", "mesh cycle", (lambda _: _cycle(built),))
     yield Job("operation", "operating point", (lambda _: _operation(built),))
     yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
+    if built.case.dynamics is not None or LOAD_SHARING[built.case.models.load_sharing].by_stiffness:
+        yield Job("stiffness", "mesh stiffness", (lambda _: stiffness_part(built),))
+    if built.case.dynamics is not None:
+        yield Job("vibration", "vibration", (lambda _: vibration_part(built),))
+        if built.case.dynamics.speeds is not None:
+            yield Job("resonance", "vibration against speed", (lambda _: resonance_part(built),))
     yield from studies
     yield Job("loss_map", "loss map", (lambda progress: _loss_map(built, progress),))
     yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
@@ -137,7 +153,7 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
 
 def _teeth(built: Built) -> xr.Dataset:
     """Outline of one tooth of each gear, circles and points of the path, for drawing to scale."""
-    numbers = jax.device_get(_drawing(built.pair))
+    numbers = jax.device_get(_drawing(built.design.mesh))
     dims = {"outline": ("gear", "corner", "xy"), "points": ("point",)}
     return dataset(
         {name: (dims.get(name, ("gear",)[: np.ndim(v)]), v) for name, v in numbers.items()},
@@ -147,24 +163,8 @@ def _teeth(built: Built) -> xr.Dataset:
 
 
 @eqx.filter_jit
-def _drawing(pair: CylindricalPair) -> dict[str, Array]:
-    return {
-        "outline": jnp.stack([gear.outline() for gear in pair.gears]),
-        "points": pair.points,
-        "teeth": pair.teeth,
-        "base_radius": pair.base_radii,
-        "tip_radius": pair.tip_radii,
-        "root_radius": jnp.stack([gear.root_radius for gear in pair.gears]),
-        "reference_radius": jnp.stack([gear.reference_radius for gear in pair.gears]),
-        "working_radius": pair.working_radii,
-        "tip_thickness": jnp.stack([gear.tip_thickness for gear in pair.gears]),
-        "working_pressure_angle": pair.working_pressure_angle,
-        "centre_distance": pair.centre_distance,
-        "base_pitch": pair.base_pitch,
-        "contact_ratio": pair.contact_ratio,
-        "specific_sliding_A": pair.specific_sliding(pair.limits[0]),
-        "specific_sliding_E": pair.specific_sliding(pair.limits[1]),
-    }
+def _drawing(mesh: Mesh) -> dict[str, Array]:
+    return mesh.drawing()
 
 
 def _cycle(built: Built) -> xr.Dataset:
@@ -200,7 +200,7 @@ def _cycle(built: Built) -> xr.Dataset:
         title="mesh cycle",
         warnings=warnings,
         film_law=film.name,
-        events=[float(phase) for phase in built.pair.events()],
+        events=[float(phase) for phase in built.design.mesh.events()],
     )
 
 
@@ -349,10 +349,9 @@ def _map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
     """The other gear drives at its own speed and carries the same power."""
     case = built.case
-    pair = built.pair
-    ratio = float(pair.teeth[1] / pair.teeth[0])
+    mesh = built.design.mesh
+    step = abs(float((mesh.driver @ mesh.motion) / (mesh.loaded @ mesh.motion)))
     forward = case.operation.driver == "gear 1"
-    step = ratio if forward else 1.0 / ratio
     other = variant.built(
         {
             "operation.driver": "gear 2" if forward else "gear 1",
@@ -377,10 +376,13 @@ def _summaries(
     """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN."""
     runs = [_grouped(points, _choose(models, law), progress) for law in laws]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
+    if points[0].case.dynamics is not None:
+        vibrating = _in_groups(points, lambda group: figures_of(group))
+        out |= {name: np.stack([values] * len(runs)) for name, values in vibrating.items()}
     if not may_lock and len(points) == 1:
         _demand_motion(out["locked"], points, _names(models, laws))
     for name, values in out.items():
-        if values.dtype.kind == "f" and name not in ("contact_ratio", "loss_factor"):
+        if values.dtype.kind == "f" and name in _WITH_FRICTION:
             values[out["locked"]] = np.nan
     residual = np.where(out["locked"], 0.0, out["residual"])
     _demand_convergence(residual, points, _names(models, laws))
@@ -419,16 +421,21 @@ def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
 
 def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[str, np.ndarray]:
     """Summaries in order, points of equal static structure computed together."""
+
+    def of(group: Sequence[Built]) -> dict[str, np.ndarray]:
+        return summarise([(point.design, point.operation) for point in group], models, progress)
+
+    return _in_groups(points, of)
+
+
+def _in_groups(
+    points: Sequence[Built], compute: Callable[[Sequence[Built]], dict[str, np.ndarray]]
+) -> dict[str, np.ndarray]:
+    """Results [point] in order, from computations of points of equal static structure."""
     groups: dict[Any, list[int]] = {}
     for position, point in enumerate(points):
-        groups.setdefault((point.pair.lanes, point.pair.undercut), []).append(position)
-    parts = [
-        (
-            where,
-            summarise([(points[i].design, points[i].operation) for i in where], models, progress),
-        )
-        for where in groups.values()
-    ]
+        groups.setdefault(jax.tree.structure(point.design), []).append(position)
+    parts = [(where, compute([points[i] for i in where])) for where in groups.values()]
     result = {name: np.empty(len(points), values.dtype) for name, values in parts[0][1].items()}
     for where, values in parts:
         for name in result:

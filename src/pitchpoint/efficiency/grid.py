@@ -100,7 +100,7 @@ def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
     design, operation = inputs
     oil, surfaces = jax.tree.map(take, (design.lubricant, design.roughness))
     return (
-        Design(design.mesh, design.modulus, oil, surfaces),
+        Design(design.mesh, design.solids, oil, surfaces),
         jax.tree.map(lambda leaf: take(leaf)[:, None], operation),
     )
 

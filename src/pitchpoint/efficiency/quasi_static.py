@@ -1,46 +1,51 @@
 """The quasi-static state of a mesh at any phase, and its cycle between events."""
 
 from collections.abc import Callable, Mapping
-from functools import cache
 
 import equinox as eqx
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.period import between, lobatto
+from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance
+from pitchpoint.loading.mesh_stiffness import slice_stiffness
 from pitchpoint.loading.sharing import LoadSharing
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, ToothCompliance
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import RollingResistance
 from pitchpoint.materials.lubricants import Lubricant
+from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
 
 __all__ = ["Cycle", "Design", "Models", "Operation", "State", "cycle", "cycle_nodes", "state"]
-
-# Nodes keep this relative distance from the events, so that each lies on one side of them.
-_INSIDE = 1e-9
 
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 
 
 class Design(eqx.Module):
-    """What is built once: the mesh, the modulus of its materials, oil and surfaces.
+    """What is built once: the mesh, its materials, oil and surfaces.
 
     Attributes:
         mesh: any gear family.
-        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E over both members.
+        solids: material of each member.
         lubricant: the oil.
         roughness: of both flanks.
     """
 
     mesh: Mesh
-    modulus: Float[Array, ""]
+    solids: tuple[Solid, Solid]
     lubricant: Lubricant
     roughness: Roughness
+
+    @property
+    def modulus(self) -> Float[Array, ""]:
+        """Reduced modulus E' [Pa], 2/E' = sum of (1 - nu^2)/E over both members."""
+        return reduced_modulus(*self.solids)
 
 
 class Operation(eqx.Module):
@@ -68,6 +73,7 @@ class Models(eqx.Module):
         parameters: values of the laws' own parameters by name of the law.
         sharing: of the load between pairs.
         rolling: rolling resistance.
+        compliance: how teeth yield, where the sharing asks for it.
     """
 
     friction: tuple[FrictionLaw, ...] = eqx.field(static=True)
@@ -75,6 +81,9 @@ class Models(eqx.Module):
     parameters: Mapping[str, Mapping[str, Float[Array, ""]]]
     sharing: LoadSharing = eqx.field(static=True)
     rolling: RollingResistance = eqx.field(static=True)
+    compliance: ToothCompliance = eqx.field(
+        static=True, default=TOOTH_COMPLIANCE["beam_foundation_weber"]
+    )
 
     def coefficient(self, conditions: Conditions) -> Lanes:
         """Friction coefficient at every contact by the chosen law."""
@@ -88,6 +97,19 @@ class Models(eqx.Module):
             self.choice, [branch(law) for law in self.friction], conditions
         )
         return chosen
+
+    def share(self, design: Design, contacts: Contacts, load: Each) -> Lanes:
+        """Share of the load on each slice.
+
+        Args:
+            design: mesh and materials.
+            contacts: of the mesh.
+            load: that the driven coordinate carries [N m or N].
+        """
+        mesh, stiffness = design.mesh, None
+        if self.sharing.by_stiffness:
+            stiffness = slice_stiffness(mesh, contacts, design.solids, self.compliance, load)
+        return self.sharing.function(contacts, mesh.contact_ratio, stiffness)
 
 
 class State(eqx.Module):
@@ -153,7 +175,7 @@ def state(
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
     phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
     contacts = mesh.contacts(phase)
-    share = models.sharing.function(contacts, mesh.contact_ratio)
+    share = models.share(design, contacts, operation.load)
     arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
     oil, temperature = design.lubricant, operation.temperature
 
@@ -242,7 +264,7 @@ class Cycle(eqx.Module):
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
         segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
-        at, *derivatives, spacing = _between(self.nodes)
+        at, *derivatives, spacing = between(self.nodes)
         dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
         level = jnp.abs(slope) < jnp.abs(curve) * spacing
         step = -slope / jnp.where(level, curve, 1.0)
@@ -306,45 +328,18 @@ def cycle(design: Design, operation: Operation, models: Models, nodes: int = 24)
 def cycle_nodes(
     mesh: Mesh, sharing: LoadSharing, nodes: int
 ) -> tuple[Float[Array, " node"], Float[Array, " node"]]:
-    """Phases and weights that integrate exactly between events, and move with them.
+    """Phases and weights over one period, between the events and the hand-overs of the sharing.
 
     Args:
         mesh: any family.
         sharing: may add hand-overs to the events of the mesh.
         nodes: in each segment, at least 3.
     """
-    edges = mesh.events()
+    events = mesh.events()
     if sharing.hand_over is not None:
-        edges = jnp.concatenate([edges, sharing.hand_over(mesh.contact_ratio)])
-    edges = jnp.sort(edges)
-    edges = jnp.concatenate([edges, edges[:1] + 1.0])
-    start, length = edges[:-1, None], jnp.diff(edges)[:, None]
-    unit, weight = _lobatto(nodes)
-    return (start + length * unit).ravel(), (length * weight).ravel()
+        events = jnp.concatenate([events, sharing.hand_over(mesh.contact_ratio)])
+    phase, weight = period_nodes(events, nodes)
+    return phase.ravel(), weight.ravel()
 
 
-@cache
-def _lobatto(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Lobatto nodes, nearly on [0, 1], and weights: both ends and the roots of P'."""
-    legendre = np.polynomial.Legendre.basis(count - 1)
-    inner = np.sort(legendre.deriv().roots().real)
-    x = np.concatenate([[-1.0], inner, [1.0]])
-    weight = 1.0 / (count * (count - 1) * legendre(x) ** 2)
-    return np.clip((x + 1.0) / 2.0, _INSIDE, 1.0 - _INSIDE), weight
-
-
-@cache
-def _between(count: int) -> list[np.ndarray]:
-    """Matrices from values at the nodes to a polynomial and its derivatives at points between.
-
-    The points are the nodes and seven more between neighbours, on [-1, 1]; last comes their
-    spacing, zero at the ends, where a level tangent means nothing.
-    """
-    nodes = 2.0 * _lobatto(count)[0] - 1.0
-    place = np.arange(8 * (count - 1) + 1) / 8.0
-    x = -np.cos(np.interp(place, np.arange(count), np.arccos(-nodes)))
-    spacing = np.concatenate([[0.0], np.maximum(x[2:] - x[1:-1], x[1:-1] - x[:-2]), [0.0]])
-    modes = np.polynomial.legendre.legvander(nodes, count - 1)
-    polynomials = [np.polynomial.Legendre.basis(degree) for degree in range(count)]
-    rows = [[p.deriv(order)(x) if order else p(x) for p in polynomials] for order in range(4)]
-    return [*(np.linalg.solve(modes.T, np.array(row)) for row in rows), spacing]
+_lobatto, _between = lobatto, between

@@ -1,6 +1,7 @@
 """Figures of whole mesh cycles for many designs and operating points at once, in chunks of one size."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -11,7 +12,7 @@ from pitchpoint.contact.contacts import along, total
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, cycle_nodes
 from pitchpoint.loading.sharing import equal
 
-__all__ = ["CHUNK", "loss_factor", "summarise", "summary"]
+__all__ = ["CHUNK", "in_chunks", "loss_factor", "summarise", "summary"]
 
 CHUNK = 32
 """Cycles computed together: one compiled program serves any number of them."""
@@ -43,6 +44,7 @@ def summary(design: Design, operation: Operation, models: Models) -> dict[str, A
     high = jnp.minimum(high, jnp.maximum(1.0, jnp.max(state.efficiency, axis=-1)))
     torque_low, torque_high = result.extremes(state.input_torque)
     return {
+        **_by_gear(design.mesh.dimensions()),
         "contact_ratio": design.mesh.contact_ratio,
         "loss_factor": loss_factor(design, models),
         "mean_loss": result.mean_loss,
@@ -62,6 +64,17 @@ def summary(design: Design, operation: Operation, models: Models) -> dict[str, A
     }
 
 
+def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:
+    """Values for the mesh as they are, values for each member under a name with its number."""
+    each = {
+        f"{name}_{number}": value
+        for name, pair in values.items()
+        if jnp.ndim(pair) == 1
+        for number, value in enumerate(pair, 1)
+    }
+    return {name: value for name, value in values.items() if jnp.ndim(value) == 0} | each
+
+
 def summarise(
     points: Sequence[Point],
     models: Models,
@@ -74,25 +87,43 @@ def summarise(
         models: laws.
         progress: told the number of finished points after each chunk.
     """
+    return in_chunks(_summaries, points, models, progress)
+
+
+def in_chunks(
+    function: Callable[[Any, Models], dict[str, Array]],
+    inputs: Sequence[Any],
+    models: Models,
+    progress: Callable[[int], None] | None = None,
+) -> dict[str, np.ndarray]:
+    """Results of a compiled function for many inputs, each quantity [point].
+
+    Args:
+        function: of stacked inputs and models; one program serves any number of points.
+        inputs: trees of arrays of equal static structure.
+        models: laws.
+        progress: told the number of finished points after each chunk.
+    """
     chunks: list[dict[str, np.ndarray]] = []
-    for chunk, used in _chunks(points):
-        designs, operations = chunk
-        out = jax.device_get(_summaries(designs, operations, models))
+    done = 0
+    for chunk, used in _chunks(inputs):
+        out = jax.device_get(function(chunk, models))
         chunks.append({name: np.asarray(values)[:used] for name, values in out.items()})
+        done += used
         if progress is not None:
-            progress(sum(len(part["residual"]) for part in chunks))
+            progress(done)
     return {name: np.concatenate([part[name] for part in chunks]) for name in chunks[0]}
 
 
 @eqx.filter_jit
-def _summaries(designs: Design, operations: Operation, models: Models) -> dict[str, Array]:
+def _summaries(points: Point, models: Models) -> dict[str, Array]:
     result: dict[str, Array] = eqx.filter_vmap(
         lambda design, operation: summary(design, operation, models)
-    )(designs, operations)
+    )(*points)
     return result
 
 
-def _chunks(points: Sequence[Point]) -> Iterator[tuple[Point, int]]:
+def _chunks(points: Sequence[Any]) -> Iterator[tuple[Any, int]]:
     """Stacks of CHUNK points, the last one filled up by repetition."""
     for start in range(0, len(points), CHUNK):
         part = list(points[start : start + CHUNK])

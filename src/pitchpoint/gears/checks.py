@@ -114,8 +114,8 @@ def check_cylindrical(pair: CylindricalPair) -> list[str]:
 
     Returns:
         One sentence for each warning: undercut, a tip thinner than 0.2 modules, a tip clearance
-        below 0.1 modules, a transverse contact ratio below 1, a pinion that cannot be put into its
-        ring radially. Empty for a sound pair.
+        below 0.1 modules, a transverse contact ratio below 1, a pinion that does not go into its
+        ring radially in every position. Empty for a sound pair.
 
     Raises:
         InputError: the flanks overlap or never meet, a tip is pointed, a tip runs into the mate's
@@ -290,11 +290,10 @@ def _ring_corner(pair: CylindricalPair, pinion_corner: Float[Array, "*b"]) -> Fl
 
     Both are counted from the line of centres, about their own gear.
     """
-    cosines = jnp.abs(pair.base_radii / pair.tip_radii)
-    pinion, ring = involute(_arccos(cosines))
+    pinion, ring = involute(_arccos(jnp.abs(pair.base_radii / pair.tip_radii)))
     working = involute(pair.working_pressure_angle)
     turned = pinion_corner + pinion - working
-    return turned * pair.teeth[0] / jnp.abs(pair.teeth[1]) + working - ring
+    return jnp.asarray(turned * pair.teeth[0] / jnp.abs(pair.teeth[1]) + working - ring)
 
 
 def _radial_gap(pair: CylindricalPair) -> Float[Array, ""]:
@@ -519,7 +518,7 @@ def _check_contact_ratio(pair: _Pair, gears: list[_Gear]) -> None:
         _refuse_contact_ratio(pair, name, pair.contact_ratio, 1.0, lost)
     if pair.contact_ratio >= _LARGEST_CONTACT_RATIO:
         _refuse(
-            "addendum",
+            "face_width" if pair.contact_ratio > 2.0 * pair.transverse_ratio else "addendum",
             pair.contact_ratio,
             f"the contact ratio of gear 1 and gear 2 is {pair.contact_ratio:.4g} and must be below "
             f"{_LARGEST_CONTACT_RATIO:g}; shorter addenda "
@@ -574,7 +573,7 @@ def _warnings(pair: _Pair, gear: _Gear) -> list[str]:
         )
     if gear.undercut:
         found.append(_undercut_warning(pair, gear))
-    if gear.clearance < _SMALL_CLEARANCE:
+    if gear.clearance < _SMALL_CLEARANCE * (1.0 - 1e-9):
         found.append(
             f"The tip of {gear.name} clears the root of {gear.mate} by {gear.clearance:.3g} "
             f"{gear.modules}; at least {_SMALL_CLEARANCE:g} {gear.modules} are usual."
@@ -592,8 +591,8 @@ def _pair_warnings(pair: _Pair) -> list[str]:
         )
     if pair.internal and pair.radial_gap < 0.0:
         found.append(
-            "Gear 1 cannot be put into gear 2 radially, only along its axis: on the way the tips "
-            f"overlap by {-pair.radial_gap:.3g} {pair.modules}."
+            "Gear 1 must be put into gear 2 along its axis: moved in radially, the tips overlap by "
+            f"up to {-pair.radial_gap:.3g} {pair.modules}."
         )
     return found
 

@@ -11,7 +11,7 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
-from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.mesh import Mesh, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.roots import root
 
@@ -279,6 +279,11 @@ class CylindricalPair(Mesh):
         return 2.0 * jnp.pi / jnp.sum(self.driver * jnp.abs(self.teeth))
 
     @property
+    def line_of_action(self) -> Float[Array, "2"]:
+        """Base radii with the sense in which the gears close along the transverse line of action."""
+        return self._side * self.base_radii
+
+    @property
     def reference(self) -> Reference:
         """Values at the pitch point C."""
         angle, slope = self.working_pressure_angle, jnp.cos(self.base_helix_angle)
@@ -317,7 +322,7 @@ class CylindricalPair(Mesh):
         none, lanes = jnp.zeros_like(position), jnp.shape(position)
         first, second = self._side * rolling[0], -self._side * rolling[1]
         slope = jnp.cos(self.base_helix_angle)
-        arms = self._side * self.base_radii * slope
+        arms = self.line_of_action * slope
         return Contacts(
             active=active,
             path=path,
@@ -332,6 +337,72 @@ class CylindricalPair(Mesh):
             ),
             shape="line",
         )
+
+    @property
+    def standard(self) -> StandardPair:
+        """What standards ask about the pair."""
+        gears = self.gears
+        radii = jnp.abs(jnp.stack([gear.reference_radius for gear in gears]))
+        return StandardPair(
+            virtual_teeth=jnp.abs(jnp.stack([gear.virtual_spur_gear.teeth for gear in gears])),
+            profile_shift=self.profile_shift,
+            dedendum=self.dedendum,
+            pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
+            transverse_contact_ratio=self.transverse_contact_ratio,
+            face_width=self.face_width,
+            reference_arm=jnp.sum(self.loaded * radii),
+            internal=self.internal,
+        )
+
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
+        """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].
+
+        A ring reaches from its reference circle outwards.
+        """
+        outer = jnp.stack([gear.reference_radius for gear in self.gears])
+        root = jnp.abs(jnp.stack([gear.root_radius for gear in self.gears]))
+        ring = jnp.asarray([False, self.internal])
+        bore = jnp.where(ring, root * self.rim_ratio, root / self.rim_ratio)
+        return jnp.pi / 2.0 * density * self.face_width * jnp.abs(outer**4 - bore**4)
+
+    def dimensions(self) -> dict[str, Float[Array, "..."]]:
+        """Contact ratios, centre distance, and for each gear its shortening, tip and undercut limit."""
+        gears = self.gears
+        return {
+            "transverse_contact_ratio": self.transverse_contact_ratio,
+            "overlap_ratio": self.overlap_ratio,
+            "centre_distance": self.centre_distance,
+            "tip_alteration": self.tip_alteration,
+            "tip_thickness": jnp.stack([gear.tip_thickness for gear in gears]),
+            "undercut_limit": jnp.stack([gear.undercut_limit for gear in gears]),
+        }
+
+    def drawing(self) -> dict[str, Float[Array, "..."]]:
+        """Outline of one tooth of each gear, circles, points of the path; radii without sign [m]."""
+        gears = self.gears
+        radii = {
+            "base_radius": self.base_radii,
+            "tip_radius": self.tip_radii,
+            "root_radius": jnp.stack([gear.root_radius for gear in gears]),
+            "reference_radius": jnp.stack([gear.reference_radius for gear in gears]),
+            "working_radius": self.working_radii,
+        }
+        return {
+            "outline": jnp.stack([gear.outline() for gear in gears]),
+            "points": self.points,
+            "teeth": self.teeth,
+            **{name: jnp.abs(values) for name, values in radii.items()},
+            "working_pressure_angle": self.working_pressure_angle,
+            "tangent_length": self.tangent_length,
+            "base_pitch": self.base_pitch,
+            "base_helix_angle": self.base_helix_angle,
+            "face_width": self.face_width,
+            "contact_ratio": self.contact_ratio,
+            "specific_sliding_A": self.specific_sliding(self.limits[0]),
+            "specific_sliding_E": self.specific_sliding(self.limits[1]),
+            **self.dimensions(),
+        }
 
     def _lines(
         self, entered: Float[Array, "pair 1 *b"]
@@ -497,7 +568,8 @@ def build_cylindrical_pair(
     if first or (second and not pair.internal):
         undercut = (first, second and not pair.internal)
         pair = _with_crossings(dataclasses.replace(pair, undercut=undercut))
-    short = tuple(bool(one < least_tip) and tip_alteration is None for one in thickness)
+    asked = least_tip > 0.0 and tip_alteration is None
+    short = tuple(asked and bool(one < least_tip) for one in thickness)
     if any(short):
         pair, _, _ = _complete(dataclasses.replace(pair, shortened=(short[0], short[1])))
     ratio = float(_contact_ratio(pair))

@@ -171,17 +171,18 @@ class InvoluteGear(eqx.Module):
     def section(self, rim_ratio: Float[Array, ""]) -> ToothSection:
         """Tooth in the normal section, as a beam on its body.
 
+        It is that of the virtual spur gear, with the real tooth's height over the reference circle.
+
         Args:
             rim_ratio: root radius over bore radius.
         """
         normal = self.virtual_spur_gear
         unit, weight = _gauss(_FILLET_STATIONS)
         points, slopes = jax.jvp(normal._fillet_place, (unit,), (jnp.ones_like(unit),))
-        # Radii of curvature in the normal section are those of the transverse one over cos(beta_b).
-        ends = jnp.stack([self.form_roll_length, self.tip_roll_length])
-        place = jnp.asarray(chebyshev_nodes())
-        span = (ends[1] - ends[0]) / 2.0 / jnp.cos(self.base_helix_angle)
-        length = ends[0] / jnp.cos(self.base_helix_angle) + span * (place + 1.0)
+        ends = jnp.stack([normal.form_roll_length, normal.tip_roll_length])
+        span = (ends[1] - ends[0]) / 2.0
+        length = ends[0] + span * (jnp.asarray(chebyshev_nodes()) + 1.0)
+        reach = jnp.stack([self.form_roll_length, self.tip_roll_length])
         flank, slope = jax.jvp(normal._flank_place, (length,), (jnp.ones_like(length),))
         start = normal._fillet(jnp.zeros(1))
         return ToothSection(
@@ -190,7 +191,7 @@ class InvoluteGear(eqx.Module):
             flank=flank,
             slope=slope[1] * span,
             load_angle=normal._load_angle(length),
-            reach=ends / jnp.sqrt(2.0 * jnp.abs(self.base_radius)),
+            reach=reach / jnp.sqrt(2.0 * jnp.abs(self.base_radius)),
             root_radius=jnp.abs(normal.root_radius),
             root_half_angle=start[1, 0],
             rim_ratio=rim_ratio,

@@ -6,10 +6,11 @@ from typing import Self
 import equinox as eqx
 from jaxtyping import Array, Float
 
+from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.gears.tooth_section import ToothSection
 
-__all__ = ["Mesh", "Reference"]
+__all__ = ["Mesh", "Reference", "StandardPair"]
 
 
 class Reference(eqx.Module):
@@ -31,6 +32,32 @@ class Reference(eqx.Module):
     pitch_line_speed: Float[Array, ""]
 
 
+class StandardPair(eqx.Module):
+    """What the standards for cylindrical gears ask about a pair.
+
+    Attributes:
+        virtual_teeth: z_n of the normal sections, in magnitude.
+        profile_shift: coefficients.
+        dedendum: of the basic racks, in normal modules.
+        pressure_angle: normal one of the basic racks [rad].
+        helix_angle: [rad].
+        transverse_contact_ratio: eps_alpha.
+        face_width: [m].
+        reference_arm: radius on which the load of the driven coordinate acts at the reference circle [m].
+        internal: True if one is a ring; static.
+    """
+
+    virtual_teeth: Float[Array, "2"]
+    profile_shift: Float[Array, "2"]
+    dedendum: Float[Array, "2"]
+    pressure_angle: Float[Array, ""]
+    helix_angle: Float[Array, ""]
+    transverse_contact_ratio: Float[Array, ""]
+    face_width: Float[Array, ""]
+    reference_arm: Float[Array, ""]
+    internal: bool = eqx.field(static=True)
+
+
 class Mesh(eqx.Module):
     """A gear family: contacts that travel, and the coordinates of the bodies that carry them.
 
@@ -46,9 +73,43 @@ class Mesh(eqx.Module):
         return self
 
     @property
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Part of the contact ratio that contact lines inclined to the axes add."""
+        return jnp.zeros(())
+
+    @property
+    def line_of_action(self) -> Float[Array, " dof"] | None:
+        """Closing along the line of action for a unit rate of each coordinate [m/rad].
+
+        Transmission error is measured along it. None where there is no such line.
+        """
+        return None
+
+    @property
     def sections(self) -> tuple[ToothSection, ToothSection] | None:
         """Teeth of the two members as they yield, or None where there are no teeth."""
         return None
+
+    @property
+    def standard(self) -> StandardPair | None:
+        """What standards ask about a pair of cylindrical gears, or None: they then do not apply."""
+        return None
+
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"] | None:
+        """Moment of inertia of plain bodies about their axes [kg m2], or None where that says nothing.
+
+        Args:
+            density: of both members [kg/m3].
+        """
+        return None
+
+    def dimensions(self) -> dict[str, Float[Array, "..."]]:
+        """Main dimensions by name, one value or one for each member; for results and tables."""
+        return {}
+
+    def drawing(self) -> dict[str, Float[Array, "..."]]:
+        """What a drawing of the teeth to scale needs; empty where there is none."""
+        return {}
 
     @abc.abstractmethod
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:

@@ -29,6 +29,18 @@ def _torque(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "N m", "N m", "torque")
 
 
+def _stiffness(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "N/m", "N/um", "stiffness")
+
+
+def _deviation(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "m", "um", "length")
+
+
+def _length(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "m", "mm", "length")
+
+
 def _power(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "W", "W", "power")
 
@@ -55,8 +67,44 @@ VARIABLES: dict[str, Variable] = {
     "lambda_ratio": Variable("film thickness over composite Rq", "Λ", "1"),
     "sliding_loss": _power("sliding loss of the pair", "P_s"),
     "rolling_loss": _power("rolling loss of the pair", "P_r"),
+    "entered": Variable("base pitches since the pair entered", "ε_0", "1"),
+    "line_length": _length("length of the contact line", "l_c"),
+    "pair_stiffness": _stiffness("stiffness of the pair along the line of action", "k_i"),
+    "mesh_stiffness": _stiffness("stiffness of the mesh along the line of action", "k_t"),
+    "mean_stiffness": _stiffness("mean mesh stiffness", "k_m"),
+    "stiffness_variation": _percent("variation of the mesh stiffness over its mean", "Δk/k_m"),
+    "standard_single_stiffness": _stiffness("single stiffness by ISO 6336-1, c' b", "c' b"),
+    "standard_stiffness": _stiffness("mesh stiffness by ISO 6336-1, c_γα b", "c_γα b"),
+    "transmission_error": _deviation("dynamic transmission error", "δ"),
+    "static_transmission_error": _deviation("static transmission error", "δ_s"),
+    "mean_transmission_error": _deviation("mean transmission error", "δ mean"),
+    "transmission_error_range": _deviation("transmission error, peak to peak", "Δδ"),
+    "static_transmission_error_range": _deviation(
+        "static transmission error, peak to peak", "Δδ_s"
+    ),
+    "dynamic_factor": Variable("dynamic factor of the pair", "c_d", "1"),
+    "largest_dynamic_factor": Variable("largest dynamic factor of a pair", "c_d max", "1"),
+    "spectrum": _deviation("amplitude of the transmission error", "|δ_n|"),
+    "natural_frequency": Variable("natural frequency", "f_n", "1/s", "Hz", "frequency"),
+    "mesh_frequency": Variable("mesh frequency", "f_z", "1/s", "Hz", "frequency"),
+    "equivalent_mass": Variable("equivalent mass", "m_e", "kg", "g", "mass"),
+    "largest_multiplier": Variable("largest Floquet multiplier", "|Λ|", "1"),
+    "vibration_status": Variable("status of the vibration", "", "1"),
     "radius": Variable("relative radius of curvature", "R", "m", "mm", "length"),
-    "contact_ratio": Variable("transverse contact ratio", "ε_α", "1"),
+    "contact_ratio": Variable("total contact ratio", "ε_γ", "1"),
+    "transverse_contact_ratio": Variable("transverse contact ratio", "ε_α", "1"),
+    "overlap_ratio": Variable("overlap ratio", "ε_β", "1"),
+    "centre_distance": _length("centre distance", "a"),
+    "tip_alteration_1": Variable("tip alteration coefficient of gear 1", "k1", "1"),
+    "tip_alteration_2": Variable("tip alteration coefficient of gear 2", "k2", "1"),
+    "tip_thickness_1": _length("tip thickness of gear 1, normal section", "s_an1"),
+    "tip_thickness_2": _length("tip thickness of gear 2, normal section", "s_an2"),
+    "undercut_limit_1": Variable(
+        "smallest profile shift of gear 1 without undercut", "x_min1", "1"
+    ),
+    "undercut_limit_2": Variable(
+        "smallest profile shift of gear 2 without undercut", "x_min2", "1"
+    ),
     "loss_factor": Variable("loss factor with equal sharing", "H_V", "1"),
     "mean_loss": _power("mean power loss", "P_loss"),
     "mean_efficiency": _percent("mean efficiency", "η mean"),

@@ -1,0 +1,87 @@
+"""Energy that goes through a mesh in one steady period."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.dynamics.response import Response
+from pitchpoint.dynamics.system import System
+
+__all__ = ["Energies", "energies"]
+
+Pairs = Float[Array, "pair element node"]
+Each = Float[Array, ""]
+
+
+class Energies(eqx.Module):
+    """Work in one steady period, positive into the vibration [J].
+
+    Attributes:
+        load: of the nominal load, zero for a periodic motion.
+        damping: of the damping, not positive.
+        mesh: parametric work: the drive stiffens and softens springs that are compressed.
+        error: of the profile errors.
+        arm: of contacts whose arms change.
+    """
+
+    load: Each
+    damping: Each
+    mesh: Each
+    error: Each
+    arm: Each
+
+    @property
+    def sum(self) -> Each:
+        """What is left; zero in a steady state."""
+        return self.load + self.damping + self.mesh + self.error + self.arm
+
+    @property
+    def closure(self) -> Each:
+        """What is left, relative to the largest part; zero where nothing moves."""
+        parts = jnp.stack([self.load, self.damping, self.mesh, self.error, self.arm])
+        largest = jnp.max(jnp.abs(parts))
+        return jnp.abs(self.sum) / jnp.where(largest > 0.0, largest, 1.0)
+
+
+def energies(system: System, response: Response) -> Energies:
+    """Work of everything that acts on the vibration in one period.
+
+    The elastic energy of a pair is k d^2/2 with the stretch d, so its spring takes up F d' from the
+    motion and k' d^2/2 from the drive, and at each hand-over the jump of k d^2/2. Holds for teeth that
+    never part.
+
+    Args:
+        system: mass, damping, load, period.
+        response: of `steady_state`.
+    """
+    course, grid = response.course, response.course.grid
+
+    def along(values: Pairs) -> Each:
+        return jnp.sum(grid.integral(values))
+
+    speed, stretch, force = response.velocity, response.stretch, response.force
+    lost = jnp.einsum("aen,ab,ben->en", speed, system.damping, speed)
+    stiffness, error = course.stiffness, course.error
+    moved = jnp.einsum("apen,aen->pen", grid.derivative(course.arm), response.displacement)
+    before, after = _sides(stretch)
+    mean_square = (before**2 + after**2) / 2.0
+    mean_stiffness = sum(_sides(stiffness)) / 2.0
+    of_jump = _jump(stiffness) * mean_square / 2.0
+    of_gap = mean_stiffness * (after**2 - before**2) / 2.0
+    return Energies(
+        load=jnp.sum(course.mean(jnp.einsum("a,aen->en", system.load, speed))) * system.period,
+        damping=-course.mean(lost) * system.period,
+        mesh=along(grid.derivative(stiffness) * stretch**2 / 2.0) + jnp.sum(of_jump),
+        error=jnp.sum(of_gap) - along(force * grid.derivative(error)),
+        arm=along(force * moved),
+    )
+
+
+def _sides(values: Pairs) -> tuple[Float[Array, "pair element"], Float[Array, "pair element"]]:
+    """Values before and after the start of each element, around the period."""
+    return jnp.roll(values[..., -1], 1, axis=-1), values[..., 0]
+
+
+def _jump(values: Pairs) -> Float[Array, "pair element"]:
+    before, after = _sides(values)
+    return after - before

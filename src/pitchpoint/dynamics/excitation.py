@@ -1,0 +1,107 @@
+"""What excites a mesh: stiffness, arm and profile error of every pair over one mesh period."""
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.dynamics.grid import Grid
+from pitchpoint.efficiency.quasi_static import _lobatto
+
+__all__ = ["Course", "Excitation"]
+
+Pairs = Float[Array, "pair element node"]
+
+
+class Excitation(eqx.Module):
+    """Pairs of teeth as springs that come and go, one period of the mesh.
+
+    Attributes:
+        edges: phases [periods] between which everything is smooth; the last is the first plus one.
+            Segments without length do no harm.
+        stiffness: of each pair along its normal, zero out of contact [N/m]; at Gauss-Lobatto nodes of
+            each segment, whose ends lie just inside it.
+        arm: closing of each contact along its normal per unit of each coordinate [1 or m/rad].
+        error: composite profile error, separation of the unloaded flanks [m].
+    """
+
+    edges: Float[Array, "segment+1"]
+    stiffness: Float[Array, "pair segment node"]
+    arm: Float[Array, "coordinate pair segment node"]
+    error: Float[Array, "pair segment node"]
+
+    def on(self, grid: Grid) -> "Course":
+        """The same at the nodes of a grid."""
+        bounds = grid.bounds(self.edges)
+        start, length = self.edges[:-1], jnp.diff(self.edges)
+        middle = (bounds[1:] + bounds[:-1]) / 2.0
+        last = jnp.max(jnp.where(length > 0.0, jnp.arange(length.shape[0]), 0))
+        segment = jnp.clip(jnp.searchsorted(self.edges, middle, side="right") - 1, 0, last)
+        phase = bounds[:-1, None] + jnp.diff(bounds)[:, None] * grid.place
+        span = length[segment][:, None]
+        place = (phase - start[segment][:, None]) / jnp.where(span > 0.0, span, 1.0)
+        basis = _legendre(jnp.clip(place, 0.0, 1.0), self.stiffness.shape[-1])
+
+        def read(values: Float[Array, "*b segment node"]) -> Float[Array, "*b element place"]:
+            modes = values @ _modes(values.shape[-1])
+            return jnp.einsum("...em,epm->...ep", modes[..., segment, :], basis)
+
+        return Course(bounds, phase, read(self.stiffness), read(self.arm), read(self.error), grid)
+
+
+class Course(eqx.Module):
+    """An excitation at the nodes of a grid.
+
+    Attributes:
+        bounds: phases between the elements [periods].
+        phase: of the nodes [periods].
+        stiffness, arm, error: as in `Excitation`.
+        grid: static.
+    """
+
+    bounds: Float[Array, "element+1"]
+    phase: Float[Array, "element node"]
+    stiffness: Pairs
+    arm: Float[Array, "coordinate pair element node"]
+    error: Pairs
+    grid: Grid = eqx.field(static=True)
+
+    @property
+    def length(self) -> Float[Array, " element"]:
+        """Length of each element [periods]."""
+        return jnp.diff(self.bounds)
+
+    @property
+    def total_stiffness(self) -> Float[Array, "coordinate coordinate element node"]:
+        """Sum over the pairs of arm, stiffness and arm."""
+        return jnp.einsum("apen,pen,bpen->aben", self.arm, self.stiffness, self.arm)
+
+    @property
+    def error_load(self) -> Float[Array, "coordinate element node"]:
+        """Load that the profile errors put on the coordinates [N or N m]."""
+        return jnp.einsum("apen,pen->aen", self.arm, self.stiffness * self.error)
+
+    def mean(self, values: Float[Array, "*b element node"]) -> Float[Array, "*b"]:
+        """Mean over the period."""
+        return jnp.sum(self.grid.integral(values) * self.length, axis=-1)
+
+
+def _modes(count: int) -> np.ndarray:
+    """Matrix from values at the nodes of a segment to Legendre coefficients."""
+    vandermonde = np.polynomial.legendre.legvander(2.0 * _lobatto(count)[0] - 1.0, count - 1)
+    return np.linalg.inv(vandermonde).T
+
+
+def _legendre(place: Float[Array, "*b"], count: int) -> Float[Array, "*b mode"]:
+    """Legendre polynomials at places of [0, 1]."""
+    x = 2.0 * place - 1.0
+
+    def further(
+        pair: tuple[Array, Array], degree: Float[Array, ""]
+    ) -> tuple[tuple[Array, Array], Array]:
+        before, last = pair
+        following = ((2.0 * degree + 1.0) * x * last - degree * before) / (degree + 1.0)
+        return (last, following), last
+
+    _, rows = jax.lax.scan(further, (jnp.ones_like(x), x), jnp.arange(1.0, count), unroll=count)
+    return jnp.moveaxis(jnp.concatenate([jnp.ones_like(x)[None], rows]), 0, -1)

@@ -1,0 +1,67 @@
+"""Affine maps of states, the batch last; a map's last column is where it takes the state of rest."""
+
+from typing import TypeAlias
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+
+__all__ = ["Chain", "Map", "chain", "compose", "identity", "product"]
+
+Map: TypeAlias = Float[Array, "state state+1 *b"]
+
+
+class Chain(eqx.Module):
+    """States at all nodes of a period as affine functions of the state at its start.
+
+    Attributes:
+        within: from the start of each element to its nodes.
+        before: from the start of the period to the start of each element and to the end.
+    """
+
+    within: Float[Array, "state state+1 element node"]
+    before: Float[Array, "state state+1 element+1"]
+
+    @property
+    def period(self) -> tuple[Float[Array, "state state"], Float[Array, " state"]]:
+        """Monodromy matrix, and the state reached from rest after one period."""
+        return self.before[:, :-1, -1], self.before[:, -1, -1]
+
+    def states(self, start: Float[Array, " state"]) -> Float[Array, "state element node"]:
+        """States at the nodes."""
+        at = jnp.einsum("ijk,j->ik", self.before[:, :-1, :-1], start) + self.before[:, -1, :-1]
+        moved = product(self.within[:, :-1], at[:, None, :, None])[:, 0]
+        return moved + self.within[:, -1]
+
+
+def chain(maps: Float[Array, "state state+1 element interval"]) -> Chain:
+    """Compose the maps from node to node, all elements side by side, then the elements."""
+    size = maps.shape[0] // 2
+    rest = identity(size, maps.shape[2:3])
+
+    def further(before: Map, step: Map) -> tuple[Map, Map]:
+        after = compose(step, before)
+        return after, after
+
+    whole, inner = jax.lax.scan(further, rest, jnp.moveaxis(maps, -1, 0))
+    within = jnp.concatenate([rest[None], inner])
+    ends = jax.lax.associative_scan(lambda a, b: compose(b, a), whole, axis=-1)
+    before = jnp.concatenate([identity(size, (1,)), ends], axis=-1)
+    return Chain(jnp.moveaxis(within, 0, -1), before)
+
+
+def product(left: Float[Array, "i j *b"], right: Float[Array, "j k *b"]) -> Float[Array, "i k *b"]:
+    """Matrix product with the batch last, where it runs along rows."""
+    return jnp.sum(left[:, :, None] * right[None], axis=1)
+
+
+def compose(after: Map, before: Map) -> Map:
+    """The map that does one after the other."""
+    return product(after[:, :-1], before).at[:, -1].add(after[:, -1])
+
+
+def identity(size: int, batch: tuple[int, ...]) -> Map:
+    """The map that changes nothing, for so many coordinates."""
+    eye = jnp.eye(2 * size, 2 * size + 1)
+    return jnp.broadcast_to(eye.reshape(*eye.shape, *(1 for _ in batch)), (*eye.shape, *batch))

@@ -1,0 +1,127 @@
+"""Steady state of a mesh by integration over one period."""
+
+from collections.abc import Callable
+
+from jaxtyping import Array, Bool, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
+from pitchpoint.dynamics.equations import Equations, equations
+from pitchpoint.dynamics.excitation import Course, Excitation
+from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.integration import pieces
+from pitchpoint.dynamics.maps import Map, chain
+from pitchpoint.dynamics.response import Response, respond
+from pitchpoint.dynamics.series import by_series
+from pitchpoint.dynamics.shooting import Shot, shoot
+from pitchpoint.dynamics.system import System
+
+__all__ = ["respond_to", "resting", "scaled_start", "separating_steady_state", "steady_state"]
+
+State = Float[Array, " state"]
+Integrator = Callable[[Equations, Course, Float[Array, ""]], tuple[Map, Bool[Array, ""]]]
+
+
+def steady_state(
+    system: System,
+    excitation: Excitation,
+    grid: Grid | None = None,
+    *,
+    integrator: Integrator = by_series,
+) -> Response:
+    """Steady state of a mesh whose teeth never part.
+
+    The fundamental matrix and the particular solution are integrated between all neighbouring nodes;
+    hand-overs are ends of intervals. The periodic state is the solution of a linear system, so it is
+    exact in one period whatever the damping, and its Floquet multipliers come with it.
+
+    Args:
+        system: mass, damping, load, period.
+        excitation: stiffness, arms, errors.
+        grid: static; `Grid.resolving` the ratio of natural and mesh frequency.
+        integrator: `by_series`, differentiable in both modes, or `by_steps`, which is diffrax with an
+            explicit method of order eight, in reverse unless it is given another adjoint.
+
+    Returns:
+        The response; its status says where teeth would separate or the state cannot be reached. The
+        numbers of an unstable solution are those of the balance that is not reached.
+    """
+    course = excitation.on(grid or Grid())
+    scaled = equations(system, course)
+    maps, resolved = integrator(scaled, course, system.period)
+    linked = chain(maps)
+    monodromy, reached = linked.period
+    start = jnp.linalg.solve(jnp.eye(monodromy.shape[0]) - monodromy, reached)
+    residual = _distance(monodromy @ start + reached, start)
+    return respond(
+        course,
+        scaled,
+        CONTACT_LAWS["linear"],
+        jnp.asarray(jnp.inf),
+        linked.states(start),
+        monodromy,
+        residual,
+        residual < 1e-6,
+        resolved,
+    )
+
+
+def separating_steady_state(
+    system: System,
+    excitation: Excitation,
+    grid: Grid | None = None,
+    *,
+    law: ContactLaw | None = None,
+    backlash: Float[Array, ""] | float = jnp.inf,
+    start: State | None = None,
+) -> Response:
+    """Steady state that a mesh reaches from a given state, teeth free to part.
+
+    Newton's method on the state at the start of the period, with the derivatives of the period's end
+    integrated beside it; where that finds nothing stable, the motion marches from the state. It is
+    not differentiable in reverse.
+
+    Args:
+        system: mass, damping, load, period.
+        excitation: stiffness, arms, errors.
+        grid: static; forces bend where teeth part, so take more elements than without.
+        law: of the contact, `CONTACT_LAWS["separating"]` if None.
+        backlash: free motion along the normal [m]; infinite if back flanks never meet.
+        start: displacement and velocity [m, m/s]; at rest in the mean balance if None.
+
+    Returns:
+        The response; not a number where no stable motion with the period of the mesh was found.
+    """
+    law = law or CONTACT_LAWS["separating"]
+    course = excitation.on(grid or Grid())
+    scaled = equations(system, course)
+    first = resting(scaled, course) if start is None else scaled_start(scaled, start)
+    own = pieces(scaled, course, system.period)
+    shot = shoot(scaled, own, law, jnp.asarray(backlash) / scaled.unit, first)
+    return respond_to(shot, course, scaled, law, jnp.asarray(backlash))
+
+
+def respond_to(
+    shot: Shot, course: Course, scaled: Equations, law: ContactLaw, backlash: Float[Array, ""]
+) -> Response:
+    """Response of the motion that a search found."""
+    states = shot.nodes(course.length.shape[0])
+    return respond(course, scaled, law, backlash, states, shot.monodromy, shot.residual, shot.found)
+
+
+def resting(scaled: Equations, course: Course) -> State:
+    """Balance with the mean stiffness, at rest."""
+    stiffness, load = course.mean(scaled.total_stiffness), course.mean(scaled.total_load)
+    place = jnp.linalg.solve(stiffness, load)
+    return jnp.concatenate([jnp.where(scaled.finite, place, 0.0), jnp.zeros_like(place)])
+
+
+def scaled_start(scaled: Equations, start: State) -> State:
+    """Displacement and velocity without dimensions."""
+    size = scaled.load.shape[0]
+    to_scaled = jnp.linalg.inv(scaled.scale)
+    return jnp.concatenate([to_scaled @ start[:size], to_scaled @ start[size:] / scaled.frequency])
+
+
+def _distance(end: State, start: State) -> Float[Array, ""]:
+    return jnp.max(jnp.abs(end - start)) / (1.0 + jnp.max(jnp.abs(start)))

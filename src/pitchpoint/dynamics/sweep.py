@@ -1,0 +1,70 @@
+"""Steady states along a list of speeds, each continued from the one before."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
+from pitchpoint.dynamics.equations import equations
+from pitchpoint.dynamics.excitation import Excitation
+from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.integration import pieces
+from pitchpoint.dynamics.response import Response
+from pitchpoint.dynamics.shooting import shoot
+from pitchpoint.dynamics.steady_state import respond_to, resting, scaled_start
+from pitchpoint.dynamics.system import System
+
+__all__ = ["speed_sweep"]
+
+
+def speed_sweep(
+    system: System,
+    excitation: Excitation,
+    periods: Float[Array, " speed"],
+    grid: Grid | None = None,
+    *,
+    law: ContactLaw | None = None,
+    backlash: Float[Array, ""] | float = jnp.inf,
+    start: Float[Array, " state"] | None = None,
+) -> Response:
+    """Steady states at speeds in the given order, rising or falling.
+
+    Each begins from the state of the one before, so that a branch is followed for as long as it is
+    stable; a gear system whose teeth part softens, and the rising and the falling branch then differ
+    between two jumps. Designs and loads batch by `jax.vmap`.
+
+    Args:
+        system: mass, damping, load; its period is not used.
+        excitation: stiffness, arms, errors.
+        periods: of the mesh at each speed [s].
+        grid: static; must resolve the slowest speed.
+        law: of the contact, teeth that part by default.
+        backlash: free motion along the normal [m]; infinite if back flanks never meet.
+        start: displacement and velocity before the first speed; at rest in the mean balance if None.
+
+    Returns:
+        Responses, the speed as first axis of every array.
+    """
+    law = law or CONTACT_LAWS["separating"]
+    course = excitation.on(grid or Grid())
+    scaled = equations(system, course)
+    unit = pieces(scaled, course, jnp.asarray(1.0))
+    free = jnp.asarray(backlash) / scaled.unit
+
+    def at(
+        state: Float[Array, " state"], period: Float[Array, ""]
+    ) -> tuple[Float[Array, " state"], Response]:
+        own = eqx.tree_at(lambda p: p.half, unit, unit.half * period)
+        shot = shoot(scaled, own, law, free, state)
+        response = respond_to(shot, course, scaled, law, jnp.asarray(backlash))
+        return jnp.where(shot.found, shot.start, _finite(shot.end, state)), response
+
+    first = resting(scaled, course) if start is None else scaled_start(scaled, start)
+    _, responses = jax.lax.scan(at, first, periods)
+    return responses
+
+
+def _finite(
+    values: Float[Array, " state"], other: Float[Array, " state"]
+) -> Float[Array, " state"]:
+    return jnp.where(jnp.all(jnp.isfinite(values)), values, other)

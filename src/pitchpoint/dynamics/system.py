@@ -1,0 +1,99 @@
+"""Equations of motion of a mesh: mass, damping and load on its coordinates."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+
+__all__ = ["System", "modal_damping", "reduced_mass", "reduced_system", "relative_motion"]
+
+Matrix = Float[Array, "coordinate coordinate"]
+Vector = Float[Array, " coordinate"]
+
+
+class System(eqx.Module):
+    """M q'' + C q' + sum over pairs of (arm, force) = f.
+
+    Attributes:
+        mass: symmetric, positive definite [kg or kg m2].
+        damping: [N s/m or N m s].
+        load: constant, of the nominal torques [N or N m].
+        period: of the mesh [s].
+    """
+
+    mass: Matrix
+    damping: Matrix
+    load: Vector
+    period: Float[Array, ""]
+
+
+def modal_damping(mass: Matrix, mean_stiffness: Matrix, ratio: Float[Array, ""] | float) -> Matrix:
+    """Damping that gives each mode of the mean system the same damping ratio.
+
+    For one coordinate this is c = 2 xi sqrt(m k).
+
+    Args:
+        mass: [coordinate coordinate] positive definite [kg or kg m2].
+        mean_stiffness: mean over the period of arm, stiffness and arm, semi-definite [N/m or N m].
+        ratio: damping ratio xi.
+    """
+    if mass.shape[0] == 1:
+        return 2.0 * ratio * jnp.sqrt(mass * mean_stiffness)
+    root = jnp.linalg.cholesky(mass)
+    square, modes = jnp.linalg.eigh(_congruent(jnp.linalg.inv(root), mean_stiffness))
+    positive = square > 0.0
+    frequency = jnp.where(positive, jnp.sqrt(jnp.where(positive, square, 1.0)), 0.0)
+    return 2.0 * ratio * _congruent(root, (modes * frequency) @ modes.T)
+
+
+def reduced_mass(inertia: Float[Array, " body"], arm: Float[Array, " body"]) -> Float[Array, ""]:
+    """Mass that vibrates along a contact between free bodies, m_e = 1/sum(n^2/J).
+
+    Args:
+        inertia: J of each body about its coordinate [kg m2 or kg].
+        arm: n, closing velocity per unit rate of each coordinate [m/rad or 1].
+
+    For two gears this is J1 J2/(J1 r_b2^2 + J2 r_b1^2), the right form of eq. 13 of Atanasiu et al.
+    (2011), whose print swaps the indices.
+
+    Example:
+        >>> float(reduced_mass(jnp.asarray([2.0, 3.0]), jnp.asarray([1.0, 1.0])))
+        1.2
+    """
+    return 1.0 / jnp.sum(arm**2 / inertia)
+
+
+def relative_motion(
+    inertia: Float[Array, " body"], arm: Float[Array, " body"]
+) -> Float[Array, "body 1"]:
+    """Motion of each body for a unit of closure along the contact, without rigid motion.
+
+    Args:
+        inertia, arm: as in `reduced_mass`.
+
+    Returns:
+        Basis B: the closure is one, and no momentum is put on the motion that keeps the contact.
+    """
+    return (reduced_mass(inertia, arm) * arm / inertia)[:, None]
+
+
+def reduced_system(
+    mass: Float[Array, "body body"],
+    basis: Float[Array, "body coordinate"],
+    torque: Float[Array, " body"],
+) -> tuple[Matrix, Vector]:
+    """Mass and load on reduced coordinates, for a motion `basis` times coordinates.
+
+    Args:
+        mass: of the bodies [kg or kg m2].
+        basis: motion of the bodies per unit of each coordinate, without rigid motion.
+        torque: nominal external torques and forces on the bodies, in equilibrium [N m or N].
+
+    Returns:
+        B' M B and B' Q. Contacts with arms n on the bodies have arms B' n on the coordinates.
+    """
+    return basis.T @ mass @ basis, basis.T @ torque
+
+
+def _congruent(left: Matrix, matrix: Matrix) -> Matrix:
+    return left @ matrix @ left.T

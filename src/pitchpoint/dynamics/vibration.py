@@ -1,0 +1,146 @@
+"""Vibration of a gear pair along its line of action: from a design to transmission error and forces."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.dynamics.excitation import Excitation
+from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.response import Response
+from pitchpoint.dynamics.steady_state import separating_steady_state, steady_state
+from pitchpoint.dynamics.system import System, modal_damping, reduced_mass
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
+
+__all__ = [
+    "Vibrating",
+    "excitation",
+    "frequency_ratio",
+    "system",
+    "transmission_figures",
+    "vibration",
+]
+
+
+class Vibrating(eqx.Module):
+    """What a pair has beside its design when it vibrates.
+
+    Attributes:
+        inertia: of each body about its axis [kg m2].
+        damping_ratio: of the mean system.
+        error: amplitude of each order of the composite profile error, the same for all pairs [m].
+        error_phase: of each order at phase zero of the mesh [rad].
+        orders: static, orders of the mesh frequency.
+    """
+
+    inertia: Float[Array, " dof"]
+    damping_ratio: Float[Array, ""]
+    error: Float[Array, " order"]
+    error_phase: Float[Array, " order"]
+    orders: tuple[int, ...] = eqx.field(static=True)
+
+
+def excitation(stiffness: MeshStiffness, vibrating: Vibrating) -> Excitation:
+    """Pairs of teeth as springs on one coordinate, the transmission error along the line of action.
+
+    Args:
+        stiffness: of the mesh over one period.
+        vibrating: with the profile error.
+    """
+    orders = jnp.asarray(vibrating.orders, dtype=float).reshape(-1, 1, 1)
+    angle = 2.0 * jnp.pi * orders * stiffness.phase + vibrating.error_phase[:, None, None]
+    error = jnp.sum(vibrating.error[:, None, None] * jnp.cos(angle), axis=0)
+    return Excitation(
+        edges=stiffness.edges,
+        stiffness=stiffness.single,
+        arm=stiffness.arm[None],
+        # Along the line of action the error is as given; along the normal it is smaller.
+        error=stiffness.error + stiffness.arm * error,
+    )
+
+
+def system(
+    mesh: Mesh, vibrating: Vibrating, mean_stiffness: Float[Array, ""], operation: Operation
+) -> System:
+    """Mass, damping and load along the line of action at one operating point.
+
+    Args:
+        mesh: a family with a line of action.
+        vibrating: inertia and damping ratio.
+        mean_stiffness: of the mesh along the line of action [N/m].
+        operation: load and speed.
+
+    Source: Atanasiu et al. (2011), eqs. 10, 12 and 13, the last with the indices in their places.
+    """
+    action = mesh.line_of_action
+    assert action is not None
+    mass = reduced_mass(vibrating.inertia, action).reshape(1, 1)
+    return System(
+        mass=mass,
+        damping=modal_damping(mass, mean_stiffness.reshape(1, 1), vibrating.damping_ratio),
+        load=(operation.load / jnp.abs(action @ mesh.loaded)).reshape(1),
+        period=mesh.period / operation.speed,
+    )
+
+
+def frequency_ratio(
+    design: Design, operation: Operation, models: Models, vibrating: Vibrating
+) -> Float[Array, ""]:
+    """Natural frequency with the mean stiffness over the mesh frequency."""
+    stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load)
+    moved = system(design.mesh, vibrating, stiffness.mean, operation)
+    natural = jnp.sqrt(stiffness.mean / moved.mass[0, 0])
+    return natural * moved.period / (2.0 * jnp.pi)
+
+
+def vibration(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    vibrating: Vibrating,
+    grid: Grid,
+    *,
+    separating: bool = False,
+) -> tuple[MeshStiffness, System, Response]:
+    """Stiffness of the mesh and the steady vibration that it excites at one operating point.
+
+    Args:
+        design: mesh and materials.
+        operation: one operating point.
+        models: how teeth yield.
+        vibrating: inertia, damping, profile error.
+        grid: static, see `Grid.resolving`.
+        separating: static; True if teeth may part.
+    """
+    stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load)
+    moved = system(design.mesh, vibrating, stiffness.mean, operation)
+    solve = separating_steady_state if separating else steady_state
+    return stiffness, moved, solve(moved, excitation(stiffness, vibrating), grid)
+
+
+def transmission_figures(
+    stiffness: MeshStiffness, moved: System, found: Response
+) -> dict[str, Array]:
+    """Figures of stiffness and vibration at one operating point.
+
+    Arguments are what `vibration` returns; lengths in m, stiffness in N/m, forces over that of a
+    single pair that carries everything.
+    """
+    total = stiffness.total
+    nominal = moved.load[0] / jnp.max(jnp.abs(stiffness.arm))
+    carried = jnp.max(found.extremes(found.dynamic_factor(nominal))[1])
+    dynamic, static = found.transmission_error, found.static_transmission_error
+    return {
+        "mean_stiffness": stiffness.mean,
+        "stiffness_variation": (jnp.max(total) - jnp.min(total)) / stiffness.mean,
+        "mean_transmission_error": found.mean(dynamic),
+        "transmission_error_range": found.peak_to_peak(dynamic),
+        "static_transmission_error_range": found.peak_to_peak(static),
+        "largest_dynamic_factor": carried,
+        "natural_frequency": jnp.sqrt(stiffness.mean / moved.mass[0, 0]) / (2.0 * jnp.pi),
+        "mesh_frequency": 1.0 / moved.period,
+        "equivalent_mass": moved.mass[0, 0],
+        "largest_multiplier": jnp.max(jnp.abs(found.multipliers)),
+        "vibration_status": jax.lax.stop_gradient(found.status),
+    }

@@ -1,0 +1,65 @@
+"""Quadrature over one mesh period: nodes between the events, and polynomials through them."""
+
+from functools import cache
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+
+__all__ = ["INSIDE", "between", "edges", "lobatto", "nodes"]
+
+INSIDE = 1e-9
+"""Nodes keep this relative distance from the events, so that each lies on one side of them."""
+
+
+def edges(events: Float[Array, " event"]) -> Float[Array, " edge"]:
+    """Phases between which everything is smooth; the last is the first plus one.
+
+    Args:
+        events: of a mesh, in any order.
+    """
+    ordered = jnp.sort(events)
+    return jnp.concatenate([ordered, ordered[:1] + 1.0])
+
+
+def nodes(
+    events: Float[Array, " event"], count: int
+) -> tuple[Float[Array, "segment node"], Float[Array, "segment node"]]:
+    """Phases and weights that integrate exactly between events, and move with them.
+
+    Args:
+        events: of a mesh; two at the same phase give a segment without length.
+        count: Gauss-Lobatto nodes in each segment, at least 3.
+    """
+    ends = edges(events)
+    start, length = ends[:-1, None], jnp.diff(ends)[:, None]
+    unit, weight = lobatto(count)
+    return start + length * unit, length * weight
+
+
+@cache
+def lobatto(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Lobatto nodes, nearly on [0, 1], and weights: both ends and the roots of P'."""
+    legendre = np.polynomial.Legendre.basis(count - 1)
+    inner = np.sort(legendre.deriv().roots().real)
+    x = np.concatenate([[-1.0], inner, [1.0]])
+    weight = 1.0 / (count * (count - 1) * legendre(x) ** 2)
+    return np.clip((x + 1.0) / 2.0, INSIDE, 1.0 - INSIDE), weight
+
+
+@cache
+def between(count: int) -> list[np.ndarray]:
+    """Matrices from values at the nodes to a polynomial and its derivatives at points between.
+
+    The points are the nodes and seven more between neighbours, on [-1, 1]; last comes their
+    spacing, zero at the ends, where a level tangent means nothing.
+    """
+    nodes = 2.0 * lobatto(count)[0] - 1.0
+    place = np.arange(8 * (count - 1) + 1) / 8.0
+    x = -np.cos(np.interp(place, np.arange(count), np.arccos(-nodes)))
+    spacing = np.concatenate([[0.0], np.maximum(x[2:] - x[1:-1], x[1:-1] - x[:-2]), [0.0]])
+    modes = np.polynomial.legendre.legvander(nodes, count - 1)
+    polynomials = [np.polynomial.Legendre.basis(degree) for degree in range(count)]
+    rows = [[p.deriv(order)(x) if order else p(x) for p in polynomials] for order in range(4)]
+    return [*(np.linalg.solve(modes.T, np.array(row)) for row in rows), spacing]

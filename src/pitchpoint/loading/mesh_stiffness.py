@@ -1,0 +1,120 @@
+"""Stiffness of a mesh: every pair of teeth as a spring along the normal of its contacts."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.period import edges, nodes
+from pitchpoint.loading.tooth_compliance import ToothCompliance, unit_stiffness
+from pitchpoint.materials.solids import Solid
+
+__all__ = ["MeshStiffness", "mean_line_load", "mesh_stiffness", "slice_stiffness"]
+
+Lanes = Float[Array, "pair slice *b"]
+
+
+class MeshStiffness(eqx.Module):
+    """Springs of all pairs over one period.
+
+    Attributes:
+        edges: phases between which the stiffness is smooth [periods].
+        phase: of the nodes [periods].
+        weight: of each node in a mean over the period.
+        single: normal stiffness of each pair, the sum over its contact line; zero out of contact [N/m].
+        arm: closing of each contact along its normal for a unit of transmission error.
+        error: separation of the unloaded flanks [m].
+    """
+
+    edges: Float[Array, " edge"]
+    phase: Float[Array, "segment node"]
+    weight: Float[Array, "segment node"]
+    single: Float[Array, "pair segment node"]
+    arm: Float[Array, "pair segment node"]
+    error: Float[Array, "pair segment node"]
+
+    @property
+    def along_action(self) -> Float[Array, "pair segment node"]:
+        """Stiffness of each pair against transmission error, along the line of action [N/m]."""
+        return self.single * self.arm**2
+
+    @property
+    def total(self) -> Float[Array, "segment node"]:
+        """Stiffness of the mesh against transmission error [N/m]."""
+        return jnp.sum(self.along_action, axis=0)
+
+    @property
+    def mean(self) -> Float[Array, ""]:
+        """Mean over the period [N/m]."""
+        return jnp.sum(self.total * self.weight)
+
+
+def mean_line_load(mesh: Mesh, contacts: Contacts, load: Float[Array, "*b"]) -> Float[Array, "*b"]:
+    """Load per length if all contact lines carried the same [N/m].
+
+    Args:
+        mesh: any family.
+        contacts: of the mesh.
+        load: that the driven coordinate carries [N m or N].
+    """
+    arms = jnp.abs(along(contacts.normal, mesh.loaded))
+    return load / total(jnp.where(contacts.active, contacts.weight * arms, 0.0))
+
+
+def slice_stiffness(
+    mesh: Mesh,
+    contacts: Contacts,
+    solids: tuple[Solid, Solid],
+    compliance: ToothCompliance,
+    load: Float[Array, "*b"],
+) -> Lanes:
+    """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
+
+    Args:
+        mesh: a family whose members have teeth.
+        contacts: of the mesh.
+        solids: material of each member.
+        compliance: how teeth yield.
+        load: that the driven coordinate carries [N m or N].
+    """
+    assert mesh.sections is not None
+    line_load = mean_line_load(mesh, contacts, load)
+    return unit_stiffness(contacts, mesh.sections, solids, compliance, line_load)
+
+
+def mesh_stiffness(
+    mesh: Mesh,
+    solids: tuple[Solid, Solid],
+    compliance: ToothCompliance,
+    load: Float[Array, ""],
+    count: int = 12,
+) -> MeshStiffness:
+    """Stiffness over one period at one load.
+
+    Args:
+        mesh: a family whose members have teeth and a line of action.
+        solids: material of each member.
+        compliance: how teeth yield.
+        load: that the driven coordinate carries [N m or N].
+        count: nodes in each segment between events.
+    """
+    phase, weight = nodes(mesh.events(), count)
+    contacts = mesh.contacts(phase)
+    unit = slice_stiffness(mesh, contacts, solids, compliance, load)
+    each = jnp.where(contacts.active, unit * contacts.weight, 0.0)
+    return MeshStiffness(
+        edges=edges(mesh.events()),
+        phase=phase,
+        weight=weight,
+        single=jnp.sum(each, axis=1),
+        arm=_action_arm(mesh, contacts)[:, 0],
+        error=contacts.gap[:, 0],
+    )
+
+
+def _action_arm(mesh: Mesh, contacts: Contacts) -> Lanes:
+    """Closing along the normal of each contact while the gears close by one along the line of action."""
+    action = mesh.line_of_action
+    assert action is not None
+    return along(contacts.normal, action) / jnp.sum(action**2)

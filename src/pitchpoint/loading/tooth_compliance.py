@@ -1,0 +1,310 @@
+"""How far loaded teeth yield, and the stiffness of a pair of teeth per length of contact line."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.flattening import line_compression, yang_sun_1985
+from pitchpoint.contact.hertz import line_half_width
+from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
+from pitchpoint.loading.foundation import foundation_compliance, foundation_warnings
+from pitchpoint.materials.solids import Solid
+from pitchpoint.registry import Registry
+
+__all__ = [
+    "TOOTH_COMPLIANCE",
+    "ToothCompliance",
+    "beam_compliance",
+    "interpolate",
+    "tooth_compliance",
+    "unit_stiffness",
+]
+
+_BEAM_STATIONS = 20
+_LEAST_LINE_LOAD = 1e-3
+_THINNEST = 1e-3
+_BEYOND = 1e-6
+
+Sections = tuple[ToothSection, ToothSection]
+Solids = tuple[Solid, Solid]
+Field = Float[Array, "pair slice *b"]
+
+
+@dataclass(frozen=True, eq=False)
+class ToothCompliance:
+    """One way of adding up how teeth yield.
+
+    Attributes:
+        name, title: by which it is picked, and what it says.
+        foundation: True if the body under the tooth yields.
+        contact: "linear" (Hertz, one compliance for every load) or "weber" (depends on the load).
+        modulus: "separate" (each member its own) or "common" (2 E1 E2/(E1 + E2) for both).
+        sources: keys of the bibliography.
+        note: caution for the user.
+    """
+
+    name: str
+    title: str
+    foundation: bool
+    contact: Literal["linear", "weber"]
+    modulus: Literal["separate", "common"]
+    sources: tuple[str, ...]
+    note: str = ""
+
+    def warnings(self, sections: Sections) -> tuple[str, ...]:
+        """Sentences on what the model does not cover for these teeth; none if it does."""
+        if not self.foundation:
+            return ()
+        return tuple(
+            f"gear {number}: {sentence}"
+            for number, section in enumerate(sections, 1)
+            for sentence in foundation_warnings(section)
+        )
+
+
+def beam_compliance(section: ToothSection, poisson: Float[Array, ""]) -> Float[Array, " node"]:
+    """Compliance of a tooth as a beam clamped at the root circle, times E and per length of tooth.
+
+    Bending, shear and compression of the tooth by the load along the flank's normal at each node:
+    q E = int M^2/I dy + int (2.4 (1 + nu) cos^2(a) + sin^2(a))/A dy with the moment
+    M = (y_p - y) cos(a) - x_p sin(a), I = (2 x)^3/12 and A = 2 x; plane stress, the shear spread
+    over the section as in a rectangle.
+
+    Args:
+        section: the tooth.
+        poisson: Poisson's ratio.
+
+    Returns:
+        Displacement of the load point along the load, over the load.
+
+    Source: Weber and Banaschek (1953); Atanasiu et al. (2011), eqs. 17 and 18 with the square of
+    the moment, which their dimensions ask for.
+    """
+    thickness, height, weight = _stations(section)
+    half_thickness, node_height = section.flank
+    cosine, sine = jnp.cos(section.load_angle), jnp.sin(section.load_angle)
+    lever = node_height[:, None] - height
+    moment = lever * cosine[:, None] - (half_thickness * sine)[:, None]
+    direct = 2.4 * (1.0 + poisson) * cosine**2 + sine**2
+    energy = 1.5 * moment**2 / thickness**3 + direct[:, None] / (2.0 * thickness)
+    return jnp.sum(energy * weight, axis=1)
+
+
+def tooth_compliance(
+    section: ToothSection, solid: Solid, model: ToothCompliance
+) -> Float[Array, " node"]:
+    """Compliance of one tooth, with the body under it if the model says so, at the nodes [m2/N].
+
+    Args:
+        section: the tooth.
+        solid: its material; `young` and `poisson` without axes.
+        model: an entry of `TOOTH_COMPLIANCE`.
+    """
+    shape = beam_compliance(section, solid.poisson)
+    if model.foundation:
+        shape = shape + foundation_compliance(section)
+    return shape / solid.young
+
+
+def unit_stiffness(
+    contacts: Contacts,
+    sections: Sections,
+    solids: Solids,
+    model: ToothCompliance,
+    line_load: Float[Array, "..."],
+) -> Field:
+    """Stiffness of the pairs of teeth along the normal, per length of contact line [N/m2].
+
+    Args:
+        contacts: of a mesh of two gears with line contacts.
+        sections: the tooth of each member.
+        solids: the material of each member.
+        model: an entry of `TOOTH_COMPLIANCE`.
+        line_load: load per length [N/m], broadcast over the contacts; only a contact by Weber's law
+            depends on it, and less than 0.001 N/m counts as that.
+
+    Returns:
+        Load over approach, a secant where the contact's law is not linear; finite in inactive lanes.
+    """
+    first, second = _moduli(solids, model)
+    teeth = [
+        interpolate(tooth_compliance(section, solid, model), section, contacts.flank[k])
+        for k, (section, solid) in enumerate(zip(sections, (first, second), strict=True))
+    ]
+    flattening = _FLATTENING[model.contact](contacts, sections, (first, second), line_load)
+    return 1.0 / (teeth[0] + teeth[1] + flattening)
+
+
+def interpolate(values: Float[Array, " node"], section: ToothSection, flank: Field) -> Field:
+    """Values given at the nodes of a tooth, at places on its flank; beyond the ends as at the ends.
+
+    Args:
+        values: at the section's nodes.
+        section: the tooth.
+        flank: arc length along the profile, as in `Contacts.flank` [m].
+    """
+    low, high = section.reach[0], section.reach[1]
+    root = jnp.sqrt(jnp.maximum(flank, (1e-9 * high) ** 2))
+    place = (2.0 * root - low - high) / (high - low)
+    # A contact on the very tip must not fall off the end by rounding: its slope would be lost.
+    place = jnp.clip(place, -1.0 - _BEYOND, 1.0 + _BEYOND)
+    return _clenshaw(jnp.asarray(_to_coefficients()) @ values, place)
+
+
+def _moduli(solids: Solids, model: ToothCompliance) -> Solids:
+    if model.modulus == "separate":
+        return solids
+    first, second = solids
+    common = 2.0 * first.young * second.young / (first.young + second.young)
+    return replace(first, young=common), replace(second, young=common)
+
+
+def _linear(
+    contacts: Contacts, sections: Sections, solids: Solids, line_load: Float[Array, "..."]
+) -> Field:
+    young = jnp.stack([solid.young for solid in solids])
+    poisson = jnp.stack([solid.poisson for solid in solids])
+    return yang_sun_1985(young=young, poisson=poisson)
+
+
+def _weber(
+    contacts: Contacts, sections: Sections, solids: Solids, line_load: Float[Array, "..."]
+) -> Field:
+    first, second = (solid.plane_strain_modulus for solid in solids)
+    half_width = line_half_width(
+        line_load=jnp.maximum(line_load, _LEAST_LINE_LOAD),
+        radius=contacts.radius,
+        modulus=2.0 / (1.0 / first + 1.0 / second),
+    )
+    parts = [
+        line_compression(
+            young=solid.young,
+            poisson=solid.poisson,
+            depth=interpolate(_depth(section), section, contacts.flank[k]),
+            half_width=half_width,
+        )
+        for k, (section, solid) in enumerate(zip(sections, solids, strict=True))
+    ]
+    return parts[0] + parts[1]
+
+
+_FLATTENING: dict[str, Callable[..., Field]] = {"linear": _linear, "weber": _weber}
+
+
+def _depth(section: ToothSection) -> Float[Array, " node"]:
+    """Distance from the flank to the tooth's axis along the load [m]."""
+    return section.flank[0] / jnp.cos(section.load_angle)
+
+
+def _stations(section: ToothSection) -> tuple[Float[Array, "node station"], ...]:
+    """Half thickness, height and integration weight from the root circle up to each node."""
+    matrix, weight = _quadrature()
+    nodal = jnp.stack([*section.flank, section.slope])
+    thickness, height, slope = jnp.moveaxis(
+        (nodal @ matrix.T).reshape(3, FLANK_NODES, _BEAM_STATIONS), 0, 0
+    )
+    fillet = jnp.broadcast_to(
+        section.fillet[:, None, :], (2, FLANK_NODES, section.fillet.shape[-1])
+    )
+    step = jnp.broadcast_to(section.step, fillet.shape[1:])
+    joined = jnp.concatenate([fillet[0], thickness], axis=1)
+    # A virtual tooth may be pointed where the real one is not.
+    joined = jnp.maximum(joined, _THINNEST * joined[:, :1])
+    return (
+        joined,
+        jnp.concatenate([fillet[1], height], axis=1),
+        jnp.concatenate([step, slope * weight], axis=1),
+    )
+
+
+def _clenshaw(coefficients: Float[Array, " node"], place: Field) -> Field:
+    """Chebyshev series at places in [-1, 1]."""
+
+    def step(
+        carry: tuple[Field, Field], value: Float[Array, ""]
+    ) -> tuple[tuple[Field, Field], None]:
+        later, last = carry
+        return (value + 2.0 * place * later - last, later), None
+
+    none = jnp.zeros_like(place)
+    (later, last), _ = jax.lax.scan(step, (none, none), coefficients[:0:-1])
+    return coefficients[0] + place * later - last
+
+
+@cache
+def _to_coefficients() -> np.ndarray:
+    """Matrix from values at the nodes to coefficients of the Chebyshev series."""
+    nodes = chebyshev_nodes()
+    return np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, FLANK_NODES - 1))
+
+
+@cache
+def _quadrature() -> tuple[np.ndarray, np.ndarray]:
+    """Matrix from nodes to stations below each node, and the stations' weights.
+
+    The stations crowd towards the node like a cube: there a thin tip is thinnest, and a third power
+    of the thickness has to be resolved.
+    """
+    unit, weight = np.polynomial.legendre.leggauss(_BEAM_STATIONS)
+    unit, weight = (unit + 1.0) / 2.0, weight / 2.0
+    nodes = chebyshev_nodes()
+    length = nodes[:, None] + 1.0
+    place = nodes[:, None] - length * unit**3
+    basis = np.polynomial.chebyshev.chebvander(place.ravel(), FLANK_NODES - 1)
+    return basis @ _to_coefficients(), length * 3.0 * unit**2 * weight
+
+
+_BEAM = ("weber_banaschek_1953", "atanasiu_2011")
+
+TOOTH_COMPLIANCE = Registry(
+    "tooth compliance",
+    ToothCompliance(
+        "beam_foundation_weber",
+        "beam on a yielding body, contact by Weber's law",
+        foundation=True,
+        contact="weber",
+        modulus="separate",
+        sources=(*_BEAM, "sainsot_2004", "johnson_1985"),
+    ),
+    ToothCompliance(
+        "beam_foundation_hertz",
+        "beam on a yielding body, linear contact",
+        foundation=True,
+        contact="linear",
+        modulus="separate",
+        sources=(*_BEAM, "sainsot_2004", "yang_sun_1985"),
+    ),
+    ToothCompliance(
+        "beam_weber",
+        "beam clamped at the root circle, contact by Weber's law",
+        foundation=False,
+        contact="weber",
+        modulus="separate",
+        sources=(*_BEAM, "johnson_1985"),
+        note="Without the body under the tooth a pair comes out two to three times too stiff.",
+    ),
+    ToothCompliance(
+        "beam_hertz",
+        "beam clamped at the root circle, linear contact",
+        foundation=False,
+        contact="linear",
+        modulus="separate",
+        sources=(*_BEAM, "yang_sun_1985"),
+        note="Without the body under the tooth a pair comes out two to three times too stiff.",
+    ),
+    ToothCompliance(
+        "beam_hertz_common_modulus",
+        "as beam_hertz, with 2 E1 E2/(E1 + E2) for both members",
+        foundation=False,
+        contact="linear",
+        modulus="common",
+        sources=(*_BEAM, "yang_sun_1985"),
+        note="One modulus for both members is right only where both teeth yield alike.",
+    ),
+)
