@@ -9,7 +9,7 @@ import xarray as xr
 
 from pitchpoint import units
 from pitchpoint.cases.quantities import shown
-from pitchpoint.cases.reductions import REDUCTIONS
+from pitchpoint.cases.reductions import PLAIN, REDUCTIONS
 from pitchpoint.cases.schema import Target
 from pitchpoint.errors import InputError
 from pitchpoint.registry import nearest
@@ -91,6 +91,9 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
 def _verdict(target: Target, computed: float | None) -> str:
     if computed is None:
         return "excluded"
+    beyond = {"above": computed - target.printed, "below": target.printed - computed}
+    if target.expect in beyond:
+        return "pass" if beyond[target.expect] > 0.0 else "miss"
     return "pass" if abs(computed - target.printed) <= target.tolerance else "miss"
 
 
@@ -114,9 +117,8 @@ def _computed(target: Target, results: Mapping[str, xr.Dataset]) -> float:
             key="law",
         )
     number = REDUCTIONS[target.reduce](values[wanted])
-    relative = target.reduce == "relative_drop"
     variable = VARIABLES[target.variable]
-    kind = "dimensionless" if relative else variable.kind
+    kind = "dimensionless" if target.reduce in PLAIN else variable.kind
     return float(units.convert(number, target.unit, kind)) if target.unit != "1" else number
 
 

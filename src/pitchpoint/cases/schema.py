@@ -428,6 +428,7 @@ class Target(Table):
     printed: Annotated[float, ANY]
     unit: Unit = "1"
     tolerance: Annotated[float, NOT_NEGATIVE] = 0.0
+    expect: Literal["within", "above", "below"] = "within"
     study: Text = ""
     variable: Annotated[str, BeforeValidator(named(_variables, "quantity"))] = ""
     reduce: Annotated[str, BeforeValidator(named(_reductions, "reduction"))] = "value"

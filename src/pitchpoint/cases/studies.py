@@ -14,7 +14,8 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, build, laws_of
 from pitchpoint.cases.document import Document, leaves, resolve
 from pitchpoint.cases.laws import CASE_LAWS
-from pitchpoint.cases.quantities import SIValue, shorten, shown
+from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shorten, shown
+from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import (
     SPEED,
     TEMPERATURE,
@@ -206,7 +207,9 @@ def _cycle(built: Built) -> xr.Dataset:
 
 def _operation(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
-    return _summaries([built], models, chosen, {}, title="operating point")
+    return _summaries(
+        [built], models, chosen, _vibrations([built], len(chosen)), title="operating point"
+    )
 
 
 def _laws(built: Built) -> xr.Dataset:
@@ -254,7 +257,12 @@ def _points(
         swept = told.get("sweep_key", "")
         points = [_point(variant, change, where, swept) for change in changes]
         models, chosen = laws_of(points[0])
-        data = _summaries(points, models, chosen, axis, progress, title=title)
+        extra = {
+            **axis,
+            **_vibrations(points, len(chosen)),
+            **readings_of(points, len(chosen)),
+        }
+        data = _summaries(points, models, chosen, extra, progress, title=title)
         data.attrs.update(told)
         if told.get("axis_kind"):
             data["axis"].attrs.update(units=si_unit(told["axis_kind"]), long_name=swept)
@@ -292,7 +300,7 @@ def sweep_values(sweep: Sweep, where: str, name: str) -> tuple[list[Any], Any]:
         if sweep.values is not None:
             if quantity is None:
                 return list(sweep.values), None
-            return [SIValue(quantity.read(value)) for value in sweep.values], quantity
+            return [_read(quantity, value) for value in sweep.values], quantity
         if quantity is None:
             raise InputError(f"'{sweep.key}' is no number; give values in place of start and stop")
         ends = quantity.read(sweep.start), quantity.read(sweep.stop)
@@ -300,6 +308,13 @@ def sweep_values(sweep: Sweep, where: str, name: str) -> tuple[list[Any], Any]:
         return [SIValue(value) for value in (np.round(grid) if quantity.whole else grid)], quantity
     except InputError as error:
         raise error.at(file=name, key=f"{where}: {shorten(sweep.key)}") from None
+
+
+def _read(quantity: Quantity, value: Any) -> Any:
+    """Value in SI, or a list of two for the two gears."""
+    if isinstance(value, list | tuple):
+        return [SIValue(number) for number in Pair(quantity).read(value)]
+    return SIValue(quantity.read(value))
 
 
 def _loss_map(built: Built, progress: Progress) -> xr.Dataset:
@@ -363,6 +378,14 @@ def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
     return _summaries([other], models, chosen, {}, title="back-driving", may_lock=True)
 
 
+def _vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
+    """Figures of stiffness and vibration, the same under every friction law."""
+    if points[0].case.dynamics is None:
+        return {}
+    found = _in_groups(points, figures_of)
+    return {name: (("law", "point"), np.stack([values] * laws)) for name, values in found.items()}
+
+
 def _summaries(
     points: list[Built],
     models: Models,
@@ -376,9 +399,6 @@ def _summaries(
     """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN."""
     runs = [_grouped(points, _choose(models, law), progress) for law in laws]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
-    if points[0].case.dynamics is not None:
-        vibrating = _in_groups(points, lambda group: figures_of(group))
-        out |= {name: np.stack([values] * len(runs)) for name, values in vibrating.items()}
     if not may_lock and len(points) == 1:
         _demand_motion(out["locked"], points, _names(models, laws))
     for name, values in out.items():
@@ -452,7 +472,9 @@ def _names(models: Models, laws: tuple[int, ...] | list[int]) -> list[str]:
 
 
 def _number(value: Any) -> float:
-    return float(value) if isinstance(value, int | float) else np.nan
+    """Place on the axis of a sweep: the number itself, or that of gear 1."""
+    first = value[0] if isinstance(value, list | tuple) and value else value
+    return float(first) if isinstance(first, int | float) else np.nan
 
 
 def _demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:

@@ -168,18 +168,7 @@ def resonance_part(built: Built) -> xr.Dataset:
         for order in (jnp.asarray(speeds), jnp.asarray(speeds[::-1]))
     ]
     dims = ("direction", "torque", "speed")
-    data = {
-        name: (
-            dims,
-            np.stack(
-                [
-                    np.stack([point[name][::turn] for point in run])
-                    for run, turn in zip(runs, (1, -1))
-                ]
-            ),
-        )
-        for name in runs[0][0]
-    }
+    data = {name: (dims, _by_speed(runs, name)) for name in runs[0][0]}
     return dataset(
         data,
         {"direction": ["rising", "falling"], "torque": _torques(built), "speed": speeds},
@@ -187,6 +176,12 @@ def resonance_part(built: Built) -> xr.Dataset:
         warnings=[],
         sentences=[status.sentence for status in Status],
     )
+
+
+def _by_speed(runs: Sequence[Sequence[dict[str, np.ndarray]]], name: str) -> np.ndarray:
+    """Values [direction, torque, speed], the speeds of both directions in rising order."""
+    rising, falling = (np.stack([point[name] for point in run]) for run in runs)
+    return np.stack([rising, falling[:, ::-1]])
 
 
 @eqx.filter_jit
@@ -219,7 +214,8 @@ def _sweep(
             "vibration_status": one.status,
         }
 
-    return eqx.filter_vmap(figures)(found)
+    result: dict[str, Array] = eqx.filter_vmap(figures)(found)
+    return result
 
 
 def figures_of(points: Sequence[Built]) -> dict[str, np.ndarray]:

@@ -2,7 +2,7 @@
 
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import Course
 from pitchpoint.dynamics.maps import Map, compose, identity, product
@@ -23,8 +23,8 @@ def by_series(
 
     Between neighbouring nodes stiffness and load are polynomials, and the coefficients of the motion
     follow from them by recursion. With the state in the middle given, the series gives that at both
-    ends; so it needs half the length. It has no steps and no loop: three times as fast as `by_steps`
-    at an error below its own, and differentiable both ways.
+    ends, so it has to reach half the length only. Without steps to choose it is faster than `by_steps`,
+    more exact, and differentiable both ways.
 
     Args:
         equations: of the motion.
@@ -36,23 +36,28 @@ def by_series(
     """
     stiffness = course.grid.local(equations.total_stiffness)
     load = course.grid.local(equations.total_load)
+    load = jnp.concatenate([load, jnp.zeros((TERMS - load.shape[0], *load.shape[1:]))])
     damping = equations.damping[:, :, None, None]
     half = equations.steps(course, period)
     size = equations.load.shape[0]
     middle = identity(size, half.shape)
-    places, speeds = [middle[:size]], [middle[size:]]
-    for k in range(TERMS):
-        force = product(damping, speeds[k])
-        for j in range(min(k + 1, stiffness.shape[0])):
-            force = force + product(stiffness[j], places[k - j])
-        if k < load.shape[0]:
-            force = force.at[:, -1].add(-load[k])
-        places.append(half / (k + 1.0) * speeds[k])
-        speeds.append(-half / (k + 1.0) * force)
-    terms = [jnp.concatenate(pair) for pair in zip(places, speeds, strict=True)]
-    even, odd = sum(terms[2::2], terms[0]), sum(terms[3::2], terms[1])
-    last = jnp.max(jnp.abs(terms[-1]))
-    return compose(even + odd, _inverse(even - odd)), last < LAST
+
+    def term(
+        carry: tuple[Array, Array], at: tuple[Array, Array]
+    ) -> tuple[tuple[Array, Array], Map]:
+        places, speed = carry  # the latest place first, as many as the stiffness has powers
+        load, scale = at[0], half / at[1]
+        elastic = jnp.sum(stiffness[:, :, :, None] * places[:, None], axis=(0, 2))
+        force = (elastic + product(damping, speed)).at[:, -1].add(-load)
+        place, speed = scale * speed, -scale * force
+        places = jnp.concatenate([place[None], places[:-1]])
+        return (places, speed), jnp.concatenate([place, speed])
+
+    before = jnp.zeros((stiffness.shape[0] - 1, size, 2 * size + 1, *half.shape))
+    start = (jnp.concatenate([middle[None, :size], before]), middle[size:])
+    _, terms = jax.lax.scan(term, start, (load, jnp.arange(1.0, TERMS + 1.0)))
+    odd, even = jnp.sum(terms[::2], axis=0), middle + jnp.sum(terms[1::2], axis=0)
+    return compose(even + odd, _inverse(even - odd)), jnp.max(jnp.abs(terms[-1])) < LAST
 
 
 def _inverse(ahead: Map) -> Map:
@@ -65,6 +70,7 @@ def _inverse_matrix(matrix: Float[Array, "state state *b"]) -> Float[Array, "sta
     """Inverse with the batch last, in closed form for a single coordinate."""
     if matrix.shape[0] > 2:
         inverse: Array = jnp.linalg.inv(jnp.moveaxis(matrix, (0, 1), (-2, -1)))
-        return jnp.moveaxis(inverse, (-2, -1), (0, 1))
+        last: Array = jnp.moveaxis(inverse, (-2, -1), (0, 1))
+        return last
     (a, b), (c, d) = matrix
     return jnp.stack([jnp.stack([d, -b]), jnp.stack([-c, a])]) / (a * d - b * c)

@@ -86,6 +86,12 @@ VARIABLES: dict[str, Variable] = {
     "largest_dynamic_factor": Variable("largest dynamic factor of a pair", "c_d max", "1"),
     "spectrum": _deviation("amplitude of the transmission error", "|δ_n|"),
     "natural_frequency": Variable("natural frequency", "f_n", "1/s", "Hz", "frequency"),
+    "printed_undercut_limit_1": Variable(
+        "smallest profile shift of gear 1, formula as printed", "x_min1", "1"
+    ),
+    "printed_equivalent_mass": Variable(
+        "equivalent mass, formula as printed", "m_e", "kg", "g", "mass"
+    ),
     "mesh_frequency": Variable("mesh frequency", "f_z", "1/s", "Hz", "frequency"),
     "equivalent_mass": Variable("equivalent mass", "m_e", "kg", "g", "mass"),
     "largest_multiplier": Variable("largest Floquet multiplier", "|Λ|", "1"),

@@ -25,7 +25,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 
-__all__ = ["along", "cycle_panel", "gapped", "loss_places", "path_panel"]
+__all__ = ["PLACE", "along", "cycle_panel", "gapped", "loss_places", "marks", "path_panel"]
 
 # Nodes beside an event are closer than this; a segment shorter than the second is no segment.
 _EVENT, _SHORT = 1e-7, 1e-6
@@ -39,6 +39,12 @@ _ALONG = {
     "friction": "",
     "loss": "Loss of the one pair that is at this place.",
 }
+_WHOLE = ("load_share", "contact_force_ratio", "loss")
+_LINES = {
+    "load_share": "Of the whole contact line.",
+    "loss": "Of the whole contact line.",
+}
+PLACE = "place on the path from A [base pitches]"
 _REGIMES = ((0.0, 1.0, "#fbe9e2", "boundary"), (1.0, 3.0, "#fdf5dc", "mixed"))
 _PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
@@ -77,9 +83,9 @@ def loss_places(data: xr.Dataset, law: int, fact: Facts) -> dict[tuple[str, str]
         law: position of the law.
         fact: with the points.
     """
-    place = data["path"].values.sum(axis=-1) / data.sizes["slice"]
-    loss = (data["sliding_loss"] + data["rolling_loss"]).values[law].sum(axis=-1)
-    energy = loss * data["weight"].values[:, None]
+    place = data["path"].values
+    loss = np.where(data["active"].values, _values(data, "loss")[law], 0.0)
+    energy = loss * data["weight"].values[:, None, None]
     if not energy.sum() > 0.0:
         return {}
     ends = list(fact.points.items())
@@ -105,16 +111,48 @@ def gapped(x: np.ndarray, y: np.ndarray) -> Points:
     )
 
 
-def along(data: xr.Dataset, name: str, law: int) -> Points:
-    """Place on the path [base pitches] and SI value, the pairs one after the other."""
+def along(data: xr.Dataset, name: str, law: int, fact: Facts) -> Points:
+    """Place [base pitches] and SI value, the pairs one after the other.
+
+    Quantities of a point of the flanks stand over the place on the path from A; those of a helical
+    pair are taken at the middle of the face. Quantities of a whole contact line (`_WHOLE`) stand over
+    the base pitches since the pair entered, which is the same place for straight teeth.
+    """
     values = _values(data, name)[law]
-    lanes = data.sizes["pair"]
-    by_pair = values[:, None].repeat(lanes, axis=1) if values.ndim == 1 else values.mean(axis=-1)
-    if name == "loss":
+    entered = data["phase"].values[:, None] + np.arange(float(data.sizes["pair"]))
+    if values.ndim == 1:
+        by_pair = np.broadcast_to(values[:, None], entered.shape)
+    elif name in _WHOLE or data.sizes["slice"] == 1:
         by_pair = values.sum(axis=-1)
-    active = data["active"].values[..., 0].T.ravel()
-    place = data["path"].values[..., 0].T.ravel()[active]
-    return gapped(place, by_pair.T.ravel()[active])
+    else:
+        by_pair = _at_middle(data, values, entered - fact.overlap_ratio / 2.0)
+        entered = entered - fact.overlap_ratio / 2.0
+    end = fact.contact_ratio if name in _WHOLE else fact.transverse_ratio
+    touches = data["active"].values[..., 0] & (-_SHORT <= entered) & (entered <= end + _SHORT)
+    touches = touches.T.ravel()
+    return gapped(entered.T.ravel()[touches], by_pair.T.ravel()[touches])
+
+
+def _at_middle(data: xr.Dataset, values: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Values [node, pair] between those of the slices, at a place on the path [node, pair]."""
+    flat = (-1, data.sizes["slice"])
+    paths, each = data["path"].values.reshape(flat), values.reshape(flat)
+    found = [
+        _between(x, path[::-1], value[::-1])
+        for x, path, value in zip(place.ravel(), paths, each, strict=True)
+    ]
+    return np.array(found).reshape(place.shape)
+
+
+def _between(x: float, path: np.ndarray, values: np.ndarray) -> float:
+    """Value at x along one line; beyond the middles of the outer slices it goes on straight."""
+    apart = np.append(True, np.diff(path) > _SHORT)
+    path, values = path[apart], values[apart]
+    if path.size < 2 or path[0] <= x <= path[-1]:
+        return float(np.interp(x, path, values))
+    first = slice(0, 2) if x < path[0] else slice(-2, None)
+    (low, high), (start, end) = path[first], values[first]
+    return float(start + (end - start) * (x - low) / (high - low))
 
 
 def _values(data: xr.Dataset, name: str) -> np.ndarray:
@@ -139,21 +177,24 @@ def _along_figure(
 ) -> Figure:
     unit = show.unit(VARIABLES[name].display)
     traces = []
-    for curve, data, law, _ in seen:
-        x, y = along(data, name, law)
+    for curve, data, law, fact in seen:
+        x, y = along(data, name, law, fact)
         traces.append(line(curve, x, display(name, y), unit))
     shown, same = merged(traces)
+    of_line = first.helical and name in _WHOLE
+    end = first.contact_ratio if of_line else first.transverse_ratio
     look = layout(
-        "place on the path from A [base pitches]",
+        "base pitches since the pair entered" if of_line else PLACE,
         short_axis(name),
-        xaxis={"range": [-0.02 * first.contact_ratio, 1.02 * first.contact_ratio]},
+        xaxis={"range": [-0.02 * end, 1.02 * end]},
         yaxis={} if name == "sliding_velocity" else {"rangemode": "nonnegative"},
-        **_marks(first),
+        **({} if of_line else marks(first)),
     )
     title = "Loss of the pair" if name == "loss" else _title(name)
     if name == "lambda_ratio":
         _add_regimes(look, shown)
-    return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (_ALONG[name], same))))
+    note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
+    return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (note, same))))
 
 
 def _title(name: str) -> str:
@@ -161,11 +202,11 @@ def _title(name: str) -> str:
     return words[0].upper() + words[1:]
 
 
-def _marks(fact: Facts) -> dict[str, Any]:
+def marks(fact: Facts) -> dict[str, Any]:
     """Vertical lines and letters at the points of the path."""
     places: list[tuple[float, str]] = []
     for letter, place in fact.points.items():
-        if places and place - places[-1][0] < 0.03 * fact.contact_ratio:
+        if places and place - places[-1][0] < 0.03 * fact.transverse_ratio:
             places[-1] = (places[-1][0], f"{places[-1][1]} {letter}")
         else:
             places.append((place, letter))
@@ -271,7 +312,7 @@ def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
     for curve, data, law, _ in seen:
         for pair in range(data.sizes["pair"]):
             active = data["active"].values[:, pair, 0]
-            friction = np.where(active, data["friction"].values[law][:, pair, 0], np.nan)
+            friction = np.where(active, _mean_friction(data, law)[:, pair], np.nan)
             x, y = gapped(data["phase"].values, friction)
             trace = line(curve, x, y, f"(pair {pair + 1})")
             trace["line"] = {
@@ -290,6 +331,16 @@ def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
         traces,
         layout("phase of the mesh cycle [base pitches]", "μ"),
         f"Line styles here: {names}.",
+    )
+
+
+def _mean_friction(data: xr.Dataset, law: int) -> np.ndarray:
+    """Friction coefficient of each contact line [node, pair], slices weighted by their load."""
+    friction, load = (data[name].values[law] for name in ("friction", "load"))
+    total = load.sum(axis=-1)
+    even = friction.mean(axis=-1)
+    return np.asarray(
+        np.where(total > 0.0, (friction * load).sum(axis=-1) / np.where(total, total, 1.0), even)
     )
 
 

@@ -19,8 +19,9 @@ class Facts:
         driver: 1 or 2.
         right_flank: True if the right flanks touch.
         torque, speed, temperature: of the operating point [N m, rad/s, K].
-        teeth: of both gears.
+        teeth: of both gears; negative for a ring.
         points: by letter, positions on the path from A in base pitches, in order.
+        transverse_ratio, overlap_ratio: transverse contact ratio and overlap ratio.
     """
 
     driver: int
@@ -30,12 +31,28 @@ class Facts:
     temperature: float
     teeth: tuple[int, int]
     points: dict[str, float]
-    contact_ratio: float
+    transverse_ratio: float
+    overlap_ratio: float
+
+    @property
+    def contact_ratio(self) -> float:
+        """Total contact ratio: base pitches from the entry of a pair to its exit."""
+        return self.transverse_ratio + self.overlap_ratio
+
+    @property
+    def helical(self) -> bool:
+        """True if contact lines cross the face at an angle."""
+        return self.overlap_ratio > 0.0
+
+    @property
+    def internal(self) -> bool:
+        """True if gear 2 is a ring."""
+        return self.teeth[1] < 0
 
     @property
     def period_angle(self) -> float:
         """Driver angle of one base pitch [rad]."""
-        return 2.0 * pi / self.teeth[self.driver - 1]
+        return 2.0 * pi / abs(self.teeth[self.driver - 1])
 
     @property
     def period(self) -> float:
@@ -59,7 +76,7 @@ def facts(outcome: Outcome) -> Facts:
     teeth = outcome.parts["teeth"]
     places = (teeth["points"].values - teeth["points"].values[0]) / float(teeth["base_pitch"])
     named = sorted(zip(places.tolist(), teeth["point"].values.tolist(), strict=True))
-    ratio = float(teeth["contact_ratio"])
+    ratio = float(teeth["transverse_contact_ratio"])
     inside = {str(name): place for place, name in named if -1e-9 <= place <= ratio + 1e-9}
     return Facts(
         driver=2 if given(outcome, "operation", "driver") == "gear 2" else 1,
@@ -69,7 +86,8 @@ def facts(outcome: Outcome) -> Facts:
         temperature=_read(outcome, "temperature", "temperature"),
         teeth=(round(float(teeth["teeth"][0])), round(float(teeth["teeth"][1]))),
         points=inside,
-        contact_ratio=ratio,
+        transverse_ratio=ratio,
+        overlap_ratio=float(teeth["overlap_ratio"]),
     )
 
 

@@ -1,0 +1,69 @@
+"""Formulas as Atanasiu et al. (2011) print them where the print is wrong; the library has the right ones."""
+
+from collections.abc import Sequence
+from math import cos, sin, sqrt, tan
+
+import numpy as np
+
+from pitchpoint._jax import jnp
+from pitchpoint.cases.build import Built
+
+__all__ = ["equivalent_mass", "readings", "undercut_limit"]
+
+
+def undercut_limit(
+    *,
+    teeth: float,
+    pressure_angle: float,
+    helix_angle: float,
+    dedendum: float,
+    fillet_radius: float,
+) -> float:
+    """Smallest profile shift without undercut by eq. 2 as printed.
+
+    The root in eq. 2b must divide: A is then the sine of the normal pressure angle, and the tangent
+    point of the rack's corner has its true height.
+
+    Args:
+        teeth: z.
+        pressure_angle: transverse pressure angle alpha_t [rad].
+        helix_angle: [rad].
+        dedendum, fillet_radius: h_oa* and rho_on* of the tool, in normal modules.
+    """
+    sine = sin(pressure_angle)
+    a = sine * sqrt(sine**2 + (cos(pressure_angle) / cos(helix_angle)) ** 2)
+    return dedendum - fillet_radius * (1.0 - a) - teeth * sine**2 / (2.0 * cos(helix_angle))
+
+
+def equivalent_mass(*, inertia: Sequence[float], base_radius: Sequence[float]) -> float:
+    """Equivalent mass by eq. 13 as printed, with the base radii at the wrong inertias [kg].
+
+    Args:
+        inertia: J1, J2 [kg m2].
+        base_radius: r_b1, r_b2 [m].
+    """
+    (first, second), (r_1, r_2) = inertia, base_radius
+    return first * second / (first * r_1**2 + second * r_2**2)
+
+
+def readings(built: Built) -> dict[str, float]:
+    """Both formulas for a case, under the names of result variables."""
+    gears, mesh = built.case.gears, built.design.mesh
+    angle = float(np.arctan(tan(gears.pressure_angle) / cos(gears.helix_angle)))
+    pair = mesh.standard
+    density = jnp.stack([solid.density for solid in built.design.solids])
+    inertia, action = mesh.inertia(density), mesh.line_of_action
+    assert pair is not None and inertia is not None and action is not None
+    return {
+        "printed_undercut_limit_1": undercut_limit(
+            teeth=gears.teeth[0],
+            pressure_angle=angle,
+            helix_angle=gears.helix_angle,
+            dedendum=float(pair.dedendum[0]),
+            fillet_radius=float(built.pair.fillet_radius[0]),
+        ),
+        "printed_equivalent_mass": equivalent_mass(
+            inertia=[float(value) for value in inertia],
+            base_radius=[abs(float(value)) for value in action],
+        ),
+    }
