@@ -1,12 +1,14 @@
 """Registries of rival formulas: a name picks one, an unknown name gets the nearest known ones."""
 
 import difflib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Protocol, TypeVar
 
 from pitchpoint.errors import InputError
 
-__all__ = ["Registry", "nearest"]
+__all__ = ["Registry", "listed", "nearest"]
+
+_MOST = 24  # names in one sentence
 
 
 class Named(Protocol):
@@ -56,4 +58,11 @@ def nearest(name: str, known: Mapping[str, object]) -> str:
     close = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
     if close:
         return f"; did you mean {' or '.join(close)}?"
-    return f"; known are {', '.join(known)}"
+    return f"; known are {listed(known)}"
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names in a sentence, of very many the first ones."""
+    every = [*names]
+    more = f" and {len(every) - _MOST} more" if len(every) > _MOST else ""
+    return ", ".join(every[:_MOST]) + more

@@ -123,7 +123,7 @@ class Pair:
         )
 
     def unit_stiffness(self, path, model, solids=(STEEL, PA66), load=LOAD):
-        entry = TOOTH_COMPLIANCE[MODELS[model]]
+        entry = TOOTH_COMPLIANCE[MODELS[model]].terms
         found = stiffness(self.contacts(path), self.sections, solids, entry, number(load))
         return np.asarray(found)[0, 0]
 
@@ -468,7 +468,7 @@ def test_gradients_with_respect_to_shifts_and_load(pairs, model):
             replace(one, profile_shift=one.profile_shift + values[k]).section(number(RIM_RATIO))
             for k, one in enumerate(pair.gears)
         )
-        entry = TOOTH_COMPLIANCE[model]
+        entry = TOOTH_COMPLIANCE[model].terms
         return 1e-9 * jnp.mean(
             unit_stiffness(contacts, sections, (STEEL, PA66), entry, 1e4 * (1.0 + values[2]))
         )

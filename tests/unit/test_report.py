@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 
 from pitchpoint.cases.run import Outcome, open_result, run
+from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.results.store import dataset
 from pitchpoint.views import show
 from pitchpoint.views.cycle import gapped, loss_places
 from pitchpoint.views.facts import facts
 from pitchpoint.views.figures import rounded
-from pitchpoint.views.geometry import Drawing, drawing
+from pitchpoint.views.geometry import Drawing, dimensions, drawing, specific_sliding
 from pitchpoint.views.report import loss_sentence, render, write_report
 
 Outcomes = dict[str, Outcome]
@@ -186,7 +188,8 @@ def finite(trace: dict[str, Any]) -> bool:
 def test_every_figure_has_a_place_and_data(page: str) -> None:
     figures, plots = payload(page)["figures"], Words(page).plots
     assert sorted(plots) == sorted(figures)
-    assert len(plots) == 8 + 6 + 4 + 2
+    # Specific sliding, path, cycle, study, map.
+    assert len(plots) == 1 + 8 + 6 + 4 + 2
     for name, figure in figures.items():
         assert figure["data"], name
         assert all(finite(trace) for trace in figure["data"]), name
@@ -334,10 +337,63 @@ def test_an_interrupted_result_has_a_page(wheel: Outcomes, kept: tuple[str, ...]
 
 
 PHASES = np.linspace(0.0, 0.999, 9)
+OUTSIDE = {
+    "helical, four teeth": {
+        "teeth": (4, 51),
+        "helix_angle": np.deg2rad(20.0),
+        "profile_shift": (0.74, 0.05),
+        "least_tip": 0.25,
+    },
+    "helical, right flanks": {
+        "teeth": (19, 33),
+        "helix_angle": np.deg2rad(15.0),
+        "right_flank": True,
+    },
+    "ring": {"teeth": (20, -60), "addendum": (1.0, 0.8), "profile_shift": (0.3, 0.2)},
+    "helical ring, gear 2 drives": {
+        "teeth": (17, -50),
+        "addendum": (1.0, 0.8),
+        "profile_shift": (0.3, 0.2),
+        "helix_angle": np.deg2rad(18.0),
+        "driver": 2,
+    },
+}
 
 
-@pytest.fixture(params=["published", "idle", "wheel"])
-def drawn(request: pytest.FixtureRequest) -> Drawing:
+def shown(**changes: Any) -> Outcome:
+    """A result that holds nothing but the teeth of a pair."""
+    pair = build_cylindrical_pair(
+        module=0.002, pressure_angle=np.deg2rad(20.0), face_width=0.016, **changes
+    )
+    numbers = {name: np.asarray(value) for name, value in pair.drawing().items()}
+    dims = {"outline": ("gear", "corner", "xy"), "points": ("point",)}
+    teeth = dataset(
+        {name: (dims.get(name, ("gear",)[: v.ndim]), v) for name, v in numbers.items()},
+        {"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+        title="teeth",
+    )
+    inputs = {
+        ("operation", "driver"): f"gear {changes.get('driver', 1)}",
+        ("operation", "torque"): "5 N m",
+        ("operation", "speed"): "1800 rpm",
+        ("operation", "temperature"): "60 degC",
+        ("gears", "flank"): "right" if changes.get("right_flank") else "left",
+        ("gears", "module"): "2 mm",
+        ("gears", "profile_shift"): "0.74 / -0.05",
+    }
+    rows = [{"table": t, "key": k, "value": v} for (t, k), v in inputs.items()]
+    return Outcome({"inputs": rows}, {"teeth": teeth})
+
+
+@pytest.fixture(scope="module")
+def outside() -> Outcomes:
+    return {name: shown(**changes) for name, changes in OUTSIDE.items()}
+
+
+@pytest.fixture(params=["published", "idle", "wheel", *OUTSIDE])
+def drawn(request: pytest.FixtureRequest, outside: Outcomes) -> Drawing:
+    if request.param in OUTSIDE:
+        return drawing(outside[request.param])
     outcomes: Outcomes = request.getfixturevalue(request.param)
     return drawing(next(iter(outcomes.values())))
 
@@ -365,13 +421,25 @@ def test_drawn_flanks_touch_where_the_contacts_are(drawn: Drawing) -> None:
     touched = 0
     for phase in PHASES:
         placed = list(teeth(drawn, phase))
-        for lane in range(int(motion["ratio"] - phase) + 1):
+        for lane in range(int(motion["total"]) + 1):
+            if not 0.0 <= phase + lane - motion["behind"] <= motion["ratio"]:
+                continue
             point = np.array(motion["start"]) + np.array(motion["step"]) * (phase + lane)
             for gear in (0, 1):
                 nearest = min(distance(point, corners) for one, corners in placed if one == gear)
                 assert nearest < 0.003, (phase, lane, gear)
             touched += 1
     assert touched / PHASES.size == pytest.approx(motion["ratio"], abs=0.2)
+
+
+def test_contacts_are_those_that_the_page_shows(drawn: Drawing) -> None:
+    motion = drawn.picture("p")["motion"]
+    for phase in PHASES:
+        lanes = phase + np.arange(int(motion["total"]) + 2)
+        inside = (lanes >= motion["behind"]) & (lanes - motion["behind"] <= motion["ratio"])
+        shown = np.array(motion["start"]) + np.outer(lanes[inside], motion["step"])
+        expected = np.array(drawn.contacts(phase)).reshape(-1, 2) * [1e3, -1e3]
+        assert shown == pytest.approx(expected, abs=1e-3)
 
 
 def test_drawn_teeth_do_not_overlap(drawn: Drawing) -> None:
@@ -399,6 +467,7 @@ def test_path_is_tangent_to_both_base_circles(drawn: Drawing) -> None:
     along = last - first
     for gear, point in enumerate((first, last)):
         arm = point - [0.0, gear * drawn.distance]
+        assert drawn.distance < 0.0 or not drawn.fact.internal
         assert np.hypot(*arm) == pytest.approx(drawn.radius("base", gear), rel=1e-12)
         assert arm @ along == pytest.approx(0.0, abs=1e-12)
 
@@ -408,7 +477,66 @@ def test_contact_moves_with_the_driving_flank(drawn: Drawing) -> None:
     start, stop = drawn.rotations(0.0), drawn.rotations(0.01)
     step = 0.01 * float(drawn.teeth["base_pitch"])
     assert (stop[0] - start[0]) * drawn.radius("base", 0) == pytest.approx(drawn.side * step)
-    assert (stop[1] - start[1]) * drawn.radius("base", 1) == pytest.approx(-drawn.side * step)
+    turned = (stop[1] - start[1]) * drawn.radius("base", 1)
+    assert turned == pytest.approx(-drawn.side * drawn.sides[1] * step)
+
+
+@pytest.mark.parametrize("name", ["ring", "helical ring, gear 2 drives"])
+def test_teeth_of_a_ring_point_inwards(outside: Outcomes, name: str) -> None:
+    drawn = drawing(outside[name])
+    assert drawn.radius("tip", 1) < drawn.radius("root", 1)
+    picture = drawn.picture("p")["gears"][1]
+    assert picture["ring"]
+    assert picture["radii"]["rim"] > picture["radii"]["root"]
+    assert picture["centre"] > 0.0  # below: the page counts downwards
+    spins = [gear["spin"] for gear in drawn.picture("p")["gears"]]
+    assert spins[0] * spins[1] > 0.0
+
+
+def test_who_turns_where(outside: Outcomes) -> None:
+    words = {name: drawing(one).picture("p")["driver_turns"] for name, one in outside.items()}
+    assert words["helical, four teeth"] == "counter-clockwise"
+    assert words["helical, right flanks"] == "clockwise"
+    assert words["helical ring, gear 2 drives"] == "clockwise"
+
+
+def test_a_pinion_with_few_teeth_is_drawn_whole(outside: Outcomes) -> None:
+    drawn = drawing(outside["helical, four teeth"])
+    left, top, width, height = drawn.picture("p")["window"]
+    tip = 1e3 * drawn.radius("tip", 0)
+    assert left < -tip
+    assert left + width > tip
+    assert top + height > tip
+
+
+def test_letters_that_are_close_share_a_label(outside: Outcomes) -> None:
+    marks = drawing(outside["helical, four teeth"]).picture("p")["marks"]
+    names = [mark["name"] for mark in marks if mark["name"]]
+    assert "A N1" in names
+    assert sum(not mark["name"] for mark in marks) == 5
+
+
+def test_dimensions_say_what_matters(outside: Outcomes) -> None:
+    helical = {name: values for name, *values in dimensions(outside["helical, four teeth"])}
+    assert helical["profile shift x"] == ["0.74", "−0.05"]
+    assert "overlap ratio ε_β" in helical
+    assert "tip alteration k [modules]" in helical
+    ring = {name: values for name, *values in dimensions(outside["ring"])}
+    assert ring["number of teeth z"] == ["20", "−60"]
+    assert ring["reference diameter d [mm]"] == ["40", "120"]
+    assert "overlap ratio ε_β" not in ring
+    assert "base helix angle β_b [°]" not in ring
+    assert ring["smallest x without undercut x_min"][1] == "not cut by a rack"
+
+
+@pytest.mark.parametrize("name", OUTSIDE)
+def test_specific_sliding_is_that_of_the_gears(outside: Outcomes, name: str) -> None:
+    teeth = outside[name].parts["teeth"]
+    places = dict(zip("ABCDE", teeth["points"].values, strict=True))
+    found = specific_sliding(teeth, np.array([places["A"], places["C"], places["E"]]))
+    assert found[0] == pytest.approx(teeth["specific_sliding_A"].values, rel=1e-12)
+    assert found[1] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert found[2] == pytest.approx(teeth["specific_sliding_E"].values, rel=1e-12)
 
 
 def test_loss_places_add_up_and_follow_the_driver(published: Outcomes, wheel: Outcomes) -> None:

@@ -133,7 +133,7 @@ def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
         parameters=_parameters(case, laws),
         sharing=LOAD_SHARING[case.models.load_sharing],
         rolling=ROLLING_RESISTANCE[case.models.rolling_resistance],
-        compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance],
+        compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance].terms,
     )
     return models, indices
 

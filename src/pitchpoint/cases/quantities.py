@@ -120,12 +120,12 @@ def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], s
     """Validator of a name out of a registry that is looked up when it is needed."""
 
     def read(value: Any) -> str:
-        from pitchpoint.registry import nearest
+        from pitchpoint.registry import listed, nearest
 
         known = registry()
         if not isinstance(value, str):
             raise InputError(
-                f"{shown(value)} is not the name of a {kind}; known are {', '.join(known)}"
+                f"{shown(value)} is not the name of a {kind}; known are {listed(known)}"
             )
         if value not in known:
             hint = nearest(value, dict.fromkeys(known))

@@ -1,8 +1,7 @@
 """Stiffness of the mesh and the vibration it excites, as datasets of a case."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -13,28 +12,34 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.response import Status
-from pitchpoint.dynamics.steady_state import steady_state
+from pitchpoint.dynamics.response import Response, Status
 from pitchpoint.dynamics.sweep import speed_sweep
+from pitchpoint.dynamics.system import System
 from pitchpoint.dynamics.vibration import (
     Vibrating,
-    excitation,
+    excited,
     frequency_ratio,
-    system,
+    nominal_force,
+    steady,
     transmission_figures,
-    vibration,
 )
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.loading.iso_6336_stiffness import estimate
-from pitchpoint.loading.mesh_stiffness import mesh_stiffness
+from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.results.store import dataset
 
 __all__ = ["figures_of", "resonance_part", "stiffness_part", "vibrating_of", "vibration_part"]
 
 ORDERS = tuple(range(41))
 """Orders of the mesh frequency in spectra."""
+
+TOGETHER = 4
+"""Vibrations solved together: one compiled program serves any number of them."""
+
+Input = tuple[Design, Operation, Vibrating]
 
 
 def vibrating_of(built: Built) -> Vibrating:
@@ -73,7 +78,11 @@ def stiffness_part(built: Built) -> xr.Dataset:
     standard, warnings = estimate(built.design.mesh, built.design.solids, built.operation.load)
     data |= {name: ((), value) for name, value in standard.items()}
     return dataset(
-        data, {}, title="mesh stiffness", warnings=warnings, model=models.compliance.title
+        data,
+        {},
+        title="mesh stiffness",
+        warnings=warnings,
+        model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title,
     )
 
 
@@ -100,13 +109,8 @@ def _stiffness(design: Design, operation: Operation, models: Models) -> dict[str
 
 def vibration_part(built: Built) -> xr.Dataset:
     """Steady vibration at the operating speed for every torque of the case."""
-    points = _loads(built)
-    models, vibrating = laws_of(built)[0], vibrating_of(built)
-    grid = _grid([(built.design, point) for point in points], models, vibrating)
-    parts = [
-        jax.device_get(_course(built.design, point, models, vibrating, grid, separating(built)))
-        for point in points
-    ]
+    inputs = [(built.design, point, vibrating_of(built)) for point in _loads(built)]
+    parts = [jax.device_get(_course(*each)) for each in _solved(inputs, built)]
     dims = {"dynamic_factor": ("torque", "pair", "node"), "spectrum": ("torque", "order")}
     nodal = ("transmission_error", "static_transmission_error")
     data: dict[str, Any] = {"phase": (("node",), parts[0]["phase"])}
@@ -126,21 +130,10 @@ def vibration_part(built: Built) -> xr.Dataset:
 
 
 @eqx.filter_jit
-def _course(
-    design: Design,
-    operation: Operation,
-    models: Models,
-    vibrating: Vibrating,
-    grid: Grid,
-    parting: bool,
-) -> dict[str, Array]:
-    stiffness, moved, found = vibration(
-        design, operation, models, vibrating, grid, separating=parting
-    )
-    figures = transmission_figures(stiffness, moved, found)
-    factor = found.dynamic_factor(moved.load[0] / jnp.max(jnp.abs(stiffness.arm)))
+def _course(stiffness: MeshStiffness, moved: System, found: Response) -> dict[str, Array]:
+    factor = found.dynamic_factor(nominal_force(stiffness, moved))
     return {
-        **figures,
+        **transmission_figures(stiffness, moved, found),
         "phase": found.course.phase.ravel(),
         "transmission_error": found.transmission_error.ravel(),
         "static_transmission_error": found.static_transmission_error.ravel(),
@@ -155,22 +148,19 @@ def resonance_part(built: Built) -> xr.Dataset:
     asked = built.case.dynamics.speeds
     assert asked is not None
     speeds = np.linspace(asked.start, asked.stop, int(asked.count))
-    models, vibrating = laws_of(built)[0], vibrating_of(built)
-    points = [replace(point, speed=jnp.asarray(speeds[0])) for point in _loads(built)]
-    grid = _grid([(built.design, point) for point in points], models, vibrating)
+    models = laws_of(built)[0]
+    slowest = replace(built.operation, speed=jnp.asarray(speeds[0]))
+    points = [replace(slowest, load=load.load) for load in _loads(built)]
+    parts = [_excited(built.design, point, models, vibrating_of(built)) for point in points]
+    grid = _grid(parts)
+    periods = built.design.mesh.period / jnp.asarray(speeds)
     runs = [
-        [
-            jax.device_get(
-                _sweep(built.design, point, models, vibrating, order, grid, separating(built))
-            )
-            for point in points
-        ]
-        for order in (jnp.asarray(speeds), jnp.asarray(speeds[::-1]))
+        [jax.device_get(_sweep(*part, order, grid, separating(built))) for part in parts]
+        for order in (periods, periods[::-1])
     ]
     dims = ("direction", "torque", "speed")
-    data = {name: (dims, _by_speed(runs, name)) for name in runs[0][0]}
     return dataset(
-        data,
+        {name: (dims, _by_speed(runs, name)) for name in runs[0][0]},
         {"direction": ["rising", "falling"], "torque": _torques(built), "speed": speeds},
         title="vibration against speed",
         warnings=[],
@@ -186,31 +176,23 @@ def _by_speed(runs: Sequence[Sequence[dict[str, np.ndarray]]], name: str) -> np.
 
 @eqx.filter_jit
 def _sweep(
-    design: Design,
-    operation: Operation,
-    models: Models,
-    vibrating: Vibrating,
-    speeds: Float[Array, " speed"],
+    stiffness: MeshStiffness,
+    moved: System,
+    driven: Excitation,
+    periods: Float[Array, " speed"],
     grid: Grid,
     parting: bool,
 ) -> dict[str, Array]:
-    stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load)
-    moved = system(design.mesh, vibrating, stiffness.mean, operation)
-    excited, periods = excitation(stiffness, vibrating), design.mesh.period / speeds
     if parting:
-        found = speed_sweep(moved, excited, periods, grid)
+        found = speed_sweep(moved, driven, periods, grid)
     else:
-        at = eqx.filter_vmap(
-            lambda period: steady_state(replace(moved, period=period), excited, grid)
-        )
-        found = at(periods)
-    nominal = moved.load[0] / jnp.max(jnp.abs(stiffness.arm))
+        found = eqx.filter_vmap(lambda at: steady(replace(moved, period=at), driven, grid))(periods)
 
-    def figures(one: Any) -> dict[str, Array]:
-        error = one.transmission_error
+    def figures(one: Response) -> dict[str, Array]:
+        factors = one.dynamic_factor(nominal_force(stiffness, moved))
         return {
-            "transmission_error_range": one.peak_to_peak(error),
-            "largest_dynamic_factor": jnp.max(one.extremes(one.dynamic_factor(nominal))[1]),
+            "transmission_error_range": one.peak_to_peak(one.transmission_error),
+            "largest_dynamic_factor": jnp.max(one.extremes(factors)[1]),
             "vibration_status": one.status,
         }
 
@@ -220,31 +202,38 @@ def _sweep(
 
 def figures_of(points: Sequence[Built]) -> dict[str, np.ndarray]:
     """Figures of stiffness and vibration of many points of equal static structure."""
-    models = laws_of(points[0])[0]
-    parting = separating(points[0])
     inputs = [(point.design, point.operation, vibrating_of(point)) for point in points]
-    ratios = in_chunks(_ratios, inputs, models)["frequency_ratio"]
-    grid = Grid.resolving(float(np.nanmax(ratios)))
-    return in_chunks(partial(_figures, grid=grid, parting=parting), inputs, models)
+    found = [jax.device_get(_figures(*each)) for each in _solved(inputs, points[0])]
+    return {name: np.stack([one[name] for one in found]) for name in found[0]}
+
+
+_figures = eqx.filter_jit(transmission_figures)
+_excited = eqx.filter_jit(excited)
+
+
+def _solved(
+    inputs: Sequence[Input], built: Built
+) -> Iterator[tuple[MeshStiffness, System, Response]]:
+    """Steady vibration of every input, solved together in chunks of one size."""
+    models = laws_of(built)[0]
+    parts = [_excited(design, point, models, own) for design, point, own in inputs]
+    grid = _grid(parts)
+    for start in range(0, len(parts), TOGETHER):
+        chunk = parts[start : start + TOGETHER]
+        padded = chunk + [chunk[-1]] * (TOGETHER - len(chunk))
+        stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *[part[1:] for part in padded])
+        found = _steady(*stacked, grid, separating(built))
+        for index, (stiffness, moved, _) in enumerate(chunk):
+            yield stiffness, moved, jax.tree.map(lambda leaf, i=index: leaf[i], found)
 
 
 @eqx.filter_jit
-def _ratios(inputs: tuple[Design, Operation, Vibrating], models: Models) -> dict[str, Array]:
-    ratio = eqx.filter_vmap(lambda d, o, v: frequency_ratio(d, o, models, v))(*inputs)
-    return {"frequency_ratio": ratio}
+def _steady(moved: System, driven: Excitation, grid: Grid, parting: bool) -> Response:
+    def one(system: System, excitation: Excitation) -> Response:
+        return steady(system, excitation, grid, separating=parting)
 
-
-@eqx.filter_jit
-def _figures(
-    inputs: tuple[Design, Operation, Vibrating], models: Models, grid: Grid, parting: bool
-) -> dict[str, Array]:
-    def each(design: Design, operation: Operation, vibrating: Vibrating) -> dict[str, Array]:
-        return transmission_figures(
-            *vibration(design, operation, models, vibrating, grid, separating=parting)
-        )
-
-    figures: dict[str, Array] = eqx.filter_vmap(each)(*inputs)
-    return figures
+    found: Response = eqx.filter_vmap(one)(moved, driven)
+    return found
 
 
 def _loads(built: Built) -> list[Operation]:
@@ -256,13 +245,10 @@ def _torques(built: Built) -> list[float]:
     return list(built.case.dynamics.torques or (built.case.operation.torque,))
 
 
-def _grid(points: Sequence[tuple[Design, Operation]], models: Models, vibrating: Vibrating) -> Grid:
-    return Grid.resolving(
-        max(float(_ratio(design, point, models, vibrating)) for design, point in points)
-    )
-
-
-_ratio = eqx.filter_jit(frequency_ratio)
+def _grid(parts: Sequence[tuple[MeshStiffness, System, Excitation]]) -> Grid:
+    """Grid for the highest of the natural frequencies, all over their mesh frequency."""
+    ratios = [float(frequency_ratio(stiffness, moved)) for stiffness, moved, _ in parts]
+    return Grid.resolving(max(ratios))
 
 
 def _warnings(built: Built, statuses: Sequence[Status]) -> list[str]:

@@ -78,9 +78,9 @@ class Grid:
 
     def local(self, values: Values) -> Float[Array, "degree *b element interval"]:
         """Coefficients of polynomials between neighbouring nodes, on [-1, 1], lowest power first."""
-        return jnp.einsum("ben,nid->dbei", *_flat(values, _local(self.nodes))).reshape(
-            _DEGREE + 1, *values.shape[:-1], self.nodes - 1
-        )
+        powers = values @ _local(self.nodes)
+        split = powers.reshape(*values.shape[:-1], _DEGREE + 1, self.nodes - 1)
+        return jnp.moveaxis(split, -2, 0)
 
     def extremes(self, values: Values) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:
         """Smallest and largest value, between the nodes too; piecewise differentiable."""
@@ -131,10 +131,6 @@ class Grid:
         return jnp.einsum("...eq,oeq->o...", (values @ matrix) * weight * length[:, None], harmonic)
 
 
-def _flat(values: Values, matrix: np.ndarray) -> tuple[Array, np.ndarray]:
-    return values.reshape(-1, *values.shape[-2:]), matrix
-
-
 def _ends(place: np.ndarray) -> np.ndarray:
     return np.concatenate([[0.0], place[1:-1], [1.0]])
 
@@ -161,13 +157,13 @@ def _derivative(count: int) -> np.ndarray:
 
 @cache
 def _local(count: int) -> np.ndarray:
-    """[node, interval, power]: from values at the nodes to powers of a local coordinate."""
+    """Matrix from values at the nodes to powers of a local coordinate, interval by interval."""
     place = _ends(_lobatto(count)[0])
     local = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
     powers = np.linalg.inv(np.polynomial.polynomial.polyvander(local, _DEGREE))
     at = place[:-1, None] + np.diff(place)[:, None] * (local + 1.0) / 2.0
     values = _reading(count, at.ravel()).reshape(count, count - 1, _DEGREE + 1)
-    return np.asarray(values @ powers.T)
+    return np.asarray(np.swapaxes(values @ powers.T, 1, 2).reshape(count, -1))
 
 
 @cache

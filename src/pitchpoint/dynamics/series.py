@@ -10,7 +10,7 @@ from pitchpoint.dynamics.maps import Map, compose, identity, product
 __all__ = ["by_series"]
 
 TERMS = 16
-"""Terms of the series: exact to rounding up to 1 rad of vibration on either side of its centre."""
+"""Terms of the series: exact to rounding up to 1 rad of vibration on either side of its middle."""
 
 LAST = 1e-9
 """Largest last term, of states of order one."""
@@ -70,7 +70,7 @@ def _inverse_matrix(matrix: Float[Array, "state state *b"]) -> Float[Array, "sta
     """Inverse with the batch last, in closed form for a single coordinate."""
     if matrix.shape[0] > 2:
         inverse: Array = jnp.linalg.inv(jnp.moveaxis(matrix, (0, 1), (-2, -1)))
-        last: Array = jnp.moveaxis(inverse, (-2, -1), (0, 1))
-        return last
+        return jnp.moveaxis(inverse, (-2, -1), (0, 1))
     (a, b), (c, d) = matrix
-    return jnp.stack([jnp.stack([d, -b]), jnp.stack([-c, a])]) / (a * d - b * c)
+    adjugate = jnp.stack([jnp.stack([d, -b]), jnp.stack([-c, a])])
+    return jnp.divide(adjugate, a * d - b * c)

@@ -16,10 +16,12 @@ from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 __all__ = [
     "Vibrating",
     "excitation",
+    "excited",
     "frequency_ratio",
+    "nominal_force",
+    "steady",
     "system",
     "transmission_figures",
-    "vibration",
 ]
 
 
@@ -84,39 +86,40 @@ def system(
     )
 
 
-def frequency_ratio(
-    design: Design, operation: Operation, models: Models, vibrating: Vibrating
-) -> Float[Array, ""]:
+def frequency_ratio(stiffness: MeshStiffness, moved: System) -> Float[Array, ""]:
     """Natural frequency with the mean stiffness over the mesh frequency."""
-    stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load)
-    moved = system(design.mesh, vibrating, stiffness.mean, operation)
     natural = jnp.sqrt(stiffness.mean / moved.mass[0, 0])
     return natural * moved.period / (2.0 * jnp.pi)
 
 
-def vibration(
-    design: Design,
-    operation: Operation,
-    models: Models,
-    vibrating: Vibrating,
-    grid: Grid,
-    *,
-    separating: bool = False,
-) -> tuple[MeshStiffness, System, Response]:
-    """Stiffness of the mesh and the steady vibration that it excites at one operating point.
+def excited(
+    design: Design, operation: Operation, models: Models, vibrating: Vibrating
+) -> tuple[MeshStiffness, System, Excitation]:
+    """Stiffness of the mesh, and the system that it excites, at one operating point.
 
     Args:
         design: mesh and materials.
         operation: one operating point.
         models: how teeth yield.
         vibrating: inertia, damping, profile error.
-        grid: static, see `Grid.resolving`.
-        separating: static; True if teeth may part.
     """
     stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load)
     moved = system(design.mesh, vibrating, stiffness.mean, operation)
-    solve = separating_steady_state if separating else steady_state
-    return stiffness, moved, solve(moved, excitation(stiffness, vibrating), grid)
+    return stiffness, moved, excitation(stiffness, vibrating)
+
+
+def steady(moved: System, driven: Excitation, grid: Grid, *, separating: bool = False) -> Response:
+    """Steady vibration of a system.
+
+    Compiled for itself it serves every gear family, tooth model and material.
+
+    Args:
+        moved: mass, damping, load, period.
+        driven: stiffness, arms, errors.
+        grid: static, see `Grid.resolving`.
+        separating: static; True if teeth may part.
+    """
+    return (separating_steady_state if separating else steady_state)(moved, driven, grid)
 
 
 def transmission_figures(
@@ -124,12 +127,16 @@ def transmission_figures(
 ) -> dict[str, Array]:
     """Figures of stiffness and vibration at one operating point.
 
-    Arguments are what `vibration` returns; lengths in m, stiffness in N/m, forces over that of a
-    single pair that carries everything.
+    Args:
+        stiffness, moved: what `excited` returns.
+        found: the steady vibration.
+
+    Returns:
+        By name, lengths in m, stiffness in N/m, forces over that of a single pair that carries
+        everything.
     """
     total = stiffness.total
-    nominal = moved.load[0] / jnp.max(jnp.abs(stiffness.arm))
-    carried = jnp.max(found.extremes(found.dynamic_factor(nominal))[1])
+    carried = jnp.max(found.extremes(found.dynamic_factor(nominal_force(stiffness, moved)))[1])
     dynamic, static = found.transmission_error, found.static_transmission_error
     return {
         "mean_stiffness": stiffness.mean,
@@ -144,3 +151,8 @@ def transmission_figures(
         "largest_multiplier": jnp.max(jnp.abs(found.multipliers)),
         "vibration_status": jax.lax.stop_gradient(found.status),
     }
+
+
+def nominal_force(stiffness: MeshStiffness, moved: System) -> Float[Array, ""]:
+    """Normal force of a single pair that carries the load without vibration [N]."""
+    return moved.load[0] / jnp.max(jnp.abs(stiffness.arm))

@@ -13,7 +13,7 @@ from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance
 from pitchpoint.loading.mesh_stiffness import slice_stiffness
 from pitchpoint.loading.sharing import LoadSharing
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, ToothCompliance
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import RollingResistance
@@ -73,7 +73,7 @@ class Models(eqx.Module):
         parameters: values of the laws' own parameters by name of the law.
         sharing: of the load between pairs.
         rolling: rolling resistance.
-        compliance: how teeth yield, where the sharing asks for it.
+        compliance: terms of the model by which teeth yield, where the sharing asks for it.
     """
 
     friction: tuple[FrictionLaw, ...] = eqx.field(static=True)
@@ -81,8 +81,8 @@ class Models(eqx.Module):
     parameters: Mapping[str, Mapping[str, Float[Array, ""]]]
     sharing: LoadSharing = eqx.field(static=True)
     rolling: RollingResistance = eqx.field(static=True)
-    compliance: ToothCompliance = eqx.field(
-        static=True, default=TOOTH_COMPLIANCE["beam_foundation_weber"]
+    compliance: Terms = eqx.field(
+        default_factory=lambda: TOOTH_COMPLIANCE["beam_foundation_weber"].terms
     )
 
     def coefficient(self, conditions: Conditions) -> Lanes:

@@ -488,11 +488,11 @@ def _sliced(
     return low + middle * share, jnp.broadcast_to(share, (low.shape[0], count, *low.shape[2:]))
 
 
-def lanes_for(contact_ratio: float) -> int:
+def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
     """Static count of pairs to hold for a contact ratio: few values, so that few programs are compiled."""
     for limit in _LANES_FOR_RATIO_BELOW:
         if contact_ratio < limit:
-            return int(limit)
+            return max(int(limit), 3) if helical else int(limit)
     message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
     raise InputError(message, key="gears", value=contact_ratio)
 
@@ -575,7 +575,7 @@ def build_cylindrical_pair(
     ratio = float(_contact_ratio(pair))
     if not 0.0 < ratio < _LANES_FOR_RATIO_BELOW[-1]:
         check_cylindrical(pair)  # says why, in gear words
-    return dataclasses.replace(pair, lanes=lanes_for(ratio))
+    return dataclasses.replace(pair, lanes=lanes_for(ratio, helical=helical))
 
 
 @eqx.filter_jit

@@ -7,7 +7,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
-from pitchpoint.loading.tooth_compliance import ToothCompliance, unit_stiffness
+from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
 from pitchpoint.materials.solids import Solid
 
 __all__ = ["MeshStiffness", "mean_line_load", "mesh_stiffness", "slice_stiffness"]
@@ -66,7 +66,7 @@ def slice_stiffness(
     mesh: Mesh,
     contacts: Contacts,
     solids: tuple[Solid, Solid],
-    compliance: ToothCompliance,
+    terms: Terms,
     load: Float[Array, "*b"],
 ) -> Lanes:
     """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
@@ -75,18 +75,18 @@ def slice_stiffness(
         mesh: a family whose members have teeth.
         contacts: of the mesh.
         solids: material of each member.
-        compliance: how teeth yield.
+        terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
     """
     assert mesh.sections is not None
     line_load = mean_line_load(mesh, contacts, load)
-    return unit_stiffness(contacts, mesh.sections, solids, compliance, line_load)
+    return unit_stiffness(contacts, mesh.sections, solids, terms, line_load)
 
 
 def mesh_stiffness(
     mesh: Mesh,
     solids: tuple[Solid, Solid],
-    compliance: ToothCompliance,
+    terms: Terms,
     load: Float[Array, ""],
     count: int = 12,
 ) -> MeshStiffness:
@@ -95,13 +95,13 @@ def mesh_stiffness(
     Args:
         mesh: a family whose members have teeth and a line of action.
         solids: material of each member.
-        compliance: how teeth yield.
+        terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
         count: nodes in each segment between events.
     """
     phase, weight = nodes(mesh.events(), count)
     contacts = mesh.contacts(phase)
-    unit = slice_stiffness(mesh, contacts, solids, compliance, load)
+    unit = slice_stiffness(mesh, contacts, solids, terms, load)
     each = jnp.where(contacts.active, unit * contacts.weight, 0.0)
     return MeshStiffness(
         edges=edges(mesh.events()),

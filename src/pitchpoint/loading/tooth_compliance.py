@@ -1,12 +1,12 @@
 """How far loaded teeth yield, and the stiffness of a pair of teeth per length of contact line."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Literal
 
+import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
@@ -19,6 +19,7 @@ from pitchpoint.registry import Registry
 
 __all__ = [
     "TOOTH_COMPLIANCE",
+    "Terms",
     "ToothCompliance",
     "beam_compliance",
     "interpolate",
@@ -34,6 +35,20 @@ _BEYOND = 1e-6
 Sections = tuple[ToothSection, ToothSection]
 Solids = tuple[Solid, Solid]
 Field = Float[Array, "pair slice *b"]
+
+
+class Terms(eqx.Module):
+    """Terms of a model of compliance.
+
+    Attributes:
+        foundation: one if the body under the tooth yields, else zero.
+        weber: True if the contact yields by Weber's law.
+        common: True if one modulus stands for both members.
+    """
+
+    foundation: Float[Array, ""]
+    weber: Bool[Array, ""]
+    common: Bool[Array, ""]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +71,15 @@ class ToothCompliance:
     modulus: Literal["separate", "common"]
     sources: tuple[str, ...]
     note: str = ""
+
+    @property
+    def terms(self) -> "Terms":
+        """What the model takes into account, as numbers: all models share one compiled program."""
+        return Terms(
+            foundation=jnp.asarray(float(self.foundation)),
+            weber=jnp.asarray(self.contact == "weber"),
+            common=jnp.asarray(self.modulus == "common"),
+        )
 
     def warnings(self, sections: Sections) -> tuple[str, ...]:
         """Sentences on what the model does not cover for these teeth; none if it does."""
@@ -96,27 +120,23 @@ def beam_compliance(section: ToothSection, poisson: Float[Array, ""]) -> Float[A
     return jnp.sum(energy * weight, axis=1)
 
 
-def tooth_compliance(
-    section: ToothSection, solid: Solid, model: ToothCompliance
-) -> Float[Array, " node"]:
+def tooth_compliance(section: ToothSection, solid: Solid, terms: Terms) -> Float[Array, " node"]:
     """Compliance of one tooth, with the body under it if the model says so, at the nodes [m2/N].
 
     Args:
         section: the tooth.
         solid: its material; `young` and `poisson` without axes.
-        model: an entry of `TOOTH_COMPLIANCE`.
+        terms: of an entry of `TOOTH_COMPLIANCE`.
     """
     shape = beam_compliance(section, solid.poisson)
-    if model.foundation:
-        shape = shape + foundation_compliance(section)
-    return shape / solid.young
+    return (shape + terms.foundation * foundation_compliance(section)) / solid.young
 
 
 def unit_stiffness(
     contacts: Contacts,
     sections: Sections,
     solids: Solids,
-    model: ToothCompliance,
+    terms: Terms,
     line_load: Float[Array, "..."],
 ) -> Field:
     """Stiffness of the pairs of teeth along the normal, per length of contact line [N/m2].
@@ -125,19 +145,20 @@ def unit_stiffness(
         contacts: of a mesh of two gears with line contacts.
         sections: the tooth of each member.
         solids: the material of each member.
-        model: an entry of `TOOTH_COMPLIANCE`.
+        terms: of an entry of `TOOTH_COMPLIANCE`.
         line_load: load per length [N/m], broadcast over the contacts; only a contact by Weber's law
             depends on it, and less than 0.001 N/m counts as that.
 
     Returns:
         Load over approach, a secant where the contact's law is not linear; finite in inactive lanes.
     """
-    first, second = _moduli(solids, model)
+    first, second = _moduli(solids, terms)
     teeth = [
-        interpolate(tooth_compliance(section, solid, model), section, contacts.flank[k])
+        interpolate(tooth_compliance(section, solid, terms), section, contacts.flank[k])
         for k, (section, solid) in enumerate(zip(sections, (first, second), strict=True))
     ]
-    flattening = _FLATTENING[model.contact](contacts, sections, (first, second), line_load)
+    given = (contacts, sections, (first, second), line_load)
+    flattening = jnp.where(terms.weber, _weber(*given), _linear(*given))
     return 1.0 / (teeth[0] + teeth[1] + flattening)
 
 
@@ -157,12 +178,11 @@ def interpolate(values: Float[Array, " node"], section: ToothSection, flank: Fie
     return _clenshaw(jnp.asarray(_to_coefficients()) @ values, place)
 
 
-def _moduli(solids: Solids, model: ToothCompliance) -> Solids:
-    if model.modulus == "separate":
-        return solids
+def _moduli(solids: Solids, terms: Terms) -> Solids:
     first, second = solids
     common = 2.0 * first.young * second.young / (first.young + second.young)
-    return replace(first, young=common), replace(second, young=common)
+    one, two = (replace(s, young=jnp.where(terms.common, common, s.young)) for s in solids)
+    return one, two
 
 
 def _linear(
@@ -192,9 +212,6 @@ def _weber(
         for k, (section, solid) in enumerate(zip(sections, solids, strict=True))
     ]
     return parts[0] + parts[1]
-
-
-_FLATTENING: dict[str, Callable[..., Field]] = {"linear": _linear, "weber": _weber}
 
 
 def _depth(section: ToothSection) -> Float[Array, " node"]:

@@ -128,7 +128,7 @@ def along(data: xr.Dataset, name: str, law: int, fact: Facts) -> Points:
         by_pair = _at_middle(data, values, entered - fact.overlap_ratio / 2.0)
         entered = entered - fact.overlap_ratio / 2.0
     end = fact.contact_ratio if name in _WHOLE else fact.transverse_ratio
-    touches = data["active"].values[..., 0] & (-_SHORT <= entered) & (entered <= end + _SHORT)
+    touches = data["active"].values[..., 0] & (entered >= -_SHORT) & (entered <= end + _SHORT)
     touches = touches.T.ravel()
     return gapped(entered.T.ravel()[touches], by_pair.T.ravel()[touches])
 
@@ -329,7 +329,7 @@ def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
         "cycle_friction",
         "Friction coefficient of the pairs in contact",
         traces,
-        layout("phase of the mesh cycle [base pitches]", "μ"),
+        layout("phase of the mesh cycle [base pitches]", "μ", yaxis={"rangemode": "tozero"}),
         f"Line styles here: {names}.",
     )
 

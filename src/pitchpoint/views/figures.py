@@ -19,12 +19,18 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 
 __all__ = [
+    "DASHES",
+    "GREY",
+    "INK",
+    "PALETTE",
     "Choice",
     "Curve",
     "Curves",
     "Figure",
+    "Key",
     "Panel",
     "Trace",
+    "continued",
     "curves",
     "display",
     "law_title",
@@ -32,6 +38,7 @@ __all__ = [
     "layout",
     "line",
     "merged",
+    "plain",
     "rounded",
     "short_axis",
     "text",
@@ -41,9 +48,9 @@ Trace = dict[str, Any]
 Curves = Mapping[tuple[str, str], "Curve"]
 
 # Okabe and Ito's palette, which people with colour vision deficiency can tell apart.
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#B07C00", "#56B4E9", "#5A5A5A")
-_DASHES = ("solid", "dash", "dot", "dashdot")
-INK = "#24303a"
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#B07C00", "#56B4E9", "#5A5A5A")
+DASHES = ("solid", "dash", "dot", "dashdot")
+INK, GREY = "#24303a", "#7b8791"
 GRID = "#e6eaed"
 
 
@@ -60,14 +67,25 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Key:
+    """An entry of the legend of one figure; a bar where `dash` is empty."""
+
+    label: str
+    colour: str
+    dash: str = "solid"
+
+
+@dataclass(frozen=True)
 class Figure:
-    """A figure for plotly.js with its name in the page, title and remark."""
+    """A figure for plotly.js with its name in the page, title, remark and legend of its own."""
 
     name: str
     title: str
     data: list[Trace]
     layout: dict[str, Any]
     note: str = ""
+    keys: tuple[Key, ...] = ()
+    missing: str = "Undefined here: no power is transmitted."
 
     @property
     def drawn(self) -> bool:
@@ -106,8 +124,8 @@ def curves(outcomes: Mapping[str, Outcome]) -> dict[tuple[str, str], Curve]:
             law=law,
             label=law_title(outcomes[variant], law)
             + (f" · {variant}" if len(variants) > 1 else ""),
-            colour=_COLOURS[position % len(_COLOURS)],
-            dash=_DASHES[(variants.index(variant) + position // len(_COLOURS)) % len(_DASHES)],
+            colour=PALETTE[position % len(PALETTE)],
+            dash=DASHES[(variants.index(variant) + position // len(PALETTE)) % len(DASHES)],
         )
         for position, (variant, law) in enumerate(names)
     }
@@ -157,6 +175,27 @@ def line(curve: Curve, x: Any, y: Any, unit: str, **more: Any) -> Trace:
         "hovertemplate": f"%{{y:.5~g}} {unit}<br>at %{{x:.4~g}}",
         **more,
     }
+
+
+def plain(key: Key, x: Any, y: Any, unit: str, **more: Any) -> Trace:
+    """Line of an entry of a legend, as `line` is that of a curve."""
+    return line(Curve("", "", "", key.label, key.colour, key.dash), x, y, unit, **more)
+
+
+def continued(x: np.ndarray, y: np.ndarray, most: int = 600) -> tuple[np.ndarray, np.ndarray]:
+    """Points of a line with a gap (NaN) where it jumps, and no more of them than a page needs.
+
+    Args:
+        x, y: points in order; at a jump two of them share their place.
+        most: count above which points are left out.
+    """
+    size = np.nanmax(np.abs(y), initial=0.0)
+    jumps = np.flatnonzero((np.diff(x) < 1e-6) & (np.abs(np.diff(y)) > 1e-3 * size))
+    kept = np.zeros(x.size, bool)
+    kept[:: max(x.size // most, 1)] = True
+    kept[[0, -1, *jumps, *(jumps + 1)]] = True
+    cuts = np.searchsorted(np.flatnonzero(kept), jumps + 1)
+    return np.insert(x[kept], cuts, x[jumps]), np.insert(y[kept], cuts, np.nan)
 
 
 def layout(x: str, y: str, **more: Any) -> dict[str, Any]:

@@ -137,7 +137,7 @@ class Drawing:
         return {
             "name": name,
             "gears": [self._gear(gear) for gear in (0, 1)],
-            "marks": [_labelled(self, key, place) for key, place in self._marked()],
+            "marks": _labelled(self, window[2] / 38e3),
             "path": [_mm(self.on_line(float(p))) for p in self.teeth["points"].values[[0, -1]]],
             "line": [_mm(self.on_line(p)) for p in self._line_ends()],
             "lanes": ceil(self.fact.contact_ratio - 1e-9),
@@ -241,10 +241,13 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         return values(f"{name}_radius", 2e3)
 
     def input_row(title: str, key: str) -> list[tuple[str, ...]]:
-        each = [show.pretty(one) for one in given(outcome, "gears", key).split(" / ") if one]
+        found = given(outcome, "gears", key).replace(" deg", "°").split(" / ")
+        each = [show.pretty(one).replace("-", "−") for one in found if one]
         return [(title, *each)] if each else []
 
-    angle, helix = (degrees(float(teeth[n])) for n in ("working_pressure_angle", "base_helix_angle"))
+    angle, helix = (
+        degrees(float(teeth[n])) for n in ("working_pressure_angle", "base_helix_angle")
+    )
     rows = [("number of teeth z", *values("teeth", 1.0))]
     rows += input_row("normal module m_n" if fact.helical else "module m", "module")
     rows += input_row("helix angle β", "helix_angle") if fact.helical else []
@@ -341,10 +344,33 @@ def _widened(low: float, high: float, least: float) -> tuple[float, float]:
     return high + more, low - more
 
 
-def _labelled(shown: Drawing, name: str, place: Place) -> dict[str, Any]:
-    """Mark with its letter set off across the line of action; C on the other side, B is often near."""
+def _labelled(shown: Drawing, letter: float) -> list[dict[str, Any]]:
+    """Marks with their letters set off across the line of action; one label for those too close.
+
+    C has its letter on the other side, B is often near.
+
+    Args:
+        shown: the drawing.
+        letter: size of the letters [m].
+    """
+    groups: list[tuple[list[str], Place]] = []
+    for name, place in shown._marked():
+        near = [names for names, at in groups if hypot(place[0] - at[0], place[1] - at[1]) < letter]
+        if near and name != "C" and near[0] != ["C"]:
+            near[0].append(name)
+        else:
+            groups.append(([name], place))
+    named = [_label(shown, " ".join(names), place) for names, place in groups]
+    dots = [
+        {"name": "", "x": x, "y": y, "dx": 0.0, "dy": 0.0}
+        for x, y in (_mm(place) for _, place in shown._marked())
+    ]
+    return dots + named
+
+
+def _label(shown: Drawing, name: str, place: Place) -> dict[str, Any]:
     x, y = _mm(place)
-    off = -1.0 if name == "C" else 1.0
+    off = (-1.0 if name == "C" else 1.0) * (1.0 + 0.25 * name.count(" "))
     dx, dy = off * shown.side * sin(shown.angle), -off * cos(shown.angle)
     return {"name": name, "x": x, "y": y, "dx": round(dx, 3), "dy": round(dy + 0.35, 3)}
 

@@ -14,11 +14,27 @@ from pitchpoint.cases.run import Outcome
 from pitchpoint.results.store import write_text
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel, loss_places, path_panel
+from pitchpoint.views.design_chart import design_charts
 from pitchpoint.views.facts import Facts, facts, given, same_geometry
 from pitchpoint.views.figures import Curve, Curves, Panel, curves, law_title, laws
 from pitchpoint.views.geometry import dimensions, drawing
 from pitchpoint.views.maps import map_panel
+from pitchpoint.views.plane_of_action import plane_of_action
+from pitchpoint.views.sliding import sliding_figure
+from pitchpoint.views.stiffness import (
+    outside_standard,
+    pair_key,
+    stiffness_answer,
+    stiffness_panels,
+    stiffness_table,
+)
 from pitchpoint.views.sweeps import study_panels, study_tables
+from pitchpoint.views.vibration import (
+    resonance_panels,
+    vibration_answer,
+    vibration_panels,
+    vibration_tables,
+)
 
 if TYPE_CHECKING:
     import jinja2
@@ -59,6 +75,11 @@ _SIDE_BY_SIDE = (
     "mean_friction",
     "loss_factor",
     "contact_ratio",
+    "mean_stiffness",
+    "stiffness_variation",
+    "mean_transmission_error",
+    "transmission_error_range",
+    "largest_dynamic_factor",
 )
 
 
@@ -89,6 +110,13 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
         "map": map_panel(drawn, known) if drawn else Panel("", []),
     }
     sweeps = study_panels(outcomes, known)
+    charts = design_charts(outcomes)
+    teeth = _teeth(drawn)
+    moving = {
+        "stiffness": stiffness_panels(outcomes),
+        "vibration": vibration_panels(outcomes),
+        "resonance": resonance_panels(outcomes),
+    }
     first = next(iter(outcomes.values())).manifest
     return (
         _environment()
@@ -99,13 +127,18 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             several=len(outcomes) > 1,
             inputs=_inputs(outcomes),
             statuses=STATUSES,
-            teeth=_teeth(drawn),
+            teeth=teeth,
             panels=panels,
+            moving=moving,
+            stiffness_table=stiffness_table(outcomes),
+            vibration_tables=vibration_tables(outcomes),
+            charts=charts,
             sweeps=sweeps,
             tables=study_tables(outcomes, known),
             losses=_losses(drawn, known),
             point_notes=_point_notes(drawn),
             cycle_words=_cycle_words(drawn),
+            entry="enters at one end of the face" if _helical(drawn) else "is at A",
             rows=_rows(outcomes),
             kinds=KINDS,
             beside=_side_by_side(outcomes, known) if len(outcomes) > 1 else None,
@@ -116,7 +149,17 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             models=_models(outcomes),
             parts=_parts(outcomes),
             version=_version(outcomes),
-            data=Markup(_payload([*panels.values(), *sweeps])),
+            data=Markup(
+                _payload(
+                    [
+                        *(one["sliding"] for one in teeth),
+                        *panels.values(),
+                        *(panel for each in moving.values() for panel in each),
+                        *charts,
+                        *sweeps,
+                    ]
+                )
+            ),
             plotly=Markup(get_plotlyjs()),
         )
     )
@@ -185,6 +228,8 @@ def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
         "finished": manifest["finished"],
         "settings": manifest["settings"],
         "spread": _spread(outcome),
+        "stiffness": stiffness_answer(outcome),
+        "vibration": vibration_answer(outcome),
         "answers": [
             _answer(outcome, law, position, known[name, law])
             for position, law in enumerate(laws(parts["operation"]))
@@ -292,12 +337,20 @@ def _cell(data: Any, name: str, law: int) -> str:
 
 
 def _warnings(outcome: Outcome) -> list[str]:
-    """Sentences of the design and of the parts, each once."""
+    """Sentences of the design and of the parts, each once.
+
+    What the standard's estimate of the stiffness does not cover is told beside that estimate.
+    """
     texts = list(outcome.manifest["warnings"])
     for data in outcome.parts.values():
         found = [str(text) for text in json.loads(data.attrs.get("warnings", "[]"))]
         texts += [f"{data.attrs['title']}: {text}" for text in found if text not in texts]
-    return list(dict.fromkeys(texts))
+    beside = outside_standard(outcome.parts["stiffness"]) if "stiffness" in outcome.parts else []
+    return [text for text in dict.fromkeys(texts) if text not in _told_of_standard(beside)]
+
+
+def _told_of_standard(texts: list[str]) -> set[str]:
+    return {*texts, *(f"mesh stiffness: {text}" for text in texts)}
 
 
 def _inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
@@ -343,11 +396,24 @@ def _teeth(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
         {
             "variants": ", ".join(names) if len(outcomes) > 1 and len(groups) > 1 else "",
             "picture": drawing(outcome).picture(f"mesh{position}"),
+            "plane": _plane(outcome),
+            "sliding": Panel("", [sliding_figure(f"sliding{position}", outcome)]),
             "dimensions": dimensions(outcome),
             "fact": facts(outcome),
         }
         for position, (names, outcome) in enumerate(groups)
     ]
+
+
+def _plane(outcome: Outcome) -> dict[str, Any]:
+    """Plane of action, its lines in the colours of the pairs, lengths in words."""
+    picture = plane_of_action(outcome.parts["teeth"]).picture()
+    keys = [pair_key(lane) for lane in range(picture["lanes"] + 1)]
+    told = {
+        name: f"{show.number(picture[name], trailing=True)} mm"
+        for name in ("mean", "least", "most")
+    }
+    return {**picture, "pairs": keys, "told": told}
 
 
 def _losses(outcomes: Mapping[str, Outcome], known: Curves) -> list[tuple[Curve, str]]:
@@ -388,11 +454,15 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     if not outcomes:
         return []
     fact = facts(next(iter(outcomes.values())))
-    notes = [
-        "A and E are the ends of the path of contact, A at the tip of gear 2; C is the pitch point; "
-        "B and D lie one base pitch from E and A."
-    ]
-    if fact.contact_ratio > 2.0:
+    notes = [_letters(fact)]
+    if fact.helical:
+        notes.append(
+            f"Contact lines cross the face at an angle, so a pair is in contact for "
+            f"{show.number(fact.contact_ratio)} base pitches, {show.number(fact.overlap_ratio)} longer "
+            "than the path. Over the path from A stand values at the middle of the face, over the base "
+            "pitches since the pair entered those of the whole contact line."
+        )
+    elif fact.transverse_ratio > 2.0:
         notes.append(
             "With a contact ratio above 2 there is no single contact, and D comes before B."
         )
@@ -401,6 +471,17 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     if fact.backwards:
         notes.append("Gear 2 drives, so every pair runs from E to A, and the phase runs backwards.")
     return notes
+
+
+def _helical(outcomes: Mapping[str, Outcome]) -> bool:
+    return any(facts(outcome).helical for outcome in outcomes.values())
+
+
+def _letters(fact: Facts) -> str:
+    ends = (
+        "A and E are the ends of the path of contact, A at the tip of gear 2; C is the pitch point"
+    )
+    return f"{ends}; B and D lie one base pitch from E and A." if "B" in fact.points else f"{ends}."
 
 
 def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
@@ -467,14 +548,10 @@ def _side_by_side(outcomes: Mapping[str, Outcome], known: Curves) -> dict[str, A
     lines = [
         (
             show.axis_title(name),
-            [
-                show.quantity(
-                    name, float(one.parts["operation"][name].values[k, 0]), with_unit=False
-                )
-                for _, one, k, _ in columns
-            ],
+            [_told(one.parts["operation"], name, k) for _, one, k, _ in columns],
         )
         for name in _SIDE_BY_SIDE
+        if any(name in one.parts["operation"] for _, one, *_ in columns)
     ]
     spread = [(_spread(one) or {"text": "not computed"})["text"] for _, one, *_ in columns]
     back = [_back_driving(one, law) for _, one, _, law in columns]
@@ -486,6 +563,18 @@ def _side_by_side(outcomes: Mapping[str, Outcome], known: Curves) -> dict[str, A
             ("back-driving", back),
         ],
     }
+
+
+def _told(data: Any, name: str, law: int) -> str:
+    """A figure at the operating point; one of a vibration only if there is a steady state."""
+    if name not in data:
+        return "not computed"
+    if name in _STEADY and "vibration_status" in data and data["vibration_status"].values[law, 0]:
+        return "none"
+    return show.quantity(name, float(data[name].values[law, 0]), with_unit=False)
+
+
+_STEADY = ("mean_transmission_error", "transmission_error_range", "largest_dynamic_factor")
 
 
 def _models(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:

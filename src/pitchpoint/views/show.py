@@ -11,6 +11,7 @@ __all__ = ["axis_title", "number", "pretty", "quantity", "signed", "span", "unit
 
 _UNITS = {
     "um": "µm",
+    "N/um": "N/µm",
     "degC": "°C",
     "deg": "°",
     "mm2/s": "mm²/s",

@@ -10,6 +10,7 @@ from pitchpoint import units
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
+from pitchpoint.views.design_chart import is_design_chart
 from pitchpoint.views.figures import (
     Choice,
     Curve,
@@ -28,6 +29,8 @@ from pitchpoint.views.figures import (
 __all__ = ["study_panels", "study_tables"]
 
 _SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "torque_ripple")
+_MOVING = ("mean_stiffness", "transmission_error_range", "largest_dynamic_factor")
+"""Shown where a case has vibration, the same under every friction law."""
 _TABLE = (
     "contact_ratio",
     "mean_efficiency",
@@ -45,6 +48,7 @@ _WORDS = {
     "operation.temperature": "oil temperature",
     "roughness.ra": "roughness Ra",
     "gears.addendum": "addendum of both basic racks [modules]",
+    "gears.profile_shift": "profile shift x1",
 }
 
 Seen = list[tuple[Curve, xr.Dataset, int]]
@@ -60,8 +64,8 @@ def study_tables(outcomes: Mapping[str, Outcome], known: Curves) -> list[dict[st
     return [
         {
             "title": str(seen[0][1].attrs["title"]),
-            "head": [show.axis_title(name) for name in _TABLE],
-            "rows": [(curve, _cells(data, law)) for curve, data, law in seen],
+            "head": [show.axis_title(name) for name in _columns(seen)],
+            "rows": [(curve, _cells(data, law, _columns(seen))) for curve, data, law in seen],
         }
         for name, seen in _studies(outcomes, known)
         if "axis" not in seen[0][1]
@@ -84,16 +88,35 @@ def _studies(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[s
         )
 
 
-def _cells(data: xr.Dataset, law: int) -> list[str]:
+def _columns(seen: Seen) -> list[str]:
+    """Quantities of the table of a study of a single point."""
+    more = ["mean_stiffness", "stiffness_variation", *_MOVING[1:]]
+    return [*_TABLE, *(name for name in more if any(name in data for _, data, _ in seen))]
+
+
+def _cells(data: xr.Dataset, law: int, columns: list[str]) -> list[str]:
     return [
-        show.quantity(name, float(data[name].values[law, 0]), with_unit=False) for name in _TABLE
+        show.quantity(name, float(_valid(data, name)[law, 0]), with_unit=False) for name in columns
     ]
+
+
+def _valid(data: xr.Dataset, name: str) -> np.ndarray:
+    """Values [law, point], those of a vibration only where there is a steady state."""
+    if name not in data:
+        return np.full(data["contact_ratio"].shape, np.nan)
+    values = data[name].values
+    if name in _MOVING[1:] and "vibration_status" in data:
+        return np.where(data["vibration_status"].values == 0, values, np.nan)
+    return np.asarray(values)
 
 
 def _panel(name: str, seen: Seen) -> Panel:
     data = seen[0][1]
-    axes = [_swept, _ratio] if _ratio_varies(data) else [_swept]
-    figures = [_figure(f"{name}_{variable}", variable, seen, axes[-1]) for variable in _SHOWN]
+    chart = is_design_chart(data)
+    axes = [_swept, _ratio] if _ratio_varies(data) and not chart else [_swept]
+    more = _MOVING[2:] if chart else _MOVING
+    shown = [*_SHOWN, *(name for name in more if any(name in data for _, data, _ in seen))]
+    figures = [_figure(f"{name}_{variable}", variable, seen, axes[-1]) for variable in shown]
     choices = []
     if len(axes) > 1:
         choices = [_choice(axis, figures, seen) for axis in reversed(axes)]
@@ -120,7 +143,7 @@ def _figure(name: str, variable: str, seen: Seen, axis: Any) -> Figure:
 
 
 def _trace(curve: Curve, data: xr.Dataset, law: int, variable: str, axis: Any, unit: str) -> Trace:
-    values = display(variable, data[variable].values[law])
+    values = display(variable, _valid(data, variable)[law])
     marks = {"mode": "lines+markers", "marker": {"size": 5, "color": curve.colour}}
     return line(curve, axis(data)[0], values, unit, **marks)
 

@@ -46,6 +46,8 @@
     const button = mesh.querySelector("button");
     const gears = mesh.querySelectorAll(".close .gear");
     const contacts = mesh.querySelectorAll(".contact");
+    const plane = mesh.querySelector(".plane");
+    const zone = JSON.parse(plane.dataset.motion);
 
     function between(place) {
       const points = motion.points;
@@ -63,16 +65,58 @@
       }
       const places = [];
       contacts.forEach((contact, lane) => {
-        const place = phase + lane;
-        const touches = place <= motion.ratio + 1e-9;
+        const place = phase + lane - motion.behind;
+        const touches = place >= -1e-9 && place <= motion.ratio + 1e-9;
         contact.setAttribute("visibility", touches ? "visible" : "hidden");
-        contact.setAttribute("cx", motion.start[0] + motion.step[0] * place);
-        contact.setAttribute("cy", motion.start[1] + motion.step[1] * place);
-        if (touches) places.push(place.toFixed(2) + " (" + between(place) + ")");
+        contact.setAttribute("cx", motion.start[0] + motion.step[0] * (phase + lane));
+        contact.setAttribute("cy", motion.start[1] + motion.step[1] * (phase + lane));
+        if (touches) places.push(place.toFixed(2) + (motion.behind ? "" : " (" + between(place) + ")"));
       });
-      const count = places.length === 1 ? "1 pair" : places.length + " pairs";
+      const pairs = lines(phase);
+      const where = motion.behind ? "; in this section at base pitches from A: " : ", base pitches from A: ";
       mesh.querySelector("output").textContent =
-        "phase " + phase.toFixed(2) + ": " + count + " in contact, base pitches from A: " + places.join(", ");
+        "phase " + phase.toFixed(2) + ": " + (pairs === 1 ? "1 pair" : pairs + " pairs") + " in contact" +
+        where + (places.join(", ") || "none");
+    }
+
+    // Parts of the face between which the line of a pair touches.
+    function ends(entered) {
+      if (entered > zone.alpha + zone.beta + 1e-9) return null;
+      if (!zone.beta) return [0, 1];
+      return [Math.max((entered - zone.alpha) / zone.beta, 0), Math.min(entered / zone.beta, 1)];
+    }
+
+    function lines(phase) {
+      const drawn = plane.querySelectorAll(".contact-line");
+      const dots = plane.querySelectorAll(".crossing");
+      const names = plane.querySelectorAll(".pair");
+      let length = 0;
+      let count = 0;
+      drawn.forEach((line, lane) => {
+        const entered = phase + lane;
+        const found = ends(entered);
+        const at = (share) => [share * zone.width, -(entered - zone.beta * share) * zone.pitch];
+        const middle = entered - zone.beta / 2;
+        const crosses = found && zone.beta && middle >= -1e-9 && middle <= zone.alpha + 1e-9;
+        for (const one of [line, names[lane]]) one.setAttribute("visibility", found ? "visible" : "hidden");
+        dots[lane].setAttribute("visibility", crosses ? "visible" : "hidden");
+        if (!found) return;
+        count += 1;
+        length += ((found[1] - found[0]) * zone.width) / zone.slope;
+        const [first, last, half] = [at(found[0]), at(found[1]), at(0.5)];
+        for (const [name, value] of [["x1", first[0]], ["y1", first[1]], ["x2", last[0]], ["y2", last[1]]]) {
+          line.setAttribute(name, value);
+        }
+        dots[lane].setAttribute("cx", half[0]);
+        dots[lane].setAttribute("cy", half[1]);
+        const part = (share) => found[0] + (found[1] - found[0]) * share;
+        const [x, y] = at(Math.abs(part(0.2) - 0.5) < 0.05 ? part(0.8) : part(0.2));
+        names[lane].setAttribute("x", x);
+        names[lane].setAttribute("y", y);
+        names[lane].setAttribute("dy", ".35em");
+      });
+      mesh.querySelector(".now").textContent = length.toPrecision(4) + " mm now;";
+      return count;
     }
 
     let timer = 0;

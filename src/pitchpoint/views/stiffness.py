@@ -1,0 +1,171 @@
+"""Stiffness of the mesh: of each pair and of all together, beside the standard's estimate."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    INK,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    continued,
+    display,
+    layout,
+    plain,
+    short_axis,
+)
+
+__all__ = [
+    "PAIRS",
+    "outside_standard",
+    "pair_key",
+    "stiffness_answer",
+    "stiffness_panels",
+    "stiffness_table",
+]
+
+PAIRS = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
+"""Names of the pairs: I entered in this period, II one period before, and so on."""
+
+PHASE = "phase of the mesh cycle [base pitches]"
+_ROWS = ("mean_stiffness", "stiffness_variation", "standard_stiffness", "standard_single_stiffness")
+_STANDARD = Key("mesh, estimate of ISO 6336-1", "#8a4b08", "longdash")
+_OUTSIDE = Key("mesh, estimate of ISO 6336-1, outside its range", "#8a4b08", "longdash")
+_TOTAL = Key("mesh", INK)
+_MEAN = Key("mesh, mean", GREY, "dot")
+
+
+def pair_key(position: int) -> Key:
+    """Entry of a pair in a legend, the same colour wherever it is shown."""
+    name = PAIRS[position] if position < len(PAIRS) else str(position + 1)
+    return Key(f"pair {name}", PALETTE[position % len(PALETTE)])
+
+
+def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+    """Figures for each variant whose stiffness is there."""
+    return [
+        _panel(f"stiffness{position}", name if len(outcomes) > 1 else "", one.parts["stiffness"])
+        for position, (name, one) in enumerate(outcomes.items())
+        if "stiffness" in one.parts
+    ]
+
+
+def stiffness_table(outcomes: Mapping[str, Outcome]) -> dict[str, Any] | None:
+    """Means and variations, a column for each variant; None without stiffness."""
+    parts = {
+        name: one.parts["stiffness"] for name, one in outcomes.items() if "stiffness" in one.parts
+    }
+    if not parts:
+        return None
+    rows = [
+        (_title(name), [_cell(data, name) for data in parts.values()])
+        for name in _ROWS
+        if any(name in data for data in parts.values())
+    ]
+    models = [str(data.attrs.get("model", "")) for data in parts.values()]
+    return {
+        "head": list(parts) if len(outcomes) > 1 else ["value"],
+        "rows": [*rows, ("teeth yield as", models)],
+    }
+
+
+def stiffness_answer(outcome: Outcome) -> str:
+    """Mean and variation in words; empty without stiffness."""
+    data = outcome.parts.get("stiffness")
+    if data is None:
+        return ""
+    return (
+        f"{_cell(data, 'mean_stiffness')} in the mean, varies by "
+        f"{_cell(data, 'stiffness_variation')} of it over the mesh cycle"
+    )
+
+
+def _title(name: str) -> str:
+    variable = VARIABLES[name]
+    symbol = f" {variable.symbol}" if variable.symbol not in variable.long_name else ""
+    return variable.long_name + symbol
+
+
+def _cell(data: xr.Dataset, name: str) -> str:
+    return show.quantity(name, float(data[name])) if name in data else "no estimate"
+
+
+def _panel(name: str, variant: str, data: xr.Dataset) -> Panel:
+    told = "; ".join(outside_standard(data))
+    note = f"The estimate of ISO 6336-1 is outside its range: {told}." if told else ""
+    return Panel(variant, [_over_phase(name, data), _of_a_pair(name, data)], note=note)
+
+
+def outside_standard(data: xr.Dataset) -> list[str]:
+    """Where the pair lies outside what the standard's estimate covers."""
+    told = json.loads(data.attrs.get("warnings", "[]"))
+    return [str(text) for text in told if "ISO 6336-1" in str(text)]
+
+
+def _over_phase(name: str, data: xr.Dataset) -> Figure:
+    phase, unit = data["phase"].values, show.unit(VARIABLES["mesh_stiffness"].display)
+    keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
+    traces = [
+        plain(key, *_shown(phase, values), unit)
+        for key, values in zip(keys, _touching(data, "pair_stiffness"), strict=True)
+    ]
+    total = plain(_TOTAL, *_shown(phase, data["mesh_stiffness"].values), unit)
+    total["line"] = {**total["line"], "width": 3}
+    standard = _OUTSIDE if outside_standard(data) else _STANDARD
+    levels = {_MEAN: "mean_stiffness", standard: "standard_stiffness"}
+    told = {key: variable for key, variable in levels.items() if variable in data}
+    traces += [total, *(_level(key, float(data[v]), unit) for key, v in told.items())]
+    return Figure(
+        f"{name}_phase",
+        "Stiffness of the pairs and of the mesh",
+        traces,
+        layout(PHASE, "k [N/µm]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}),
+        keys=(*keys, _TOTAL, *told),
+    )
+
+
+def _of_a_pair(name: str, data: xr.Dataset) -> Figure:
+    """A pair from its entry to its exit."""
+    entered = data["entered"].values.ravel()
+    order = np.argsort(entered, kind="stable")
+    values = _touching(data, "pair_stiffness").ravel()[order]
+    unit = show.unit(VARIABLES["pair_stiffness"].display)
+    key = Key("pair", PALETTE[0])
+    x, y = _shown(entered[order], values)
+    seen = np.isfinite(values)
+    end = float(entered[order][seen][-1]) if seen.any() else 1.0
+    return Figure(
+        f"{name}_pair",
+        "Stiffness of one pair from its entry to its exit",
+        [plain(key, x, y, unit)],
+        layout(
+            "base pitches since the pair entered ε_0",
+            short_axis("pair_stiffness"),
+            xaxis={"range": [-0.02 * end, 1.02 * end]},
+            yaxis={"rangemode": "tozero"},
+        ),
+    )
+
+
+def _touching(data: xr.Dataset, name: str) -> np.ndarray:
+    """Values [pair, node]; not a number where the pair does not touch."""
+    length = data["line_length"].values
+    return np.where(length > 1e-7 * length.max(initial=0.0), data[name].values, np.nan)
+
+
+def _shown(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return continued(x, display("mesh_stiffness", y))
+
+
+def _level(key: Key, value: float, unit: str) -> Trace:
+    return plain(key, [0.0, 1.0], [float(display("mesh_stiffness", value))] * 2, unit)

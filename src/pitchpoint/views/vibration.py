@@ -1,0 +1,365 @@
+"""Vibration of the mesh: transmission error, dynamic factors, orders, and speeds through resonance."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.facts import Facts, facts, given
+from pitchpoint.views.figures import (
+    DASHES,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    continued,
+    display,
+    layout,
+    plain,
+    rounded,
+    short_axis,
+    text,
+)
+from pitchpoint.views.stiffness import pair_key
+
+__all__ = ["resonance_panels", "vibration_answer", "vibration_panels", "vibration_tables"]
+
+ORDERS = range(1, 21)
+"""Orders of the mesh frequency that are drawn."""
+
+NONE = "No steady state was found that the model describes."
+TIME = "time over mesh period t/t_z"
+_ROWS = (
+    "natural_frequency",
+    "mesh_frequency",
+    "equivalent_mass",
+    "mean_transmission_error",
+    "transmission_error_range",
+    "static_transmission_error_range",
+    "largest_dynamic_factor",
+)
+_DYNAMIC = ("mean_transmission_error", "transmission_error_range", "largest_dynamic_factor")
+_AGAINST_SPEED = ("transmission_error_range", "largest_dynamic_factor")
+_FEW = 6
+
+
+def vibration_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+    """Figures for each variant whose vibration is there."""
+    return [
+        _panel(f"vibration{position}", name if len(outcomes) > 1 else "", one)
+        for position, (name, one) in enumerate(outcomes.items())
+        if "vibration" in one.parts
+    ]
+
+
+def vibration_tables(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
+    """Figures of every torque, a table for each variant."""
+    return [
+        {
+            "variant": name if len(outcomes) > 1 else "",
+            "contact": str(one.parts["vibration"].attrs.get("contact", "")),
+            "head": _torques(one.parts["vibration"]),
+            "rows": _rows(one),
+            "status": _status(one.parts["vibration"]),
+        }
+        for name, one in outcomes.items()
+        if "vibration" in one.parts
+    ]
+
+
+def vibration_answer(outcome: Outcome) -> list[str]:
+    """Transmission error for each torque in words; empty without vibration."""
+    data = outcome.parts.get("vibration")
+    if data is None:
+        return []
+    return [
+        f"at {torque}: {_error(data, k) if ok else told}"
+        for k, (torque, ok, told) in enumerate(
+            zip(_torques(data), _found(data), sentences(data), strict=True)
+        )
+    ]
+
+
+def _error(data: xr.Dataset, torque: int) -> str:
+    mean, spread = (_cell(data, name, torque) for name in _DYNAMIC[:2])
+    return f"{mean} in the mean, {spread} peak to peak"
+
+
+def sentences(data: xr.Dataset) -> list[str]:
+    """What became of the steady state, for each torque."""
+    return [str(one) for one in json.loads(data.attrs.get("status", "[]"))]
+
+
+def _found(data: xr.Dataset) -> list[bool]:
+    """For each torque whether a steady state was found that the model describes."""
+    return [int(code) == 0 for code in data["vibration_status"].values]
+
+
+def _torques(data: xr.Dataset) -> list[str]:
+    unit = show.unit(VARIABLES["torque"].display)
+    return [f"{show.number(float(value))} {unit}" for value in display("torque", data["torque"])]
+
+
+def _cell(data: xr.Dataset, name: str, torque: int) -> str:
+    if name in _DYNAMIC and not _found(data)[torque]:
+        return "none"
+    return show.quantity(name, float(data[name].values[torque]))
+
+
+def _rows(outcome: Outcome) -> list[tuple[str, list[str]]]:
+    data = outcome.parts["vibration"]
+    count = range(data.sizes["torque"])
+    rows = [(_title(name), [_cell(data, name, k) for k in count]) for name in _ROWS]
+    damping = given(outcome, "dynamics", "damping_ratio")
+    if damping:
+        rows.insert(3, ("damping ratio ζ", [damping] * len(count)))
+    return rows
+
+
+def _status(data: xr.Dataset) -> str:
+    """What became of the steady state, once for torques that share it."""
+    shared: dict[str, list[str]] = {}
+    for torque, sentence in zip(_torques(data), sentences(data), strict=True):
+        shared.setdefault(sentence, []).append(torque)
+    return "; ".join(f"at {', '.join(torques)} {told}" for told, torques in shared.items())
+
+
+def _title(name: str) -> str:
+    variable = VARIABLES[name]
+    return f"{variable.long_name} {variable.symbol}"
+
+
+def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
+    data, fact = outcome.parts["vibration"], facts(outcome) if "teeth" in outcome.parts else None
+    backwards = fact.backwards if fact else False
+    figures = [
+        _errors(name, data, backwards),
+        _factors(name, data, backwards),
+        _spectrum(name, data),
+    ]
+    return Panel(variant, figures, note=_missing(data))
+
+
+def _missing(data: xr.Dataset) -> str:
+    """Torques without a steady state that could be drawn, in words."""
+    told = [
+        f"At {torque} no dynamic values are shown: {sentence}."
+        for torque, ok, sentence in zip(_torques(data), _found(data), sentences(data), strict=True)
+        if not ok
+    ]
+    return " ".join(told)
+
+
+def _keys(data: xr.Dataset) -> list[Key]:
+    return [Key(words, PALETTE[k % len(PALETTE)]) for k, words in enumerate(_torques(data))]
+
+
+def _errors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
+    """Transmission error over one period, dynamic and static, for every torque."""
+    traces, keys = [], []
+    for k, (key, ok) in enumerate(zip(_keys(data), _found(data), strict=True)):
+        looks = {
+            "static_transmission_error": replace(key, label=f"{key.label}, static", dash="dot")
+        }
+        if ok:
+            looks["transmission_error"] = replace(key, label=f"{key.label}, dynamic")
+        for variable, look in reversed(looks.items()):
+            x, y = _over_time(data, data[variable].values[k], backwards)
+            traces.append(plain(look, x, display(variable, y), "µm"))
+            keys.append(look)
+    return Figure(
+        f"{name}_error",
+        "Transmission error over one mesh period",
+        traces,
+        layout(TIME, "δ [µm]", xaxis={"range": [0, 1]}),
+        "Dynamic: with inertia and damping. Static: load over stiffness at each instant.",
+        tuple(keys),
+        NONE,
+    )
+
+
+def _factors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
+    """Force of each pair over that of a single pair that carries everything."""
+    traces: list[Trace] = []
+    torques: list[tuple[str, str]] = []
+    for k, torque in enumerate(_torques(data)):
+        if not _found(data)[k]:
+            continue
+        dash = DASHES[len(torques) % len(DASHES)]
+        torques.append((torque, dash))
+        for pair, values in enumerate(data["dynamic_factor"].values[k]):
+            key = replace(pair_key(pair), label=f"{pair_key(pair).label}, {torque}", dash=dash)
+            course = np.where(np.abs(values) > 1e-12, values, np.nan)
+            traces.append(plain(key, *_over_time(data, course, backwards), ""))
+    keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
+    if len(torques) > 1:
+        keys += [Key(f"at {torque}", "#5b6873", dash) for torque, dash in torques]
+    return Figure(
+        f"{name}_factor",
+        "Dynamic factors of the pairs",
+        traces,
+        layout(TIME, short_axis("dynamic_factor"), xaxis={"range": [0, 1]}),
+        "Force of a pair over that of a single pair that carries everything without vibration.",
+        tuple(keys),
+        NONE,
+    )
+
+
+def _over_time(
+    data: xr.Dataset, values: np.ndarray, backwards: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Time over period, and values; where gear 2 drives the phase runs backwards."""
+    phase = data["phase"].values
+    return continued(1.0 - phase[::-1], values[::-1]) if backwards else continued(phase, values)
+
+
+def _spectrum(name: str, data: xr.Dataset) -> Figure:
+    """Amplitudes of the orders of the mesh frequency."""
+    wanted = np.isin(data["order"].values, ORDERS)
+    keys = [key for key, ok in zip(_keys(data), _found(data), strict=True) if ok]
+    each = [values for values, ok in zip(data["spectrum"].values, _found(data), strict=True) if ok]
+    traces = [
+        {
+            "type": "bar",
+            "name": text(key.label),
+            "meta": "",
+            "x": data["order"].values[wanted].tolist(),
+            "y": rounded(display("spectrum", values[wanted])),
+            "marker": {"color": key.colour},
+            "hovertemplate": "%{y:.4~g} µm<br>order %{x}",
+        }
+        for key, values in zip(keys, each, strict=True)
+    ]
+    return Figure(
+        f"{name}_spectrum",
+        "Orders of the transmission error",
+        traces,
+        layout(
+            "order of the mesh frequency",
+            short_axis("spectrum"),
+            xaxis={"tickvals": [1, *range(5, ORDERS[-1] + 1, 5)], "range": [0.4, ORDERS[-1] + 0.6]},
+            yaxis={"rangemode": "tozero"},
+            barmode="group",
+        ),
+        keys=tuple(replace(key, dash="") for key in keys),
+        missing=NONE,
+    )
+
+
+def resonance_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+    """Vibration against speed for each variant that has it."""
+    return [
+        Panel(
+            name if len(outcomes) > 1 else "",
+            [_against_speed(f"resonance{position}", variable, one) for variable in _AGAINST_SPEED],
+            note=" ".join(_gaps(one.parts["resonance"])),
+        )
+        for position, (name, one) in enumerate(outcomes.items())
+        if "resonance" in one.parts
+    ]
+
+
+def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
+    data = outcome.parts["resonance"]
+    values = np.where(data["vibration_status"].values == 0, data[variable].values, np.nan)
+    rising, falling = display(variable, values)
+    speed, unit = display("speed", data["speed"].values), show.unit(VARIABLES[variable].display)
+    same = np.allclose(rising, falling, rtol=1e-6, equal_nan=True)
+    traces = []
+    for key, up, down in zip(_keys(data), rising, falling, strict=True):
+        branches = (
+            {"rising": ("solid", up)}
+            if same
+            else {"rising": ("solid", up), "falling": ("dash", down)}
+        )
+        for branch, (dash, course) in branches.items():
+            look = replace(key, label=f"{key.label}, {branch}", dash=dash)
+            traces.append(plain(look, speed, course, unit, **_dots(key.colour, branch)))
+    keys = _keys(data)
+    note = "Speed rising and falling give the same."
+    if not same:
+        keys += [Key("speed rising", "#5b6873"), Key("speed falling", "#5b6873", "dash")]
+        note = "Where only the solid line is seen, both branches lie on each other."
+    marks = _resonances(outcome, speed)
+    if marks:
+        note += (
+            f" Dotted: speeds at which {', '.join(label for label, _ in marks)} is the mesh "
+            "frequency, with the mean stiffness."
+        )
+    title = VARIABLES[variable].long_name
+    return Figure(
+        f"{name}_{variable}",
+        f"{title[0].upper()}{title[1:]} against speed",
+        traces,
+        layout("driver speed [rpm]", short_axis(variable), yaxis={"rangemode": "tozero"})
+        | _verticals(marks),
+        note,
+        tuple(keys),
+        NONE,
+    )
+
+
+def _dots(colour: str, branch: str) -> dict[str, Any]:
+    """Small marks: a single speed between two gaps would be no line."""
+    symbol = "circle" if branch == "rising" else "circle-open"
+    return {"mode": "lines+markers", "marker": {"size": 4, "color": colour, "symbol": symbol}}
+
+
+def _resonances(outcome: Outcome, speed: np.ndarray) -> list[tuple[str, float]]:
+    """Driver speeds in rpm at which a part of the natural frequency is the mesh frequency."""
+    if not {"vibration", "teeth"} <= outcome.parts.keys():
+        return []
+    natural = float(outcome.parts["vibration"]["natural_frequency"].values[-1])
+    fact = facts(outcome)
+    found: list[tuple[str, float]] = []
+    for part in range(1, _FEW + 1):
+        rpm = _rpm(natural / part, fact)
+        near = found and abs(found[-1][1] - rpm) < 0.13 * np.ptp(speed)
+        if speed.min() <= rpm <= speed.max() and not near:
+            found.append(("f_n" if part == 1 else f"f_n/{part}", rpm))
+    return found
+
+
+def _rpm(mesh_frequency: float, fact: Facts) -> float:
+    rate = mesh_frequency * fact.period_angle
+    return rate * 60.0 / (2.0 * pi)
+
+
+def _verticals(marks: Sequence[tuple[str, float]]) -> dict[str, Any]:
+    return {
+        "shapes": [
+            {"type": "line", "x0": x, "x1": x, "yref": "paper", "y0": 0, "y1": 1, "layer": "below"}
+            | {"line": {"color": "#9aa5ad", "width": 1, "dash": "dot"}}
+            for _, x in marks
+        ],
+        "annotations": [
+            {"text": label, "x": x, "yref": "paper", "y": 1, "yanchor": "bottom"}
+            | {"showarrow": False, "font": {"size": 12}}
+            for label, x in marks
+        ],
+    }
+
+
+def _gaps(data: xr.Dataset) -> Iterator[str]:
+    """For each direction and torque how many speeds have no steady state, and why."""
+    told = json.loads(data.attrs.get("sentences", "[]"))
+    codes = data["vibration_status"].values
+    speed = display("speed", data["speed"].values)
+    for way, by_torque in zip(data["direction"].values, codes, strict=True):
+        for torque, found in zip(_torques(data), by_torque, strict=True):
+            for code in np.unique(found[found != 0]):
+                where = speed[found == code]
+                ends = f"{show.number(where[0])} to {show.number(where[-1])} rpm"
+                words = ends if where.size > 1 else f"{show.number(where[0])} rpm"
+                yield (
+                    f"At {torque}, speed {way}: {where.size} of {speed.size} speeds ({words}) "
+                    f"are left out, {told[int(code)] if int(code) < len(told) else 'not solved'}."
+                )
