@@ -19,6 +19,7 @@ FLOW = (
     {"loading"},
     {"lubrication"},
     {"efficiency"},
+    {"dynamics"},
     {"results"},
     {"cases"},
     {"views"},
@@ -26,7 +27,7 @@ FLOW = (
 )
 RANK = {folder: rank for rank, folders in enumerate(FLOW) for folder in folders}
 HEAVY = {"jax", "equinox", "optimistix", "lineax", "numpy", "scipy", "pandas", "xarray", "plotly"}
-HEAVY |= {"h5netcdf", "h5py", "pint"}
+HEAVY |= {"diffrax", "h5netcdf", "h5py", "pint"}
 
 
 def absolute(node: ast.ImportFrom, package: tuple[str, ...]) -> str:

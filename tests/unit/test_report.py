@@ -467,7 +467,7 @@ def test_path_is_tangent_to_both_base_circles(drawn: Drawing) -> None:
     along = last - first
     for gear, point in enumerate((first, last)):
         arm = point - [0.0, gear * drawn.distance]
-        assert drawn.distance < 0.0 or not drawn.fact.internal
+        assert (drawn.distance < 0.0) == drawn.fact.internal
         assert np.hypot(*arm) == pytest.approx(drawn.radius("base", gear), rel=1e-12)
         assert arm @ along == pytest.approx(0.0, abs=1e-12)
 

@@ -7,12 +7,21 @@ from pydantic import BaseModel
 from pitchpoint import units
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.schema import FrictionChoice, quantity_at
 from pitchpoint.cases.solids import SolidInUse
 
 __all__ = ["resolved"]
 
-_TABLES = ("gears", "materials", "lubricant", "roughness", "operation", "models")
+_TABLES = (
+    "gears",
+    "materials",
+    "lubricant",
+    "roughness",
+    "operation",
+    "models",
+    "housing",
+    "dynamics",
+)
 
 _SOLID = {"young": "Young's modulus", "poisson": "Poisson's ratio", "density": "density"}
 
@@ -75,7 +84,9 @@ def _solid(gear: int, used: SolidInUse) -> list[dict[str, str]]:
 
 
 def _rows(built: Built, document: Document, table: str) -> list[dict[str, str]]:
-    model: BaseModel = getattr(built.case, table)
+    model: BaseModel | None = getattr(built.case, table)
+    if model is None:
+        return []
     given = document.tree.get(table, {})
     rows = []
     for key in type(model).model_fields:
@@ -110,11 +121,13 @@ def _value(value: Any, key: str, built: Built, name: str) -> str | None:
     if isinstance(value, BaseModel):
         return ", ".join(f"{name} {item}" for name, item in value.model_dump().items())
     if isinstance(value, tuple):
-        return ", ".join(_choice(item) for item in value)
+        return ", ".join(_choice(item) for item in value) or "none"
     return str(value)
 
 
 def _choice(item: Any) -> str:
+    if not isinstance(item, FrictionChoice):
+        return " ".join(f"{key} {number:g}" for key, number in item.model_dump().items())
     own = ", ".join(f"{key} {value:g}" for key, value in item.parameters.items())
     return f"{item.name} ({own})" if own else str(item.name)
 

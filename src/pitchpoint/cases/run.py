@@ -17,8 +17,11 @@ from pitchpoint.cases.library import find
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.studies import Job, Variant, few, jobs
 from pitchpoint.citations import cite
+from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError
 from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -325,13 +328,12 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
     case, document = built.case, variant.document()
     models, chosen = laws_of(built)
     laws = [models.friction[index] for index in chosen]
-    others: list[Any] = [
-        LOAD_SHARING[case.models.load_sharing],
-        ROLLING_RESISTANCE[case.models.rolling_resistance],
-        FILM_THICKNESS[case.models.film_thickness],
-    ]
-    keys = [key for law in [*laws, *others] for key in law.sources]
+    others = _models(built)
+    keys = [key for law in [*laws, *others.values()] for key in law.sources]
     keys += [datum.source for datum in built.lubricant.data().values() if datum.source]
+    keys += [
+        one.source for used in built.solids for one in used.record.data().values() if one.source
+    ]
     if case.source:
         keys.insert(0, case.source)
     return {
@@ -344,7 +346,10 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
         "inputs": inputs.resolved(built, document),
         "warnings": list(built.warnings),
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
-        "models": [{"name": law.name, "title": law.title, "note": law.note} for law in others],
+        "models": [
+            {"effect": effect, "name": law.name, "title": law.title, "note": law.note}
+            for effect, law in others.items()
+        ],
         "averaging": case.models.averaging,
         "oil": built.lubricant.title or built.lubricant.name,
         "sources": [{"key": key, "text": cite(key)} for key in dict.fromkeys(keys)],
@@ -353,6 +358,23 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
         "parts": [],
         "finished": False,
     }
+
+
+def _models(built: Built) -> dict[str, Any]:
+    """Models that the case uses beside friction, by effect."""
+    case = built.case
+    found: dict[str, Any] = {
+        "load sharing": LOAD_SHARING[case.models.load_sharing],
+        "rolling resistance": ROLLING_RESISTANCE[case.models.rolling_resistance],
+        "film thickness": FILM_THICKNESS[case.models.film_thickness],
+    }
+    if case.dynamics is not None or found["load sharing"].by_stiffness:
+        found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
+    if case.dynamics is not None:
+        found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
+    if case.models.tooth_temperature != "isothermal":
+        found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
+    return found
 
 
 def _tree(variant: Variant) -> Tree:

@@ -25,7 +25,6 @@ from pitchpoint.cases.schema import (
     quantity_at,
     validate,
 )
-from pitchpoint.cases.vibration import figures_of, resonance_part, stiffness_part, vibration_part
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.efficiency.summary import summarise
@@ -141,15 +140,26 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     yield Job("cycle", "mesh cycle", (lambda _: _cycle(built),))
     yield Job("operation", "operating point", (lambda _: _operation(built),))
     yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
-    if built.case.dynamics is not None or LOAD_SHARING[built.case.models.load_sharing].by_stiffness:
-        yield Job("stiffness", "mesh stiffness", (lambda _: stiffness_part(built),))
-    if built.case.dynamics is not None:
-        yield Job("vibration", "vibration", (lambda _: vibration_part(built),))
-        if built.case.dynamics.speeds is not None:
-            yield Job("resonance", "vibration against speed", (lambda _: resonance_part(built),))
+    yield from _yielding(built)
     yield from studies
     yield Job("loss_map", "loss map", (lambda progress: _loss_map(built, progress),))
     yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
+
+
+def _yielding(built: Built) -> Iterator[Job]:
+    """Parts on stiffness and vibration; what they import is not needed without them."""
+    dynamics = built.case.dynamics
+    if dynamics is None and not LOAD_SHARING[built.case.models.load_sharing].by_stiffness:
+        return
+    from pitchpoint.cases import vibration
+
+    yield Job("stiffness", "mesh stiffness", (lambda _: vibration.stiffness_part(built),))
+    if dynamics is None:
+        return
+    yield Job("vibration", "vibration", (lambda _: vibration.vibration_part(built),))
+    if dynamics.speeds is not None:
+        title = "vibration against speed"
+        yield Job("resonance", title, (lambda _: vibration.resonance_part(built),))
 
 
 def _teeth(built: Built) -> xr.Dataset:
@@ -382,6 +392,8 @@ def _vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
     """Figures of stiffness and vibration, the same under every friction law."""
     if points[0].case.dynamics is None:
         return {}
+    from pitchpoint.cases.vibration import figures_of
+
     found = _in_groups(points, figures_of)
     return {name: (("law", "point"), np.stack([values] * laws)) for name, values in found.items()}
 

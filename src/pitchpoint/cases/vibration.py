@@ -1,6 +1,6 @@
 """Stiffness of the mesh and the vibration it excites, as datasets of a case."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -110,15 +110,14 @@ def _stiffness(design: Design, operation: Operation, models: Models) -> dict[str
 def vibration_part(built: Built) -> xr.Dataset:
     """Steady vibration at the operating speed for every torque of the case."""
     inputs = [(built.design, point, vibrating_of(built)) for point in _loads(built)]
-    parts = [jax.device_get(_course(*each)) for each in _solved(inputs, built)]
+    found = _solved(inputs, built, _course)
     dims = {"dynamic_factor": ("torque", "pair", "node"), "spectrum": ("torque", "order")}
     nodal = ("transmission_error", "static_transmission_error")
-    data: dict[str, Any] = {"phase": (("node",), parts[0]["phase"])}
-    for name in parts[0]:
-        if name != "phase":
-            own = ("torque", "node") if name in nodal else ("torque",)
-            data[name] = (dims.get(name, own), np.stack([part[name] for part in parts]))
-    told = [Status(int(part["vibration_status"])) for part in parts]
+    data: dict[str, Any] = {"phase": (("node",), found.pop("phase")[0])}
+    for name, values in found.items():
+        own = ("torque", "node") if name in nodal else ("torque",)
+        data[name] = (dims.get(name, own), values)
+    told = [Status(int(code)) for code in found["vibration_status"]]
     return dataset(
         data,
         {"torque": ("torque", _torques(built)), "order": ("order", np.array(ORDERS))},
@@ -129,7 +128,6 @@ def vibration_part(built: Built) -> xr.Dataset:
     )
 
 
-@eqx.filter_jit
 def _course(stiffness: MeshStiffness, moved: System, found: Response) -> dict[str, Array]:
     factor = found.dynamic_factor(nominal_force(stiffness, moved))
     return {
@@ -203,37 +201,39 @@ def _sweep(
 def figures_of(points: Sequence[Built]) -> dict[str, np.ndarray]:
     """Figures of stiffness and vibration of many points of equal static structure."""
     inputs = [(point.design, point.operation, vibrating_of(point)) for point in points]
-    found = [jax.device_get(_figures(*each)) for each in _solved(inputs, points[0])]
-    return {name: np.stack([one[name] for one in found]) for name in found[0]}
+    return _solved(inputs, points[0], transmission_figures)
 
 
-_figures = eqx.filter_jit(transmission_figures)
-_excited = eqx.filter_jit(excited)
+Reading = Callable[[MeshStiffness, System, Response], dict[str, Array]]
+Excited = tuple[MeshStiffness, System, Excitation]
 
 
-def _solved(
-    inputs: Sequence[Input], built: Built
-) -> Iterator[tuple[MeshStiffness, System, Response]]:
-    """Steady vibration of every input, solved together in chunks of one size."""
+def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str, np.ndarray]:
+    """What is read from the steady vibration of every input, solved in chunks of one size."""
     models = laws_of(built)[0]
     parts = [_excited(design, point, models, own) for design, point, own in inputs]
     grid = _grid(parts)
+    found = []
     for start in range(0, len(parts), TOGETHER):
         chunk = parts[start : start + TOGETHER]
         padded = chunk + [chunk[-1]] * (TOGETHER - len(chunk))
-        stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *[part[1:] for part in padded])
-        found = _steady(*stacked, grid, separating(built))
-        for index, (stiffness, moved, _) in enumerate(chunk):
-            yield stiffness, moved, jax.tree.map(lambda leaf, i=index: leaf[i], found)
+        stacked = jax.tree.map(lambda *leaves: np.stack(leaves), *padded)
+        read = jax.device_get(_read(stacked, grid, separating(built), reading))
+        found.append({name: values[: len(chunk)] for name, values in read.items()})
+    return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
 
 
 @eqx.filter_jit
-def _steady(moved: System, driven: Excitation, grid: Grid, parting: bool) -> Response:
-    def one(system: System, excitation: Excitation) -> Response:
-        return steady(system, excitation, grid, separating=parting)
+def _read(parts: Excited, grid: Grid, parting: bool, reading: Reading) -> dict[str, Array]:
+    def one(stiffness: MeshStiffness, moved: System, driven: Excitation) -> dict[str, Array]:
+        return reading(stiffness, moved, steady(moved, driven, grid, separating=parting))
 
-    found: Response = eqx.filter_vmap(one)(moved, driven)
+    found: dict[str, Array] = eqx.filter_vmap(one)(*parts)
     return found
+
+
+_excited = eqx.filter_jit(excited)
+_ratio = eqx.filter_jit(frequency_ratio)
 
 
 def _loads(built: Built) -> list[Operation]:
@@ -245,9 +245,9 @@ def _torques(built: Built) -> list[float]:
     return list(built.case.dynamics.torques or (built.case.operation.torque,))
 
 
-def _grid(parts: Sequence[tuple[MeshStiffness, System, Excitation]]) -> Grid:
+def _grid(parts: Sequence[Excited]) -> Grid:
     """Grid for the highest of the natural frequencies, all over their mesh frequency."""
-    ratios = [float(frequency_ratio(stiffness, moved)) for stiffness, moved, _ in parts]
+    ratios = [float(_ratio(stiffness, moved)) for stiffness, moved, _ in parts]
     return Grid.resolving(max(ratios))
 
 

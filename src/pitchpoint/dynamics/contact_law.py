@@ -21,12 +21,16 @@ class ContactLaw:
         name, title: by which it is picked, and what it says.
         function: force over stiffness, and its derivative, from stretch and backlash.
         linear: True where one solution of a linear system is the answer.
+        sources: keys of the bibliography.
+        note: caution for the user.
     """
 
     name: str
     title: str
     function: Callable[[Each, Float[Array, ""]], tuple[Each, Each]]
     linear: bool = False
+    sources: tuple[str, ...] = ()
+    note: str = ""
 
 
 def linear(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:

@@ -12,7 +12,7 @@ from pitchpoint.efficiency.quasi_static import _between, _lobatto
 
 __all__ = ["Grid"]
 
-_DEGREE = 8
+_DEGREE = 6
 """Degree of the polynomials between neighbouring nodes: exact to rounding for what nodes resolve."""
 
 _PHASE_PER_ELEMENT = 20.0

@@ -3,11 +3,12 @@
 from typing import TypeAlias
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["Chain", "Map", "chain", "compose", "identity", "product"]
+__all__ = ["Chain", "Map", "chain", "compose", "identity", "on_last", "product"]
 
 Map: TypeAlias = Float[Array, "state state+1 *b"]
 
@@ -53,12 +54,21 @@ def chain(maps: Float[Array, "state state+1 element interval"]) -> Chain:
 
 def product(left: Float[Array, "i j *b"], right: Float[Array, "j k *b"]) -> Float[Array, "i k *b"]:
     """Matrix product with the batch last, where it runs along rows."""
-    return jnp.sum(left[:, :, None] * right[None], axis=1)
+    value: Array = left[:, 0, None] * right[None, 0]
+    for j in range(1, right.shape[0]):
+        value = value + left[:, j, None] * right[None, j]
+    return value
 
 
 def compose(after: Map, before: Map) -> Map:
     """The map that does one after the other."""
-    return product(after[:, :-1], before).at[:, -1].add(after[:, -1])
+    return product(after[:, :-1], before) + on_last(after[:, -1], after.shape[1])
+
+
+def on_last(column: Float[Array, "row *b"], columns: int) -> Float[Array, "row column *b"]:
+    """Zeros but for the last column: to add it so remains elementwise, a scatter is slow."""
+    last = jnp.asarray(np.arange(columns) == columns - 1)
+    return column[:, None] * last.reshape(1, -1, *(1 for _ in column.shape[1:]))
 
 
 def identity(size: int, batch: tuple[int, ...]) -> Map:

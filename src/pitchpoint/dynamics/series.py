@@ -5,7 +5,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import Course
-from pitchpoint.dynamics.maps import Map, compose, identity, product
+from pitchpoint.dynamics.maps import Map, compose, identity, on_last, product
 
 __all__ = ["by_series"]
 
@@ -14,6 +14,9 @@ TERMS = 16
 
 LAST = 1e-9
 """Largest last term, of states of order one."""
+
+Carry = tuple[tuple[Array, ...], Array]
+"""Latest places first, as many as the stiffness has powers; and the latest speed."""
 
 
 def by_series(
@@ -42,19 +45,17 @@ def by_series(
     size = equations.load.shape[0]
     middle = identity(size, half.shape)
 
-    def term(
-        carry: tuple[Array, Array], at: tuple[Array, Array]
-    ) -> tuple[tuple[Array, Array], Map]:
-        places, speed = carry  # the latest place first, as many as the stiffness has powers
-        load, scale = at[0], half / at[1]
-        elastic = jnp.sum(stiffness[:, :, :, None] * places[:, None], axis=(0, 2))
-        force = (elastic + product(damping, speed)).at[:, -1].add(-load)
+    def term(carry: Carry, at: tuple[Array, Array]) -> tuple[Carry, Map]:
+        places, speed = carry
+        scale = half / at[1]
+        force = product(damping, speed) - on_last(at[0], 2 * size + 1)
+        for power, before in zip(stiffness, places, strict=True):
+            force = force + product(power, before)
         place, speed = scale * speed, -scale * force
-        places = jnp.concatenate([place[None], places[:-1]])
-        return (places, speed), jnp.concatenate([place, speed])
+        return ((place, *places[:-1]), speed), jnp.concatenate([place, speed])
 
-    before = jnp.zeros((stiffness.shape[0] - 1, size, 2 * size + 1, *half.shape))
-    start = (jnp.concatenate([middle[None, :size], before]), middle[size:])
+    none = jnp.zeros_like(middle[:size])
+    start = ((middle[:size], *(none for _ in stiffness[1:])), middle[size:])
     _, terms = jax.lax.scan(term, start, (load, jnp.arange(1.0, TERMS + 1.0)))
     odd, even = jnp.sum(terms[::2], axis=0), middle + jnp.sum(terms[1::2], axis=0)
     return compose(even + odd, _inverse(even - odd)), jnp.max(jnp.abs(terms[-1])) < LAST

@@ -138,6 +138,11 @@ class CylindricalPair(Mesh):
         return self._gear(0), self._gear(1)
 
     @property
+    def toothed(self) -> bool:
+        """Both gears have teeth."""
+        return True
+
+    @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
         """Teeth of both gears in the normal section."""
         first, second = self.gears

@@ -86,6 +86,11 @@ class Mesh(eqx.Module):
         return None
 
     @property
+    def toothed(self) -> bool:
+        """True if the members have teeth that yield: `sections` holds them."""
+        return False
+
+    @property
     def sections(self) -> tuple[ToothSection, ToothSection] | None:
         """Teeth of the two members as they yield, or None where there are no teeth."""
         return None

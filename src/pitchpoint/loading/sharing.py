@@ -48,7 +48,7 @@ class LoadSharing:
         """True if the model holds for this mesh."""
         low, high = self.ratio_range
         inclined = self.straight and float(mesh.overlap_ratio) > 0.0
-        toothless = self.by_stiffness and mesh.sections is None
+        toothless = self.by_stiffness and not mesh.toothed
         return low < float(mesh.contact_ratio) < high and not inclined and not toothless
 
     def check(self, mesh: Mesh) -> None:

@@ -1,1 +1,1 @@
-"""Figures and the report: results made visible, with nothing computed anew."""
+"""Figures and the report: results made visible; nothing but the geometry of drawings is computed."""

@@ -583,7 +583,7 @@ def _models(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
     for variant, outcome in outcomes.items():
         manifest = outcome.manifest
         named = [("friction", law) for law in manifest["laws"]]
-        named += list(zip(_EFFECTS, manifest["models"], strict=False))
+        named += [(model["effect"], model) for model in manifest["models"]]
         for effect, model in named:
             entry = found.setdefault(
                 f"{effect} {model['name']}",
@@ -592,9 +592,6 @@ def _models(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:
             )
             entry["variants"] += ", " * bool(entry["variants"]) + variant
     return list(found.values())
-
-
-_EFFECTS = ("load sharing", "rolling resistance", "film thickness")
 
 
 def _parts(outcomes: Mapping[str, Outcome]) -> list[dict[str, str]]:

@@ -1,0 +1,434 @@
+"""Plane of action, stiffness, vibration and design chart in the report, from results made by hand."""
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.results.store import dataset
+from pitchpoint.views.cycle import along, loss_places
+from pitchpoint.views.design_chart import design_charts
+from pitchpoint.views.facts import facts
+from pitchpoint.views.figures import Figure, Panel, continued
+from pitchpoint.views.plane_of_action import PlaneOfAction, plane_of_action
+from pitchpoint.views.report import render
+from pitchpoint.views.sliding import sliding_figure
+from pitchpoint.views.stiffness import stiffness_answer, stiffness_panels
+from pitchpoint.views.vibration import resonance_panels, vibration_answer, vibration_panels
+
+FOUND, UNSTABLE = "a steady state was found, and disturbances of it die out", "it <b>grows</b>"
+BESIDE = "a contact ratio of 0.9 is below the 1.2 for which ISO 6336-1 gives its estimate"
+EVIL = "</script><img src=x>"
+
+
+def pair_of(**changes: Any) -> CylindricalPair:
+    return build_cylindrical_pair(
+        **{"module": 0.0015, "pressure_angle": np.deg2rad(20.0), "face_width": 0.016, **changes}
+    )
+
+
+def teeth_of(pair: CylindricalPair) -> xr.Dataset:
+    numbers = {name: np.asarray(value) for name, value in pair.drawing().items()}
+    dims = {"outline": ("gear", "corner", "xy"), "points": ("point",)}
+    return dataset(
+        {name: (dims.get(name, ("gear",)[: v.ndim]), v) for name, v in numbers.items()},
+        {"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+        title="teeth",
+    )
+
+
+@pytest.fixture(scope="module")
+def helical() -> CylindricalPair:
+    return pair_of(
+        teeth=(4, 51),
+        helix_angle=np.deg2rad(20.0),
+        profile_shift=(0.74, 0.05),
+        least_tip=0.25,
+    )
+
+
+def stiffness() -> xr.Dataset:
+    phase = np.linspace(0.0, 1.0, 41)
+    each = np.stack([2e6 + 1e6 * phase, np.where(phase < 0.5, 3e6, 0.0)])
+    return dataset(
+        {
+            "phase": (("node",), phase),
+            "entered": (("pair", "node"), np.stack([phase, phase + 1.0])),
+            "pair_stiffness": (("pair", "node"), each),
+            "line_length": (("pair", "node"), (each > 0.0) * 0.016),
+            "mesh_stiffness": (("node",), each.sum(axis=0)),
+            "mean_stiffness": ((), 3.977e6),
+            "stiffness_variation": ((), 0.1614),
+            "standard_stiffness": ((), 3.04e6),
+        },
+        {},
+        title="mesh stiffness",
+        warnings=[BESIDE],
+        model="beam",
+    )
+
+
+def vibration(codes: tuple[int, int] = (0, 0)) -> xr.Dataset:
+    phase = np.linspace(0.0, 1.0, 41)
+    error = np.stack([30e-6 + 2e-6 * np.sin(2.0 * np.pi * phase)] * 2) * [[1.0], [1.4]]
+    one = ("torque",)
+    figures = {
+        "mean_transmission_error": [30e-6, 42e-6],
+        "transmission_error_range": [4e-6, 5.6e-6],
+        "static_transmission_error_range": [3e-6, 4.2e-6],
+        "largest_dynamic_factor": [0.9, 0.9],
+        "natural_frequency": [6700.0, 6800.0],
+        "mesh_frequency": [120.0, 120.0],
+        "equivalent_mass": [2.2e-3, 2.2e-3],
+        "vibration_status": list(codes),
+    }
+    factor = np.broadcast_to([phase, 1.0 - phase], (2, 2, 41))
+    return dataset(
+        {
+            "phase": (("node",), phase),
+            "transmission_error": (("torque", "node"), error),
+            "static_transmission_error": (("torque", "node"), 0.9 * error),
+            "dynamic_factor": (("torque", "pair", "node"), factor),
+            "spectrum": (("torque", "order"), np.outer([1.0, 1.4], 1e-6 / np.arange(1.0, 42.0))),
+            **{name: (one, values) for name, values in figures.items()},
+        },
+        {"torque": [3.825, 5.355], "order": np.arange(41)},
+        title="vibration",
+        warnings=[],
+        status=[(FOUND, UNSTABLE)[bool(code)] for code in codes],
+        contact="teeth never part",
+    )
+
+
+def resonance() -> xr.Dataset:
+    speed = np.linspace(200.0, 8000.0, 12)
+    values = np.broadcast_to(np.linspace(1e-6, 9e-6, 12), (2, 2, 12)).copy()
+    codes = np.zeros((2, 2, 12), dtype=int)
+    values[1, 1, 6:8], codes[1, 1, 4:6] = 20e-6, 1
+    dims = ("direction", "torque", "speed")
+    return dataset(
+        {
+            "transmission_error_range": (dims, values),
+            "largest_dynamic_factor": (dims, np.ones((2, 2, 12))),
+            "vibration_status": (dims, codes),
+        },
+        {"direction": ["rising", "falling"], "torque": [3.825, 5.355], "speed": speed},
+        title="vibration against speed",
+        warnings=[],
+        sentences=[FOUND, UNSTABLE],
+    )
+
+
+def study(x: np.ndarray, tips: np.ndarray) -> xr.Dataset:
+    names = {
+        "contact_ratio": 2.0 - x,
+        "transmission_error_range": 1e-6 * x,
+        "mean_stiffness": 4e6 * np.ones_like(x),
+        "tip_thickness_1": tips,
+        "undercut_limit_1": np.full_like(x, 0.72),
+        "vibration_status": (x > 0.85).astype(int),
+    }
+    return dataset(
+        {name: (("law", "point"), values[None]) for name, values in names.items()}
+        | {"axis": (("point",), x)},
+        {"law": ["constant"]},
+        title=EVIL,
+        sweep_key="gears.profile_shift",
+    )
+
+
+def outcome(parts: Mapping[str, xr.Dataset], **rows: str) -> Outcome:
+    given = {
+        "operation.driver": "gear 1",
+        "operation.torque": "5.355 N m",
+        "operation.speed": "1800 rpm",
+        "operation.temperature": "23 degC",
+        "gears.flank": "left",
+        "gears.module": "1.5 mm",
+        "gears.least_tip_thickness": "0.25",
+        "dynamics.damping_ratio": "0.16",
+        **rows,
+    }
+    entries = [
+        dict(zip(("table", "key"), name.split("."), strict=True))
+        | {"value": value, "status": "given", "where": "", "note": ""}
+        for name, value in given.items()
+    ]
+    empty: dict[str, Any] = {"laws": [], "sources": [], "issues": [], "rows": [], "settings": {}}
+    manifest = {
+        "case": "by hand",
+        "variant": "default",
+        "title": "by hand",
+        "summary": "",
+        "oil": "oil",
+        "averaging": "base_pitch",
+        "finished": True,
+        "warnings": ["of the design", BESIDE],
+        "inputs": entries,
+        "models": [{"name": "equal", "title": "equal", "note": ""}],
+        **empty,
+    }
+    return Outcome(manifest, dict(parts))
+
+
+@pytest.fixture(scope="module")
+def whole(helical: CylindricalPair) -> Outcome:
+    return outcome(
+        {
+            "teeth": teeth_of(helical),
+            "stiffness": stiffness(),
+            "vibration": vibration(),
+            "resonance": resonance(),
+        }
+    )
+
+
+def figure(panels: list[Panel], name: str) -> Figure:
+    return next(f for panel in panels for f in panel.figures if f.name.endswith(name))
+
+
+def named(shown: Figure) -> dict[str, dict[str, Any]]:
+    """Traces by name; spaces in units do not break lines."""
+    return {trace["name"].replace("\u00a0", " "): trace for trace in shown.data}
+
+
+def words(page: str) -> str:
+    body = re.sub(r"<(script|style).*?</\1>", "", page, flags=re.S)
+    return " ".join(re.sub(r"<[^>]*>", " ", body).split())
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta"), [(0.888, 1.161), (1.46, 1.42), (1.6, 0.3), (0.4, 0.75), (2.2, 2.9), (1.5, 0)]
+)
+def test_lengths_of_contact_lines_have_closed_forms(alpha: float, beta: float) -> None:
+    plane = PlaneOfAction(alpha, beta, 0.005, 0.02, 0.3 * bool(beta), 0.002)
+    edges = np.unique(np.array([0.0, alpha, beta, alpha + beta]) % 1.0)
+    inside = [phase + step for phase in edges for step in (-1e-9, 1e-9)]
+    lengths = [plane.total_length(phase) for phase in inside]
+    low, high = plane.extreme_lengths
+    assert min(lengths) == pytest.approx(low, rel=1e-6)
+    assert max(lengths) == pytest.approx(high, rel=1e-6)
+    mean = np.mean([plane.total_length(phase) for phase in (np.arange(2000) + 0.5) / 2000])
+    assert mean == pytest.approx(plane.mean_length, rel=1e-4)
+
+
+def test_contact_lines_are_as_long_as_the_contacts(helical: CylindricalPair) -> None:
+    plane = plane_of_action(teeth_of(helical))
+    phases = np.array([0.02, 0.3, 0.7, 0.95])
+    contacts = helical.contacts(phases)
+    weights = np.where(contacts.active, contacts.weight, 0.0).sum(axis=(0, 1))
+    assert weights == pytest.approx([plane.total_length(phase) for phase in phases], rel=1e-6)
+
+
+def test_a_line_crosses_the_plane_at_the_base_helix_angle(helical: CylindricalPair) -> None:
+    plane = plane_of_action(teeth_of(helical))
+    rise = plane.overlap_ratio * plane.base_pitch / plane.face_width
+    assert rise == pytest.approx(np.tan(plane.base_helix_angle), rel=1e-9)
+    assert plane.ends(-0.01) is None
+    assert plane.ends(plane.transverse_ratio + plane.overlap_ratio + 0.01) is None
+    assert plane.ends(0.5 * plane.overlap_ratio) == pytest.approx((0.0, 0.5))
+
+
+def test_page_has_every_section_and_figure(whole: Outcome) -> None:
+    page = render({"default": whole})
+    text = words(page)
+    for part in ("Plane of action", "Mesh stiffness", "Vibration", "Against speed"):
+        assert part in text
+    found = re.search(r'id="figures">(.*?)</script>', page, re.S)
+    assert found
+    drawn = json.loads(found.group(1))["figures"]
+    assert sorted(drawn) == sorted(re.findall(r'class="plot" id="([^"]*)"', page))
+    assert len(drawn) == 1 + 2 + 3 + 2
+    assert not re.search(r"\b(nan|none|inf)\b", text, re.I)
+    for told in ("least 13.64 mm", "damping ratio ζ 0.16 0.16", "equivalent mass m_e 2.200 g"):
+        assert told in text
+
+
+def test_top_tells_stiffness_and_transmission_error(whole: Outcome) -> None:
+    text = words(render({"default": whole}))
+    top, rest = text.split("Inputs as resolved")
+    assert "3.977 N/µm in the mean, varies by 16.14 %" in top
+    assert "at 5.355 N m: 42.00 µm in the mean, 5.600 µm peak to peak" in top
+    assert "of the design" in top
+    assert BESIDE not in top
+    assert BESIDE in rest
+
+
+def test_sections_appear_with_their_parts(whole: Outcome) -> None:
+    bare = render({"default": replace(whole, parts={"teeth": whole.parts["teeth"]})})
+    assert "Plane of action" in bare
+    for heading in ("Mesh stiffness", "Vibration", "Against speed", "Studies"):
+        assert f"<h2>{heading}" not in bare
+        assert f"<h3>{heading}" not in bare
+    assert "Transmission error" not in words(bare)
+    empty = outcome({})
+    assert stiffness_answer(empty) == ""
+    assert vibration_answer(empty) == []
+
+
+def test_pairs_end_where_they_leave(whole: Outcome) -> None:
+    panels = stiffness_panels({"default": whole})
+    traces = named(figure(panels, "phase"))
+    assert list(traces) == [
+        "pair I",
+        "pair II",
+        "mesh",
+        "mesh, mean",
+        "mesh, estimate of ISO 6336-1, outside its range",
+    ]
+    second = traces["pair II"]
+    assert all((y is None) == (x >= 0.5) for x, y in zip(second["x"], second["y"], strict=True))
+    assert traces["mesh"]["y"][0] == pytest.approx(5.0)
+    assert traces["mesh, mean"]["y"] == [3.977, 3.977]
+
+
+def test_without_a_steady_state_there_are_words_and_no_lines(whole: Outcome) -> None:
+    one = replace(whole, parts={**whole.parts, "vibration": vibration((0, 1))})
+    panels = vibration_panels({"default": one})
+    assert list(named(figure(panels, "_error"))) == [
+        "3.825 N m, dynamic",
+        "3.825 N m, static",
+        "5.355 N m, static",
+    ]
+    assert list(named(figure(panels, "_spectrum"))) == ["3.825 N m"]
+    assert len(figure(panels, "_factor").data) == 2
+    assert vibration_answer(one)[1].replace("\u00a0", " ") == f"at 5.355 N m: {UNSTABLE}"
+    page = render({"default": one})
+    assert UNSTABLE not in page
+    assert "At 5.355 N m no dynamic values are shown: it &lt;b&gt;grows" in words(page)
+    neither = replace(whole, parts={**whole.parts, "vibration": vibration((1, 1))})
+    assert "No steady state was found that the model describes." in render({"default": neither})
+
+
+def test_orders_of_the_spectrum(whole: Outcome) -> None:
+    bars = figure(vibration_panels({"default": whole}), "_spectrum").data[0]
+    assert bars["x"] == list(range(1, 21))
+    assert bars["y"][0] == pytest.approx(0.5)  # order zero is the mean
+
+
+def test_time_runs_against_the_phase_where_gear_2_drives(whole: Outcome) -> None:
+    back = outcome(whole.parts, **{"operation.driver": "gear 2"})
+    pages = {k: vibration_panels({"default": one}) for k, one in (("on", whole), ("back", back))}
+    on, off = (figure(panels, "_error").data[0]["y"] for panels in pages.values())
+    assert on == off[::-1]
+    assert on != off
+
+
+def test_speeds_without_a_steady_state_are_gaps(whole: Outcome) -> None:
+    panels = resonance_panels({"default": whole})
+    traces = named(figure(panels, "_transmission_error_range"))
+    falling, rising = (traces[f"5.355 N m, {way}"] for way in ("falling", "rising"))
+    assert [k for k, y in enumerate(falling["y"]) if y is None] == [4, 5]
+    assert None not in rising["y"]
+    assert falling["line"]["dash"] != rising["line"]["dash"]
+    assert falling["x"][-1] == pytest.approx(8000.0 * 60.0 / (2.0 * np.pi), rel=1e-5)
+    assert "2 of 12 speeds" in panels[0].note
+    assert UNSTABLE in panels[0].note
+
+
+def test_equal_branches_are_one_line(whole: Outcome) -> None:
+    data = resonance().isel(direction=[0, 0]).assign_coords(direction=["rising", "falling"])
+    same = replace(whole, parts={**whole.parts, "resonance": data})
+    shown = figure(resonance_panels({"default": same}), "_transmission_error_range")
+    assert len(shown.data) == 2
+    assert "rising and falling give the same" in shown.note
+
+
+def test_marks_of_resonance_stand_where_the_mesh_frequency_is_natural(whole: Outcome) -> None:
+    shown = figure(resonance_panels({"default": whole}), "_transmission_error_range")
+    marks = {a["text"]: a["x"] for a in shown.layout["annotations"]}
+    # Four teeth: the mesh frequency is four times the rate of rotation.
+    assert marks["f_n/2"] == pytest.approx(6800.0 / 2.0 / 4.0 * 60.0)
+
+
+def test_design_chart_shows_both_limits() -> None:
+    x = np.array([0.6, 0.7, 0.8, 0.9])
+    least = 0.25 * 0.0015
+    one = outcome({"study_x": study(x, np.array([1.4, 1.2, 1.0, 1.0]) * least)})
+    (chart,) = design_charts({EVIL: one, "other": one})
+    shapes = figure([chart], "contact_ratio").layout["shapes"]
+    undercut, edge, tip, _ = shapes
+    assert (undercut["x0"], undercut["x1"], edge["x0"]) == (0.6, 0.72, 0.72)
+    assert (tip["x0"], tip["x1"]) == (0.8, 0.9)
+    assert "x1 below x_min1 = 0.72" in chart.note
+    assert "cut back to 0.3750 mm" in chart.note
+    error = figure([chart], "transmission_error_range").data[0]
+    assert error["y"] == [0.6, 0.7, 0.8, None]
+    assert "<img" not in json.dumps([f.data for f in chart.figures])
+
+
+def test_a_study_of_something_else_is_no_design_chart() -> None:
+    x = np.array([0.6, 0.9])
+    other = study(x, x).assign_attrs(sweep_key="operation.torque")
+    listed = study(x, x).assign(axis=("point", [np.nan, np.nan]))
+    assert design_charts({"default": outcome({"study_a": other, "study_b": listed})}) == []
+
+
+def test_specific_sliding_near_the_base_circle_is_cut_off() -> None:
+    steep = teeth_of(pair_of(teeth=(17, 40), face_width=0.01))
+    shown = sliding_figure("s", outcome({"teeth": steep}))
+    assert [t["name"] for t in shown.data] == ["gear 1", "gear 2"]
+    lowest = min(min(t["y"]) for t in shown.data)
+    assert ("range" in shown.layout["yaxis"]) == (lowest < -8.0)
+    assert shown.data[0]["y"][0] < 0.0 < shown.data[0]["y"][-1]
+
+
+def test_helical_values_stand_at_the_middle_of_the_face(
+    helical: CylindricalPair, whole: Outcome
+) -> None:
+    """A quantity that is linear along the path is met exactly, whatever slices a line has."""
+    fact = facts(whole)
+    phases = np.linspace(0.0, 0.999, 40)
+    contacts = helical.contacts(phases)
+    lanes = ("node", "pair", "slice")
+    fields = {
+        name: np.moveaxis(np.broadcast_to(values, contacts.path.shape), -1, 0)
+        for name, values in (
+            ("path", contacts.path),
+            ("active", contacts.active),
+            ("weight", contacts.weight),
+        )
+    }
+    loss = fields["weight"] * fields["active"]
+    data = xr.Dataset(
+        {
+            "phase": (("node",), phases),
+            "weight": (("node",), np.full(40, 1.0 / 40)),
+            "path": (lanes, fields["path"]),
+            "active": (lanes, fields["active"]),
+            "sliding_velocity": (("law", *lanes), (2.0 * fields["path"] - 1.0)[None]),
+            "load_share": (("law", *lanes), (loss / loss.sum(axis=(1, 2), keepdims=True))[None]),
+            "sliding_loss": (("law", *lanes), loss[None]),
+            "rolling_loss": (("law", *lanes), 0.0 * loss[None]),
+        }
+    )
+    x, y = along(data, "sliding_velocity", 0, fact)
+    seen = np.isfinite(y)
+    assert y[seen] == pytest.approx(2.0 * x[seen] - 1.0, abs=1e-6)
+    assert x.min() >= -1e-6
+    assert x.max() <= fact.transverse_ratio + 1e-6
+    x, y = along(data, "load_share", 0, fact)
+    assert fact.transverse_ratio < x.max() <= fact.contact_ratio + 1e-6
+    assert np.nanmax(y) <= 1.0
+    shares = loss_places(data, 0, fact)
+    # The loss is even over the path here.
+    assert shares["A", "C"] == pytest.approx(fact.points["C"] / fact.transverse_ratio, abs=0.02)
+    assert sum(shares.values()) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_long_lines_are_thinned_and_jumps_kept() -> None:
+    x = np.repeat(np.linspace(0.0, 1.0, 2001), 2)
+    y = np.where(np.arange(x.size) < 2001, 1.0, 2.0)
+    shown_x, shown_y = continued(x, y, most=100)
+    assert shown_x.size < 250
+    assert np.isnan(shown_y).sum() == 1
+    gap = int(np.flatnonzero(np.isnan(shown_y))[0])
+    assert (shown_y[gap - 1], shown_y[gap + 1]) == (1.0, 2.0)
+    assert (shown_x[0], shown_x[-1]) == (0.0, 1.0)
