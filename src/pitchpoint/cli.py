@@ -282,7 +282,7 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 
 def _summary(name: str, outcome: "Outcome") -> None:
-    from pitchpoint.cases.catalogue import summary_table
+    from pitchpoint.cases.catalogue import summary_table, vibration_table
 
     manifest = outcome.manifest
     _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
@@ -290,6 +290,9 @@ def _summary(name: str, outcome: "Outcome") -> None:
     rows, columns, note = summary_table(outcome)
     _table(rows, columns)
     _console().print(_plain(note))
+    rows, columns = vibration_table(outcome)
+    if rows:
+        _table(rows, columns)
     _warn(manifest["warnings"])
 
 
@@ -335,7 +338,7 @@ def _table(rows: list[dict[str, str]], columns: tuple[str, ...]) -> None:
     from rich.table import Table
 
     used = [name for name in columns if any(row.get(name) for row in rows)]
-    table = Table(*used, box=None, pad_edge=False, header_style="bold")
+    table = Table(*map(_plain, used), box=None, pad_edge=False, header_style="bold")
     for row in rows:
         table.add_row(*(_plain(str(row.get(name, ""))) for name in used))
     _console().print(table)

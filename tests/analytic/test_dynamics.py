@@ -24,8 +24,8 @@ from pitchpoint.dynamics.system import (
     reduced_system,
     relative_motion,
 )
-from pitchpoint.efficiency.quasi_static import _lobatto
 from pitchpoint.errors import InputError
+from pitchpoint.gears.period import lobatto
 
 NODES = 24
 MASS, MEAN, LOAD = 2.2e-3, 1.14e7, 141.0
@@ -54,7 +54,7 @@ def excitation(stiffness, error=nothing, arm=one, hand_over=HAND_OVER):
     A segment without length stands between the others.
     """
     edges = np.array([0.0, hand_over, hand_over, 1.0])
-    phase = edges[:-1, None] + np.diff(edges)[:, None] * _lobatto(NODES)[0]
+    phase = edges[:-1, None] + np.diff(edges)[:, None] * lobatto(NODES)[0]
     path = np.stack([phase, phase + 1.0])
     carries = np.stack([np.ones_like(phase), 1.0 * (np.arange(3) == 0)[:, None] + 0.0 * phase])
     values = (carries * stiffness(path), np.atleast_3d(arm(path))[None], error(path))
@@ -105,7 +105,7 @@ def interpolated(excite, values):
     """Plain functions of phase for each pair, by NumPy."""
     edges = np.asarray(excite.edges)
     used = [k for k in range(edges.size - 1) if edges[k + 1] > edges[k]]
-    place = 2.0 * _lobatto(values.shape[-1])[0] - 1.0
+    place = 2.0 * lobatto(values.shape[-1])[0] - 1.0
     vander = np.linalg.inv(np.polynomial.legendre.legvander(place, values.shape[-1] - 1))
     modes = [vander @ np.asarray(values)[..., k, :].reshape(-1, place.size).T for k in used]
     bounds = [(edges[k], edges[k + 1]) for k in used]

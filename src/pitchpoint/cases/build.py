@@ -7,7 +7,7 @@ from typing import Any
 
 import equinox as eqx
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, Gears, Oil, Surface
@@ -17,6 +17,7 @@ from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
@@ -51,6 +52,12 @@ class Built:
     solids: tuple[SolidInUse, SolidInUse]
     warnings: tuple[str, ...]
     own: FrictionLaw | None = None
+
+    @property
+    def dimensions(self) -> dict[str, Any]:
+        """Main dimensions of the mesh as plain numbers."""
+        found: dict[str, Any] = jax.device_get(_dimensions(self.design.mesh))
+        return found
 
     @property
     def pair(self) -> CylindricalPair:
@@ -169,6 +176,11 @@ def _yielding(case: Case, pair: CylindricalPair) -> tuple[str, ...]:
     if case.dynamics is None and not sharing.by_stiffness:
         return ()
     return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(_sections(pair))
+
+
+@eqx.filter_jit
+def _dimensions(mesh: Mesh) -> dict[str, Any]:
+    return mesh.dimensions()
 
 
 @eqx.filter_jit

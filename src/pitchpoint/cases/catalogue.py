@@ -8,7 +8,10 @@ import numpy as np
 from pitchpoint import units
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.run import Outcome
+from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import UNITS
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -17,7 +20,7 @@ from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["entries", "figures", "summary_table"]
+__all__ = ["entries", "figures", "summary_table", "vibration_table"]
 
 MAIN = (
     "mean_efficiency",
@@ -42,8 +45,28 @@ def entries() -> list[dict[str, str]]:
         _entry("film_thickness", law, f"{law.shape} contacts, {law.place} film")
         for law in FILM_THICKNESS.values()
     ]
+    rows += [
+        _entry(kind, model, "")
+        for kind, registry in (
+            ("tooth_compliance", TOOTH_COMPLIANCE),
+            ("tooth_contact", CONTACT_LAWS),
+            ("tooth_temperature", TOOTH_TEMPERATURE),
+        )
+        for model in registry.values()
+    ]
     rows += [_record("lubricant", oil, _oil_range(oil)) for oil in lubricants.catalogue().values()]
     return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]
+
+
+VIBRATION = (
+    "mean_stiffness",
+    "stiffness_variation",
+    "mean_transmission_error",
+    "transmission_error_range",
+    "largest_dynamic_factor",
+    "natural_frequency",
+    "mesh_frequency",
+)
 
 
 def figures(outcome: Outcome) -> dict[str, Any]:
@@ -56,8 +79,9 @@ def figures(outcome: Outcome) -> dict[str, Any]:
     }
     return {
         "title": manifest["title"],
-        "units": {name: VARIABLES[name].unit for name in MAIN},
+        "units": {name: VARIABLES[name].unit for name in (*MAIN, *VIBRATION)},
         "operation": _by_law(outcome.parts["operation"], MAIN),
+        "vibration": _by_torque(outcome),
         "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
         "back_driving": _by_law(outcome.parts["back_driving"], ("mean_efficiency", "locked")),
         "studies": studies,
@@ -102,7 +126,11 @@ def _head(name: str) -> str:
 
 
 def _cell(data: Any, name: str, position: int) -> str:
-    variable, value = VARIABLES[name], float(data[name].values[position, 0])
+    return _shown(name, float(data[name].values[position, 0]))
+
+
+def _shown(name: str, value: float) -> str:
+    variable = VARIABLES[name]
     if np.isnan(value):
         return "undefined"
     if variable.display == "1":
@@ -110,9 +138,30 @@ def _cell(data: Any, name: str, position: int) -> str:
     return f"{units.convert(value, variable.display, variable.kind):.5g}"
 
 
+def vibration_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
+    """Rows and columns: stiffness and transmission error for every torque, none without vibration."""
+    data = outcome.parts.get("vibration")
+    if data is None:
+        return [], ()
+    rows = [
+        {_head("torque"): f"{torque:.5g}"}
+        | {_head(name): _shown(name, float(data[name].values[k])) for name in VIBRATION}
+        for k, torque in enumerate(data["torque"].values)
+    ]
+    return rows, tuple(rows[0])
+
+
+def _by_torque(outcome: Outcome) -> dict[str, Any]:
+    data = outcome.parts.get("vibration")
+    if data is None:
+        return {}
+    return {name: _numbers(data[name].values) for name in ("torque", *VIBRATION)}
+
+
 def _by_law(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    every = (*names, *(name for name in VIBRATION if name in data))
     result: dict[str, Any] = {
-        str(law): {name: _numbers(data[name].values[position]) for name in names}
+        str(law): {name: _numbers(data[name].values[position]) for name in every}
         for position, law in enumerate(data["law"].values)
     }
     if "axis" in data:

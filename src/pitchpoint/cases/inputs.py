@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel
 
 from pitchpoint import units
@@ -9,6 +10,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.schema import FrictionChoice, quantity_at
 from pitchpoint.cases.solids import SolidInUse
+from pitchpoint.results.variables import VARIABLES
 
 __all__ = ["resolved"]
 
@@ -48,6 +50,7 @@ def resolved(built: Built, document: Document) -> list[dict[str, str]]:
         document: it came from; keys that it does not hold are defaults.
     """
     rows = [row for table in _TABLES for row in _rows(built, document, table)]
+    rows += _geometry(built)
     rows += [row for gear, used in enumerate(built.solids, 1) for row in _solid(gear, used)]
     return rows + [
         {
@@ -60,6 +63,36 @@ def resolved(built: Built, document: Document) -> list[dict[str, str]]:
         }
         for name, (label, unit, kind) in _OIL.items()
     ]
+
+
+_GEOMETRY = (
+    "transverse_contact_ratio",
+    "overlap_ratio",
+    "tip_thickness",
+    "undercut_limit",
+)
+
+
+def _geometry(built: Built) -> list[dict[str, str]]:
+    """What follows from the gears and is asked for first."""
+    found = built.dimensions
+    return [
+        {
+            "table": "gears as computed",
+            "key": name.replace("_", " ") + (" in the normal section" if "tip" in name else ""),
+            "value": " / ".join(dict.fromkeys(_dimension(name, float(v)) for v in np.ravel(value))),
+            "status": "derived",
+            "where": "",
+            "note": "",
+        }
+        for name in _GEOMETRY
+        if (value := found.get(name)) is not None
+    ]
+
+
+def _dimension(name: str, value: float) -> str:
+    variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
+    return _shown(value, variable.display, variable.kind)
 
 
 def _solid(gear: int, used: SolidInUse) -> list[dict[str, str]]:

@@ -6,7 +6,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.efficiency.quasi_static import _lobatto
+from pitchpoint.gears.period import lobatto
 
 __all__ = ["Course", "Excitation"]
 
@@ -88,7 +88,7 @@ class Course(eqx.Module):
 
 def _modes(count: int) -> np.ndarray:
     """Matrix from values at the nodes of a segment to Legendre coefficients."""
-    vandermonde = np.polynomial.legendre.legvander(2.0 * _lobatto(count)[0] - 1.0, count - 1)
+    vandermonde = np.polynomial.legendre.legvander(2.0 * lobatto(count)[0] - 1.0, count - 1)
     return np.linalg.inv(vandermonde).T
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jnp
-from pitchpoint.efficiency.quasi_static import _between, _lobatto
+from pitchpoint.gears.period import between, lobatto
 
 __all__ = ["Grid"]
 
@@ -56,12 +56,12 @@ class Grid:
     @property
     def place(self) -> np.ndarray:
         """Nodes of an element on [0, 1], ends included."""
-        return _ends(_lobatto(self.nodes)[0])
+        return _ends(lobatto(self.nodes)[0])
 
     @property
     def weight(self) -> np.ndarray:
         """Weights of the nodes of an element; they sum to one."""
-        return _lobatto(self.nodes)[1]
+        return lobatto(self.nodes)[1]
 
     def bounds(self, edges: Float[Array, "segment+1"]) -> Float[Array, "element+1"]:
         """Phases between the elements: hand-overs and even grid points, sorted."""
@@ -84,14 +84,14 @@ class Grid:
 
     def extremes(self, values: Values) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:
         """Smallest and largest value, between the nodes too; piecewise differentiable."""
-        dense = values @ _between(self.nodes)[0]
+        dense = values @ between(self.nodes)[0]
         flat = dense.reshape(*dense.shape[:-2], -1)
         low, high = (self._vertex(values, pick(flat, axis=-1)) for pick in (jnp.argmin, jnp.argmax))
         return jnp.minimum(low, jnp.min(flat, axis=-1)), jnp.maximum(high, jnp.max(flat, axis=-1))
 
     def _vertex(self, values: Values, where: Int[Array, "*b"]) -> Float[Array, "*b"]:
         """Value at the level point beside a point between the nodes, if there is one."""
-        *matrices, spacing = (jnp.asarray(matrix) for matrix in _between(self.nodes))
+        *matrices, spacing = (jnp.asarray(matrix) for matrix in between(self.nodes))
         element, point = jnp.divmod(where, spacing.shape[0])
         row = jnp.take_along_axis(values, element[..., None, None], axis=-2)[..., 0, :]
         at, slope, curve, third = (
@@ -138,7 +138,7 @@ def _ends(place: np.ndarray) -> np.ndarray:
 @cache
 def _modes(count: int) -> np.ndarray:
     """Matrix from values at the nodes to Legendre coefficients."""
-    modes = np.polynomial.legendre.legvander(2.0 * _ends(_lobatto(count)[0]) - 1.0, count - 1)
+    modes = np.polynomial.legendre.legvander(2.0 * _ends(lobatto(count)[0]) - 1.0, count - 1)
     return np.linalg.inv(modes).T
 
 
@@ -150,7 +150,7 @@ def _reading(count: int, place: np.ndarray) -> np.ndarray:
 @cache
 def _derivative(count: int) -> np.ndarray:
     """Matrix from values at the nodes to derivatives at the nodes of [0, 1]."""
-    x = 2.0 * _ends(_lobatto(count)[0]) - 1.0
+    x = 2.0 * _ends(lobatto(count)[0]) - 1.0
     slopes = [np.polynomial.Legendre.basis(degree).deriv()(x) for degree in range(count)]
     return 2.0 * _modes(count) @ np.array(slopes)
 
@@ -158,7 +158,7 @@ def _derivative(count: int) -> np.ndarray:
 @cache
 def _local(count: int) -> np.ndarray:
     """Matrix from values at the nodes to powers of a local coordinate, interval by interval."""
-    place = _ends(_lobatto(count)[0])
+    place = _ends(lobatto(count)[0])
     local = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
     powers = np.linalg.inv(np.polynomial.polynomial.polyvander(local, _DEGREE))
     at = place[:-1, None] + np.diff(place)[:, None] * (local + 1.0) / 2.0

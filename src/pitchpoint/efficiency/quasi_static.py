@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.period import between, lobatto
+from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance
 from pitchpoint.loading.mesh_stiffness import slice_stiffness
@@ -340,6 +340,3 @@ def cycle_nodes(
         events = jnp.concatenate([events, sharing.hand_over(mesh.contact_ratio)])
     phase, weight = period_nodes(events, nodes)
     return phase.ravel(), weight.ravel()
-
-
-_lobatto, _between = lobatto, between
