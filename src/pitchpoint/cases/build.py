@@ -13,7 +13,7 @@ from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, Gears, Oil, Surface
 from pitchpoint.cases.solids import SolidInUse, datum, heated, solids_in_use
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.efficiency.summary import summarise
+from pitchpoint.efficiency.summary import heat
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
@@ -111,26 +111,24 @@ def warmed(built: Built, document: Document) -> Built:
         InputError: the temperature is outside what is known of a material.
     """
     models, _ = laws_of(built)
-    found = summarise([(built.design, built.operation)], models)
-    figures = {name: float(found[name][0]) for name in ("mean_friction", "loss_factor")}
+    found = jax.device_get(heat(built.design, built.operation, models))
+    figures = {name: float(value) for name, value in found.items()}
     used = heated(built.case, built.solids, found=figures, document=document)
     design = replace(built.design, solids=(used[0].solid, used[1].solid))
-    told = (one.told for one in used if one.told)
-    return replace(built, design=design, solids=used, warnings=(*built.warnings, *told))
+    return replace(built, design=design, solids=used)
 
 
 def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
     """Models with every law compiled in, the first law of the case acting, and the indices of its laws.
 
-    The fitted laws of the library are always among them: their spread is shown beside every
-    efficiency.
+    The laws of the library are always among them, so that cases share one compiled program: the
+    spread of the fitted ones is shown beside every efficiency.
     """
     case = built.case
     chosen = [FRICTION[choice.name] for choice in case.models.friction]
     published = case.source in {law.sources[0] for law in CASE_LAWS}
     extra = CASE_LAWS if published or any(law in CASE_LAWS for law in chosen) else ()
-    fitted = [law for law in LAWS if law.sources or law in chosen]
-    laws: tuple[FrictionLaw, ...] = (*fitted, *extra)
+    laws: tuple[FrictionLaw, ...] = (*LAWS, *extra)
     if built.own is not None:
         chosen, laws = [built.own], (*laws, built.own)
     indices = tuple(laws.index(law) for law in chosen)

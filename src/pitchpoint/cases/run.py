@@ -344,7 +344,7 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
         "summary": case.summary,
         "settings": {key: str(value) for key, value in variant.settings.items()},
         "inputs": inputs.resolved(built, document),
-        "warnings": list(built.warnings),
+        "warnings": [*built.warnings, *(used.told for used in built.solids if used.told)],
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
         "models": [
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}

@@ -12,9 +12,9 @@ from pitchpoint.contact.contacts import along, total
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, cycle_nodes
 from pitchpoint.loading.sharing import equal
 
-__all__ = ["CHUNK", "in_chunks", "loss_factor", "summarise", "summary"]
+__all__ = ["CHUNK", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
 
-CHUNK = 32
+CHUNK = 8
 """Cycles computed together: one compiled program serves any number of them."""
 
 Point = tuple[Design, Operation]
@@ -73,6 +73,13 @@ def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:
         for number, value in enumerate(pair, 1)
     }
     return {name: value for name, value in values.items() if jnp.ndim(value) == 0} | each
+
+
+@eqx.filter_jit
+def heat(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
+    """Mean friction coefficient and loss factor at one operating point: what heats the teeth."""
+    found = cycle(design, operation, models, nodes=6)
+    return {"mean_friction": _mean_friction(found), "loss_factor": loss_factor(design, models)}
 
 
 def summarise(

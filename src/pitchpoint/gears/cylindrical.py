@@ -161,7 +161,8 @@ class CylindricalPair(Mesh):
     @property
     def base_radii(self) -> Float[Array, "2"]:
         """Base radii r_b1, r_b2 [m]."""
-        return jnp.stack([gear.base_radius for gear in self.gears])
+        reference = self.teeth * self.module / (2.0 * jnp.cos(self.helix_angle))
+        return reference * jnp.cos(self.transverse_pressure_angle)
 
     @property
     def tip_radii(self) -> Float[Array, "2"]:
@@ -326,8 +327,8 @@ class CylindricalPair(Mesh):
         rolling = jnp.stack([position, self.tangent_length - position])
         none, lanes = jnp.zeros_like(position), jnp.shape(position)
         first, second = self._side * rolling[0], -self._side * rolling[1]
-        slope = jnp.cos(self.base_helix_angle)
-        arms = self.line_of_action * slope
+        slope, base = jnp.cos(self.base_helix_angle), self.base_radii
+        arms = self._side * base * slope
         return Contacts(
             active=active,
             path=path,
@@ -337,9 +338,7 @@ class CylindricalPair(Mesh):
             surface=jnp.stack([jnp.stack([first, none]), jnp.stack([none, second])]),
             normal=jnp.stack([jnp.broadcast_to(arm, lanes) for arm in arms]),
             gap=none,
-            flank=jnp.stack(
-                [rolling[k] ** 2 / (2.0 * jnp.abs(self.base_radii[k])) for k in (0, 1)]
-            ),
+            flank=jnp.stack([rolling[k] ** 2 / (2.0 * jnp.abs(base[k])) for k in (0, 1)]),
             shape="line",
         )
 

@@ -47,9 +47,12 @@ class LoadSharing:
     def applies(self, mesh: Mesh) -> bool:
         """True if the model holds for this mesh."""
         low, high = self.ratio_range
-        inclined = self.straight and float(mesh.overlap_ratio) > 0.0
-        toothless = self.by_stiffness and not mesh.toothed
-        return low < float(mesh.contact_ratio) < high and not inclined and not toothless
+        anywhere = (low, high) == (0.0, float("inf"))
+        return (
+            (mesh.toothed or not self.by_stiffness)
+            and not (self.straight and float(mesh.overlap_ratio) > 0.0)
+            and (anywhere or low < float(mesh.contact_ratio) < high)
+        )
 
     def check(self, mesh: Mesh) -> None:
         """Raise InputError if the model does not hold for this mesh."""
