@@ -304,10 +304,10 @@ def _rows(rows: "list[Row]") -> None:
         {
             "quantity": row.quantity,
             "place": row.where,
-            "printed": f"{row.printed:g} {row.unit if row.unit != '1' else ''}",
+            "printed": f"{row.bound}{row.printed:g} {row.unit if row.unit != '1' else ''}",
             "computed": number(row.computed),
             "deviation": "" if row.deviation is None else f"{row.deviation:+.2g}",
-            "tolerance": f"{row.tolerance:g}",
+            "tolerance": "" if row.bound else f"{row.tolerance:g}",
             "kind": row.kind,
             "verdict": row.verdict,
         }

@@ -20,7 +20,10 @@ __all__ = ["Row", "compare", "counts"]
 
 @dataclass(frozen=True)
 class Row:
-    """One printed number, in the unit of the print, and what was computed for it."""
+    """One printed number, in the unit of the print, and what was computed for it.
+
+    `bound` says whether the number is to be exceeded (">") or not reached ("<") instead of met.
+    """
 
     quantity: str
     where: str
@@ -31,6 +34,7 @@ class Row:
     kind: str
     verdict: str
     reason: str
+    bound: str = ""
 
     @property
     def deviation(self) -> float | None:
@@ -85,6 +89,7 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         kind=target.kind,
         verdict=_verdict(target, computed),
         reason=target.reason,
+        bound={"above": "> ", "below": "< "}.get(target.expect, ""),
     )
 
 

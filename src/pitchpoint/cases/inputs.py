@@ -152,10 +152,15 @@ def _value(value: Any, key: str, built: Built, name: str) -> str | None:
         each = value if isinstance(value, tuple) else (value,)
         return " / ".join(dict.fromkeys(quantity.show(number) for number in each))
     if isinstance(value, BaseModel):
-        return ", ".join(f"{name} {item}" for name, item in value.model_dump().items())
+        return ", ".join(_part(key, *item) for item in value.model_dump().items())
     if isinstance(value, tuple):
         return ", ".join(_choice(item) for item in value) or "none"
     return str(value)
+
+
+def _part(table: str, name: str, item: Any) -> str:
+    quantity = quantity_at(f"{table}.{name}")
+    return f"{name} {quantity.show(item) if quantity else item}"
 
 
 def _choice(item: Any) -> str:

@@ -134,8 +134,9 @@ def run_variant(
     outcome = Outcome(_manifest(variant, built))
     for job in work:
         outcome.parts[job.name] = part = _part(job, variant, folder, studies, progress)
-        told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
-        outcome.manifest["warnings"] = list(dict.fromkeys(told))
+        if not job.name.startswith("study_"):
+            told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
+            outcome.manifest["warnings"] = list(dict.fromkeys(told))
         _note(outcome, folder, finished=False)
     outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
     _note(outcome, folder, finished=True)

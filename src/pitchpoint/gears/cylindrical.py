@@ -374,6 +374,7 @@ class CylindricalPair(Mesh):
         """Contact ratios, centre distance, and for each gear its shortening, tip and undercut limit."""
         gears = self.gears
         return {
+            "module": self.module,
             "transverse_contact_ratio": self.transverse_contact_ratio,
             "overlap_ratio": self.overlap_ratio,
             "centre_distance": self.centre_distance,

@@ -100,6 +100,7 @@ VARIABLES: dict[str, Variable] = {
     "contact_ratio": Variable("total contact ratio", "ε_γ", "1"),
     "transverse_contact_ratio": Variable("transverse contact ratio", "ε_α", "1"),
     "overlap_ratio": Variable("overlap ratio", "ε_β", "1"),
+    "module": _length("normal module", "m_n"),
     "centre_distance": _length("centre distance", "a"),
     "tip_alteration_1": Variable("tip alteration coefficient of gear 1", "k1", "1"),
     "tip_alteration_2": Variable("tip alteration coefficient of gear 2", "k2", "1"),

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint import units
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
@@ -64,7 +63,7 @@ def _studies(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, Seen]]:
 
 def _chart(name: str, outcomes: Mapping[str, Outcome], seen: Seen) -> Panel:
     data = seen[0][1]
-    least = _least_tip(next(iter(outcomes.values())))
+    least = _least_tip(next(iter(outcomes.values())), data)
     limits = _Limits(data, least)
     figures = [
         _figure(f"chart_{name}_{variable}", variable, seen, limits)
@@ -171,9 +170,9 @@ def _valid(variable: str, data: xr.Dataset) -> np.ndarray:
     return values
 
 
-def _least_tip(outcome: Outcome) -> float:
+def _least_tip(outcome: Outcome, data: xr.Dataset) -> float:
     """Least tip thickness asked for [m]; zero if none was."""
-    asked, module = (given(outcome, "gears", key) for key in ("least_tip_thickness", "module"))
-    if not asked or not module:
+    asked = given(outcome, "gears", "least_tip_thickness")
+    if not asked or "module" not in data:
         return 0.0
-    return float(asked.split()[0]) * units.parse(module, "length")
+    return float(asked.split()[0]) * float(data["module"].values.ravel()[0])

@@ -62,6 +62,7 @@ KINDS = {
     "calibrated": "a constant or a reading of the model was found with it",
     "fitted": "an input was tuned to it",
     "trend": "only a direction was printed",
+    "reference": "a value of an independent calculation, not of the publication",
     "excluded": "not computed, for the reason given",
 }
 _ORDER = {"miss": 0, "excluded": 1, "pass": 2}
@@ -134,6 +135,7 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             vibration_tables=vibration_tables(outcomes),
             charts=charts,
             sweeps=sweeps,
+            study_warnings=_study_warnings(outcomes),
             tables=study_tables(outcomes, known),
             losses=_losses(drawn, known),
             point_notes=_point_notes(drawn),
@@ -342,11 +344,26 @@ def _warnings(outcome: Outcome) -> list[str]:
     What the standard's estimate of the stiffness does not cover is told beside that estimate.
     """
     texts = list(outcome.manifest["warnings"])
-    for data in outcome.parts.values():
+    for name, data in outcome.parts.items():
+        if name.startswith("study_"):
+            continue  # told beside the studies
         found = [str(text) for text in json.loads(data.attrs.get("warnings", "[]"))]
         texts += [f"{data.attrs['title']}: {text}" for text in found if text not in texts]
     beside = outside_standard(outcome.parts["stiffness"]) if "stiffness" in outcome.parts else []
     return [text for text in dict.fromkeys(texts) if text not in _told_of_standard(beside)]
+
+
+def _study_warnings(outcomes: Mapping[str, Outcome]) -> list[str]:
+    """Sentences of the studies, each with its variant and title."""
+    several = len(outcomes) > 1
+    return [
+        f"{f'{variant}, ' if several else ''}{data.attrs['title']}: {text}"
+        for variant, outcome in outcomes.items()
+        for name, data in outcome.parts.items()
+        if name.startswith("study_")
+        for text in json.loads(data.attrs.get("warnings", "[]"))
+        if text not in outcome.manifest["warnings"]
+    ]
 
 
 def _told_of_standard(texts: list[str]) -> set[str]:
@@ -518,11 +535,11 @@ def _row(row: Row) -> dict[str, str]:
         digits = _decimals(row.tolerance)
         computed = f"{row.computed:.{digits}f} {unit}".strip()
         deviation = show.signed(row.deviation, digits)
-        tolerance = f"± {row.tolerance:g}"
+        tolerance = "" if row.bound else f"± {row.tolerance:g}"
     return {
         "quantity": show.pretty(row.quantity),
         "where": row.where,
-        "printed": f"{row.printed:g} {unit}".strip(),
+        "printed": f"{row.bound}{row.printed:g} {unit}".strip(),
         "computed": computed,
         "deviation": deviation,
         "tolerance": tolerance,
