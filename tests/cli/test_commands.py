@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 from pitchpoint import cli
-from pitchpoint.cases.run import open_result
+from pitchpoint.cases.run import describe, open_result
 from pitchpoint.materials import lubricants
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -275,9 +275,16 @@ def test_targets_that_name_what_is_not_there(
 
 
 def test_the_examples_are_short() -> None:
-    assert len(list(EXAMPLES.glob("*.toml"))) >= 6
+    assert len(list(EXAMPLES.glob("*.toml"))) >= 9
     for path in EXAMPLES.glob("*.toml"):
-        assert len(path.read_text("utf-8").splitlines()) <= 16
+        assert len(path.read_text("utf-8").splitlines()) <= 28
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_is_sound(path: Path) -> None:
+    (manifest,) = describe(str(path))
+    assert manifest["inputs"]
+    assert not any("undercut" in text for text in manifest["warnings"]) or "undercut" in path.stem
 
 
 def contact_ratio(teeth: xr.Dataset, count: int | list[int]) -> float:

@@ -69,24 +69,31 @@ def with_numbers(mesh, numbers):
     changed = dataclasses.replace(
         mesh, profile_shift=jnp.stack([x1, x2]), helix_angle=helix, face_width=width
     )
-    return changed.completed()
+    # What is static is made alike afterwards, so that one program serves both pairs from here on.
+    alike = {"follows": (False, False), "shortened": (False, False)}
+    return dataclasses.replace(changed.completed(), **alike)
 
 
 @eqx.filter_jit
-def moved_excitation(numbers, direction, mesh, solids, point, vibrating):
-    """Stiffness, system and excitation, and their derivative in a direction; one program for both."""
+def moved_mesh(numbers, direction, mesh):
+    """The pair and its derivative in a direction."""
+    return eqx.filter_jvp(lambda at: with_numbers(mesh, at), (numbers,), (direction,))
+
+
+@eqx.filter_jit
+def moved_excitation(mesh, direction, solids, point, vibrating):
+    """Stiffness, system and excitation, and their derivative."""
     oil, roughness = lubricants.find("pao-vg-220").build(), Roughness.from_composite_rq(0.8e-6)
 
     def of(at):
-        design = Design(with_numbers(mesh, at), solids, oil, roughness)
-        return excited(design, point, models(), vibrating)
+        return excited(Design(at, solids, oil, roughness), point, models(), vibrating)
 
-    return eqx.filter_jvp(of, (numbers,), (direction,))
+    return eqx.filter_jvp(of, (mesh,), (direction,))
 
 
 @eqx.filter_jit
 def moved_figures(parts, directions):
-    """Figures, their derivative, and the status: the program serves every pair."""
+    """Figures, their derivative, and the status."""
 
     def of(stiffness, moved, driven):
         found = transmission_figures(stiffness, moved, steady(moved, driven, GRID))
@@ -110,13 +117,8 @@ class Moving:
         )
 
     def at(self, numbers, direction):
-        parts = moved_excitation(
-            *map(jnp.asarray, (numbers, direction)),
-            self.mesh,
-            self.solids,
-            self.point,
-            self.vibrating,
-        )
+        moved = moved_mesh(*map(jnp.asarray, (numbers, direction)), self.mesh)
+        parts = moved_excitation(*moved, self.solids, self.point, self.vibrating)
         values, slope, status = jax.device_get(moved_figures(*parts))
         assert int(status) == Status.CONVERGED
         return values, slope

@@ -12,9 +12,6 @@ from pitchpoint.gears.period import between, lobatto
 
 __all__ = ["Grid"]
 
-_DEGREE = 6
-"""Degree of the polynomials between neighbouring nodes: exact to rounding for what nodes resolve."""
-
 _PHASE_PER_ELEMENT = 20.0
 """Largest phase [rad] of a vibration within an element that 24 nodes represent to 1e-7."""
 
@@ -44,14 +41,23 @@ class Grid:
             frequency_ratio: highest natural frequency over mesh frequency, not negative.
 
         Returns:
-            Grid with a power of two as number of elements, so that few are ever compiled.
+            Grid with 4, 6, 8, 12, 16... elements, so that few are ever compiled.
 
         Example:
             >>> Grid.resolving(90.0).elements
             32
         """
         needed = 2.0 * math.pi * max(frequency_ratio, 1.0) / _PHASE_PER_ELEMENT
-        return cls(2 ** max(2, math.ceil(math.log2(needed))))
+        power = 2 ** max(2, math.ceil(math.log2(needed)))
+        return cls(power * 3 // 4 if 4 < power and needed <= 0.75 * power else power)
+
+    @property
+    def degree(self) -> int:
+        """Of the polynomials between neighbouring nodes: exact to rounding for smooth excitations.
+
+        Elements that are short for the sake of a fast vibration hold little of the excitation.
+        """
+        return 6 if self.elements < 16 else 4
 
     @property
     def place(self) -> np.ndarray:
@@ -78,8 +84,8 @@ class Grid:
 
     def local(self, values: Values) -> Float[Array, "degree *b element interval"]:
         """Coefficients of polynomials between neighbouring nodes, on [-1, 1], lowest power first."""
-        powers = values @ _local(self.nodes)
-        split = powers.reshape(*values.shape[:-1], _DEGREE + 1, self.nodes - 1)
+        powers = values @ _local(self.nodes, self.degree)
+        split = powers.reshape(*values.shape[:-1], self.degree + 1, self.nodes - 1)
         return jnp.moveaxis(split, -2, 0)
 
     def extremes(self, values: Values) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:
@@ -156,13 +162,13 @@ def _derivative(count: int) -> np.ndarray:
 
 
 @cache
-def _local(count: int) -> np.ndarray:
+def _local(count: int, degree: int) -> np.ndarray:
     """Matrix from values at the nodes to powers of a local coordinate, interval by interval."""
     place = _ends(lobatto(count)[0])
-    local = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
-    powers = np.linalg.inv(np.polynomial.polynomial.polyvander(local, _DEGREE))
+    local = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+    powers = np.linalg.inv(np.polynomial.polynomial.polyvander(local, degree))
     at = place[:-1, None] + np.diff(place)[:, None] * (local + 1.0) / 2.0
-    values = _reading(count, at.ravel()).reshape(count, count - 1, _DEGREE + 1)
+    values = _reading(count, at.ravel()).reshape(count, count - 1, degree + 1)
     return np.asarray(np.swapaxes(values @ powers.T, 1, 2).reshape(count, -1))
 
 
