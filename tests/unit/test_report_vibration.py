@@ -129,6 +129,7 @@ def resonance() -> xr.Dataset:
 def study(x: np.ndarray, tips: np.ndarray) -> xr.Dataset:
     names = {
         "contact_ratio": 2.0 - x,
+        "module": np.full_like(x, 0.0015),
         "transmission_error_range": 1e-6 * x,
         "mean_stiffness": 4e6 * np.ones_like(x),
         "tip_thickness_1": tips,
@@ -172,7 +173,7 @@ def outcome(parts: Mapping[str, xr.Dataset], **rows: str) -> Outcome:
         "finished": True,
         "warnings": ["of the design", BESIDE],
         "inputs": entries,
-        "models": [{"name": "equal", "title": "equal", "note": ""}],
+        "models": [{"effect": "load sharing", "name": "equal", "title": "equal", "note": ""}],
         **empty,
     }
     return Outcome(manifest, dict(parts))

@@ -74,7 +74,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
             does not hold for this pair; with file and key.
     """
     try:
-        pair, warnings = _checked(case.gears, case.operation.driver)
+        pair, warnings = _checked(case.gears, case.operation.driver, int(case.models.slices))
     except InputError as error:
         inside = (
             error.key if not error.key or error.key.startswith("gears") else f"gears.{error.key}"
@@ -162,9 +162,9 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
 
 
 @lru_cache(maxsize=256)
-def _checked(gears: Gears, driver: str) -> tuple[CylindricalPair, tuple[str, ...]]:
+def _checked(gears: Gears, driver: str, slices: int) -> tuple[CylindricalPair, tuple[str, ...]]:
     """Pair and its warnings; a sweep that leaves the gears alone builds them once."""
-    pair = _pair(gears, driver=2 if driver == "gear 2" else 1)
+    pair = _pair(gears, driver=2 if driver == "gear 2" else 1, slices=slices)
     return pair, tuple(check_cylindrical(pair))
 
 
@@ -186,7 +186,7 @@ def _sections(pair: CylindricalPair) -> tuple[ToothSection, ToothSection]:
     return pair.sections
 
 
-def _pair(gears: Gears, driver: int) -> CylindricalPair:
+def _pair(gears: Gears, driver: int, slices: int) -> CylindricalPair:
     dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
     fillet = gears.fillet_radius or tuple(
         _RING_FILLET
@@ -209,6 +209,7 @@ def _pair(gears: Gears, driver: int) -> CylindricalPair:
         centre_distance=gears.centre_distance,
         driver=driver,
         right_flank=gears.flank == "right",
+        slices=slices,
     )
     if gears.bore_diameter is None:
         return pair

@@ -40,7 +40,8 @@ INERTIA = Quantity("moment of inertia", 0.0, 1e9, "kg m2", open_low=True)
 RATIO = Quantity("dimensionless", 0.0, 1.0, open_low=True)
 DEVIATION = Quantity("length", 0.0, 1e-2, "um")
 PHASE = Quantity("angle", -4 * pi, 4 * pi, "deg")
-ORDER = Quantity("dimensionless", 1, 1000, whole=True)
+ORDER = Quantity("dimensionless", 0, 1000, whole=True)
+SLICES = Quantity("dimensionless", 1, 400, whole=True)
 CONDUCTIVITY = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
 AREA = Quantity("area", 1e-8, 1e4, "m2")
 MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
@@ -310,6 +311,15 @@ def _choices(value: Any) -> Any:
     return tables
 
 
+def _slices(value: float) -> float:
+    if value != 1.0 and value % 2.0:
+        raise InputError(
+            f"{value:.0f} slices were given; allowed is an even number, half of them on each side of the "
+            "pitch line, or 1 for the middle of each contact line alone"
+        )
+    return value
+
+
 class Choices(Table):
     """Which law stands for which effect."""
 
@@ -332,6 +342,7 @@ class Choices(Table):
     tooth_contact: Annotated[str, BeforeValidator(named(_contact_laws, "law of tooth contact"))] = (
         "linear"
     )
+    slices: Annotated[float, SLICES, AfterValidator(_slices)] = 12.0
     averaging: Literal["base_pitch", "path"] = "base_pitch"
 
 
@@ -350,7 +361,7 @@ class Housing(Table):
 
 
 class Deviation(Table):
-    """One order of the composite profile error, repeated with every mesh period."""
+    """One order of the composite profile error, repeated with every mesh period; order 0 is constant."""
 
     order: Annotated[float, ORDER]
     amplitude: Annotated[float, DEVIATION]

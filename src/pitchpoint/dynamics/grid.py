@@ -49,7 +49,7 @@ class Grid:
         """
         needed = 2.0 * math.pi * max(frequency_ratio, 1.0) / _PHASE_PER_ELEMENT
         power = 2 ** max(2, math.ceil(math.log2(needed)))
-        return cls(power * 3 // 4 if 4 < power and needed <= 0.75 * power else power)
+        return cls(power * 3 // 4 if power > 4 and needed <= 0.75 * power else power)
 
     @property
     def degree(self) -> int:

@@ -392,6 +392,10 @@ class CylindricalPair(Mesh):
             "root_radius": jnp.stack([gear.root_radius for gear in gears]),
             "reference_radius": jnp.stack([gear.reference_radius for gear in gears]),
             "working_radius": self.working_radii,
+            "form_radius": jnp.hypot(
+                self.base_radii, jnp.stack([gear.form_roll_length for gear in gears])
+            ),
+            "active_root_radius": jnp.hypot(self.base_radii, self._innermost),
         }
         return {
             "outline": jnp.stack([gear.outline() for gear in gears]),
@@ -408,6 +412,12 @@ class CylindricalPair(Mesh):
             "specific_sliding_E": self.specific_sliding(self.limits[1]),
             **self.dimensions(),
         }
+
+    @property
+    def _innermost(self) -> Float[Array, "2"]:
+        """Roll lengths at which the path of contact ends nearest to the root of each gear [m]."""
+        start, end = self.limits
+        return jnp.stack([start, self.tangent_length - end])
 
     def _lines(
         self, entered: Float[Array, "pair 1 *b"]

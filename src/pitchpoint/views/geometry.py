@@ -261,6 +261,8 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         ("base diameter d_b [mm]", *diameters("base")),
         ("tip diameter d_a [mm]", *diameters("tip")),
         ("root diameter d_f [mm]", *diameters("root")),
+        ("form diameter d_Ff [mm]", *diameters("form")),
+        ("active root diameter d_Nf [mm]", *diameters("active_root")),
         ("pitch diameter in operation d_w [mm]", *diameters("working")),
         (_TIP_THICKNESS[fact.helical], *values("tip_thickness", 1e3, 4)),
         ("specific sliding at A", *values("specific_sliding_A", 1.0, 4)),
