@@ -67,7 +67,9 @@ def random_designs(count: int) -> Design:
     rng = np.random.default_rng(0)
     first = rng.uniform(0.68, 0.80, count)
     return Design(
-        shift=jnp.asarray(np.stack([first, 0.79 - first + rng.uniform(-0.02, 0.02, count)], axis=1)),
+        shift=jnp.asarray(
+            np.stack([first, 0.79 - first + rng.uniform(-0.02, 0.02, count)], axis=1)
+        ),
         width=jnp.asarray(rng.uniform(15e-3, 17e-3, count)),
         damping_ratio=jnp.asarray(rng.uniform(0.13, 0.19, count)),
         torque=jnp.asarray(rng.choice([3.825, 5.355], count)),
@@ -169,7 +171,9 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=5)
     asked = parser.parse_args()
     designs, pair = random_designs(asked.cases), base_pair()
-    print(f"stiffness: first call with compilation {timed(lambda: all_excited(pair, designs)):.2f} s")
+    print(
+        f"stiffness: first call with compilation {timed(lambda: all_excited(pair, designs)):.2f} s"
+    )
     parts = all_excited(pair, designs)
     ratios = jax.vmap(frequency_ratio)(*parts[:2])
     grid = Grid.resolving(float(jnp.max(ratios)))

@@ -296,7 +296,7 @@ def test_input_torque_of_a_helical_pair_hardly_jumps():
 
 @pytest.mark.parametrize("sharing", ["equal", "from_stiffness"])
 def test_efficiency_of_the_pairs_with_few_teeth(sharing):
-    """Longer approach below a pinion of four teeth costs most: the order is that of the loss factors."""
+    """The order is that of the loss factors: the longer the path beyond the pitch point, the more is lost."""
     found = {name: over_cycle(name, 0.05, sharing)["mean_efficiency"] for name in GP}
     assert sorted(found, key=found.get) == ["GP2", "GP1", "GP4", "GP3"]
     for name, efficiency in found.items():

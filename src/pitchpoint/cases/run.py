@@ -271,7 +271,7 @@ def _part(
         path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
         piece = None if variant.own is not None else _found(path, mark)
         if piece is None:
-            piece = compute(progress.points)
+            piece = _computed(compute, progress, variant)
             piece.attrs.update(labels)
             if len(job.pieces) > 1:
                 _keep(piece, path)
@@ -283,6 +283,15 @@ def _part(
         for path in folder.glob(f"{job.name}.[0-9][0-9][0-9][0-9].nc"):
             path.unlink()
     return data
+
+
+def _computed(
+    compute: Callable[[Callable[[int], None]], xr.Dataset], progress: Progress, variant: Variant
+) -> xr.Dataset:
+    try:
+        return compute(progress.points)
+    except InputError as error:
+        raise error.at(file=error.file or variant.name) from None
 
 
 def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:

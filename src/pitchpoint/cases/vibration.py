@@ -26,6 +26,7 @@ from pitchpoint.dynamics.vibration import (
     transmission_figures,
 )
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.errors import InputError
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
@@ -35,6 +36,9 @@ __all__ = ["figures_of", "resonance_part", "stiffness_part", "vibrating_of", "vi
 
 ORDERS = tuple(range(41))
 """Orders of the mesh frequency in spectra."""
+
+MOST_RATIO = 1000.0
+"""Natural over mesh frequency beyond which a period holds too many vibrations to be worth them."""
 
 TOGETHER = 4
 """Vibrations solved together: one compiled program serves any number of them."""
@@ -247,8 +251,15 @@ def _torques(built: Built) -> list[float]:
 
 def _grid(parts: Sequence[Excited]) -> Grid:
     """Grid for the highest of the natural frequencies, all over their mesh frequency."""
-    ratios = [float(_ratio(stiffness, moved)) for stiffness, moved, _ in parts]
-    return Grid.resolving(max(ratios))
+    ratio = max(float(_ratio(stiffness, moved)) for stiffness, moved, _ in parts)
+    if not ratio <= MOST_RATIO:
+        raise InputError(
+            f"the natural frequency is {ratio:.3g} times the mesh frequency, and a vibration is resolved "
+            f"up to {MOST_RATIO:g} times; so slow a mesh moves as the static transmission error says, "
+            'which a run without [dynamics] and with load_sharing = "from_stiffness" gives',
+            key="operation.speed",
+        )
+    return Grid.resolving(ratio)
 
 
 def _warnings(built: Built, statuses: Sequence[Status]) -> list[str]:

@@ -53,7 +53,8 @@ class Equations(eqx.Module):
 def equations(system: System, course: Course) -> Equations:
     """Equations on coordinates of unit mass, scaled by the mean stiffness and the load."""
     finite = _all_finite((system, course))
-    root = jnp.linalg.inv(jnp.linalg.cholesky(system.mass))
+    factor, eye = jnp.linalg.cholesky(system.mass), jnp.eye(system.load.shape[0])
+    root = jax.scipy.linalg.solve_triangular(factor, eye, lower=True)
     arm = jnp.einsum("ab,bpen->apen", root, course.arm)
     load = root @ system.load
     stiffness = jnp.einsum("apen,pen,apen->en", arm, course.stiffness, arm)

@@ -103,5 +103,5 @@ def _legendre(place: Float[Array, "*b"], count: int) -> Float[Array, "*b mode"]:
         following = ((2.0 * degree + 1.0) * x * last - degree * before) / (degree + 1.0)
         return (last, following), last
 
-    _, rows = jax.lax.scan(further, (jnp.ones_like(x), x), jnp.arange(1.0, count), unroll=count)
+    _, rows = jax.lax.scan(further, (jnp.ones_like(x), x), jnp.arange(1.0, count))
     return jnp.moveaxis(jnp.concatenate([jnp.ones_like(x)[None], rows]), 0, -1)

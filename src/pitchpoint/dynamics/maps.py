@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["Chain", "Map", "chain", "compose", "identity", "on_last", "product"]
+__all__ = ["Chain", "Map", "chain", "compose", "identity", "inverse_matrix", "on_last", "product"]
 
 Map: TypeAlias = Float[Array, "state state+1 *b"]
 
@@ -47,8 +47,9 @@ def chain(maps: Float[Array, "state state+1 element interval"]) -> Chain:
 
     whole, inner = jax.lax.scan(further, rest, jnp.moveaxis(maps, -1, 0))
     within = jnp.concatenate([rest[None], inner])
-    ends = jax.lax.associative_scan(lambda a, b: compose(b, a), whole, axis=-1)
-    before = jnp.concatenate([identity(size, (1,)), ends], axis=-1)
+    first = identity(size, ())
+    _, ends = jax.lax.scan(further, first, jnp.moveaxis(whole, -1, 0))
+    before = jnp.moveaxis(jnp.concatenate([first[None], ends]), 0, -1)
     return Chain(jnp.moveaxis(within, 0, -1), before)
 
 
@@ -63,6 +64,16 @@ def product(left: Float[Array, "i j *b"], right: Float[Array, "j k *b"]) -> Floa
 def compose(after: Map, before: Map) -> Map:
     """The map that does one after the other."""
     return product(after[:, :-1], before) + on_last(after[:, -1], after.shape[1])
+
+
+def inverse_matrix(matrix: Float[Array, "state state *b"]) -> Float[Array, "state state *b"]:
+    """Inverse with the batch last, in closed form for a single coordinate."""
+    if matrix.shape[0] > 2:
+        inverse: Array = jnp.linalg.inv(jnp.moveaxis(matrix, (0, 1), (-2, -1)))
+        return jnp.moveaxis(inverse, (-2, -1), (0, 1))
+    (a, b), (c, d) = matrix
+    adjugate = jnp.stack([jnp.stack([d, -b]), jnp.stack([-c, a])])
+    return jnp.divide(adjugate, a * d - b * c)
 
 
 def on_last(column: Float[Array, "row *b"], columns: int) -> Float[Array, "row column *b"]:

@@ -5,7 +5,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import Course
-from pitchpoint.dynamics.maps import Map, compose, identity, on_last, product
+from pitchpoint.dynamics.maps import Map, compose, identity, inverse_matrix, on_last, product
 
 __all__ = ["by_series"]
 
@@ -74,15 +74,5 @@ def by_series(
 
 def _inverse(ahead: Map) -> Map:
     """The affine map that undoes another."""
-    matrix = _inverse_matrix(ahead[:, :-1])
+    matrix = inverse_matrix(ahead[:, :-1])
     return jnp.concatenate([matrix, -product(matrix, ahead[:, -1:])], axis=1)
-
-
-def _inverse_matrix(matrix: Float[Array, "state state *b"]) -> Float[Array, "state state *b"]:
-    """Inverse with the batch last, in closed form for a single coordinate."""
-    if matrix.shape[0] > 2:
-        inverse: Array = jnp.linalg.inv(jnp.moveaxis(matrix, (0, 1), (-2, -1)))
-        return jnp.moveaxis(inverse, (-2, -1), (0, 1))
-    (a, b), (c, d) = matrix
-    adjugate = jnp.stack([jnp.stack([d, -b]), jnp.stack([-c, a])])
-    return jnp.divide(adjugate, a * d - b * c)

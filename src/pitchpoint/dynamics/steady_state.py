@@ -10,7 +10,7 @@ from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.integration import pieces
-from pitchpoint.dynamics.maps import Map, chain
+from pitchpoint.dynamics.maps import Map, chain, inverse_matrix
 from pitchpoint.dynamics.response import Response, respond
 from pitchpoint.dynamics.series import by_series
 from pitchpoint.dynamics.shooting import Shot, shoot
@@ -51,7 +51,7 @@ def steady_state(
     maps, resolved = integrator(scaled, course, system.period)
     linked = chain(maps)
     monodromy, reached = linked.period
-    start = jnp.linalg.solve(jnp.eye(monodromy.shape[0]) - monodromy, reached)
+    start = inverse_matrix(jnp.eye(monodromy.shape[0]) - monodromy) @ reached
     residual = _distance(monodromy @ start + reached, start)
     return respond(
         course,
