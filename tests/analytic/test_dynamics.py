@@ -250,6 +250,17 @@ def test_motion_and_energy_with_jumps_errors_and_arms(ratio):
     assert all(abs(part) > 1e-4 * abs(work.damping) for part in (work.mesh, work.error, work.arm))
 
 
+def test_short_elements_resolve_a_fast_profile_error():
+    base = rounded()
+    excite = eqx.tree_at(
+        lambda e: e.error,
+        base,
+        excitation(one, lambda path: 1e-6 * np.cos(16.0 * np.pi * path)).error,
+    )
+    sys = system(40.0, 0.16)
+    assert energies(sys, solve(sys, excite, Grid(16))).closure < 1e-8
+
+
 @pytest.mark.parametrize("excite", [rounded(), steps()], ids=["rounded", "steps"])
 def test_steps_and_series_agree(excite):
     sys = system(7.3, 0.01)

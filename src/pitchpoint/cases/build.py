@@ -29,6 +29,8 @@ from pitchpoint.materials.surfaces import Roughness
 __all__ = ["Built", "build", "laws_of"]
 
 _AVAILABLE_FILLET = 0.38
+USUAL_TIP = 0.25
+"""Tip thickness of helical teeth that is kept where none is given, in normal modules."""
 _RING_FILLET = 0.2  # fits the narrow spaces of most rings
 
 
@@ -165,7 +167,27 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
 def _checked(gears: Gears, driver: str, slices: int) -> tuple[CylindricalPair, tuple[str, ...]]:
     """Pair and its warnings; a sweep that leaves the gears alone builds them once."""
     pair = _pair(gears, driver=2 if driver == "gear 2" else 1, slices=slices)
-    return pair, tuple(check_cylindrical(pair))
+    return pair, (*check_cylindrical(pair), *_shortened(pair, gears))
+
+
+def _least_tip(gears: Gears) -> float:
+    """Tip thickness that is kept, in modules: helical teeth are few more often, and then pointed."""
+    if gears.least_tip_thickness is not None:
+        return gears.least_tip_thickness
+    return USUAL_TIP if gears.helix_angle > 0.0 else 0.0
+
+
+def _shortened(pair: CylindricalPair, gears: Gears) -> list[str]:
+    """What was taken off tips that nobody asked to shorten."""
+    if gears.least_tip_thickness is not None:
+        return []
+    kept = float(pair.clearance_keeping_tip_alteration)
+    return [
+        f"The tip of gear {number} would be thinner than {USUAL_TIP:g} modules and is shortened by "
+        f"{kept - float(pair.tip_alteration[number - 1]):.3g} modules; least_tip_thickness sets the limit."
+        for number, short in enumerate(pair.shortened, 1)
+        if short
+    ]
 
 
 def _yielding(case: Case, pair: CylindricalPair) -> tuple[str, ...]:
@@ -205,7 +227,7 @@ def _pair(gears: Gears, driver: int, slices: int) -> CylindricalPair:
         dedendum=dedendum,
         fillet_radius=(fillet[0], fillet[1]),
         tip_alteration=gears.tip_alteration,
-        least_tip=gears.least_tip_thickness,
+        least_tip=_least_tip(gears),
         centre_distance=gears.centre_distance,
         driver=driver,
         right_flank=gears.flank == "right",

@@ -65,6 +65,7 @@ def resolved(built: Built, document: Document) -> list[dict[str, str]]:
     ]
 
 
+_FOLLOWING = ("dedendum", "fillet_radius", "tip_alteration", "centre_distance")
 _GEOMETRY = (
     "transverse_contact_ratio",
     "overlap_ratio",
@@ -171,9 +172,10 @@ def _choice(item: Any) -> str:
 
 
 def _computed(built: Built, name: str) -> Any:
-    if name not in ("dedendum", "fillet_radius", "tip_alteration", "centre_distance"):
+    names = {name: name for name in _FOLLOWING} | {"least_tip_thickness": "least_tip"}
+    if name not in names:
         return None
-    number = getattr(built.pair, name)
+    number = getattr(built.pair, names[name])
     return float(number) if number.ndim == 0 else tuple(float(one) for one in number)
 
 

@@ -191,7 +191,7 @@ class Gears(Table):
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
     tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
-    least_tip_thickness: Annotated[float, LEAST_TIP] = 0.0
+    least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
     centre_distance: Annotated[float, DISTANCE] | None = None
     bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
     flank: Literal["left", "right"] = "left"

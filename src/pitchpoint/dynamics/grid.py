@@ -12,6 +12,9 @@ from pitchpoint.gears.period import between, lobatto
 
 __all__ = ["Grid"]
 
+_DEGREE = 6
+"""Degree of the polynomials between neighbouring nodes: exact to rounding for what nodes resolve."""
+
 _PHASE_PER_ELEMENT = 20.0
 """Largest phase [rad] of a vibration within an element that 24 nodes represent to 1e-7."""
 
@@ -52,12 +55,13 @@ class Grid:
         return cls(power * 3 // 4 if power > 4 and needed <= 0.75 * power else power)
 
     @property
-    def degree(self) -> int:
-        """Of the polynomials between neighbouring nodes: exact to rounding for smooth excitations.
+    def stiffness_degree(self) -> int:
+        """Degree that a stiffness needs between neighbouring nodes.
 
-        Elements that are short for the sake of a fast vibration hold little of the excitation.
+        Elements that are short for the sake of a fast vibration hold little of the mesh period. Not so
+        for profile errors, which may vary as fast as the vibration.
         """
-        return 6 if self.elements < 16 else 4
+        return _DEGREE if self.elements < 16 else 4
 
     @property
     def place(self) -> np.ndarray:
@@ -82,10 +86,12 @@ class Grid:
         """Derivative along each element of unit length, at its nodes."""
         return values @ _derivative(self.nodes)
 
-    def local(self, values: Values) -> Float[Array, "degree *b element interval"]:
+    def local(
+        self, values: Values, degree: int = _DEGREE
+    ) -> Float[Array, "power *b element interval"]:
         """Coefficients of polynomials between neighbouring nodes, on [-1, 1], lowest power first."""
-        powers = values @ _local(self.nodes, self.degree)
-        split = powers.reshape(*values.shape[:-1], self.degree + 1, self.nodes - 1)
+        powers = values @ _local(self.nodes, degree)
+        split = powers.reshape(*values.shape[:-1], degree + 1, self.nodes - 1)
         return jnp.moveaxis(split, -2, 0)
 
     def extremes(self, values: Values) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:

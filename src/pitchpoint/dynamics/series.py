@@ -39,11 +39,12 @@ def by_series(
     Returns:
         Fundamental matrices and, last, the states reached from rest; whether the last terms are small.
     """
+    grid = course.grid
     stiffness, load, half = (
         values.reshape(*values.shape[:-2], -1)  # one long row is quicker than many short ones
         for values in (
-            course.grid.local(equations.total_stiffness),
-            course.grid.local(equations.total_load),
+            grid.local(equations.total_stiffness, grid.stiffness_degree),
+            grid.local(equations.total_load),
             equations.steps(course, period),
         )
     )
