@@ -255,10 +255,10 @@ def test_short_elements_resolve_a_fast_profile_error():
     excite = eqx.tree_at(
         lambda e: e.error,
         base,
-        excitation(one, lambda path: 1e-6 * np.cos(16.0 * np.pi * path)).error,
+        excitation(one, lambda path: 5e-6 * np.cos(48.0 * np.pi * path)).error,
     )
     sys = system(40.0, 0.16)
-    assert energies(sys, solve(sys, excite, Grid(16))).closure < 1e-8
+    assert energies(sys, solve(sys, excite, Grid(16))).closure < 1e-9
 
 
 @pytest.mark.parametrize("excite", [rounded(), steps()], ids=["rounded", "steps"])
