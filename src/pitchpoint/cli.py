@@ -282,7 +282,7 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 
 def _summary(name: str, outcome: "Outcome") -> None:
-    from pitchpoint.cases.catalogue import summary_table, vibration_table
+    from pitchpoint.cases.catalogue import summary_table, sweep_tables, vibration_table
 
     manifest = outcome.manifest
     _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
@@ -293,6 +293,9 @@ def _summary(name: str, outcome: "Outcome") -> None:
     rows, columns = vibration_table(outcome)
     if rows:
         _table(rows, columns)
+    for title, points in sweep_tables(outcome):
+        _console().print(f"[bold]{_plain(title)}[/]")
+        _table(points, tuple(points[0]))
     _warn(manifest["warnings"])
 
 

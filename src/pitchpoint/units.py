@@ -395,9 +395,10 @@ def _split(text: str | float, wanted: _Kind) -> tuple[str, str]:
     if not math.isfinite(float(number)):
         raise UnitError(f"{_quoted(text)} is too large", value=text)
     if not unit and "" not in wanted.units:
+        other = f' or "{number} rad"' if "rad" in wanted.units else ""
         raise UnitError(
             f'{_quoted(text)} has no unit where {wanted.noun} is needed; write "{number} '
-            f'{wanted.example.split(" ", 1)[1]}" or use one of {_listed(wanted)}',
+            f'{wanted.example.split(" ", 1)[1]}"{other} or use one of {_listed(wanted)}',
             value=text,
             allowed=_shown(wanted),
         )

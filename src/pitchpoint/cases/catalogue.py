@@ -20,7 +20,7 @@ from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["entries", "figures", "summary_table", "vibration_table"]
+__all__ = ["entries", "figures", "summary_table", "sweep_tables", "vibration_table"]
 
 MAIN = (
     "mean_efficiency",
@@ -69,6 +69,13 @@ VIBRATION = (
 )
 
 
+TEMPERATURES = tuple(
+    f"{name}_{gear}"
+    for gear in (1, 2)
+    for name in ("flank_temperature", "root_temperature", "young")
+)
+
+
 def figures(outcome: Outcome) -> dict[str, Any]:
     """Main figures of one variant in SI, by law; None where a quantity is undefined."""
     manifest = outcome.manifest
@@ -79,7 +86,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
     }
     return {
         "title": manifest["title"],
-        "units": {name: VARIABLES[name].unit for name in (*MAIN, *VIBRATION)},
+        "units": {name: VARIABLES[name].unit for name in (*MAIN, *VIBRATION, *TEMPERATURES)},
         "operation": _by_law(outcome.parts["operation"], MAIN),
         "vibration": _by_torque(outcome),
         "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
@@ -112,9 +119,14 @@ def spread_sentence(outcome: Outcome) -> str:
         return "No power is transmitted: the efficiency is undefined."
     low, high = int(values.argmin()), int(values.argmax())
     names = [str(name) for name in data["law"].values]
+    span = f"{100 * values[low]:.2f} % ({names[low]}) to {100 * values[high]:.2f} % ({names[high]})"
+    if outcome.manifest.get("plastic"):
+        return (
+            "No friction law of the library was fitted to plastic teeth; those for steel on steel would "
+            f"give {span}."
+        )
     return (
-        f"The friction laws that apply give {100 * values[low]:.2f} % ({names[low]}) to "
-        f"{100 * values[high]:.2f} % ({names[high]}): the model counts for "
+        f"The friction laws that apply give {span}: the model counts for "
         f"{100 * (values[high] - values[low]):.2f} percentage points."
     )
 
@@ -151,6 +163,33 @@ def vibration_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, 
     return rows, tuple(rows[0])
 
 
+def sweep_tables(outcome: Outcome) -> list[tuple[str, list[dict[str, str]]]]:
+    """Title and rows of every sweep of the command line: the first friction law, point by point."""
+    names = ("mean_efficiency", "torque_ripple", "mean_stiffness", "transmission_error_range")
+    found = []
+    for name, data in outcome.parts.items():
+        if name.startswith("study_sweep_") and "axis" in data:
+            key, unit = data.attrs["sweep_key"], data["axis"].attrs.get("units", "")
+            rows = [
+                {key: _place(value, unit, data.attrs.get("axis_kind", ""))}
+                | {_head(n): _shown(n, float(data[n].values[0, k])) for n in names if n in data}
+                for k, value in enumerate(data["axis"].values)
+            ]
+            found.append((str(data.attrs["title"]), rows))
+    return found
+
+
+def _place(value: float, unit: str, kind: str) -> str:
+    """Place on the axis of a sweep in the unit in which its kind is usually given."""
+    shown = _AXES.get(kind, unit)
+    if not shown:
+        return f"{value:.6g}"
+    return f"{units.convert(float(value), shown, kind):.6g} {shown}"
+
+
+_AXES = {"angle": "deg", "length": "mm", "rotational speed": "rpm", "temperature": "degC"}
+
+
 def _by_torque(outcome: Outcome) -> dict[str, Any]:
     data = outcome.parts.get("vibration")
     if data is None:
@@ -159,7 +198,7 @@ def _by_torque(outcome: Outcome) -> dict[str, Any]:
 
 
 def _by_law(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
-    every = (*names, *(name for name in VIBRATION if name in data))
+    every = (*names, *(name for name in (*VIBRATION, *TEMPERATURES) if name in data))
     result: dict[str, Any] = {
         str(law): {name: _numbers(data[name].values[position]) for name in every}
         for position, law in enumerate(data["law"].values)

@@ -128,7 +128,8 @@ def _rows(built: Built, document: Document, table: str) -> list[dict[str, str]]:
         if value is None:
             continue
         mark = document.provenance.get(f"{table}.{key}")
-        status = mark.status if mark else ("given" if key in given else "default")
+        followed = "derived" if getattr(model, key) is None else "default"
+        status = mark.status if mark else ("given" if key in given else followed)
         rows.append(
             {
                 "table": table,
@@ -151,7 +152,9 @@ def _value(value: Any, key: str, built: Built, name: str) -> str | None:
     quantity = quantity_at(key)
     if quantity is not None:
         each = value if isinstance(value, tuple) else (value,)
-        return " / ".join(dict.fromkeys(quantity.show(number) for number in each))
+        shown = [quantity.show(number) for number in each]
+        alike = key != "gears.profile_shift" and len(set(shown)) == 1
+        return " / ".join(shown[:1] if alike else shown)
     if isinstance(value, BaseModel):
         return ", ".join(_part(key, *item) for item in value.model_dump().items())
     if isinstance(value, tuple):

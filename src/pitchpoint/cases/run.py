@@ -361,6 +361,7 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
             for effect, law in others.items()
         ],
         "averaging": case.models.averaging,
+        "plastic": any(used.plastic for used in built.solids),
         "oil": built.lubricant.title or built.lubricant.name,
         "sources": [{"key": key, "text": cite(key)} for key in dict.fromkeys(keys)],
         "issues": [issue.model_dump() for issue in case.issues],

@@ -28,12 +28,14 @@ class SolidInUse:
         solid: bare numbers at the temperature.
         temperature: of the teeth [K].
         told: sentence on temperature and modulus; empty where nothing follows from it.
+        flank: temperature of the flanks [K], None where it is that of the teeth.
     """
 
     record: SolidRecord
     solid: Solid
     temperature: float
     told: str = ""
+    flank: float | None = None
 
     @property
     def plastic(self) -> bool:
@@ -124,7 +126,7 @@ def _warm(
         f"The teeth of gear {gear + 1} reach {celsius(flank)} at the flank and {celsius(root)} at the "
         f"root; modulus {float(young) / 1e9:.3g} GPa. {status[:1].upper()}{status[1:]}."
     )
-    return replace(warm, told=told)
+    return replace(warm, told=told, flank=flank)
 
 
 def _working_radius(case: Case, gear: int) -> float:

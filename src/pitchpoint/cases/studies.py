@@ -217,9 +217,8 @@ def _cycle(built: Built) -> xr.Dataset:
 
 def _operation(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
-    return _summaries(
-        [built], models, chosen, _vibrations([built], len(chosen)), title="operating point"
-    )
+    extra = {**_vibrations([built], len(chosen)), **_temperatures([built], len(chosen))}
+    return _summaries([built], models, chosen, extra, title="operating point")
 
 
 def _laws(built: Built) -> xr.Dataset:
@@ -239,6 +238,7 @@ def _study(variant: Variant, name: str, study: Study, where: str) -> Job:
         return Job(f"study_{name}", title, (_points(variant, [fixed], {}, title, {}, where),))
     where = where if where.startswith("--") else f"{where}.sweep"
     values, kind = sweep_values(study.sweep, where, variant.name)
+    _demand_one(variant, study.sweep, where)
     told = {
         "sweep_key": study.sweep.key,
         "axis_kind": kind.kind if kind else "",
@@ -253,6 +253,21 @@ def _study(variant: Variant, name: str, study: Study, where: str) -> Job:
         changes = [{**fixed, study.sweep.key: value} for value in part]
         pieces.append(_points(variant, changes, axis, title, told, where))
     return Job(f"study_{name}", title, tuple(pieces))
+
+
+def _demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
+    """InputError if one number would be swept over two gears to which the case gives different ones."""
+    value: Any = variant.document().tree
+    for part in sweep.key.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    several = isinstance(value, list | tuple) and len(set(map(str, value))) > 1
+    if several and any(not isinstance(one, list | tuple) for one in sweep.values or (0,)):
+        raise InputError(
+            f"{sweep.key} has different values for gear 1 and gear 2, {shown(value)}, and one number would "
+            f"set both; sweep {sweep.key}.1 or {sweep.key}.2",
+            file=variant.name,
+            key=where,
+        )
 
 
 def _points(
@@ -270,6 +285,7 @@ def _points(
         extra = {
             **axis,
             **_vibrations(points, len(chosen)),
+            **_temperatures(points, len(chosen)),
             **readings_of(points, len(chosen)),
         }
         data = _summaries(points, models, chosen, extra, progress, title=title)
@@ -386,6 +402,20 @@ def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
     )
     models, chosen = laws_of(built)
     return _summaries([other], models, chosen, {}, title="back-driving", may_lock=True)
+
+
+def _temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
+    """Temperatures and moduli of the teeth where a model says that they warm up."""
+    if points[0].case.models.tooth_temperature == "isothermal":
+        return {}
+    values: dict[str, list[float]] = {}
+    for point in points:
+        for gear, used in enumerate(point.solids, 1):
+            flank = used.temperature if used.flank is None else used.flank
+            values.setdefault(f"flank_temperature_{gear}", []).append(flank)
+            values.setdefault(f"root_temperature_{gear}", []).append(used.temperature)
+            values.setdefault(f"young_{gear}", []).append(float(used.solid.young))
+    return {name: (("law", "point"), np.array([each] * laws)) for name, each in values.items()}
 
 
 def _vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:

@@ -24,6 +24,8 @@ __all__ = [
 Each = Float[Array, "*b"]
 Mate = Literal["steel", "plastic"]
 
+_NEAR = 10.0  # K; the modulus of a plastic hardly changes within
+
 _FLANK_AND_ROOT = {"steel": (6300.0, 895.0), "plastic": (9000.0, 2148.0)}
 """k_theta of flank and root by the material of the mating gear [K (m/s)^0.75 mm^1.75 / W]."""
 
@@ -185,11 +187,19 @@ def modulus_at(record: SolidRecord, temperature: float) -> ModulusInUse:
     """
     young = record.build(temperature).young
     if not record.young_at:
-        remark = f"the same value is used at {celsius(temperature)}"
+        remark = f"the same value is used at {celsius(temperature)}{_softer(record, temperature)}"
     else:
         statuses = dict.fromkeys(point.young.status for point in record.young_at)
         remark = f"interpolated at {celsius(temperature)} (values {' and '.join(statuses)})"
     return ModulusInUse(young, f"{record.name}: {record.modulus_known}, {remark}")
+
+
+def _softer(record: SolidRecord, temperature: float) -> str:
+    """Consequence of a modulus that was found well below the temperature."""
+    known = record.young_temperature
+    if known is None or temperature < known.value + _NEAR:
+        return ""
+    return ", where the true one is lower: stiffness comes out too high, transmission error too low"
 
 
 TOOTH_TEMPERATURE = Registry(

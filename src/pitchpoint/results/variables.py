@@ -100,6 +100,20 @@ VARIABLES: dict[str, Variable] = {
     "contact_ratio": Variable("total contact ratio", "ε_γ", "1"),
     "transverse_contact_ratio": Variable("transverse contact ratio", "ε_α", "1"),
     "overlap_ratio": Variable("overlap ratio", "ε_β", "1"),
+    "flank_temperature_1": Variable(
+        "flank temperature of gear 1", "θ_flank1", "K", "degC", "temperature"
+    ),
+    "root_temperature_1": Variable(
+        "tooth root temperature of gear 1", "θ_root1", "K", "degC", "temperature"
+    ),
+    "young_1": Variable("Young's modulus of gear 1", "E1", "Pa", "GPa", "pressure"),
+    "flank_temperature_2": Variable(
+        "flank temperature of gear 2", "θ_flank2", "K", "degC", "temperature"
+    ),
+    "root_temperature_2": Variable(
+        "tooth root temperature of gear 2", "θ_root2", "K", "degC", "temperature"
+    ),
+    "young_2": Variable("Young's modulus of gear 2", "E2", "Pa", "GPa", "pressure"),
     "module": _length("normal module", "m_n"),
     "centre_distance": _length("centre distance", "a"),
     "tip_alteration_1": Variable("tip alteration coefficient of gear 1", "k1", "1"),

@@ -33,7 +33,7 @@ Seen = Sequence[tuple[Key, xr.Dataset]]
 def is_design_chart(data: xr.Dataset) -> bool:
     """True for a study that sweeps the profile shift and knows what follows from it."""
     return (
-        data.attrs.get("sweep_key") == "gears.profile_shift"
+        data.attrs.get("sweep_key") in ("gears.profile_shift", "gears.profile_shift.1")
         and "axis" in data
         and bool(np.isfinite(data["axis"].values).all())
         and {"contact_ratio", "undercut_limit_1"} <= set(data.data_vars)

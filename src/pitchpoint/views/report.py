@@ -326,6 +326,8 @@ def _spread(outcome: Outcome) -> dict[str, Any] | None:
     if locked.any():
         names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
         text += f"; locked by {', '.join(names)}"
+    if outcome.manifest.get("plastic"):
+        text += ", by laws for steel on steel; none was fitted to plastic teeth"
     return {"text": text, "rows": rows, "points": f"{100 * np.ptp(known):.2f}"}
 
 

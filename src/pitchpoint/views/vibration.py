@@ -120,7 +120,7 @@ def _rows(outcome: Outcome) -> list[tuple[str, list[str]]]:
     rows = [(_title(name), [_cell(data, name, k) for k in count]) for name in _ROWS]
     damping = given(outcome, "dynamics", "damping_ratio")
     if damping:
-        rows.insert(3, ("damping ratio ζ", [damping] * len(count)))
+        rows.insert(3, ("damping ratio ξ", [damping] * len(count)))
     return rows
 
 
