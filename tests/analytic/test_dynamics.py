@@ -296,7 +296,8 @@ def test_harmonic_balance_agrees():
     for measure in ("peak_to_peak", "rms", "mean"):
         exact, found = (getattr(r, measure)(r.transmission_error) for r in (by_time, by_orders))
         np.testing.assert_allclose(found, exact, rtol=1e-4)
-    assert status(by_orders) is status(by_time)
+    assert status(by_time) is Status.CONVERGED
+    assert status(by_orders) is Status.STABILITY_UNKNOWN
     orders = range(12)
     np.testing.assert_allclose(
         by_orders.spectrum(by_orders.transmission_error, orders),
@@ -377,7 +378,11 @@ def test_two_coordinates():
     )
     mass = jnp.array([[MASS, 0.2 * MASS], [0.2 * MASS, 3.0 * MASS]])
     course = excite.on(SHORT)
-    damping = modal_damping(mass, course.mean(course.total_stiffness), 0.04)
+    damping = modal_damping(
+        mass,
+        course.mean(jnp.einsum("apen,pen,bpen->aben", course.arm, course.stiffness, course.arm)),
+        0.04,
+    )
     sys = System(mass, damping, jnp.array([LOAD, 20.0]), jnp.asarray(2.0 * np.pi * 2.6 / NATURAL))
     response = solve(sys, excite, SHORT)
     assert status(response) in (Status.CONVERGED, Status.SEPARATES)

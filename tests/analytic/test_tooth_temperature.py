@@ -140,8 +140,10 @@ def test_single_modulus_is_used_and_the_status_says_it():
     warm = modulus_at(solids.find("PA66"), 366.15)
     assert float(warm.young) == solids.find("PA66").young.value
     assert warm.status == (
-        "PA66: its modulus is known at 23 degC only, the same value is used at 93 degC"
+        "PA66: its modulus is known at 23 degC only, the same value is used at 93 degC, where the "
+        "true one is lower: stiffness comes out too high, transmission error too low"
     )
+    assert modulus_at(solids.find("PA66"), 300.0).status.endswith("used at 26.9 degC")
 
 
 def test_a_tooth_hotter_than_its_table_is_refused():

@@ -140,7 +140,8 @@ def test_wheel_without_tip_shortening_misses_every_contact_ratio():
         assert all(abs(longer - t.printed) > t.tolerance for t in ratios)
     wheel_as_in_eq_4 = [dimensions("gp2")["tip_alteration_1"], 0.0]
     with pytest.raises(InputError, match="the tip of gear 2 meets the fillet of gear 1"):
-        built("gp2", **{"gears.tip_alteration": wheel_as_in_eq_4})
+        changes = {"gears.tip_alteration": wheel_as_in_eq_4, "gears.least_tip_thickness": 0.0}
+        built("gp2", **changes)
 
 
 def test_another_fillet_of_the_tool_misses_the_undercut_limits():

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import cos, pi, sin, tan
+from math import cos, isfinite, pi, sin, tan
 from typing import Any
 
 import equinox as eqx
@@ -112,10 +112,15 @@ def warmed(built: Built, document: Document) -> Built:
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
+    if not any(used.plastic for used in built.solids):
+        text = "No gear is of plastic: the tooth temperature changes nothing."
+        return replace(built, warnings=(*built.warnings, text))
     models, _ = laws_of(built)
     found = jax.device_get(heat(built.design, built.operation, models))
     figures = {name: float(value) for name, value in found.items()}
-    used = heated(built.case, built.solids, found=figures, document=document)
+    if not all(map(isfinite, figures.values())):
+        return built  # friction locks the mesh, which the computation says
+    used = heated(built, figures, document)
     design = replace(built.design, solids=(used[0].solid, used[1].solid))
     return replace(built, design=design, solids=used)
 

@@ -18,6 +18,10 @@ from pitchpoint.results.variables import VARIABLES
 __all__ = ["Row", "compare", "counts"]
 
 
+OF_VIBRATION = ("mean_transmission_error", "transmission_error_range", "largest_dynamic_factor")
+"""Variables whose numbers count only where the vibration is a steady one."""
+
+
 @dataclass(frozen=True)
 class Row:
     """One printed number, in the unit of the print, and what was computed for it.
@@ -121,6 +125,10 @@ def _computed(target: Target, results: Mapping[str, xr.Dataset]) -> float:
             f"from 0, and {target.reduce} takes {needed}",
             key="law",
         )
+    if target.variable in OF_VIBRATION and data["vibration_status"].values[wanted].any():
+        return float(
+            "nan"
+        )  # a balance that is not reached, or that pulls on teeth, meets no target
     number = REDUCTIONS[target.reduce](values[wanted])
     variable = VARIABLES[target.variable]
     kind = "dimensionless" if target.reduce in PLAIN else variable.kind

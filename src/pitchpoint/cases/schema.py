@@ -40,9 +40,9 @@ INERTIA = Quantity("moment of inertia", 0.0, 1e9, "kg m2", open_low=True)
 RATIO = Quantity("dimensionless", 0.0, 1.0, open_low=True)
 DEVIATION = Quantity("length", 0.0, 1e-2, "um")
 PHASE = Quantity("angle", -4 * pi, 4 * pi, "deg")
-ORDER = Quantity("dimensionless", 0, 1000, whole=True)
+ORDER = Quantity("dimensionless", 0, 40, whole=True)
 SLICES = Quantity("dimensionless", 1, 400, whole=True)
-CONDUCTIVITY = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
+THERMAL_RESISTANCE = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
 AREA = Quantity("area", 1e-8, 1e4, "m2")
 MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
 POISSON = Quantity("dimensionless", 0.0, 0.5)
@@ -195,6 +195,16 @@ class Gears(Table):
     centre_distance: Annotated[float, DISTANCE] | None = None
     bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
     flank: Literal["left", "right"] = "left"
+
+    @model_validator(mode="after")
+    def _one_tip(self) -> "Gears":
+        if self.tip_alteration is not None and self.least_tip_thickness:
+            raise InputError(
+                "tip_alteration and least_tip_thickness were both given; a tip alteration by value is "
+                "kept as it is",
+                key="least_tip_thickness",
+            )
+        return self
 
 
 class SolidValues(Table):
@@ -349,7 +359,7 @@ class Choices(Table):
 class Housing(Table):
     """How a plastic gear gets rid of its heat, for models of the tooth temperature."""
 
-    thermal_resistance: Annotated[float, CONDUCTIVITY] = 0.0
+    thermal_resistance: Annotated[float, THERMAL_RESISTANCE] = 0.0
     area: Annotated[float, AREA] | None = None
     duty: Annotated[float, RATIO] = 1.0
 

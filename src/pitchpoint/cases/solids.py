@@ -2,16 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import cos
-from typing import cast, get_args
+from typing import TYPE_CHECKING, cast, get_args
 
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.schema import Case, Materials, SolidValues
+from pitchpoint.cases.schema import Materials, SolidValues
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE, modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.materials import solids
 from pitchpoint.materials._leaves import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius
+
+if TYPE_CHECKING:
+    from pitchpoint.cases.build import Built
 
 __all__ = ["SolidInUse", "datum", "heated", "solids_in_use"]
 
@@ -59,27 +61,22 @@ def solids_in_use(
 
 
 def heated(
-    case: Case,
-    used: tuple[SolidInUse, SolidInUse],
-    *,
-    found: Mapping[str, float],
-    document: Document,
+    built: "Built", found: Mapping[str, float], document: Document
 ) -> tuple[SolidInUse, SolidInUse]:
     """Materials with plastic gears at the temperature of their tooth roots.
 
     The tooth yields most in its root and body, so the temperature there sets its modulus.
 
     Args:
-        case: gears, operating point, housing, and the name of the thermal model.
-        used: materials at the temperature of the surroundings.
-        found: mean_friction and loss_factor at the operating point.
+        built: the case with its materials at the temperature of the surroundings.
+        found: mean_friction and loss_factor at the operating point, by the first friction law.
         document: for messages.
 
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
     first, second = (
-        _warm(case, used, gear, found, document) if used[gear].plastic else used[gear]
+        _warm(built, gear, found, document) if built.solids[gear].plastic else built.solids[gear]
         for gear in (0, 1)
     )
     return first, second
@@ -93,46 +90,38 @@ def datum(value: float, key: str, document: Document) -> Datum:
     return Datum(value=value, status=cast("Status", mark.status), note=mark.note)
 
 
-def _warm(
-    case: Case,
-    used: tuple[SolidInUse, SolidInUse],
-    gear: int,
-    found: Mapping[str, float],
-    document: Document,
-) -> SolidInUse:
-    gears, point, housing = case.gears, case.operation, case.housing
-    driver = 1 if point.driver == "gear 2" else 0
-    ratio = abs(gears.teeth[1 - driver] / gears.teeth[driver])
-    torque, resistance = point.torque / ratio, housing.thermal_resistance or None
-    working = _working_radius(case, driver)
+def _warm(built: "Built", gear: int, found: Mapping[str, float], document: Document) -> SolidInUse:
+    case, mesh, used = built.case, built.design.mesh, built.solids
+    pair, point = mesh.reference, case.operation
+    assert pair is not None
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(
         ambient=point.temperature,
-        power=torque * point.speed,
+        power=point.torque * abs(float(mesh.loaded @ mesh.motion)) * point.speed,
         friction=found["mean_friction"],
         loss_factor=found["loss_factor"],
-        face_width=gears.face_width,
-        teeth=abs(gears.teeth[gear]),
-        pitch_speed=working * point.speed,
-        normal_module=gears.module,
+        face_width=pair.width,
+        teeth=abs(case.gears.teeth[gear]),
+        pitch_speed=pair.pitch_line_speed * point.speed,
+        normal_module=case.gears.module,
         mate="plastic" if used[1 - gear].plastic else "steel",
-        housing_resistance=resistance,
-        housing_area=housing.area,
-        duty=housing.duty,
+        housing_resistance=case.housing.thermal_resistance or None,
+        housing_area=case.housing.area,
+        duty=case.housing.duty,
     )
     root, flank = float(temperature.root), float(temperature.flank)
-    warm = _in_use(used[gear].record, _KEYS[gear], document, root)
-    young, status = modulus_at(used[gear].record, root)
+    record = used[gear].record
+    warm = _in_use(record, _KEYS[gear], document, root)
     told = (
         f"The teeth of gear {gear + 1} reach {celsius(flank)} at the flank and {celsius(root)} at the "
-        f"root; modulus {float(young) / 1e9:.3g} GPa. {status[:1].upper()}{status[1:]}."
+        f"root; modulus {float(warm.solid.young) / 1e9:.3g} GPa. {_upper(modulus_at(record, root).status)}."
     )
+    if record.young_at and flank > record.young_at[-1].temperature:
+        told += f" No modulus is known at the temperature of the flank of gear {gear + 1}."
     return replace(warm, told=told, flank=flank)
 
 
-def _working_radius(case: Case, gear: int) -> float:
-    """Radius of the reference circle [m]: near enough to the pitch circle for a temperature."""
-    gears = case.gears
-    return abs(gears.teeth[gear]) * gears.module / (2.0 * cos(gears.helix_angle))
+def _upper(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def _in_use(record: SolidRecord, key: str, document: Document, temperature: float) -> SolidInUse:

@@ -457,6 +457,10 @@ def _summaries(
     out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
     told = dict.fromkeys(text for point in points for text in point.warnings)
     warnings = few([*told])
+    if "vibration_status" in extra:
+        from pitchpoint.cases.vibration import status_sentences
+
+        warnings += status_sentences(extra["vibration_status"][1][0])
     if not may_lock:
         for law, locked in zip(laws, out["locked"], strict=True):
             warnings += _lock_warning(models.friction[law], locked)

@@ -32,7 +32,14 @@ from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.results.store import dataset
 
-__all__ = ["figures_of", "resonance_part", "stiffness_part", "vibrating_of", "vibration_part"]
+__all__ = [
+    "figures_of",
+    "resonance_part",
+    "status_sentences",
+    "stiffness_part",
+    "vibrating_of",
+    "vibration_part",
+]
 
 ORDERS = tuple(range(41))
 """Orders of the mesh frequency in spectra."""
@@ -126,7 +133,7 @@ def vibration_part(built: Built) -> xr.Dataset:
         data,
         {"torque": ("torque", _torques(built)), "order": ("order", np.array(ORDERS))},
         title="vibration",
-        warnings=_warnings(built, told),
+        warnings=[*_warnings(built, told), *_moduli(built)],
         status=[status.sentence for status in told],
         contact=CONTACT_LAWS[built.case.models.tooth_contact].title,
     )
@@ -154,7 +161,8 @@ def resonance_part(built: Built) -> xr.Dataset:
     slowest = replace(built.operation, speed=jnp.asarray(speeds[0]))
     points = [replace(slowest, load=load.load) for load in _loads(built)]
     parts = [_excited(built.design, point, models, vibrating_of(built)) for point in points]
-    grid = _grid(parts)
+    orders = vibrating_of(built).orders
+    grid = _grid(parts, orders, "dynamics.speeds.start")
     periods = built.design.mesh.period / jnp.asarray(speeds)
     runs = [
         [jax.device_get(_sweep(*part, order, grid, separating(built))) for part in parts]
@@ -165,7 +173,7 @@ def resonance_part(built: Built) -> xr.Dataset:
         {name: (dims, _by_speed(runs, name)) for name in runs[0][0]},
         {"direction": ["rising", "falling"], "torque": _torques(built), "speed": speeds},
         title="vibration against speed",
-        warnings=[],
+        warnings=[*_gaps(runs), *_moduli(built)],
         sentences=[status.sentence for status in Status],
     )
 
@@ -185,11 +193,6 @@ def _sweep(
     grid: Grid,
     parting: bool,
 ) -> dict[str, Array]:
-    if parting:
-        found = speed_sweep(moved, driven, periods, grid)
-    else:
-        found = eqx.filter_vmap(lambda at: steady(replace(moved, period=at), driven, grid))(periods)
-
     def figures(one: Response) -> dict[str, Array]:
         factors = one.dynamic_factor(nominal_force(stiffness, moved))
         return {
@@ -198,8 +201,16 @@ def _sweep(
             "vibration_status": one.status,
         }
 
-    result: dict[str, Array] = eqx.filter_vmap(figures)(found)
-    return result
+    def alone(period: Float[Array, ""]) -> dict[str, Array]:
+        return figures(steady(replace(moved, period=period), driven, grid))
+
+    found: dict[str, Array]
+    if parting:
+        found = eqx.filter_vmap(figures)(speed_sweep(moved, driven, periods, grid))
+    else:
+        # A few at a time: the slowest speed needs a fine grid, and all would not fit into memory.
+        found = jax.lax.map(alone, periods, batch_size=4)
+    return found
 
 
 def figures_of(points: Sequence[Built]) -> dict[str, np.ndarray]:
@@ -216,7 +227,7 @@ def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str
     """What is read from the steady vibration of every input, solved in chunks of one size."""
     models = laws_of(built)[0]
     parts = [_excited(design, point, models, own) for design, point, own in inputs]
-    grid = _grid(parts)
+    grid = _grid(parts, inputs[0][2].orders)
     found = []
     for start in range(0, len(parts), TOGETHER):
         chunk = parts[start : start + TOGETHER]
@@ -249,17 +260,49 @@ def _torques(built: Built) -> list[float]:
     return list(built.case.dynamics.torques or (built.case.operation.torque,))
 
 
-def _grid(parts: Sequence[Excited]) -> Grid:
-    """Grid for the highest of the natural frequencies, all over their mesh frequency."""
+def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
+    """Grid for the highest of natural frequencies and profile errors, over their mesh frequency."""
     ratio = max(float(_ratio(stiffness, moved)) for stiffness, moved, _ in parts)
     if not ratio <= MOST_RATIO:
         raise InputError(
             f"the natural frequency is {ratio:.3g} times the mesh frequency, and a vibration is resolved "
             f"up to {MOST_RATIO:g} times; so slow a mesh moves as the static transmission error says, "
             'which a run without [dynamics] and with load_sharing = "from_stiffness" gives',
-            key="operation.speed",
+            key=key,
         )
-    return Grid.resolving(ratio)
+    return Grid.resolving(max(ratio, *orders, 0.0))
+
+
+def _gaps(runs: Sequence[Sequence[dict[str, np.ndarray]]]) -> list[str]:
+    """At how many speeds there is no steady state, and why."""
+    codes = np.concatenate([point["vibration_status"] for run in runs for point in run])
+    return [
+        f"Vibration against speed: at {np.sum(codes == code)} of {codes.size} points {code.sentence}."
+        for code in Status
+        if not code.ok and np.any(codes == code)
+    ]
+
+
+def _moduli(built: Built) -> list[str]:
+    """Where moduli that depend on the operating point are used beside it."""
+    asked = built.case.dynamics
+    if built.case.models.tooth_temperature == "isothermal" or asked is None:
+        return []
+    if asked.speeds is None and set(_torques(built)) <= {built.case.operation.torque}:
+        return []
+    return [
+        "The moduli are those at the operating point, for all torques and speeds of the vibration; a "
+        "study or sweep warms the teeth at each of its points."
+    ]
+
+
+def status_sentences(codes: np.ndarray) -> list[str]:
+    """What the points of a study say whose vibration is not a steady one that is reached."""
+    return [
+        f"Vibration at {np.sum(codes == code)} of {codes.size} points: {code.sentence}."
+        for code in Status
+        if not code.ok and np.any(codes == code)
+    ]
 
 
 def _warnings(built: Built, statuses: Sequence[Status]) -> list[str]:

@@ -59,5 +59,5 @@ def separating(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
 CONTACT_LAWS = Registry(
     "contact law",
     ContactLaw("linear", "teeth never part", linear, linear=True),
-    ContactLaw("separating", "teeth part and may meet their back flanks", separating),
+    ContactLaw("separating", "teeth may part", separating),
 )

@@ -71,16 +71,6 @@ class Course(eqx.Module):
         """Length of each element [periods]."""
         return jnp.diff(self.bounds)
 
-    @property
-    def total_stiffness(self) -> Float[Array, "coordinate coordinate element node"]:
-        """Sum over the pairs of arm, stiffness and arm."""
-        return jnp.einsum("apen,pen,bpen->aben", self.arm, self.stiffness, self.arm)
-
-    @property
-    def error_load(self) -> Float[Array, "coordinate element node"]:
-        """Load that the profile errors put on the coordinates [N or N m]."""
-        return jnp.einsum("apen,pen->aen", self.arm, self.stiffness * self.error)
-
     def mean(self, values: Float[Array, "*b element node"]) -> Float[Array, "*b"]:
         """Mean over the period."""
         return jnp.sum(self.grid.integral(values) * self.length, axis=-1)

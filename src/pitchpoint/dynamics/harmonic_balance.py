@@ -9,7 +9,7 @@ from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.response import Response, respond
+from pitchpoint.dynamics.response import Response, Status, respond
 from pitchpoint.dynamics.system import System
 
 __all__ = ["harmonic_balance"]
@@ -55,7 +55,10 @@ def harmonic_balance(
         residual < 1e-8,
     )
     unknown = jnp.full_like(response.multipliers, jnp.nan)
-    known: Response = eqx.tree_at(lambda r: r.multipliers, response, unknown)
+    status = jnp.where(
+        response.status == int(Status.CONVERGED), int(Status.STABILITY_UNKNOWN), response.status
+    )
+    known: Response = eqx.tree_at(lambda r: (r.multipliers, r.status), response, (unknown, status))
     return known
 
 

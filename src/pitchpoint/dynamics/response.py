@@ -31,6 +31,7 @@ class Status(IntEnum):
     UNSTABLE = 3
     UNRESOLVED = 4
     SEPARATES = 5
+    STABILITY_UNKNOWN = 6
 
     @property
     def sentence(self) -> str:
@@ -50,6 +51,7 @@ _SENTENCES = {
     Status.UNSTABLE: "a Floquet multiplier is larger than one: disturbances grow, and the balance "
     "cannot be reached",
     Status.UNRESOLVED: "the grid has too few elements for the vibration; take more",
+    Status.STABILITY_UNKNOWN: "a balance was found; whether it is reached this method cannot say",
     Status.SEPARATES: "a force is negative: the teeth would separate, which this model leaves out",
 }
 

@@ -25,6 +25,9 @@ __all__ = [
 ]
 
 
+_NODES = 12
+
+
 class Vibrating(eqx.Module):
     """What a pair has beside its design when it vibrates.
 
@@ -103,7 +106,9 @@ def excited(
         models: how teeth yield.
         vibrating: inertia, damping, profile error.
     """
-    stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load)
+    # A segment between events may be a whole period long, and each order has to be resolved in it.
+    count = _NODES + 4 * max(vibrating.orders, default=0)
+    stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load, count)
     moved = system(design.mesh, vibrating, stiffness.mean, operation)
     return stiffness, moved, excitation(stiffness, vibrating)
 

@@ -436,8 +436,8 @@ def _check_circles(gear: _Gear) -> None:
             "addendum",
             gear.addendum,
             f"{_tip_circle(gear)} lies beyond the point of the teeth, where the flanks cross; it "
-            f"may be {_mm(gear.pointed_diameter)} at {'least' if gear.internal else 'most'}, and "
-            "least_tip_thickness shortens it",
+            f"may be {_mm(gear.pointed_diameter)} at {'least' if gear.internal else 'most'}; without a "
+            "tip_alteration, least_tip_thickness shortens it",
         )
     left = gear.tip_diameter - gear.form_diameter
     if (-left if gear.internal else left) <= 0.0:

@@ -26,6 +26,9 @@ SLICES = 12
 RIM_RATIO = 1.0 / 0.3
 """Root radius over bore radius where no bore is given."""
 
+RING_RIM_RATIO = 1.2
+"""Outer over root radius of a ring where it is not given."""
+
 # Share of the face width that a contact line has at least while it is in mesh: a length of zero has
 # no load per length.
 _SHORTEST = 1e-9
@@ -526,7 +529,7 @@ def build_cylindrical_pair(
     tip_alteration: tuple[float, float] | None = None,
     least_tip: float = 0.0,
     centre_distance: float | None = None,
-    rim_ratio: tuple[float, float] = (RIM_RATIO, RIM_RATIO),
+    rim_ratio: tuple[float, float] | None = None,
     driver: int = 1,
     right_flank: bool = False,
     slices: int = SLICES,
@@ -544,7 +547,7 @@ def build_cylindrical_pair(
         tip_alteration: k1, k2; keeps the rack's tip clearance by default.
         least_tip: thickness in the normal section, in modules, to which tips that would be thinner
             are shortened; for tip alterations that are not given.
-        rim_ratio: root radius over bore radius of each gear.
+        rim_ratio: root radius over bore radius of each gear; outer over root radius of a ring.
         driver: 1 or 2, the gear that drives.
         right_flank: True if the right flanks of both gears touch.
         slices: of each contact line, for helical gears; even, or one for its middle alone.
@@ -566,7 +569,7 @@ def build_cylindrical_pair(
         least_tip=_array(least_tip),
         face_width=_array(face_width),
         centre_distance=_array(centre_distance or 0.0),
-        rim_ratio=_array(rim_ratio),
+        rim_ratio=_array(rim_ratio or (RIM_RATIO, RING_RIM_RATIO if teeth[1] < 0 else RIM_RATIO)),
         wheel_drives=jnp.asarray(driver == 2),
         right_flank=jnp.asarray(right_flank),
         follows=(centre_distance is None, tip_alteration is None),

@@ -1,6 +1,7 @@
 """Stiffness of a pair of gears as ISO 6336-1 estimates it, method B: one number, no course over the path."""
 
 import math
+from dataclasses import replace
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -174,6 +175,12 @@ def _estimate(
 ) -> tuple[StandardPair, Float[Array, ""], Float[Array, ""]]:
     pair = mesh.standard
     assert pair is not None
+    pinion_first = jnp.argsort(pair.virtual_teeth)
+    pair = replace(
+        pair,
+        virtual_teeth=pair.virtual_teeth[pinion_first],
+        profile_shift=pair.profile_shift[pinion_first],
+    )
     single = single_stiffness(
         virtual_teeth=pair.virtual_teeth,
         profile_shift=pair.profile_shift,

@@ -18,6 +18,9 @@ Lanes = Float[Array, "pair slice *b"]
 class MeshStiffness(eqx.Module):
     """Springs of all pairs over one period.
 
+    One arm and one separation stand for the whole contact line of a pair: flanks without deviations on
+    parallel axes.
+
     Attributes:
         edges: phases between which the stiffness is smooth [periods].
         phase: of the nodes [periods].
