@@ -67,6 +67,7 @@ area = "0.05 m2"
 
 [dynamics]
 damping_ratio = 0.1
+backlash = "50 um"
 inertia = ["1 kg cm2", "20 kg cm2"]
 torques = ["40 N m", "50 N m"]
 speeds = { start = "500 rpm", stop = "3000 rpm", count = 3 }

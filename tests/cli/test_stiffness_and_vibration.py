@@ -14,7 +14,7 @@ from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.library import find
 from pitchpoint.cases.run import Outcome, Progress, describe, load_case, open_result, run_variant
 from pitchpoint.cases.studies import Variant, jobs
-from pitchpoint.cases.vibration import stiffness_part, vibrating_of
+from pitchpoint.cases.vibration import stiffness_part, vibrating_of, vibration_part
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.vibration import excited
 from pitchpoint.errors import InputError
@@ -310,3 +310,17 @@ def test_both_ways_to_say_a_tip_are_refused(file: Callable[[str], str]) -> None:
     both = {"gears.tip_alteration": -0.1, "gears.least_tip_thickness": 0.3}
     with pytest.raises(InputError, match="were both given"):
         load_case(file(ENGINEER), settings=both)
+
+
+def test_a_small_backlash_brings_the_back_flanks_into_contact(
+    file: Callable[[str], str], tmp_path: Path
+) -> None:
+    near = {"operation.speed": "12400 rpm", "dynamics.damping_ratio": 0.02}
+    parting = near | {"models.tooth_contact": "separating"}
+    built = [
+        load_case(file(SPUR), settings=parting | {"dynamics.backlash": value})
+        for value in ("10 mm", "0 um")
+    ]
+    free, tight = (vibration_part(one) for one in built)
+    assert float(free.dynamic_factor.min()) >= 0.0
+    assert float(tight.dynamic_factor.min()) < 0.0, "back flanks push the other way"

@@ -120,7 +120,7 @@ def warmed(built: Built, document: Document) -> Built:
     figures = {name: float(value) for name, value in found.items()}
     if not all(map(isfinite, figures.values())):
         return built  # friction locks the mesh, which the computation says
-    used = heated(built, figures, document)
+    used = heated(built.case, built.design.mesh, built.solids, figures, document)
     design = replace(built.design, solids=(used[0].solid, used[1].solid))
     return replace(built, design=design, solids=used)
 

@@ -401,6 +401,7 @@ class Dynamics(Table):
     damping_ratio: Annotated[float, RATIO] = 0.1
     inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
     profile_error: tuple[Deviation, ...] = ()
+    backlash: Annotated[float, DEVIATION] | None = None
     torques: tuple[Annotated[float, LOADED], ...] = ()
     speeds: Speeds | None = None
 

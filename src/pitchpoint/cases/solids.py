@@ -2,18 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast, get_args
+from typing import cast, get_args
 
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.schema import Materials, SolidValues
+from pitchpoint.cases.schema import Case, Materials, SolidValues
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE, modulus_at
 from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
 from pitchpoint.materials._leaves import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius
-
-if TYPE_CHECKING:
-    from pitchpoint.cases.build import Built
 
 __all__ = ["SolidInUse", "datum", "heated", "solids_in_use"]
 
@@ -45,9 +43,10 @@ class SolidInUse:
         return float(self.solid.young) < _PLASTIC_BELOW
 
 
-def solids_in_use(
-    materials: Materials, document: Document, temperature: float
-) -> tuple[SolidInUse, SolidInUse]:
+Used = tuple[SolidInUse, SolidInUse]
+
+
+def solids_in_use(materials: Materials, document: Document, temperature: float) -> Used:
     """Materials of both gears at a temperature.
 
     Raises:
@@ -61,14 +60,20 @@ def solids_in_use(
 
 
 def heated(
-    built: "Built", found: Mapping[str, float], document: Document
-) -> tuple[SolidInUse, SolidInUse]:
+    case: Case,
+    mesh: Mesh,
+    used: Used,
+    found: Mapping[str, float],
+    document: Document,
+) -> Used:
     """Materials with plastic gears at the temperature of their tooth roots.
 
     The tooth yields most in its root and body, so the temperature there sets its modulus.
 
     Args:
-        built: the case with its materials at the temperature of the surroundings.
+        case: operating point, housing, and the name of the thermal model.
+        mesh: of the gears.
+        used: materials at the temperature of the surroundings.
         found: mean_friction and loss_factor at the operating point, by the first friction law.
         document: for messages.
 
@@ -76,7 +81,7 @@ def heated(
         InputError: the temperature is outside what is known of a material.
     """
     first, second = (
-        _warm(built, gear, found, document) if built.solids[gear].plastic else built.solids[gear]
+        _warm(case, mesh, used, gear, found, document) if used[gear].plastic else used[gear]
         for gear in (0, 1)
     )
     return first, second
@@ -90,8 +95,14 @@ def datum(value: float, key: str, document: Document) -> Datum:
     return Datum(value=value, status=cast("Status", mark.status), note=mark.note)
 
 
-def _warm(built: "Built", gear: int, found: Mapping[str, float], document: Document) -> SolidInUse:
-    case, mesh, used = built.case, built.design.mesh, built.solids
+def _warm(
+    case: Case,
+    mesh: Mesh,
+    used: Used,
+    gear: int,
+    found: Mapping[str, float],
+    document: Document,
+) -> SolidInUse:
     pair, point = mesh.reference, case.operation
     assert pair is not None
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(

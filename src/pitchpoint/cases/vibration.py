@@ -68,6 +68,7 @@ def vibrating_of(built: Built) -> Vibrating:
         damping_ratio=jnp.asarray(asked.damping_ratio),
         error=jnp.asarray([error.amplitude for error in errors]),
         error_phase=jnp.asarray([error.phase for error in errors]),
+        backlash=jnp.asarray(np.inf if asked.backlash is None else asked.backlash),
         orders=tuple(int(error.order) for error in errors),
     )
 
@@ -160,9 +161,9 @@ def resonance_part(built: Built) -> xr.Dataset:
     models = laws_of(built)[0]
     slowest = replace(built.operation, speed=jnp.asarray(speeds[0]))
     points = [replace(slowest, load=load.load) for load in _loads(built)]
-    parts = [_excited(built.design, point, models, vibrating_of(built)) for point in points]
-    orders = vibrating_of(built).orders
-    grid = _grid(parts, orders, "dynamics.speeds.start")
+    own = vibrating_of(built)
+    parts = [(*_excited(built.design, point, models, own), own.backlash) for point in points]
+    grid = _grid(parts, own.orders, "dynamics.speeds.start")
     periods = built.design.mesh.period / jnp.asarray(speeds)
     runs = [
         [jax.device_get(_sweep(*part, order, grid, separating(built))) for part in parts]
@@ -189,6 +190,7 @@ def _sweep(
     stiffness: MeshStiffness,
     moved: System,
     driven: Excitation,
+    backlash: Array,
     periods: Float[Array, " speed"],
     grid: Grid,
     parting: bool,
@@ -206,7 +208,9 @@ def _sweep(
 
     found: dict[str, Array]
     if parting:
-        found = eqx.filter_vmap(figures)(speed_sweep(moved, driven, periods, grid))
+        found = eqx.filter_vmap(figures)(
+            speed_sweep(moved, driven, periods, grid, backlash=backlash)
+        )
     else:
         # A few at a time: the slowest speed needs a fine grid, and all would not fit into memory.
         found = jax.lax.map(alone, periods, batch_size=4)
@@ -220,13 +224,13 @@ def figures_of(points: Sequence[Built]) -> dict[str, np.ndarray]:
 
 
 Reading = Callable[[MeshStiffness, System, Response], dict[str, Array]]
-Excited = tuple[MeshStiffness, System, Excitation]
+Excited = tuple[MeshStiffness, System, Excitation, Array]
 
 
 def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str, np.ndarray]:
     """What is read from the steady vibration of every input, solved in chunks of one size."""
     models = laws_of(built)[0]
-    parts = [_excited(design, point, models, own) for design, point, own in inputs]
+    parts = [(*_excited(design, point, models, own), own.backlash) for design, point, own in inputs]
     grid = _grid(parts, inputs[0][2].orders)
     found = []
     for start in range(0, len(parts), TOGETHER):
@@ -240,8 +244,11 @@ def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str
 
 @eqx.filter_jit
 def _read(parts: Excited, grid: Grid, parting: bool, reading: Reading) -> dict[str, Array]:
-    def one(stiffness: MeshStiffness, moved: System, driven: Excitation) -> dict[str, Array]:
-        return reading(stiffness, moved, steady(moved, driven, grid, separating=parting))
+    def one(
+        stiffness: MeshStiffness, moved: System, driven: Excitation, backlash: Array
+    ) -> dict[str, Array]:
+        found = steady(moved, driven, grid, separating=parting, backlash=backlash)
+        return reading(stiffness, moved, found)
 
     found: dict[str, Array] = eqx.filter_vmap(one)(*parts)
     return found
@@ -262,7 +269,7 @@ def _torques(built: Built) -> list[float]:
 
 def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
     """Grid for the highest of natural frequencies and profile errors, over their mesh frequency."""
-    ratio = max(float(_ratio(stiffness, moved)) for stiffness, moved, _ in parts)
+    ratio = max(float(_ratio(stiffness, moved)) for stiffness, moved, *_ in parts)
     if not ratio <= MOST_RATIO:
         raise InputError(
             f"the natural frequency is {ratio:.3g} times the mesh frequency, and a vibration is resolved "

@@ -59,5 +59,7 @@ def separating(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
 CONTACT_LAWS = Registry(
     "contact law",
     ContactLaw("linear", "teeth never part", linear, linear=True),
-    ContactLaw("separating", "teeth may part", separating),
+    ContactLaw(
+        "separating", "teeth may part, and meet their back flanks beyond the backlash", separating
+    ),
 )

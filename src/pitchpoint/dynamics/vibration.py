@@ -36,6 +36,8 @@ class Vibrating(eqx.Module):
         damping_ratio: of the mean system.
         error: amplitude of each order of the composite profile error, the same for all pairs [m].
         error_phase: of each order at phase zero of the mesh [rad].
+        backlash: free motion along the normal before back flanks meet, where teeth may part; infinite
+            if they never do [m].
         orders: static, orders of the mesh frequency.
     """
 
@@ -44,6 +46,7 @@ class Vibrating(eqx.Module):
     error: Float[Array, " order"]
     error_phase: Float[Array, " order"]
     orders: tuple[int, ...] = eqx.field(static=True)
+    backlash: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(jnp.inf))
 
 
 def excitation(stiffness: MeshStiffness, vibrating: Vibrating) -> Excitation:
@@ -113,7 +116,14 @@ def excited(
     return stiffness, moved, excitation(stiffness, vibrating)
 
 
-def steady(moved: System, driven: Excitation, grid: Grid, *, separating: bool = False) -> Response:
+def steady(
+    moved: System,
+    driven: Excitation,
+    grid: Grid,
+    *,
+    separating: bool = False,
+    backlash: Float[Array, ""] | float = jnp.inf,
+) -> Response:
     """Steady vibration of a system.
 
     Compiled for itself it serves every gear family, tooth model and material.
@@ -123,8 +133,11 @@ def steady(moved: System, driven: Excitation, grid: Grid, *, separating: bool = 
         driven: stiffness, arms, errors.
         grid: static, see `Grid.resolving`.
         separating: static; True if teeth may part.
+        backlash: free motion along the normal before back flanks meet [m].
     """
-    return (separating_steady_state if separating else steady_state)(moved, driven, grid)
+    if separating:
+        return separating_steady_state(moved, driven, grid, backlash=backlash)
+    return steady_state(moved, driven, grid)
 
 
 def transmission_figures(
