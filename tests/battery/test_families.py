@@ -235,6 +235,7 @@ def check_energy(found):
 @pytest.mark.parametrize("rolling", ["none", "wu_cheng_1991"])
 def test_torque_route_equals_loss_route(family, rolling):
     if rolling != "none" and family.at.shape != "line":
+        # Its film and load parameters are per length of a line: it is not defined for an ellipse.
         pytest.skip("the formula is for line contacts")
     design, operation = design_for(family.mesh), operation_for(family.mesh)
     for law in laws(family):
@@ -437,6 +438,7 @@ def test_contact_moves_along_each_flank_as_it_rolls(family):
 
 def test_contact_lines_are_straight_in_the_plane_of_action(family):
     if not isinstance(family.mesh, CylindricalPair):
+        # Discs touch at one fixed place: there is no plane through which contact lines travel.
         pytest.skip("no plane of action")
     mesh, at = family.mesh, family.at
     module, angle, slope = transverse(mesh)

@@ -8,6 +8,7 @@ import numpy as np
 from pitchpoint import units
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.run import Outcome
+from pitchpoint.cases.schema import quantity_at
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -169,9 +170,9 @@ def sweep_tables(outcome: Outcome) -> list[tuple[str, list[dict[str, str]]]]:
     found = []
     for name, data in outcome.parts.items():
         if name.startswith("study_sweep_") and "axis" in data:
-            key, unit = data.attrs["sweep_key"], data["axis"].attrs.get("units", "")
+            key = data.attrs["sweep_key"]
             rows = [
-                {key: _place(value, unit, data.attrs.get("axis_kind", ""))}
+                {key: _place(value, key)}
                 | {_head(n): _shown(n, float(data[n].values[0, k])) for n in names if n in data}
                 for k, value in enumerate(data["axis"].values)
             ]
@@ -179,15 +180,10 @@ def sweep_tables(outcome: Outcome) -> list[tuple[str, list[dict[str, str]]]]:
     return found
 
 
-def _place(value: float, unit: str, kind: str) -> str:
-    """Place on the axis of a sweep in the unit in which its kind is usually given."""
-    shown = _AXES.get(kind, unit)
-    if not shown:
-        return f"{value:.6g}"
-    return f"{units.convert(float(value), shown, kind):.6g} {shown}"
-
-
-_AXES = {"angle": "deg", "length": "mm", "rotational speed": "rpm", "temperature": "degC"}
+def _place(value: float, key: str) -> str:
+    """Place on the axis of a sweep as case files write it."""
+    quantity = quantity_at(key)
+    return f"{value:.6g}" if quantity is None else quantity.show(float(value))
 
 
 def _by_torque(outcome: Outcome) -> dict[str, Any]:

@@ -26,6 +26,7 @@ from pitchpoint.dynamics.vibration import (
     transmission_figures,
 )
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import InputError
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
@@ -46,6 +47,8 @@ ORDERS = tuple(range(41))
 
 MOST_RATIO = 1000.0
 """Natural over mesh frequency beyond which a period holds too many vibrations to be worth them."""
+
+_AT_SPEED = "Vibration against speed: at {points} {sentence}."
 
 TOGETHER = 4
 """Vibrations solved together: one compiled program serves any number of them."""
@@ -170,11 +173,12 @@ def resonance_part(built: Built) -> xr.Dataset:
         for order in (periods, periods[::-1])
     ]
     dims = ("direction", "torque", "speed")
+    data = {name: (dims, _by_speed(runs, name)) for name in runs[0][0]}
     return dataset(
-        {name: (dims, _by_speed(runs, name)) for name in runs[0][0]},
+        data,
         {"direction": ["rising", "falling"], "torque": _torques(built), "speed": speeds},
         title="vibration against speed",
-        warnings=[*_gaps(runs), *_moduli(built)],
+        warnings=[*status_sentences(data["vibration_status"][1], _AT_SPEED), *_moduli(built)],
         sentences=[status.sentence for status in Status],
     )
 
@@ -232,14 +236,8 @@ def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str
     models = laws_of(built)[0]
     parts = [(*_excited(design, point, models, own), own.backlash) for design, point, own in inputs]
     grid = _grid(parts, inputs[0][2].orders)
-    found = []
-    for start in range(0, len(parts), TOGETHER):
-        chunk = parts[start : start + TOGETHER]
-        padded = chunk + [chunk[-1]] * (TOGETHER - len(chunk))
-        stacked = jax.tree.map(lambda *leaves: np.stack(leaves), *padded)
-        read = jax.device_get(_read(stacked, grid, separating(built), reading))
-        found.append({name: values[: len(chunk)] for name, values in read.items()})
-    return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+    parting = separating(built)
+    return in_chunks(lambda chunk: _read(chunk, grid, parting, reading), parts, size=TOGETHER)
 
 
 @eqx.filter_jit
@@ -280,16 +278,6 @@ def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation
     return Grid.resolving(max(ratio, *orders, 0.0))
 
 
-def _gaps(runs: Sequence[Sequence[dict[str, np.ndarray]]]) -> list[str]:
-    """At how many speeds there is no steady state, and why."""
-    codes = np.concatenate([point["vibration_status"] for run in runs for point in run])
-    return [
-        f"Vibration against speed: at {np.sum(codes == code)} of {codes.size} points {code.sentence}."
-        for code in Status
-        if not code.ok and np.any(codes == code)
-    ]
-
-
 def _moduli(built: Built) -> list[str]:
     """Where moduli that depend on the operating point are used beside it."""
     asked = built.case.dynamics
@@ -303,10 +291,14 @@ def _moduli(built: Built) -> list[str]:
     ]
 
 
-def status_sentences(codes: np.ndarray) -> list[str]:
+def status_sentences(
+    codes: np.ndarray, told: str = "Vibration at {points}: {sentence}."
+) -> list[str]:
     """What the points of a study say whose vibration is not a steady one that is reached."""
     return [
-        f"Vibration at {np.sum(codes == code)} of {codes.size} points: {code.sentence}."
+        told.format(
+            points=f"{np.sum(codes == code)} of {codes.size} points", sentence=code.sentence
+        )
         for code in Status
         if not code.ok and np.any(codes == code)
     ]

@@ -94,27 +94,28 @@ def summarise(
         models: laws.
         progress: told the number of finished points after each chunk.
     """
-    return in_chunks(_summaries, points, models, progress)
+    return in_chunks(lambda chunk: _summaries(chunk, models), points, progress=progress)
 
 
 def in_chunks(
-    function: Callable[[Any, Models], dict[str, Array]],
+    function: Callable[[Any], dict[str, Array]],
     inputs: Sequence[Any],
-    models: Models,
+    *,
+    size: int = CHUNK,
     progress: Callable[[int], None] | None = None,
 ) -> dict[str, np.ndarray]:
     """Results of a compiled function for many inputs, each quantity [point].
 
     Args:
-        function: of stacked inputs and models; one program serves any number of points.
+        function: of stacked inputs; one program serves any number of points.
         inputs: trees of arrays of equal static structure.
-        models: laws.
+        size: inputs that are stacked together.
         progress: told the number of finished points after each chunk.
     """
     chunks: list[dict[str, np.ndarray]] = []
     done = 0
-    for chunk, used in _chunks(inputs):
-        out = jax.device_get(function(chunk, models))
+    for chunk, used in _chunks(inputs, size):
+        out = jax.device_get(function(chunk))
         chunks.append({name: np.asarray(values)[:used] for name, values in out.items()})
         done += used
         if progress is not None:
@@ -130,11 +131,11 @@ def _summaries(points: Point, models: Models) -> dict[str, Array]:
     return result
 
 
-def _chunks(points: Sequence[Any]) -> Iterator[tuple[Any, int]]:
-    """Stacks of CHUNK points, the last one filled up by repetition."""
-    for start in range(0, len(points), CHUNK):
-        part = list(points[start : start + CHUNK])
-        padded = part + [part[-1]] * (CHUNK - len(part))
+def _chunks(points: Sequence[Any], size: int) -> Iterator[tuple[Any, int]]:
+    """Stacks of so many points, the last one filled up by repetition."""
+    for start in range(0, len(points), size):
+        part = list(points[start : start + size])
+        padded = part + [part[-1]] * (size - len(part))
         yield jax.tree.map(lambda *leaves: np.stack(leaves), *padded), len(part)
 
 

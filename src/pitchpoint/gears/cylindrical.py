@@ -10,7 +10,13 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
-from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
+from pitchpoint.gears.involute import (
+    InvoluteGear,
+    base_helix,
+    inverse_involute,
+    involute,
+    transverse_angle,
+)
 from pitchpoint.gears.mesh import Mesh, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.roots import root
@@ -57,7 +63,7 @@ def zero_backlash_centre_distance(
     Source: ISO 21771:2007, inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x1 + x2)/(z1 + z2).
     """
     total = jnp.sum(teeth)
-    transverse = jnp.arctan(jnp.tan(pressure_angle) / jnp.cos(helix_angle))
+    transverse = transverse_angle(pressure_angle, helix_angle)
     value = involute(transverse) + 2.0 * jnp.tan(pressure_angle) * jnp.sum(profile_shift) / total
     working = inverse_involute(value)
     reference = jnp.abs(total) * module / (2.0 * jnp.cos(helix_angle))
@@ -154,12 +160,12 @@ class CylindricalPair(Mesh):
     @property
     def transverse_pressure_angle(self) -> Float[Array, ""]:
         """Pressure angle in the transverse section alpha_t [rad]."""
-        return jnp.arctan(jnp.tan(self.pressure_angle) / jnp.cos(self.helix_angle))
+        return transverse_angle(self.pressure_angle, self.helix_angle)
 
     @property
     def base_helix_angle(self) -> Float[Array, ""]:
         """Helix angle on the base cylinders beta_b [rad]."""
-        return jnp.arcsin(jnp.sin(self.helix_angle) * jnp.cos(self.pressure_angle))
+        return base_helix(self.pressure_angle, self.helix_angle)
 
     @property
     def base_radii(self) -> Float[Array, "2"]:

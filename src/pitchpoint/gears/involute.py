@@ -12,7 +12,13 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.roots import root
 
-__all__ = ["InvoluteGear", "inverse_involute", "involute"]
+__all__ = [
+    "InvoluteGear",
+    "base_helix",
+    "inverse_involute",
+    "involute",
+    "transverse_angle",
+]
 
 _FILLET_STATIONS = 16
 
@@ -26,6 +32,18 @@ def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
     """Angle [rad] whose involute function is `value`, for value > 0."""
     guess = jnp.arctan(value + jnp.minimum(jnp.cbrt(3.0 * value), 1.5))
     return root(lambda angle: involute(angle) / value - 1.0, guess, jnp.pi / 2.0)[0]
+
+
+def transverse_angle(
+    pressure_angle: Float[Array, ""], helix_angle: Float[Array, ""]
+) -> Float[Array, ""]:
+    """Pressure angle in the transverse section alpha_t [rad] from the normal one and the helix angle."""
+    return jnp.arctan(jnp.tan(pressure_angle) / jnp.cos(helix_angle))
+
+
+def base_helix(pressure_angle: Float[Array, ""], helix_angle: Float[Array, ""]) -> Float[Array, ""]:
+    """Helix angle on the base cylinder beta_b [rad] from the normal pressure angle and the helix angle."""
+    return jnp.arcsin(jnp.sin(helix_angle) * jnp.cos(pressure_angle))
 
 
 class InvoluteGear(eqx.Module):
@@ -70,12 +88,12 @@ class InvoluteGear(eqx.Module):
     @property
     def transverse_pressure_angle(self) -> Float[Array, ""]:
         """Pressure angle in the transverse section alpha_t [rad]."""
-        return jnp.arctan(jnp.tan(self.pressure_angle) / jnp.cos(self.helix_angle))
+        return transverse_angle(self.pressure_angle, self.helix_angle)
 
     @property
     def base_helix_angle(self) -> Float[Array, ""]:
         """Helix angle on the base cylinder beta_b [rad]."""
-        return jnp.arcsin(jnp.sin(self.helix_angle) * jnp.cos(self.pressure_angle))
+        return base_helix(self.pressure_angle, self.helix_angle)
 
     @property
     def reference_radius(self) -> Float[Array, ""]:

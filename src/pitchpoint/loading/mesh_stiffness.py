@@ -81,9 +81,10 @@ def slice_stiffness(
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
     """
-    assert mesh.sections is not None
+    sections = mesh.sections
+    assert sections is not None
     line_load = mean_line_load(mesh, contacts, load)
-    return unit_stiffness(contacts, mesh.sections, solids, terms, line_load)
+    return unit_stiffness(contacts, sections, solids, terms, line_load)
 
 
 def mesh_stiffness(
@@ -102,12 +103,13 @@ def mesh_stiffness(
         load: that the driven coordinate carries [N m or N].
         count: nodes in each segment between events.
     """
-    phase, weight = nodes(mesh.events(), count)
+    events = mesh.events()
+    phase, weight = nodes(events, count)
     contacts = mesh.contacts(phase)
     unit = slice_stiffness(mesh, contacts, solids, terms, load)
     each = jnp.where(contacts.active, unit * contacts.weight, 0.0)
     return MeshStiffness(
-        edges=edges(mesh.events()),
+        edges=edges(events),
         phase=phase,
         weight=weight,
         single=jnp.sum(each, axis=1),
