@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.tooth_section import ToothSection
 
 __all__ = ["Mesh", "Reference", "StandardPair"]
@@ -93,6 +94,31 @@ class Mesh(eqx.Module):
     @property
     def sections(self) -> tuple[ToothSection, ToothSection] | None:
         """Teeth of the two members as they yield, or None where there are no teeth."""
+        return None
+
+    @property
+    def clearances(self) -> bool:
+        """True if rigid teeth do not all touch: pairs have a gap, and `path` is an angle [turns].
+
+        The angle is counted from the long axis of a wave generator. Such pairs come to carry only
+        as others yield.
+        """
+        return False
+
+    @property
+    def ring(self) -> FlexibleRing | None:
+        """Thin ring that carries the teeth of member 0, or None where bodies are solid."""
+        return None
+
+    def ring_loads(self, contacts: Contacts) -> RingLoads | None:
+        """How a unit normal force at each contact acts on the ring, or None without one."""
+        return None
+
+    def support(self, contacts: Contacts) -> Float[Array, "bearing pair slice *b"] | None:
+        """Radial load on each bearing of the mesh for a unit normal force at each contact, or None.
+
+        Rows are not negative; losses beside the teeth name the row of the bearing that they stand for.
+        """
         return None
 
     @property

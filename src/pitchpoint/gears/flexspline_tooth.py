@@ -1,0 +1,282 @@
+"""Flanks of flexspline teeth: double arc and involute, as curves by arc length from root to tip."""
+
+import abc
+
+import equinox as eqx
+from jaxtyping import Array, Complex, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.gears.involute import involute
+
+__all__ = ["DoubleArcFlank", "Flank", "InvoluteFlank"]
+
+Along = Float[Array, "*b"]
+Place = Complex[Array, "*b"]
+
+STEEPEST = 1.4
+"""Flank angle at which the rounding of the tip ends [rad]: what lies beyond meets no flank."""
+
+
+class Flank(eqx.Module):
+    """One flank of a tooth, the one that faces in the sense of positive rotation.
+
+    Places are complex numbers `y + i x`: y outwards along the axis of the tooth from the neutral
+    line of the rim that carries it, x across the tooth from its axis [m]. The tooth is symmetric.
+    """
+
+    tip_rounding: eqx.AbstractVar[Float[Array, ""]]
+
+    @property
+    @abc.abstractmethod
+    def lengths(self) -> tuple[Float[Array, ""], ...]:
+        """Arc lengths of the smooth pieces from root to tip [m]; the rounding of the tip is the last."""
+
+    @abc.abstractmethod
+    def place(self, along: Along) -> Place:
+        """Place at an arc length from the root [m]."""
+
+    @abc.abstractmethod
+    def angle(self, along: Along) -> Along:
+        """Flank angle: between the tooth's axis and the tangent, growing towards the tip [rad]."""
+
+    @abc.abstractmethod
+    def curvature(self, along: Along) -> Along:
+        """Curvature, positive where the flank is convex [1/m]."""
+
+    @property
+    def length(self) -> Float[Array, ""]:
+        """Arc length from root to tip [m]."""
+        return jnp.sum(jnp.stack(self.lengths))
+
+    @property
+    def root_height(self) -> Float[Array, ""]:
+        """Height of the root above the neutral line [m]."""
+        return jnp.real(self.place(jnp.zeros(())))
+
+
+def _rounding(
+    along: Along, start: Float[Array, ""], centre: Place, angle: Float[Array, ""], radius: Along
+) -> tuple[Place, Along]:
+    """Place and angle on the arc that rounds the tip, which begins at arc length `start`."""
+    turned = angle + (along - start) / radius
+    return centre + radius * 1j * jnp.exp(-1j * turned), turned
+
+
+class DoubleArcFlank(Flank):
+    """Convex arc at the tip, concave arc at the root, and the common tangent between them.
+
+    The centre of the convex arc lies `convex_offset` beyond the tooth's axis and `convex_shift`
+    below the pitch line; that of the concave arc `concave_offset` beyond the middle of the space
+    and `concave_shift` above the pitch line, all [m].
+
+    Attributes:
+        pitch: circular pitch of the teeth on the pitch line, pi times the module [m].
+        pitch_height: of the pitch line above the neutral line, half a rim and the dedendum [m].
+        addendum, dedendum: from the pitch line [m].
+        convex_radius, convex_offset, convex_shift: rho_a, l_a, e_a [m].
+        concave_radius, concave_offset, concave_shift: rho_f, l_f, e_f [m].
+        tip_rounding: radius of the rounded edge of the tip [m].
+
+    Source: Zhao et al. (2022), eqs. 1 to 4, with the centre of the convex arc on the far side of the
+    axis and the angles of both ends of the tangent equal, which its eq. 4 needs to close.
+    """
+
+    pitch: Float[Array, ""]
+    pitch_height: Float[Array, ""]
+    addendum: Float[Array, ""]
+    dedendum: Float[Array, ""]
+    convex_radius: Float[Array, ""]
+    convex_offset: Float[Array, ""]
+    convex_shift: Float[Array, ""]
+    concave_radius: Float[Array, ""]
+    concave_offset: Float[Array, ""]
+    concave_shift: Float[Array, ""]
+    tip_rounding: Float[Array, ""]
+
+    @property
+    def convex_centre(self) -> Place:
+        """Centre of the convex arc."""
+        return self.pitch_height - self.convex_shift - 1j * self.convex_offset
+
+    @property
+    def concave_centre(self) -> Place:
+        """Centre of the concave arc."""
+        return self.pitch_height + self.concave_shift + 1j * (self.pitch / 2 + self.concave_offset)
+
+    @property
+    def tangent_length(self) -> Float[Array, ""]:
+        """Length of the common tangent [m]; NaN where the arcs overlap and have none."""
+        distance = jnp.abs(self.concave_centre - self.convex_centre)
+        return jnp.sqrt(distance**2 - (self.convex_radius + self.concave_radius) ** 2)
+
+    @property
+    def tangent_angle(self) -> Float[Array, ""]:
+        """Flank angle of the common tangent theta_B [rad]."""
+        across = self.concave_centre - self.convex_centre
+        radii = self.convex_radius + self.concave_radius
+        return jnp.arctan2(jnp.real(across), jnp.imag(across)) + jnp.arctan(
+            self.tangent_length / radii
+        )
+
+    @property
+    def tip_angle(self) -> Float[Array, ""]:
+        """Flank angle of the convex arc at the tip, were it not rounded, theta_A [rad]."""
+        return jnp.arcsin((self.addendum + self.convex_shift) / self.convex_radius)
+
+    @property
+    def root_angle(self) -> Float[Array, ""]:
+        """Flank angle of the concave arc at the root theta_D [rad]."""
+        return jnp.arcsin((self.dedendum + self.concave_shift) / self.concave_radius)
+
+    @property
+    def tip_land(self) -> Float[Array, ""]:
+        """Thickness of the tooth at its tip, were it not rounded [m]."""
+        return 2.0 * (self.convex_radius * jnp.cos(self.tip_angle) - self.convex_offset)
+
+    @property
+    def rounding_angle(self) -> Float[Array, ""]:
+        """Flank angle at which the convex arc goes over into the rounding of the tip [rad]."""
+        inner = self.convex_radius - self.tip_rounding
+        return jnp.arcsin((self.addendum + self.convex_shift - self.tip_rounding) / inner)
+
+    @property
+    def lengths(self) -> tuple[Float[Array, ""], ...]:
+        """Arc lengths of concave arc, tangent, convex arc and rounding [m]."""
+        return (
+            self.concave_radius * (self.root_angle - self.tangent_angle),
+            self.tangent_length,
+            self.convex_radius * (self.rounding_angle - self.tangent_angle),
+            self.tip_rounding * (STEEPEST - self.rounding_angle),
+        )
+
+    def angle(self, along: Along) -> Along:
+        """Flank angle [rad]."""
+        concave, straight, convex, _ = self.lengths
+        rise = jnp.maximum(along - concave - straight, 0.0)
+        over = jnp.maximum(along - concave - straight - convex, 0.0)
+        return (
+            self.tangent_angle
+            + jnp.maximum(concave - along, 0.0) / self.concave_radius
+            + (rise - over) / self.convex_radius
+            + over / self.tip_rounding
+        )
+
+    def place(self, along: Along) -> Place:
+        """Place at an arc length from the root [m]."""
+        concave, straight, convex, _ = self.lengths
+        angle = self.angle(along)
+        normal = 1j * jnp.exp(-1j * angle)
+        start = self.concave_centre - self.concave_radius * 1j * jnp.exp(-1j * self.tangent_angle)
+        line = start + (along - concave) * jnp.exp(-1j * self.tangent_angle)
+        turned = 1j * jnp.exp(-1j * self.rounding_angle)
+        centre = self.convex_centre + (self.convex_radius - self.tip_rounding) * turned
+        found = jnp.where(along < concave, self.concave_centre - self.concave_radius * normal, line)
+        beyond = concave + straight
+        found = jnp.where(along > beyond, self.convex_centre + self.convex_radius * normal, found)
+        return jnp.where(along > beyond + convex, centre + self.tip_rounding * normal, found)
+
+    def curvature(self, along: Along) -> Along:
+        """Curvature, positive where the flank is convex [1/m]."""
+        concave, straight, convex, _ = self.lengths
+        found = jnp.where(along < concave, -1.0 / self.concave_radius, 0.0)
+        found = jnp.where(along > concave + straight, 1.0 / self.convex_radius, found)
+        return jnp.where(along > concave + straight + convex, 1.0 / self.tip_rounding, found)
+
+
+class InvoluteFlank(Flank):
+    """Involute with a large profile shift, from the root circle to a rounded tip.
+
+    Attributes:
+        teeth: number of teeth.
+        module: [m].
+        pressure_angle: of the basic rack [rad].
+        profile_shift: coefficient x.
+        addendum, dedendum: of the basic rack, in modules.
+        neutral_radius: of the rim that carries the teeth [m].
+        tip_rounding: radius of the rounded edge of the tip [m].
+    """
+
+    teeth: Float[Array, ""]
+    module: Float[Array, ""]
+    pressure_angle: Float[Array, ""]
+    profile_shift: Float[Array, ""]
+    addendum: Float[Array, ""]
+    dedendum: Float[Array, ""]
+    neutral_radius: Float[Array, ""]
+    tip_rounding: Float[Array, ""]
+
+    @property
+    def base_radius(self) -> Float[Array, ""]:
+        """Base radius r_b [m]."""
+        return self.teeth * self.module / 2.0 * jnp.cos(self.pressure_angle)
+
+    @property
+    def root_radius(self) -> Float[Array, ""]:
+        """Root radius r_f [m]."""
+        return self.module * (self.teeth / 2.0 + self.profile_shift - self.dedendum)
+
+    @property
+    def tip_radius(self) -> Float[Array, ""]:
+        """Tip radius r_a [m]."""
+        return self.module * (self.teeth / 2.0 + self.profile_shift + self.addendum)
+
+    @property
+    def pitch_thickness(self) -> Float[Array, ""]:
+        """Thickness of the tooth on the reference circle [m]."""
+        return self.module * (
+            jnp.pi / 2.0 + 2.0 * self.profile_shift * jnp.tan(self.pressure_angle)
+        )
+
+    @property
+    def tip_land(self) -> Float[Array, ""]:
+        """Thickness of the tooth at its tip, were it not rounded [m]."""
+        return 2.0 * self.tip_radius * self.half_angle_at(self.tip_radius)
+
+    def half_angle_at(self, radius: Along) -> Along:
+        """Half the angle that the tooth takes on circles outside the base circle [rad]."""
+        pressure = jnp.arccos(jnp.minimum(self.base_radius / radius, 1.0))
+        return self._half_angle - involute(pressure)
+
+    @property
+    def _half_angle(self) -> Float[Array, ""]:
+        """Half the angle that the tooth would take on the base circle [rad]."""
+        return self.pitch_thickness / (self.teeth * self.module) + involute(self.pressure_angle)
+
+    @property
+    def _rolls(self) -> tuple[Float[Array, ""], Float[Array, ""]]:
+        """Roll angles at the root and where the rounding of the tip begins [rad]."""
+        root = jnp.sqrt((self.root_radius / self.base_radius) ** 2 - 1.0)
+        inner = self.tip_radius - self.tip_rounding
+        last = (self.tip_rounding + jnp.sqrt(inner**2 - self.base_radius**2)) / self.base_radius
+        return root, last
+
+    @property
+    def lengths(self) -> tuple[Float[Array, ""], ...]:
+        """Arc lengths of involute and rounding [m]."""
+        root, last = self._rolls
+        rolled = self.base_radius * (last**2 - root**2) / 2.0
+        return rolled, self.tip_rounding * (STEEPEST - (last - self._half_angle))
+
+    def _roll(self, along: Along) -> Along:
+        root, _ = self._rolls
+        return jnp.sqrt(root**2 + 2.0 * jnp.minimum(along, self.lengths[0]) / self.base_radius)
+
+    def angle(self, along: Along) -> Along:
+        """Flank angle [rad]."""
+        over = jnp.maximum(along - self.lengths[0], 0.0)
+        return self._roll(along) - self._half_angle + over / self.tip_rounding
+
+    def place(self, along: Along) -> Place:
+        """Place at an arc length from the root [m]."""
+        roll, angle = self._roll(along), self.angle(along)
+        turned = jnp.exp(-1j * (roll - self._half_angle))
+        foot = self.base_radius * turned
+        # The rounding shares the normal of the involute where it begins.
+        reach = jnp.where(along > self.lengths[0], self.tip_rounding, 0.0)
+        involute_part = foot + (self.base_radius * roll - reach) * 1j * turned
+        return involute_part + reach * 1j * jnp.exp(-1j * angle) - self.neutral_radius
+
+    def curvature(self, along: Along) -> Along:
+        """Curvature, positive where the flank is convex [1/m]."""
+        rolled = 1.0 / (self.base_radius * self._roll(along))
+        return jnp.where(along > self.lengths[0], 1.0 / self.tip_rounding, rolled)

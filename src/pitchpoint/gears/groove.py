@@ -1,0 +1,222 @@
+"""Spaces of a circular spline: the flank that lets every flexspline tooth through, or a given one."""
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.gears.flexspline_tooth import InvoluteFlank
+from pitchpoint.gears.tooth_motion import Passing, ToothMotion
+
+__all__ = ["Groove", "given", "swept"]
+
+NODES = 512
+"""Heights at which the flank is known; cubic between them."""
+
+_PHASES = np.deg2rad(np.concatenate([np.arange(-6.0, 8.0, 0.1), np.arange(8.0, 90.5, 0.5)]))
+_STATIONS = 160
+_STEPS = 8
+_CURVATURES = (-1e6, 1e6)  # 1/m: sharper than any edge that is made
+_STEEP = 20.0
+_TINY = 1e-12
+_STRIDE = 0.02  # rad: the longest step of an iteration
+
+Each = Float[Array, "*b"]
+
+
+class Groove(eqx.Module):
+    """One flank of a space of the circular spline, the one that faces against positive rotation.
+
+    Heights are radii projected on the middle of the space.
+
+    Attributes:
+        low, high: heights of the tip of the circular spline's teeth and of the deepest contact [m].
+        half_width: distance of the flank from the middle of the space at equal steps of height [m].
+        slope: derivative of the half width with respect to height.
+        curvature: of the flank, positive where it is convex [1/m].
+    """
+
+    low: Float[Array, ""]
+    high: Float[Array, ""]
+    half_width: Float[Array, " node"]
+    slope: Float[Array, " node"]
+    curvature: Float[Array, " node"]
+
+    @property
+    def heights(self) -> Float[Array, " node"]:
+        """Heights of the nodes [m]."""
+        return self.low + (self.high - self.low) * jnp.linspace(0.0, 1.0, self.slope.shape[0])
+
+    def _cell(self, height: Each) -> tuple[Array, Each]:
+        """Node below a height and the place above it in units of the step, clipped to the table."""
+        count = self.slope.shape[0]
+        place = (height - self.low) / (self.high - self.low) * (count - 1)
+        cell = jnp.clip(jnp.floor(jax.lax.stop_gradient(place)), 0, count - 2).astype(int)
+        return cell, place - cell
+
+    def width_and_slope(self, height: Each) -> tuple[Each, Each]:
+        """Half width [m] and slope at heights; beyond the ends along the tangent there."""
+        cell, t = self._cell(height)
+        inside = jnp.clip(t, 0.0, 1.0)
+        step = (self.high - self.low) / (self.slope.shape[0] - 1)
+        y0, y1 = self.half_width[cell], self.half_width[cell + 1]
+        d0, d1 = self.slope[cell] * step, self.slope[cell + 1] * step
+        rise = y1 - y0
+        bend, twist = 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise
+        width = y0 + inside * (d0 + inside * (bend + inside * twist))
+        slope = (d0 + inside * (2.0 * bend + 3.0 * inside * twist)) / step
+        return width + slope * step * (t - inside), slope
+
+    def curvature_at(self, height: Each) -> Each:
+        """Curvature at heights [1/m]."""
+        cell, t = self._cell(height)
+        inside = jnp.clip(t, 0.0, 1.0)
+        return self.curvature[cell] * (1.0 - inside) + self.curvature[cell + 1] * inside
+
+    def depth(self, height: Each) -> Each:
+        """Arc length of the flank from its deepest point to heights [m]."""
+        step = (self.high - self.low) / (self.slope.shape[0] - 1)
+        grown = jnp.hypot(1.0, self.slope)
+        pieces = (grown[1:] + grown[:-1]) / 2.0 * step
+        below = jnp.concatenate([jnp.zeros(1), jnp.cumsum(pieces)])
+        cell, t = self._cell(height)
+        return below[-1] - (below[cell] + t * (below[cell + 1] - below[cell]))
+
+
+def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -> Groove:
+    """Groove of an involute circular spline: the space has the shape of an external tooth.
+
+    Args:
+        flank: of that tooth, with its neutral line on the axis.
+        low: height of the tip of the circular spline's teeth [m].
+        high: height of the deepest contact [m].
+    """
+    heights = low + (high - low) * jnp.linspace(0.0, 1.0, NODES)
+    radius = heights
+    for _ in range(4):  # the tooth is thin, so that height and radius differ by its angle squared
+        radius = heights / jnp.cos(flank.half_angle_at(radius))
+    angle = flank.half_angle_at(radius)
+    pressure = jnp.arccos(jnp.minimum(flank.base_radius / radius, 1.0))
+    return Groove(
+        low=low,
+        high=high,
+        half_width=heights * jnp.tan(angle),
+        slope=-jnp.tan(pressure - angle),
+        curvature=-1.0 / (flank.base_radius * jnp.tan(pressure)),
+    )
+
+
+def swept(motion: ToothMotion, low: Float[Array, ""], edge: Float[Array, ""]) -> Groove:
+    """Flank that a tooth just clears at every phase: the outermost place that it reaches at each height.
+
+    Conjugate profiles are part of it where they lie outermost; roots of the conjugate condition that
+    lie inside do not touch.
+
+    Args:
+        motion: of the flexspline teeth.
+        low: height of the tip of the circular spline's teeth [m].
+        edge: radius with which that tip is rounded [m].
+    """
+    deepest = motion.place(motion.flank.length, jnp.zeros(()))
+    heights = low + (jnp.real(deepest) - low) * jnp.linspace(0.0, 1.0, NODES)
+    along, angle = _outermost(motion, heights)
+    width, slope, curvature = _generated(motion, heights, along, angle)
+    over = jnp.maximum(low + edge - heights, 0.0) / edge
+    return Groove(
+        low=low,
+        high=heights[-1],
+        half_width=width + edge * over**2 / 2.0,
+        slope=slope - over,
+        curvature=curvature + jnp.where(over > 0.0, 1.0 / edge, 0.0),
+    )
+
+
+def _outermost(motion: ToothMotion, heights: Array) -> tuple[Array, Array]:
+    """Place on the flank and phase that reach farthest at each height, on a grid of both."""
+    frozen, targets = jax.lax.stop_gradient((motion, heights))
+    stations = jnp.linspace(0.0, 1.0, _STATIONS) * frozen.flank.length
+    phases = jnp.asarray(_PHASES)
+    places = frozen.place(stations[None, :], phases[:, None])
+
+    def reach(at: Array) -> tuple[Array, Array]:
+        height, far = jnp.real(at), jnp.imag(at)
+        found = jnp.interp(targets, height, far, left=-jnp.inf, right=-jnp.inf)
+        return found, jnp.interp(targets, height, stations)
+
+    far, along = jax.vmap(reach)(places)
+    best = jnp.argmax(far, axis=0)
+    return jnp.take_along_axis(along, best[None], 0)[0], phases[best]
+
+
+def _generated(
+    motion: ToothMotion, heights: Array, along: Array, angle: Array
+) -> tuple[Array, Array, Array]:
+    """Half width, slope and curvature where a flank or the end of its tip generates the groove."""
+    smooth, enveloped = _enveloping(motion, heights, along, angle)
+    flank = _on_flank(motion, *(jnp.where(smooth, *both) for both in enveloped))
+    tip = _on_tip(motion, heights, angle)
+    one, two, three = (jnp.where(smooth, *both) for both in zip(flank, tip, strict=True))
+    return one, two, three
+
+
+def _on_flank(motion: ToothMotion, along: Array, angle: Array) -> tuple[Array, Array, Array]:
+    at = motion.at(along, angle)
+    curvature = at.relative_curvature - at.curvature
+    return jnp.imag(at.place), jnp.tan(at.direction), jnp.clip(curvature, *_CURVATURES)
+
+
+def _on_tip(motion: ToothMotion, heights: Array, angle: Array) -> tuple[Array, Array, Array]:
+    """The path of the tip's end."""
+
+    def end(which: ToothMotion, p: Array) -> Passing:
+        return which.at(jnp.broadcast_to(which.flank.length, p.shape), p)
+
+    def step(which: ToothMotion, p: Array, y: Array) -> Array:
+        at = end(which, p)
+        rate = jax.lax.stop_gradient(jnp.real(at.velocity))
+        move = (jnp.real(at.place) - y) / jnp.where(rate == 0.0, 1.0, rate)
+        return p - jnp.clip(move, -_STRIDE, _STRIDE)
+
+    frozen, targets = jax.lax.stop_gradient((motion, heights))
+    found = jax.lax.fori_loop(0, _STEPS, lambda _, p: step(frozen, p, targets), angle)
+    at = end(motion, step(motion, jax.lax.stop_gradient(found), heights))
+    forward, size = jnp.sign(jnp.real(at.velocity)), jnp.abs(at.velocity) + _TINY
+    bend = forward * jnp.imag(jnp.conj(at.velocity) * at.acceleration) / size**3
+    rising = jnp.where(jnp.real(at.velocity) == 0.0, _TINY, jnp.real(at.velocity))
+    slope = jnp.clip(jnp.imag(at.velocity) / rising, -_STEEP, _STEEP)
+    return jnp.imag(at.place), slope, jnp.clip(bend, *_CURVATURES)
+
+
+def _enveloping(
+    motion: ToothMotion, heights: Array, along: Array, angle: Array
+) -> tuple[Array, tuple[tuple[Array, Array], tuple[Array, Array]]]:
+    """Where the farthest point is one of the envelope; place and phase there, harmless ones elsewhere.
+
+    Newton's method in both; its last step is differentiable.
+    """
+    frozen, targets = jax.lax.stop_gradient((motion, heights))
+    length = frozen.flank.length
+
+    def newton(which: ToothMotion, s: Array, p: Array, y: Array) -> tuple[Array, Array]:
+        at = which.at(s, p)
+        known = jax.lax.stop_gradient(at)
+        a, b = jnp.real(at.place) - y, at.closing
+        a_s, a_p = jnp.cos(known.direction), jnp.real(known.velocity)
+        b_s, b_p = known.approach, known.change
+        scale = a_s * b_p - a_p * b_s
+        scale = jnp.where(scale == 0.0, 1.0, scale)
+        return (a * b_p - a_p * b) / scale, (a_s * b - a * b_s) / scale
+
+    def bounded(_: int, at: tuple[Array, Array]) -> tuple[Array, Array]:
+        by_s, by_p = newton(frozen, *at, targets)
+        s = at[0] - jnp.clip(by_s, -length / 50.0, length / 50.0)
+        return jnp.clip(s, 0.0, length), at[1] - jnp.clip(by_p, -_STRIDE, _STRIDE)
+
+    s, p = jax.lax.fori_loop(0, _STEPS, bounded, (along, angle))
+    found = frozen.at(s, p)
+    close = (jnp.abs(p - angle) < 0.05) & (jnp.abs(s - along) < length / 20.0)
+    solved = (jnp.abs(jnp.real(found.place) - targets) < 1e-9 * length) & (
+        jnp.abs(found.closing) < 1e-9 * frozen.line.deflection
+    )
+    by_s, by_p = newton(motion, s, p, heights)
+    return close & solved, ((s - by_s, along), (p - by_p, angle))

@@ -1,0 +1,348 @@
+"""Strain wave gear: wave generator, flexspline and circular spline, and the many contacts between them."""
+
+import dataclasses
+from typing import Self
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
+from pitchpoint.gears.flexspline_tooth import Flank
+from pitchpoint.gears.groove import Groove, swept
+from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.tooth_motion import Passing, ToothMotion
+from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
+from pitchpoint.gears.wave_generator import NeutralLine
+from pitchpoint.roots import root
+
+__all__ = ["MEMBERS", "WINDOW", "StrainWave", "Touching"]
+
+MEMBERS = ("wave generator", "flexspline", "circular spline")
+"""Coordinates, in their order."""
+
+WINDOW = (np.deg2rad(-40.0), np.deg2rad(50.0))
+"""Angles from the long axis between which pairs are held; others are far from touching."""
+
+TRIES = 41
+"""Places on a flank at which the clearance is looked at before its least value is found."""
+
+_FLATTEST = 1e-2  # 1/m: relative curvature that counts as that of parallel flanks
+_LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
+
+Lanes = Float[Array, "pair slice *b"]
+
+
+class Touching(eqx.Module):
+    """Nearest points of a flexspline flank and its groove.
+
+    Attributes:
+        along: arc length on the flexspline's flank [m].
+        at: place and motion of that point.
+        clearance: along the normal [m].
+        mate: curvature of the circular spline's flank there [1/m].
+        held: True where the nearest point is an end of the flank and does not roll.
+    """
+
+    along: Lanes
+    at: Passing
+    clearance: Lanes
+    mate: Lanes
+    held: Lanes
+
+
+class StrainWave(Mesh):
+    """A flexspline in a circular spline. Coordinates: rotations in the order of `MEMBERS`.
+
+    The wave generator has two lobes. The flanks that face in the sense of positive rotation carry,
+    so torques on flexspline and wave generator are positive. Any member may be fixed, any other one
+    drives, in the sense that presses the flanks together. Phase 0 to 1 moves the teeth by one pitch
+    along the wave. The first half of the pairs lies at one end of the long axis, the second at the
+    other.
+
+    Attributes:
+        teeth: numbers of teeth of flexspline and circular spline z1, z2.
+        module: [m].
+        face_width: [m].
+        flank: of the flexspline teeth.
+        line: neutral line of the flexspline as the wave generator deforms it.
+        groove: space of the circular spline.
+        rim: rim, cup and support of the flexspline.
+        tip_height: radius at which the circular spline's teeth end [m].
+        tip_rounding: of the edges of these teeth [m].
+        backlash: play between the flanks beyond the groove that just lets the teeth through, on
+            the circumference [m].
+        motion_of, driver_of, loaded_of: see `motion`, `driver`, `loaded`.
+        conjugate: True if the groove follows from the flexspline and its motion; static.
+        lanes: pairs held in each of both zones; static.
+    """
+
+    teeth: Float[Array, "2"]
+    module: Float[Array, ""]
+    face_width: Float[Array, ""]
+    flank: Flank
+    line: NeutralLine
+    groove: Groove
+    rim: FlexibleRing
+    tip_height: Float[Array, ""]
+    tip_rounding: Float[Array, ""]
+    backlash: Float[Array, ""]
+    motion_of: Float[Array, "3"]
+    driver_of: Float[Array, "3"]
+    loaded_of: Float[Array, "3"]
+    conjugate: bool = eqx.field(static=True)
+    lanes: int = eqx.field(static=True)
+
+    def completed(self) -> Self:
+        """The drive with its groove as it follows from flank and motion."""
+        if not self.conjugate:
+            return self
+        groove = swept(self.tooth_motion, self.tip_height, self.tip_rounding)
+        return dataclasses.replace(self, groove=groove)
+
+    @property
+    def tooth_motion(self) -> ToothMotion:
+        """How a flexspline tooth passes the space that it meets."""
+        lag = 1.0 - self.teeth[0] / self.teeth[1]
+        return ToothMotion(self.flank, self.line, lag)
+
+    @property
+    def tooth_angle(self) -> Float[Array, ""]:
+        """Angle of one pitch of the flexspline [rad]."""
+        return 2.0 * jnp.pi / self.teeth[0]
+
+    @property
+    def ratio(self) -> Float[Array, ""]:
+        """Speed of the driver over that of the loaded member, with its sign."""
+        return jnp.asarray((self.driver @ self.motion) / (self.loaded @ self.motion))
+
+    @property
+    def motion(self) -> Float[Array, "3"]:
+        """Rates of the members for one radian of the driver."""
+        return self.motion_of
+
+    @property
+    def driver(self) -> Float[Array, "3"]:
+        """One for the member that drives."""
+        return self.driver_of
+
+    @property
+    def loaded(self) -> Float[Array, "3"]:
+        """One for the member that carries the load."""
+        return self.loaded_of
+
+    @property
+    def period(self) -> Float[Array, ""]:
+        """Driver angle in which the wave moves on by one tooth of the flexspline [rad]."""
+        return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
+
+    @property
+    def clearances(self) -> bool:
+        """Most teeth of a zone have a clearance that load must close."""
+        return True
+
+    @property
+    def ring(self) -> FlexibleRing:
+        """The flexspline's rim carries the teeth of member 0."""
+        return self.rim
+
+    @property
+    def toothed(self) -> bool:
+        """Both splines have teeth."""
+        return True
+
+    @property
+    def reference(self) -> Reference | None:
+        """A strain wave gear has no pitch point."""
+        return None
+
+    def events(self) -> Float[Array, "1"]:
+        """Pairs enter and leave without load."""
+        return jnp.zeros(1)
+
+    @property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Mean number of pairs that touch without load, to a thousandth of the module."""
+        angle = jnp.linspace(WINDOW[0], WINDOW[1], 361)
+        touches = self.overlaps(angle) & (self.touching(angle).clearance < _LIGHT * self.module)
+        return 2.0 * jnp.mean(touches) * (WINDOW[1] - WINDOW[0]) / self.tooth_angle
+
+    def overlaps(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        """True where a tooth reaches into the circular spline's teeth."""
+        tip = self.tooth_motion.place(self.flank.length, angle)
+        return jnp.asarray(jnp.real(tip) > self.groove.low)
+
+    def touching(self, angle: Float[Array, "*b"]) -> Touching:
+        """Nearest points of the flank and its groove for teeth at angles from the long axis [rad].
+
+        The play along the circumference is least there, so the flanks have a common normal unless
+        an end of the flank is nearest.
+        """
+        motion, groove = self.tooth_motion, self.groove
+        frozen, where = jax.lax.stop_gradient((self, jnp.asarray(angle)))
+        station = jnp.linspace(0.0, 1.0, TRIES) * frozen.flank.length
+        tries = station.reshape(TRIES, *(1 for _ in where.shape))
+        place = frozen.tooth_motion.place(tries, where)
+        width, _ = frozen.groove.width_and_slope(jnp.real(place))
+        apart = jnp.where(jnp.real(place) < frozen.groove.low, jnp.inf, width - jnp.imag(place))
+        nearest = jnp.argmin(apart, axis=0)
+        first = station[jnp.maximum(nearest - 1, 0)]
+        most = station[jnp.minimum(nearest + 1, TRIES - 1)] - first
+
+        def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
+            """Growth of the play along the flank."""
+            foot, axis = motion.foot(angle)
+            place = foot + jnp.exp(1j * axis) * self.flank.place(first + beyond)
+            _, slope = groove.width_and_slope(jnp.real(place))
+            direction = axis - self.flank.angle(first + beyond)
+            return slope * jnp.cos(direction) - jnp.sin(direction)
+
+        beyond, _ = root(widening, most / 2.0, most)
+        found = first + jnp.clip(beyond, 0.0, most)
+        at = motion.at(found, jnp.asarray(angle))
+        height = jnp.real(at.place)
+        width, _ = groove.width_and_slope(height)
+        held = (found <= 0.0) | (found >= frozen.flank.length * (1.0 - 1e-12))
+        play = width + self.backlash / 2.0 - jnp.imag(at.place)
+        return Touching(
+            along=found,
+            at=at,
+            clearance=play * jnp.cos(at.direction),
+            mate=groove.curvature_at(height),
+            held=held,
+        )
+
+    def angles(self, phase: Float[Array, "*b"]) -> Lanes:
+        """Angle of each tooth from the end of the long axis that is nearest [rad]."""
+        phase = jnp.asarray(phase)
+        number = jnp.arange(2 * self.lanes).reshape(-1, *(1 for _ in range(phase.ndim + 1)))
+        zone = number // self.lanes
+        moved = jnp.mod(phase + zone * self.teeth[0] / 2.0, 1.0)
+        start = jnp.ceil(WINDOW[0] / self.tooth_angle)
+        return (start + number % self.lanes + moved) * self.tooth_angle
+
+    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+        """Contacts of the pairs of both zones; one period is one pitch of the flexspline."""
+        raw = self.raw_contacts(phase)
+        # Teeth that carry only because others yield do not close on the nominal motion. In a steady
+        # state no energy goes into the travelling pattern of strains, so that part does no work.
+        inner = self.motion - jnp.mean(self.motion)
+        elastic = along(raw.normal, self.motion) / (inner @ inner)
+        return dataclasses.replace(
+            raw, normal=raw.normal - jnp.stack([elastic * rate for rate in inner])
+        )
+
+    def raw_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+        """Contacts with the arms of rigid teeth: before the elastic part is taken out of the normal arms."""
+        given = self.angles(phase)
+        active = self.overlaps(given)
+        angle = jnp.where(active, given, 0.0)
+        found = self.touching(angle)
+        at, none = found.at, jnp.zeros_like(angle)
+        sum_curvature = jnp.maximum(at.curvature + found.mate, _FLATTEST)
+        roll = (at.turning - found.mate * at.sliding) / sum_curvature
+        roll = jnp.where(found.held, 0.0, roll)
+        velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])
+        local = jnp.exp(-1j * at.direction) * velocity
+        first = jnp.stack([roll, -roll, none])
+        mate = sum_curvature - at.curvature
+        return Contacts(
+            active=active,
+            path=given / (2.0 * jnp.pi),
+            width=none,
+            weight=none + self.face_width,
+            curvature=jnp.stack([jnp.stack([at.curvature, none]), jnp.stack([mate, none])]),
+            surface=jnp.stack([first, first - jnp.real(local)]),
+            normal=jnp.imag(local),
+            gap=jnp.maximum(found.clearance, 0.0),
+            flank=jnp.stack([found.along, self.groove.depth(jnp.real(at.place))]),
+            shape="line",
+        )
+
+    def ring_loads(self, contacts: Contacts) -> RingLoads:
+        """How unit forces at the contacts act on the flexspline's rim."""
+        lane = jnp.arange(2 * self.lanes).reshape(-1, *(1 for _ in contacts.path.shape[1:]))
+        slope = self.flank.angle(contacts.flank[0])
+        return RingLoads(
+            angle=2.0 * jnp.pi * contacts.path + jnp.pi * (lane // self.lanes),
+            tangential=-jnp.cos(slope),
+            radial=-jnp.sin(slope),
+            height=jnp.real(self.flank.place(contacts.flank[0])),
+        )
+
+    def support(self, contacts: Contacts) -> Float[Array, "1 pair slice *b"]:
+        """Radial load on the wave generator's bearing by a unit force at each contact."""
+        return -self.ring_loads(contacts).radial[None]
+
+    @property
+    def sections(self) -> tuple[ToothSection, ToothSection]:
+        """Teeth of both splines; the bodies under them are rings."""
+        return self._flexspline_section, self._circular_section
+
+    @property
+    def _flexspline_section(self) -> ToothSection:
+        flank, ends = self.flank, jnp.stack([1e-6, 1.0]) * jnp.sqrt(self.flank.length)
+        along, rate = _stations(ends)
+        place = flank.place(along)
+        half, height = jnp.imag(place), jnp.real(place)
+        return _section(half, height, jnp.cos(flank.angle(along)) * rate, flank.angle(along), ends)
+
+    @property
+    def _circular_section(self) -> ToothSection:
+        groove = self.groove
+        deepest = groove.depth(groove.low)
+        ends = jnp.stack([1e-6, 1.0]) * jnp.sqrt(deepest)
+        depth, rate = _stations(ends)
+        heights = groove.heights
+        known = groove.depth(heights)
+        radius = jnp.interp(depth, known[::-1], heights[::-1])
+        width, slope = groove.width_and_slope(radius)
+        half = jnp.pi / self.teeth[1] * radius - width - self.backlash / 2.0
+        return _section(
+            half, groove.high - radius, rate / jnp.hypot(1.0, slope), -jnp.arctan(slope), ends
+        )
+
+    @property
+    def clearance_curve(self) -> tuple[Float[Array, " angle"], Float[Array, " angle"]]:
+        """Angles from the long axis [rad] and clearance there along the normal [m]; NaN outside mesh."""
+        angle = jnp.linspace(WINDOW[0], WINDOW[1], 181)
+        clearance = jnp.where(self.overlaps(angle), self.touching(angle).clearance, jnp.nan)
+        return angle, clearance
+
+    def dimensions(self) -> dict[str, Float[Array, "..."]]:
+        """Ratio, deflection, tooth depths and lands."""
+        return {
+            "module": self.module,
+            "speed_ratio": jnp.abs(self.ratio),
+            "deflection": self.line.deflection,
+            "neutral_radius": self.line.radius,
+            "tip_height": self.tip_height,
+        }
+
+
+def _stations(ends: Float[Array, "2"]) -> tuple[Float[Array, " node"], Float[Array, " node"]]:
+    """Arc lengths at the nodes of a tooth section, and their derivative with respect to the node's place."""
+    place = jnp.asarray(chebyshev_nodes())
+    low, high = ends[0], ends[1]
+    reach = (high + low + place * (high - low)) / 2.0
+    return reach**2, reach * (high - low)
+
+
+def _section(
+    half: Array, height: Array, slope: Array, angle: Array, ends: Float[Array, "2"]
+) -> ToothSection:
+    """A tooth on a ring; its fillet is left out."""
+    return ToothSection(
+        fillet=jnp.stack([half[:1], height[:1]]),
+        step=jnp.zeros(1),
+        flank=jnp.stack([half, height]),
+        slope=slope,
+        load_angle=angle,
+        reach=ends,
+        root_radius=jnp.ones(()),
+        root_half_angle=jnp.ones(()),
+        rim_ratio=jnp.ones(()),
+        internal=True,
+    )

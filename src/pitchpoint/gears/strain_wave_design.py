@@ -1,0 +1,429 @@
+"""Strain wave gears from the dimensions that a designer gives, and the checks that go with them."""
+
+from dataclasses import dataclass, fields
+from math import ceil, floor, inf, pi, radians
+
+import equinox as eqx
+import numpy as np
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.errors import InputError
+from pitchpoint.gears.flexible_ring import FlexibleRing
+from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.groove import Groove, given, swept
+from pitchpoint.gears.strain_wave import MEMBERS, WINDOW, StrainWave
+from pitchpoint.gears.tooth_motion import ToothMotion
+from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
+
+__all__ = [
+    "DOUBLE_ARCS",
+    "DoubleArcForm",
+    "InvoluteForm",
+    "build_strain_wave",
+    "check_strain_wave",
+    "double_arc_flank",
+]
+
+LEAST_LAND = 0.3
+"""Tip land that the circular spline's teeth keep, in modules: their tips are cut back as far as it takes."""
+
+INTERFERENCE = 1e-4
+"""Overlap of rigid flanks that counts as interference, in modules."""
+
+_FARTHEST = 0.1  # clearance in modules beyond which no load closes a gap
+_FEWEST = 30
+_SLACK = 1e-6
+
+
+@dataclass(frozen=True)
+class DoubleArcForm:
+    """A double-arc tooth, all in modules; see `DoubleArcFlank`."""
+
+    convex_radius: float
+    convex_offset: float
+    convex_shift: float
+    concave_radius: float
+    concave_offset: float
+    concave_shift: float
+    addendum: float = 0.55
+    dedendum: float = 0.75
+
+
+@dataclass(frozen=True)
+class InvoluteForm:
+    """An involute tooth by the basic rack that cuts it, in modules."""
+
+    profile_shift: float
+    addendum: float = 1.0
+    dedendum: float = 1.35
+    pressure_angle: float = radians(20.0)
+
+
+DOUBLE_ARCS = {
+    "liu": DoubleArcForm(1.370, 0.664, 0.310, 1.570, 0.660, 0.268),
+    "flat": DoubleArcForm(2.000, 1.294, 0.330, 2.200, 1.290, 0.300),
+}
+"""Double-arc teeth by name: a published design (Liu et al. 2025), and one with flatter flanks."""
+
+
+def build_strain_wave(
+    *,
+    teeth: tuple[int, int],
+    module: float,
+    face_width: float,
+    form: DoubleArcForm | InvoluteForm = DOUBLE_ARCS["liu"],
+    shape: str | tuple[float, ...] = "cosine",
+    deflection: float = 1.0,
+    force_angle: float = radians(30.0),
+    rim_thickness: float | None = None,
+    wall_thickness: float | None = None,
+    cup_length: float | None = None,
+    support_stiffness: float = inf,
+    clearance: float = 0.25,
+    tip_rounding: float = 0.1,
+    backlash: float = 0.0,
+    fixed: str = "circular spline",
+    driver: str = "wave generator",
+    groove: InvoluteForm | None = None,
+) -> StrainWave:
+    """Strain wave gear with a wave generator of two lobes.
+
+    Args:
+        teeth: of flexspline and circular spline; their difference is even.
+        module: [m].
+        face_width: of the teeth [m].
+        form: of the flexspline's teeth.
+        shape: of the wave generator by name, or amplitudes of cos 2p, cos 4p, ... of the radial
+            displacement, of which only their ratios count.
+        deflection: w0 over module (z2 - z1)/2, the deflection with which the pitch circles touch.
+        force_angle: between the long axis and the forces of the shape `four_forces` [rad].
+        rim_thickness: of the flexspline under its teeth [m]; two modules by default.
+        wall_thickness: of the cup [m]; half the rim by default.
+        cup_length: from the teeth to the flange [m]; half the pitch diameter by default.
+        support_stiffness: of the wave generator's bearing, see `FlexibleRing` [N/m2].
+        clearance: between the tip of the circular spline's teeth and the root of the flexspline on
+            the long axis, in modules.
+        tip_rounding: radius of the edges of all tips, in modules.
+        backlash: play on the circumference beyond the groove that just lets the teeth through [m].
+        fixed: member that does not turn.
+        driver: member that drives; the third carries the load.
+        groove: an involute circular spline; by default the flank that the flexspline's teeth sweep.
+
+    Raises:
+        InputError: dimensions that give no drive; the key is the name of the argument.
+    """
+    z1, z2 = _checked_teeth(teeth)
+    motion, loaded = _rates(z1, z2, fixed, driver)
+    rim = 2.0 * module if rim_thickness is None else rim_thickness
+    flank = _flank(form, z1, module, rim, tip_rounding)
+    dedendum = (
+        form.dedendum if isinstance(form, DoubleArcForm) else form.dedendum - form.profile_shift
+    )
+    neutral = module * (z1 / 2.0 - dedendum) - rim / 2.0
+    w0 = deflection * module * (z2 - z1) / 2.0
+    _check_depth(form, deflection, clearance, module, z2 - z1)
+    line = NeutralLine(
+        jnp.asarray(neutral), jnp.asarray(w0), _weights(shape, force_angle, w0 / neutral)
+    )
+    travel = ToothMotion(flank, line, jnp.asarray(1.0 - z1 / z2))
+    low = neutral + w0 + rim / 2.0 + clearance * module
+    edge = tip_rounding * module
+    if groove is None:
+        low, space = _swept(travel, low, edge, module, z2)
+    else:
+        space = _given(groove, z2, module, low, travel)
+    array = jnp.asarray
+    drive = StrainWave(
+        teeth=array([z1, z2], dtype=float),
+        module=array(module),
+        face_width=array(face_width),
+        flank=flank,
+        line=line,
+        groove=space,
+        rim=FlexibleRing(
+            radius=array(neutral),
+            thickness=array(rim),
+            width=array(face_width),
+            wall_thickness=array(rim / 2.0 if wall_thickness is None else wall_thickness),
+            cup_length=array(module * z1 / 2.0 if cup_length is None else cup_length),
+            support_stiffness=array(support_stiffness),
+        ),
+        tip_height=array(low),
+        tip_rounding=array(edge),
+        backlash=array(backlash),
+        motion_of=array(motion),
+        driver_of=array(np.eye(3)[MEMBERS.index(driver)]),
+        loaded_of=array(np.eye(3)[loaded]),
+        conjugate=groove is None,
+        lanes=_lanes(z1),
+    )
+    _check_contact(drive)
+    return drive
+
+
+def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
+    """Sentences on what is unusual about a drive that can run."""
+    told = []
+    intended = float(mesh.line.radius + mesh.line.deflection + mesh.flank.root_height)
+    cut = (float(mesh.tip_height) - intended) / float(mesh.module)
+    if mesh.conjugate and cut > 0.6:
+        told.append(
+            f"The tips of the circular spline are cut back to {cut:.2g} modules above the flexspline's root "
+            "on the long axis: the flexspline's tips pass there and would leave less than "
+            f"{LEAST_LAND:g} modules of tip land."
+        )
+    if float(jnp.max(jnp.abs(mesh.line.radial(jnp.asarray(pi / 2))))) > 0.1 * float(
+        mesh.line.radius
+    ):
+        told.append(
+            "The deflection is above a tenth of the radius; the ring theory here is linear."
+        )
+    return tuple(told)
+
+
+def double_arc_flank(
+    form: DoubleArcForm, *, module: float, rim_thickness: float, tip_rounding: float = 0.1
+) -> DoubleArcFlank:
+    """Flank of a double-arc tooth.
+
+    Args:
+        form: in modules.
+        module: [m].
+        rim_thickness: under the teeth [m].
+        tip_rounding: in modules.
+
+    Raises:
+        InputError: arcs without a common tangent, or in the wrong order.
+    """
+    values = {field.name: jnp.asarray(module * getattr(form, field.name)) for field in fields(form)}
+    flank = DoubleArcFlank(
+        pitch=jnp.asarray(pi * module),
+        pitch_height=jnp.asarray(rim_thickness / 2.0 + form.dedendum * module),
+        tip_rounding=jnp.asarray(tip_rounding * module),
+        **values,
+    )
+    found = jax.device_get(_arcs(flank))
+    if not np.isfinite(found["tangent"]):
+        apart, radii = found["apart"] / module, form.convex_radius + form.concave_radius
+        raise InputError(
+            "the arcs of the double-arc tooth have no common tangent: their centres are "
+            f"{apart:.4g} modules apart, less than the sum of their radii, {radii:.4g}",
+            key="form",
+        )
+    names = ("concave arc", "tangent", "convex arc", "rounding of the tip")
+    for name, length in zip(names, found["lengths"], strict=True):
+        if not length > 0.0:
+            raise InputError(
+                f"the double-arc tooth leaves no room for its {name}; between root and tip concave arc, "
+                "tangent, convex arc and rounding must follow each other",
+                key="form",
+            )
+    _check_land(float(found["land"]), module, tip_rounding)
+    return flank
+
+
+@eqx.filter_jit
+def _arcs(flank: DoubleArcFlank) -> dict[str, jnp.ndarray]:
+    return {
+        "tangent": flank.tangent_length,
+        "apart": jnp.abs(flank.concave_centre - flank.convex_centre),
+        "lengths": jnp.stack(flank.lengths),
+        "land": flank.tip_land,
+    }
+
+
+def _flank(
+    form: DoubleArcForm | InvoluteForm, teeth: int, module: float, rim: float, rounding: float
+) -> Flank:
+    if isinstance(form, DoubleArcForm):
+        return double_arc_flank(form, module=module, rim_thickness=rim, tip_rounding=rounding)
+    flank = _involute(form, teeth, module, rim, rounding)
+    _check_land(float(flank.tip_land), module, rounding)
+    base = float(flank.base_radius / flank.root_radius)
+    if base >= 1.0:
+        raise InputError(
+            "the root circle of the flexspline lies inside its base circle; more teeth or a larger profile "
+            "shift keeps the flank an involute",
+            key="form",
+        )
+    return flank
+
+
+def _involute(
+    form: InvoluteForm, teeth: int, module: float, rim: float, rounding: float
+) -> InvoluteFlank:
+    root = module * (teeth / 2.0 + form.profile_shift - form.dedendum)
+    return InvoluteFlank(
+        *map(
+            jnp.asarray,
+            (
+                float(teeth),
+                module,
+                form.pressure_angle,
+                form.profile_shift,
+                form.addendum,
+                form.dedendum,
+                root - rim / 2.0,
+                rounding * module,
+            ),
+        )
+    )
+
+
+def _check_land(land: float, module: float, rounding: float) -> None:
+    least = 2.0 * rounding * module
+    if not land > least:
+        raise InputError(
+            f"the flexspline's teeth are pointed: their tip land is {land / module:.3g} modules, and rounded "
+            f"edges need more than {2.0 * rounding:.3g}",
+            key="form",
+        )
+
+
+def _checked_teeth(teeth: tuple[int, int]) -> tuple[int, int]:
+    z1, z2 = teeth
+    if z1 < _FEWEST or z2 - z1 < 2 or (z2 - z1) % 2:
+        raise InputError(
+            f"{z1} and {z2} teeth were given; a flexspline has {_FEWEST} or more, and the circular spline "
+            "2, 4, 6, ... more than it",
+            key="teeth",
+        )
+    return z1, z2
+
+
+def _check_depth(
+    form: DoubleArcForm | InvoluteForm,
+    deflection: float,
+    clearance: float,
+    module: float,
+    difference: int,
+) -> None:
+    """The teeth must come free at the short axis, and reach the mate on the long one."""
+    depth = form.addendum + form.dedendum
+    if deflection >= depth:
+        raise InputError(
+            f"the wave generator deflects the flexspline by {deflection:.3g} modules for each pair of "
+            f"teeth of difference, more than its teeth are deep, {depth:.3g} modules",
+            key="deflection",
+        )
+    if not clearance < depth:
+        raise InputError(
+            f"the clearance of {clearance:.3g} modules is not less than the depth of the teeth, {depth:.3g}",
+            key="clearance",
+        )
+    if depth - clearance > deflection * difference + _SLACK:
+        raise InputError(
+            "the teeth do not come free at the short axis: they reach "
+            f"{depth - clearance:.4g} modules into each other, and twice the deflection is "
+            f"{deflection * difference:.4g} modules",
+            key="deflection",
+        )
+
+
+def _rates(z1: int, z2: int, fixed: str, driver: str) -> tuple[np.ndarray, int]:
+    """Rates of the members for a radian of the driver, and which member carries the load."""
+    for name, member in (("fixed", fixed), ("driver", driver)):
+        if member not in MEMBERS:
+            raise InputError(f"'{member}' is no member; use one of {', '.join(MEMBERS)}", key=name)
+    if fixed == driver:
+        others = " or ".join(name for name in MEMBERS if name != fixed)
+        raise InputError(f"the {driver} is fixed and cannot drive; use {others}", key="driver")
+    held, drives = MEMBERS.index(fixed), MEMBERS.index(driver)
+    loaded = 3 - held - drives
+    # z2 q_C = z1 q_F + (z2 - z1) q_W; torques are in proportion to these factors.
+    law = np.array([z2 - z1, z1, -z2], dtype=float)
+    motion = np.zeros(3)
+    motion[drives] = np.sign(law[drives])
+    motion[loaded] = -law[drives] * motion[drives] / law[loaded]
+    return motion, loaded
+
+
+def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> jnp.ndarray:
+    if isinstance(shape, str):
+        return jnp.asarray(WAVE_SHAPES[shape].harmonics(angle, relative))
+    weights = np.zeros(TERMS)
+    if not 1 <= len(shape) <= TERMS:
+        raise InputError(
+            f"{len(shape)} amplitudes of the wave were given; allowed are 1 to {TERMS}", key="shape"
+        )
+    weights[: len(shape)] = shape
+    if not np.isfinite(weights).all() or not weights.sum() > 0.0:
+        raise InputError("the amplitudes of the wave must have a positive sum", key="shape")
+    return jnp.asarray(weights / weights.sum())
+
+
+def _lanes(z1: int) -> int:
+    pitch = 2.0 * pi / z1
+    return int(floor(WINDOW[1] / pitch) - ceil(WINDOW[0] / pitch))
+
+
+_sweep = eqx.filter_jit(swept)
+_given_groove = eqx.filter_jit(given)
+
+
+def _swept(
+    travel: ToothMotion, low: float, edge: float, module: float, z2: int
+) -> tuple[float, Groove]:
+    """Groove whose teeth between keep a tip land, and the height of their tips."""
+    space = _sweep(travel, jnp.asarray(low), jnp.asarray(edge))
+    heights, widths = np.asarray(space.heights), np.asarray(space.half_width)
+    land = 2.0 * (pi / z2 * heights - widths)
+    wide = np.flatnonzero(land < LEAST_LAND * module)
+    rounded = heights < low + edge  # the relief of the edge itself is no cut
+    wide = wide[~rounded[wide] | (land[wide] + 2.0 * edge < LEAST_LAND * module)]
+    if wide.size == 0:
+        return low, space
+    if wide[-1] + 2 >= heights.size:
+        raise InputError(
+            "the flexspline's teeth leave nothing of the circular spline's: they are too thick or come "
+            "free too late",
+            key="form",
+        )
+    raised = float(heights[wide[-1] + 1])
+    return raised, _sweep(travel, jnp.asarray(raised), jnp.asarray(edge))
+
+
+def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: ToothMotion) -> Groove:
+    flank = _involute(form, z2, module, 0.0, 0.0)
+    high = jnp.real(travel.place(travel.flank.length, jnp.zeros(())))
+    tip = max(low, module * (z2 / 2.0 + form.profile_shift - form.addendum))
+    return _given_groove(flank, jnp.asarray(tip), high)
+
+
+@eqx.filter_jit
+def _engagement(drive: StrainWave) -> dict[str, jnp.ndarray]:
+    angle = jnp.linspace(WINDOW[0], WINDOW[1], 721)
+    found = drive.touching(angle)
+    curvature = found.at.curvature + found.mate
+    return {
+        "angle": angle,
+        "clearance": jnp.where(drive.overlaps(angle), found.clearance, jnp.inf),
+        "rolls": ~found.held & (curvature > 0.0),
+    }
+
+
+def _check_contact(drive: StrainWave) -> None:
+    """Rigid teeth must touch, without overlap, and somewhere with a positive relative curvature."""
+    found = jax.device_get(_engagement(drive))
+    clearance, module = found["clearance"], float(drive.module)
+    where = "form" if drive.conjugate else "groove"
+    least = int(np.argmin(clearance))
+    if clearance[least] < -INTERFERENCE * module:
+        raise InputError(
+            f"flexspline and circular spline interfere: {-1e6 * clearance[least]:.3g} um of overlap "
+            f"{np.degrees(found['angle'][least]):.3g} degrees from the long axis",
+            key=where,
+        )
+    if not clearance[least] - float(drive.backlash) < _FARTHEST * module:
+        raise InputError(
+            "no tooth of the flexspline engages: the least clearance is "
+            f"{1e6 * float(clearance[least]):.3g} um, a tenth of the module is the most that load can close",
+            key=where,
+        )
+    near = clearance < clearance[least] + 1e-2 * module
+    if not (near & found["rolls"]).any():
+        raise InputError(
+            "the relative curvature is nowhere positive where the flanks touch: the teeth meet at "
+            "edges alone",
+            key=where,
+        )
