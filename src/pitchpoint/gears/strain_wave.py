@@ -30,6 +30,7 @@ TRIES = 41
 """Places on a flank at which the clearance is looked at before its least value is found."""
 
 _FLATTEST = 1e-2  # 1/m: relative curvature that counts as that of parallel flanks
+_SLACK = 1e-9
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
@@ -167,7 +168,8 @@ class StrainWave(Mesh):
         """Mean number of pairs that touch without load, to a thousandth of the module."""
         angle = jnp.linspace(WINDOW[0], WINDOW[1], 361)
         touches = self.overlaps(angle) & (self.touching(angle).clearance < _LIGHT * self.module)
-        return 2.0 * jnp.mean(touches) * (WINDOW[1] - WINDOW[0]) / self.tooth_angle
+        pairs = 2.0 * (WINDOW[1] - WINDOW[0]) / self.tooth_angle
+        return jnp.asarray(jnp.mean(touches) * pairs)
 
     def overlaps(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """True where a tooth reaches into the circular spline's teeth."""
@@ -183,23 +185,34 @@ class StrainWave(Mesh):
         motion, groove = self.tooth_motion, self.groove
         frozen, where = jax.lax.stop_gradient((self, jnp.asarray(angle)))
         station = jnp.linspace(0.0, 1.0, TRIES) * frozen.flank.length
-        tries = station.reshape(TRIES, *(1 for _ in where.shape))
-        place = frozen.tooth_motion.place(tries, where)
+        local = frozen.flank.place(station).reshape(TRIES, *(1 for _ in where.shape))
+        stand, lean = frozen.tooth_motion.foot(where)
+        place = stand + jnp.exp(1j * lean) * local
         width, _ = frozen.groove.width_and_slope(jnp.real(place))
         apart = jnp.where(jnp.real(place) < frozen.groove.low, jnp.inf, width - jnp.imag(place))
         nearest = jnp.argmin(apart, axis=0)
         first = station[jnp.maximum(nearest - 1, 0)]
         most = station[jnp.minimum(nearest + 1, TRIES - 1)] - first
 
-        def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        foot, axis = motion.foot(angle)
+        turned = jnp.exp(1j * axis)
+
+        def growth(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
             """Growth of the play along the flank."""
-            foot, axis = motion.foot(angle)
-            place = foot + jnp.exp(1j * axis) * self.flank.place(first + beyond)
+            place = foot + turned * self.flank.place(first + beyond)
             _, slope = groove.width_and_slope(jnp.real(place))
             direction = axis - self.flank.angle(first + beyond)
             return slope * jnp.cos(direction) - jnp.sin(direction)
 
-        beyond, _ = root(widening, most / 2.0, most)
+        # At an end of the flank the play may still fall: then the end is nearest.
+        ends = jnp.where(nearest == 0, 0.0, most)
+        inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
+        bounded = ((nearest == 0) | (nearest == TRIES - 1)) & (inwards < 0.0)
+
+        def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
+            return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
+
+        beyond, _ = root(widening, most / 2.0, most * (1.0 + _SLACK))
         found = first + jnp.clip(beyond, 0.0, most)
         at = motion.at(found, jnp.asarray(angle))
         height = jnp.real(at.place)
