@@ -325,14 +325,52 @@ class StrainWave(Mesh):
         return angle, clearance
 
     def dimensions(self) -> dict[str, Float[Array, "..."]]:
-        """Ratio, deflection, tooth depths and lands."""
+        """Speed ratio, deflection, radii and the depth to which the teeth reach into each other."""
         return {
             "module": self.module,
             "speed_ratio": jnp.abs(self.ratio),
             "deflection": self.line.deflection,
             "neutral_radius": self.line.radius,
-            "tip_height": self.tip_height,
+            "engagement_depth": self.groove.high - self.groove.low,
         }
+
+    def drawing(self) -> dict[str, Float[Array, "..."]]:
+        """Outlines of tooth and space, the deformed neutral line, the tooth on its way; lengths in m.
+
+        Points are (across, outwards): of the tooth from its axis and the neutral line, of the space from
+        its middle and the common axis.
+        """
+        tooth = self._outline
+        angle = jnp.deg2rad(jnp.linspace(-90.0, 90.0, 37))
+        foot, axis = self.tooth_motion.foot(angle)
+        placed = foot[:, None] + jnp.exp(1j * axis[:, None]) * tooth
+        width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.heights
+        space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
+        clearance_angle, clearance = self.clearance_curve
+        return {
+            "teeth": self.teeth,
+            "tooth": _points(tooth),
+            "space": _points(space),
+            "passing_angle": angle,
+            "passing": _points(placed),
+            "neutral_radius": self.line.radius,
+            "deflection": self.line.deflection,
+            "wave_weights": self.line.weights,
+            "rim_thickness": self.rim.thickness,
+            "tip_height": self.tip_height,
+            "clearance_angle": clearance_angle,
+            "clearance": clearance,
+        }
+
+    @property
+    def _outline(self) -> Array:
+        """Flexspline tooth from root to root over its tip."""
+        flank = self.flank.place(jnp.linspace(0.0, 1.0, 81) * self.flank.length)
+        return jnp.concatenate([jnp.conj(flank), flank[::-1]])
+
+
+def _points(places: Array) -> Float[Array, "... 2"]:
+    return jnp.stack([jnp.imag(places), jnp.real(places)], axis=-1)
 
 
 def _stations(ends: Float[Array, "2"]) -> tuple[Float[Array, " node"], Float[Array, " node"]]:
