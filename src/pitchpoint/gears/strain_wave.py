@@ -18,7 +18,7 @@ from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
 from pitchpoint.roots import root
 
-__all__ = ["MEMBERS", "WINDOW", "StrainWave", "Touching"]
+__all__ = ["MEMBERS", "WINDOW", "StrainWave", "Touching", "nearest_points"]
 
 MEMBERS = ("wave generator", "flexspline", "circular spline")
 """Coordinates, in their order."""
@@ -177,55 +177,8 @@ class StrainWave(Mesh):
         return jnp.asarray(jnp.real(tip) > self.groove.low)
 
     def touching(self, angle: Float[Array, "*b"]) -> Touching:
-        """Nearest points of the flank and its groove for teeth at angles from the long axis [rad].
-
-        The play along the circumference is least there, so the flanks have a common normal unless
-        an end of the flank is nearest.
-        """
-        motion, groove = self.tooth_motion, self.groove
-        frozen, where = jax.lax.stop_gradient((self, jnp.asarray(angle)))
-        station = jnp.linspace(0.0, 1.0, TRIES) * frozen.flank.length
-        local = frozen.flank.place(station).reshape(TRIES, *(1 for _ in where.shape))
-        stand, lean = frozen.tooth_motion.foot(where)
-        place = stand + jnp.exp(1j * lean) * local
-        width, _ = frozen.groove.width_and_slope(jnp.real(place))
-        apart = jnp.where(jnp.real(place) < frozen.groove.low, jnp.inf, width - jnp.imag(place))
-        nearest = jnp.argmin(apart, axis=0)
-        first = station[jnp.maximum(nearest - 1, 0)]
-        most = station[jnp.minimum(nearest + 1, TRIES - 1)] - first
-
-        foot, axis = motion.foot(angle)
-        turned = jnp.exp(1j * axis)
-
-        def growth(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
-            """Growth of the play along the flank."""
-            place = foot + turned * self.flank.place(first + beyond)
-            _, slope = groove.width_and_slope(jnp.real(place))
-            direction = axis - self.flank.angle(first + beyond)
-            return slope * jnp.cos(direction) - jnp.sin(direction)
-
-        # At an end of the flank the play may still fall: then the end is nearest.
-        ends = jnp.where(nearest == 0, 0.0, most)
-        inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
-        bounded = ((nearest == 0) | (nearest == TRIES - 1)) & (inwards < 0.0)
-
-        def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
-            return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
-
-        beyond, _ = root(widening, most / 2.0, most * (1.0 + _SLACK))
-        found = first + jnp.clip(beyond, 0.0, most)
-        at = motion.at(found, jnp.asarray(angle))
-        height = jnp.real(at.place)
-        width, _ = groove.width_and_slope(height)
-        held = (found <= 0.0) | (found >= frozen.flank.length * (1.0 - 1e-12))
-        play = width + self.backlash / 2.0 - jnp.imag(at.place)
-        return Touching(
-            along=found,
-            at=at,
-            clearance=play * jnp.cos(at.direction),
-            mate=groove.curvature_at(height),
-            held=held,
-        )
+        """Nearest points of the flank and its groove for teeth at angles from the long axis [rad]."""
+        return nearest_points(self.tooth_motion, self.groove, angle, self.backlash)
 
     def angles(self, phase: Float[Array, "*b"]) -> Lanes:
         """Angle of each tooth from the end of the long axis that is nearest [rad]."""
@@ -367,6 +320,67 @@ class StrainWave(Mesh):
         """Flexspline tooth from root to root over its tip."""
         flank = self.flank.place(jnp.linspace(0.0, 1.0, 81) * self.flank.length)
         return jnp.concatenate([jnp.conj(flank), flank[::-1]])
+
+
+def nearest_points(
+    motion: ToothMotion,
+    groove: Groove,
+    angle: Float[Array, "*b"],
+    backlash: Float[Array, ""] | float = 0.0,
+) -> Touching:
+    """Nearest points of flexspline flanks and their grooves.
+
+    The play along the circumference is least there, so the flanks have a common normal unless an end
+    of the flank is nearest.
+
+    Args:
+        motion: of the flexspline teeth.
+        groove: of the circular spline.
+        angle: of the teeth from the long axis [rad].
+        backlash: play on the circumference beyond the groove [m].
+    """
+    flank = motion.flank
+    frozen, space, where = jax.lax.stop_gradient((motion, groove, jnp.asarray(angle)))
+    station = jnp.linspace(0.0, 1.0, TRIES) * frozen.flank.length
+    local = frozen.flank.place(station).reshape(TRIES, *(1 for _ in where.shape))
+    stand, lean = frozen.foot(where)
+    place = stand + jnp.exp(1j * lean) * local
+    width, _ = space.width_and_slope(jnp.real(place))
+    apart = jnp.where(jnp.real(place) < space.low, jnp.inf, width - jnp.imag(place))
+    nearest = jnp.argmin(apart, axis=0)
+    first = station[jnp.maximum(nearest - 1, 0)]
+    most = station[jnp.minimum(nearest + 1, TRIES - 1)] - first
+    foot, axis = motion.foot(angle)
+    turned = jnp.exp(1j * axis)
+
+    def growth(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        """Growth of the play along the flank."""
+        place = foot + turned * flank.place(first + beyond)
+        _, slope = groove.width_and_slope(jnp.real(place))
+        direction = axis - flank.angle(first + beyond)
+        return slope * jnp.cos(direction) - jnp.sin(direction)
+
+    # At an end of the flank the play may still fall: then the end is nearest.
+    ends = jnp.where(nearest == 0, 0.0, most)
+    inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
+    bounded = ((nearest == 0) | (nearest == TRIES - 1)) & (inwards < 0.0)
+
+    def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
+
+    beyond, _ = root(widening, most / 2.0, most * (1.0 + _SLACK))
+    found = first + jnp.clip(beyond, 0.0, most)
+    at = motion.at(found, jnp.asarray(angle))
+    height = jnp.real(at.place)
+    width, _ = groove.width_and_slope(height)
+    play = width + backlash / 2.0 - jnp.imag(at.place)
+    return Touching(
+        along=found,
+        at=at,
+        clearance=play * jnp.cos(at.direction),
+        mate=groove.curvature_at(height),
+        held=(found <= 0.0) | (found >= frozen.flank.length * (1.0 - 1e-12)),
+    )
 
 
 def _points(places: Array) -> Float[Array, "... 2"]:
