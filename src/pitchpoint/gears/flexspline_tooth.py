@@ -48,6 +48,13 @@ class Flank(eqx.Module):
         """Arc length from root to tip [m]."""
         return jnp.sum(jnp.stack(self.lengths))
 
+    def stations(self, flank: int, rounding: int) -> Float[Array, " station"]:
+        """Arc lengths of so many places on the flank and so many more on the rounding of its tip [m]."""
+        rounded = self.lengths[-1]
+        plain = self.length - rounded
+        before = jnp.arange(flank) / (flank - 1) * plain
+        return jnp.concatenate([before, plain + jnp.arange(1, rounding + 1) / rounding * rounded])
+
     @property
     def root_height(self) -> Float[Array, ""]:
         """Height of the root above the neutral line [m]."""

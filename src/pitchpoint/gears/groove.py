@@ -1,5 +1,7 @@
 """Spaces of a circular spline: the flank that lets every flexspline tooth through, or a given one."""
 
+from dataclasses import replace
+
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
@@ -10,14 +12,15 @@ from pitchpoint.gears.tooth_motion import ToothMotion
 
 __all__ = ["Groove", "given", "swept"]
 
-NODES = 512
+NODES = 640
 """Heights at which the flank is known; cubic between them."""
 
 _PHASES = np.deg2rad(np.concatenate([np.arange(-6.0, 8.0, 0.1), np.arange(8.0, 90.5, 0.5)]))
-_STATIONS = 160
+_STATIONS = (120, 40)
 _STEPS = 8
 _CURVATURES = (-1e6, 1e6)  # 1/m: sharper than any edge that is made
 _FLATTEST = 1e-2  # 1/m
+_KINK = 3e-3  # rad between neighbours that no smooth flank turns
 _STRIDE = 0.02  # rad: the longest step of an iteration
 
 Each = Float[Array, "*b"]
@@ -26,13 +29,16 @@ Each = Float[Array, "*b"]
 class Groove(eqx.Module):
     """One flank of a space of the circular spline, the one that faces against positive rotation.
 
-    Heights are radii projected on the middle of the space.
+    Heights are radii projected on the middle of the space. Nodes lie closer together at the deep
+    end, where the rounded tips of the flexspline shape the groove.
 
     Attributes:
         low, high: heights of the tip of the circular spline's teeth and of the deepest contact [m].
-        half_width: distance of the flank from the middle of the space at equal steps of height [m].
+        half_width: distance of the flank from the middle of the space at the nodes [m].
         slope: derivative of the half width with respect to height.
         curvature: of the flank, positive where it is convex [1/m].
+        edge: curvature of the edge between two nodes where parts of the flank that different phases
+            leave behind meet; zero elsewhere [1/m].
     """
 
     low: Float[Array, ""]
@@ -40,24 +46,27 @@ class Groove(eqx.Module):
     half_width: Float[Array, " node"]
     slope: Float[Array, " node"]
     curvature: Float[Array, " node"]
+    edge: Float[Array, " cell"]
 
     @property
     def heights(self) -> Float[Array, " node"]:
         """Heights of the nodes [m]."""
-        return self.low + (self.high - self.low) * jnp.linspace(0.0, 1.0, self.slope.shape[0])
+        return _heights(self.low, self.high)
 
-    def _cell(self, height: Each) -> tuple[Array, Each]:
-        """Node below a height and the place above it in units of the step, clipped to the table."""
-        count = self.slope.shape[0]
-        place = (height - self.low) / (self.high - self.low) * (count - 1)
-        cell = jnp.clip(jnp.floor(jax.lax.stop_gradient(place)), 0, count - 2).astype(int)
-        return cell, place - cell
+    def _cell(self, height: Each) -> tuple[Array, Each, Each]:
+        """Node below a height, the step to the next one [m], and the place between them, from 0 to 1."""
+        low, high = jax.lax.stop_gradient((self.low, self.high))
+        from_top = (high - jax.lax.stop_gradient(height)) / (high - low)
+        place = (1.0 - jnp.sqrt(jnp.clip(from_top, 0.0, 1.0))) * (NODES - 1)
+        cell = jnp.clip(jnp.floor(place), 0, NODES - 2).astype(int)
+        known = self.heights
+        step = known[cell + 1] - known[cell]
+        return cell, step, (height - known[cell]) / step
 
     def width_and_slope(self, height: Each) -> tuple[Each, Each]:
         """Half width [m] and slope at heights; beyond the ends along the tangent there."""
-        cell, t = self._cell(height)
+        cell, step, t = self._cell(height)
         inside = jnp.clip(t, 0.0, 1.0)
-        step = (self.high - self.low) / (self.slope.shape[0] - 1)
         y0, y1 = self.half_width[cell], self.half_width[cell + 1]
         d0, d1 = self.slope[cell] * step, self.slope[cell + 1] * step
         rise = y1 - y0
@@ -68,18 +77,35 @@ class Groove(eqx.Module):
 
     def curvature_at(self, height: Each) -> Each:
         """Curvature at heights [1/m]."""
-        cell, t = self._cell(height)
+        cell, _, t = self._cell(height)
         inside = jnp.clip(t, 0.0, 1.0)
-        return self.curvature[cell] * (1.0 - inside) + self.curvature[cell + 1] * inside
+        smooth = self.curvature[cell] * (1.0 - inside) + self.curvature[cell + 1] * inside
+        return jnp.where(self.edge[cell] > 0.0, self.edge[cell], smooth)
 
     def depth(self, height: Each) -> Each:
         """Arc length of the flank from its deepest point to heights [m]."""
-        step = (self.high - self.low) / (self.slope.shape[0] - 1)
+        above = jnp.concatenate([jnp.cumsum(self._arcs[::-1])[::-1], jnp.zeros(1)])
+        cell, _, t = self._cell(height)
+        return above[cell] + t * (above[cell + 1] - above[cell])
+
+    @property
+    def _arcs(self) -> Float[Array, " cell"]:
+        """Arc lengths between the nodes [m]."""
         grown = jnp.hypot(1.0, self.slope)
-        pieces = (grown[1:] + grown[:-1]) / 2.0 * step
-        below = jnp.concatenate([jnp.zeros(1), jnp.cumsum(pieces)])
-        cell, t = self._cell(height)
-        return below[-1] - (below[cell] + t * (below[cell + 1] - below[cell]))
+        return (grown[1:] + grown[:-1]) / 2.0 * jnp.diff(self.heights)
+
+    def with_edges(self, radius: Float[Array, ""]) -> "Groove":
+        """The same with the edges at which its parts meet rounded by a radius [m].
+
+        What the rounding takes off is below a hundredth of the radius and is left on.
+        """
+        turned = jnp.diff(jnp.arctan(self.slope))
+        usual = (self.curvature[1:] + self.curvature[:-1]) / 2.0 * self._arcs
+        return replace(self, edge=jnp.where(turned - usual > _KINK, 1.0 / radius, 0.0))
+
+
+def _heights(low: Float[Array, ""], high: Float[Array, ""]) -> Float[Array, " node"]:
+    return high - (high - low) * jnp.linspace(1.0, 0.0, NODES) ** 2
 
 
 def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -> Groove:
@@ -90,7 +116,7 @@ def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -
         low: height of the tip of the circular spline's teeth [m].
         high: height of the deepest contact [m].
     """
-    heights = low + (high - low) * jnp.linspace(0.0, 1.0, NODES)
+    heights = _heights(low, high)
     radius = heights
     for _ in range(4):  # the tooth is thin, so that height and radius differ by its angle squared
         radius = heights / jnp.cos(flank.half_angle_at(radius))
@@ -102,6 +128,7 @@ def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -
         half_width=heights * jnp.tan(angle),
         slope=-jnp.tan(pressure - angle),
         curvature=-1.0 / (flank.base_radius * jnp.tan(pressure)),
+        edge=jnp.zeros(NODES - 1),
     )
 
 
@@ -114,16 +141,16 @@ def swept(motion: ToothMotion, low: Float[Array, ""], edge: Float[Array, ""]) ->
     Args:
         motion: of the flexspline teeth.
         low: height of the tip of the circular spline's teeth [m].
-        edge: radius with which that tip is rounded [m].
+        edge: radius with which that tip, and edges on the flank, are rounded [m].
     """
     deepest = motion.place(motion.flank.length, jnp.zeros(()))
-    heights = low + (jnp.real(deepest) - low) * jnp.linspace(0.0, 1.0, NODES)
+    heights = _heights(low, jnp.real(deepest))
     along, angle = _outermost(motion, heights)
     width, slope, curvature = _generated(motion, heights, along, angle)
+    groove = Groove(low, heights[-1], width, slope, curvature, jnp.zeros(NODES - 1))
     over = jnp.maximum(low + edge - heights, 0.0) / edge
-    return Groove(
-        low=low,
-        high=heights[-1],
+    return replace(
+        groove.with_edges(edge),
         half_width=width + edge * over**2 / 2.0,
         slope=slope - over,
         curvature=curvature + jnp.where(over > 0.0, 1.0 / edge, 0.0),
@@ -133,7 +160,7 @@ def swept(motion: ToothMotion, low: Float[Array, ""], edge: Float[Array, ""]) ->
 def _outermost(motion: ToothMotion, heights: Array) -> tuple[Array, Array]:
     """Place on the flank and phase that reach farthest at each height, on a grid of both."""
     frozen, targets = jax.lax.stop_gradient((motion, heights))
-    stations = jnp.linspace(0.0, 1.0, _STATIONS) * frozen.flank.length
+    stations = frozen.flank.stations(*_STATIONS)
     phases = jnp.asarray(_PHASES)
     places = frozen.place(stations[None, :], phases[:, None])
 

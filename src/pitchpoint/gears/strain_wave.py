@@ -5,7 +5,7 @@ from typing import Self
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
@@ -18,7 +18,7 @@ from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
 from pitchpoint.roots import root
 
-__all__ = ["MEMBERS", "WINDOW", "StrainWave", "Touching", "nearest_points"]
+__all__ = ["MEMBERS", "WINDOW", "StrainWave", "Survey", "Touching", "nearest_points"]
 
 MEMBERS = ("wave generator", "flexspline", "circular spline")
 """Coordinates, in their order."""
@@ -26,11 +26,12 @@ MEMBERS = ("wave generator", "flexspline", "circular spline")
 WINDOW = (np.deg2rad(-40.0), np.deg2rad(50.0))
 """Angles from the long axis between which pairs are held; others are far from touching."""
 
-TRIES = 41
-"""Places on a flank at which the clearance is looked at before its least value is found."""
+TRIES = (29, 14)
+"""Places on a flank and on its rounding at which the clearance is looked at before its least is found."""
 
 _FLATTEST = 1e-2  # 1/m: relative curvature that counts as that of parallel flanks
 _SLACK = 1e-9
+_AROUND = np.deg2rad(6.0)
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
@@ -52,6 +53,24 @@ class Touching(eqx.Module):
     clearance: Lanes
     mate: Lanes
     held: Lanes
+
+
+class Survey(eqx.Module):
+    """Rigid teeth along the wave.
+
+    Attributes:
+        angle: from the long axis [rad].
+        clearance: along the normal; NaN where teeth do not reach into each other [m].
+        rolls: True where flanks touch with a positive relative curvature, no end of a flank.
+        pairs: that touch, mean number.
+        reversal: angle at which sliding changes its sense [rad].
+    """
+
+    angle: Float[Array, " angle"]
+    clearance: Float[Array, " angle"]
+    rolls: Bool[Array, " angle"]
+    pairs: Float[Array, ""]
+    reversal: Float[Array, ""]
 
 
 class StrainWave(Mesh):
@@ -76,7 +95,10 @@ class StrainWave(Mesh):
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
             the circumference [m].
         motion_of, driver_of, loaded_of: see `motion`, `driver`, `loaded`.
+        pairs: that touch without load, mean number.
+        reversal: angle from the long axis at which the sliding of a tooth changes its sense [rad].
         conjugate: True if the groove follows from the flexspline and its motion; static.
+        odd: True if the flexspline has an odd number of teeth: zones are half a pitch apart; static.
         lanes: pairs held in each of both zones; static.
     """
 
@@ -93,15 +115,38 @@ class StrainWave(Mesh):
     motion_of: Float[Array, "3"]
     driver_of: Float[Array, "3"]
     loaded_of: Float[Array, "3"]
+    pairs: Float[Array, ""]
+    reversal: Float[Array, ""]
     conjugate: bool = eqx.field(static=True)
+    odd: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
 
     def completed(self) -> Self:
-        """The drive with its groove as it follows from flank and motion."""
-        if not self.conjugate:
-            return self
-        groove = swept(self.tooth_motion, self.tip_height, self.tip_rounding)
-        return dataclasses.replace(self, groove=groove)
+        """The drive with its groove as it follows from flank and motion, and what follows from both."""
+        drive = self
+        if self.conjugate:
+            groove = swept(self.tooth_motion, self.tip_height, self.tip_rounding)
+            drive = dataclasses.replace(self, groove=groove)
+        survey = drive.survey()
+        return dataclasses.replace(drive, pairs=survey.pairs, reversal=survey.reversal)
+
+    def survey(self) -> "Survey":
+        """Clearances along the wave, and what follows from them for the whole drive."""
+        angle = jnp.linspace(WINDOW[0], WINDOW[1], 721)
+        found, overlaps = self.touching(angle), self.overlaps(angle)
+        touches = overlaps & (found.clearance < _LIGHT * self.module)
+        slides = found.at.sliding
+        # Teeth stop their inward motion near the long axis; sliding changes its sense there.
+        near = (jnp.abs(angle) < _AROUND) & (slides > 0.0)
+        after = jnp.maximum(jnp.argmax(near), 1)
+        part = slides[after] / (slides[after] - slides[after - 1])
+        return Survey(
+            angle=angle,
+            clearance=jnp.where(overlaps, found.clearance, jnp.nan),
+            rolls=~found.held & (found.at.curvature + found.mate > 0.0),
+            pairs=jnp.mean(touches) * 2.0 * (WINDOW[1] - WINDOW[0]) / self.tooth_angle,
+            reversal=angle[after] - part * (angle[after] - angle[after - 1]),
+        )
 
     @property
     def tooth_motion(self) -> ToothMotion:
@@ -159,17 +204,15 @@ class StrainWave(Mesh):
         """A strain wave gear has no pitch point."""
         return None
 
-    def events(self) -> Float[Array, "1"]:
-        """Pairs enter and leave without load."""
-        return jnp.zeros(1)
+    def events(self) -> Float[Array, " event"]:
+        """Phases at which the sliding of a tooth changes its sense; pairs enter and leave without load."""
+        phase = jnp.mod(self.reversal / self.tooth_angle, 1.0)
+        return jnp.sort(jnp.mod(jnp.stack([phase, phase + 0.5]), 1.0)) if self.odd else phase[None]
 
     @property
     def contact_ratio(self) -> Float[Array, ""]:
         """Mean number of pairs that touch without load, to a thousandth of the module."""
-        angle = jnp.linspace(WINDOW[0], WINDOW[1], 361)
-        touches = self.overlaps(angle) & (self.touching(angle).clearance < _LIGHT * self.module)
-        pairs = 2.0 * (WINDOW[1] - WINDOW[0]) / self.tooth_angle
-        return jnp.asarray(jnp.mean(touches) * pairs)
+        return self.pairs
 
     def overlaps(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """True where a tooth reaches into the circular spline's teeth."""
@@ -270,13 +313,6 @@ class StrainWave(Mesh):
             half, groove.high - radius, rate / jnp.hypot(1.0, slope), -jnp.arctan(slope), ends
         )
 
-    @property
-    def clearance_curve(self) -> tuple[Float[Array, " angle"], Float[Array, " angle"]]:
-        """Angles from the long axis [rad] and clearance there along the normal [m]; NaN outside mesh."""
-        angle = jnp.linspace(WINDOW[0], WINDOW[1], 181)
-        clearance = jnp.where(self.overlaps(angle), self.touching(angle).clearance, jnp.nan)
-        return angle, clearance
-
     def dimensions(self) -> dict[str, Float[Array, "..."]]:
         """Speed ratio, deflection, radii and the depth to which the teeth reach into each other."""
         return {
@@ -299,7 +335,7 @@ class StrainWave(Mesh):
         placed = foot[:, None] + jnp.exp(1j * axis[:, None]) * tooth
         width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.heights
         space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
-        clearance_angle, clearance = self.clearance_curve
+        survey = self.survey()
         return {
             "teeth": self.teeth,
             "tooth": _points(tooth),
@@ -311,8 +347,8 @@ class StrainWave(Mesh):
             "wave_weights": self.line.weights,
             "rim_thickness": self.rim.thickness,
             "tip_height": self.tip_height,
-            "clearance_angle": clearance_angle,
-            "clearance": clearance,
+            "clearance_angle": survey.angle,
+            "clearance": survey.clearance,
         }
 
     @property
@@ -341,15 +377,16 @@ def nearest_points(
     """
     flank = motion.flank
     frozen, space, where = jax.lax.stop_gradient((motion, groove, jnp.asarray(angle)))
-    station = jnp.linspace(0.0, 1.0, TRIES) * frozen.flank.length
-    local = frozen.flank.place(station).reshape(TRIES, *(1 for _ in where.shape))
+    station = frozen.flank.stations(*TRIES)
+    last = station.shape[0] - 1
+    local = frozen.flank.place(station).reshape(-1, *(1 for _ in where.shape))
     stand, lean = frozen.foot(where)
     place = stand + jnp.exp(1j * lean) * local
     width, _ = space.width_and_slope(jnp.real(place))
     apart = jnp.where(jnp.real(place) < space.low, jnp.inf, width - jnp.imag(place))
     nearest = jnp.argmin(apart, axis=0)
     first = station[jnp.maximum(nearest - 1, 0)]
-    most = station[jnp.minimum(nearest + 1, TRIES - 1)] - first
+    most = station[jnp.minimum(nearest + 1, last)] - first
     foot, axis = motion.foot(angle)
     turned = jnp.exp(1j * axis)
 
@@ -363,7 +400,7 @@ def nearest_points(
     # At an end of the flank the play may still fall: then the end is nearest.
     ends = jnp.where(nearest == 0, 0.0, most)
     inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
-    bounded = ((nearest == 0) | (nearest == TRIES - 1)) & (inwards < 0.0)
+    bounded = ((nearest == 0) | (nearest == last)) & (inwards < 0.0)
 
     def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
         return jnp.where(bounded, (beyond - ends) / most, growth(beyond))

@@ -1,6 +1,6 @@
 """Strain wave gears from the dimensions that a designer gives, and the checks that go with them."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import ceil, floor, inf, pi, radians
 
 import equinox as eqx
@@ -11,7 +11,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.flexible_ring import FlexibleRing
 from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.groove import Groove, given, swept
-from pitchpoint.gears.strain_wave import MEMBERS, WINDOW, StrainWave
+from pitchpoint.gears.strain_wave import MEMBERS, WINDOW, StrainWave, Survey
 from pitchpoint.gears.tooth_motion import ToothMotion
 from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 
@@ -154,11 +154,15 @@ def build_strain_wave(
         motion_of=array(motion),
         driver_of=array(np.eye(3)[MEMBERS.index(driver)]),
         loaded_of=array(np.eye(3)[loaded]),
+        pairs=array(0.0),
+        reversal=array(0.0),
         conjugate=groove is None,
+        odd=z1 % 2 == 1,
         lanes=_lanes(z1),
     )
-    _check_contact(drive)
-    return drive
+    found = _surveyed(drive)
+    _check_contact(drive, found)
+    return replace(drive, pairs=found.pairs, reversal=found.reversal)
 
 
 def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
@@ -391,27 +395,19 @@ def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: Tooth
 
 
 @eqx.filter_jit
-def _engagement(drive: StrainWave) -> dict[str, jnp.ndarray]:
-    angle = jnp.linspace(WINDOW[0], WINDOW[1], 721)
-    found = drive.touching(angle)
-    curvature = found.at.curvature + found.mate
-    return {
-        "angle": angle,
-        "clearance": jnp.where(drive.overlaps(angle), found.clearance, jnp.inf),
-        "rolls": ~found.held & (curvature > 0.0),
-    }
+def _surveyed(drive: StrainWave) -> Survey:
+    return drive.survey()
 
 
-def _check_contact(drive: StrainWave) -> None:
+def _check_contact(drive: StrainWave, found: Survey) -> None:
     """Rigid teeth must touch, without overlap, and somewhere with a positive relative curvature."""
-    found = jax.device_get(_engagement(drive))
-    clearance, module = found["clearance"], float(drive.module)
+    clearance, module = np.nan_to_num(np.asarray(found.clearance), nan=np.inf), float(drive.module)
     where = "form" if drive.conjugate else "groove"
     least = int(np.argmin(clearance))
     if clearance[least] < -INTERFERENCE * module:
         raise InputError(
             f"flexspline and circular spline interfere: {-1e6 * clearance[least]:.3g} um of overlap "
-            f"{np.degrees(found['angle'][least]):.3g} degrees from the long axis",
+            f"{np.degrees(found.angle[least]):.3g} degrees from the long axis",
             key=where,
         )
     if not clearance[least] - float(drive.backlash) < _FARTHEST * module:
@@ -421,7 +417,7 @@ def _check_contact(drive: StrainWave) -> None:
             key=where,
         )
     near = clearance < clearance[least] + 1e-2 * module
-    if not (near & found["rolls"]).any():
+    if not (near & np.asarray(found.rolls)).any():
         raise InputError(
             "the relative curvature is nowhere positive where the flanks touch: the teeth meet at "
             "edges alone",
