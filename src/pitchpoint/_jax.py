@@ -4,8 +4,17 @@ import os
 import platform
 from pathlib import Path
 
-import jax
-import jax.numpy as jnp
+FEW_CORES = 4
+"""Cores up to which compiled programs run on one of them."""
+
+# Factorisations of a batch wait for other threads of the pool that runs them, and several at once
+# then wait for each other without end where the pool is small (jaxlib 0.10). A pool of one runs them
+# in place. It is made with the first array and asks this variable for its size.
+if (os.cpu_count() or 1) <= FEW_CORES:
+    os.environ.setdefault("NPROC", "1")
+
+import jax  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
 
 __all__ = ["cache_folder", "jax", "jnp"]
 

@@ -2,20 +2,34 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.clearances import shared_load
+from pitchpoint.loading.yielding import Yielding
 from pitchpoint.registry import Registry
 
-__all__ = ["LOAD_SHARING", "LoadSharing", "equal", "from_stiffness", "sanchez_2017", "single"]
+__all__ = [
+    "LOAD_SHARING",
+    "LoadSharing",
+    "equal",
+    "from_stiffness",
+    "sanchez_2017",
+    "single",
+    "xu_2021_cosine",
+    "zhao_2022_cosine",
+]
 
-Ratio = Float[Array, ""]
 Share = Float[Array, "pair slice *b"]
-Stiffness = Float[Array, "pair slice *b"] | None
+Flanks = Literal["any", "touching", "apart"]
+
+_XU_END = jnp.pi / 8.0
+_ZHAO_END = jnp.pi / 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,90 +38,113 @@ class LoadSharing:
 
     Attributes:
         name, title: by which it is picked, and what it says.
-        function: share of each slice from contacts, contact ratio and stiffness of the pairs per
-            length of contact line [N/m2], or None for models that do not ask for it.
+        function: share of each slice, summing to one, from contacts, mesh and how the pairs yield;
+            None for models that do not ask for that.
         sources: keys of the bibliography.
         ratio_range: contact ratios for which it holds, exclusive.
         straight: True if it holds only for contact lines parallel to the axes.
-        by_stiffness: True if the function needs the stiffness.
+        by_stiffness: True if the function asks how the pairs yield.
+        flanks: "touching" if it holds only where all rigid flanks in mesh touch, "apart" only for
+            strain-wave teeth, most of which have a clearance, or "any".
         hand_over: phases, beside entry and exit, at which the share jumps or bends.
         note: caution for the user.
     """
 
     name: str
     title: str
-    function: Callable[[Contacts, Ratio, Stiffness], Share]
+    function: Callable[[Contacts, Mesh, Yielding | None], Share]
     sources: tuple[str, ...]
     ratio_range: tuple[float, float] = (0.0, float("inf"))
     straight: bool = False
     by_stiffness: bool = False
-    hand_over: Callable[[Ratio], Float[Array, " event"]] | None = None
+    flanks: Flanks = "any"
+    hand_over: Callable[[Float[Array, ""]], Float[Array, " event"]] | None = None
     note: str = ""
 
     def applies(self, mesh: Mesh) -> bool:
         """True if the model holds for this mesh."""
-        low, high = self.ratio_range
-        anywhere = (low, high) == (0.0, float("inf"))
-        return (
-            (mesh.toothed or not self.by_stiffness)
-            and not (self.straight and float(mesh.overlap_ratio) > 0.0)
-            and (anywhere or low < float(mesh.contact_ratio) < high)
-        )
+        return self._limit(mesh) is None
 
     def check(self, mesh: Mesh) -> None:
         """Raise InputError if the model does not hold for this mesh."""
-        if self.applies(mesh):
+        limit = self._limit(mesh)
+        if limit is None:
             return
         others = ", ".join(entry.name for entry in LOAD_SHARING.values() if entry.applies(mesh))
+        raise InputError(f"'{self.name}' {limit}; choose one of {others}")
+
+    def _limit(self, mesh: Mesh) -> str | None:
+        """What keeps the model from holding for this mesh, as the end of a sentence."""
         low, high = self.ratio_range
-        if self.by_stiffness:
-            limit = "needs teeth that yield, and this mesh has none"
-        elif self.straight and float(mesh.overlap_ratio) > 0.0:
-            limit = "holds for spur gears, and these are helical"
-        else:
-            limit = (
+        anywhere = (low, high) == (0.0, float("inf"))
+        if self.by_stiffness and not mesh.toothed:
+            return "needs teeth that yield, and this mesh has none"
+        if self.flanks == "touching" and mesh.clearances:
+            return (
+                "holds where all flanks in mesh touch, and most strain-wave teeth have a clearance"
+            )
+        if self.flanks == "apart" and not mesh.clearances:
+            return "holds for strain-wave gears, and these are not"
+        if self.straight and float(mesh.overlap_ratio) > 0.0:
+            return "holds for spur gears, and these are helical"
+        if not anywhere and not low < float(mesh.contact_ratio) < high:
+            return (
                 f"holds for contact ratios between {low:g} and {high:g}, this pair has "
                 f"{float(mesh.contact_ratio):.4g}"
             )
-        raise InputError(f"'{self.name}' {limit}; choose one of {others}")
+        return None
 
 
-def equal(contacts: Contacts, contact_ratio: Ratio, stiffness: Stiffness = None) -> Share:
+def equal(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
     """Equal load per length of contact line in mesh.
 
     Args:
         contacts: of the mesh.
-        contact_ratio, stiffness: not used, common to all models.
+        mesh, yielding: not used, common to all models.
     """
     return _normalised(jnp.where(contacts.active, contacts.weight, 0.0))
 
 
-def from_stiffness(contacts: Contacts, contact_ratio: Ratio, stiffness: Stiffness) -> Share:
-    """Load in proportion to stiffness: all slices yield by the same approach of the two gears.
+def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Yielding | None) -> Share:
+    """Load by stiffness: all slices yield by the same approach of the gears, less their clearance.
+
+    Where all rigid flanks touch and no body couples the slices, load is in proportion to stiffness.
 
     Args:
-        contacts: of the mesh, whose unloaded flanks touch everywhere.
-        contact_ratio: not used, common to all models.
-        stiffness: of each slice per length of contact line [N/m2].
+        contacts: of the mesh.
+        mesh: any family with teeth.
+        yielding: how the pairs yield, and the load: pairs with a clearance come to carry with it.
+
+    Returns:
+        Shares; NaN where the equilibrium was not found.
     """
-    assert stiffness is not None
-    return _normalised(jnp.where(contacts.active, stiffness * contacts.weight, 0.0))
+    assert yielding is not None
+    if yielding.body is None and not mesh.clearances:
+        return _normalised(jnp.where(contacts.active, yielding.stiffness * contacts.weight, 0.0))
+    return shared_load(
+        yielding.compliance(contacts),
+        gap=contacts.gap,
+        arm=jnp.abs(along(contacts.normal, mesh.loaded)),
+        active=contacts.active,
+        load=yielding.load,
+    ).share
 
 
-def single(contacts: Contacts, contact_ratio: Ratio, stiffness: Stiffness = None) -> Share:
+def single(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
     """Whole load on the pair nearest to the middle of the path of contact.
 
     Args:
         contacts: of the mesh.
-        contact_ratio: eps_alpha, length of the path in base pitches.
-        stiffness: not used.
+        mesh: its contact ratio is the length of the path in base pitches.
+        yielding: not used.
     """
-    from_middle = jnp.where(contacts.active, jnp.abs(contacts.path - contact_ratio / 2.0), jnp.inf)
+    from_middle = jnp.abs(contacts.path - mesh.contact_ratio / 2.0)
+    from_middle = jnp.where(contacts.active, from_middle, jnp.inf)
     nearest = from_middle <= jnp.min(from_middle, axis=0, keepdims=True)
     return _normalised(jnp.where(nearest & contacts.active, contacts.weight, 0.0))
 
 
-def sanchez_2017(contacts: Contacts, contact_ratio: Ratio, stiffness: Stiffness = None) -> Share:
+def sanchez_2017(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
     """Linear form of the load sharing ratio of spur gears with Hertz stiffness, 1 < eps < 2.
 
     A pair carries 0.36 of the load at entry and exit, rising linearly to 0.64 next to the zone of
@@ -115,16 +152,49 @@ def sanchez_2017(contacts: Contacts, contact_ratio: Ratio, stiffness: Stiffness 
 
     Args:
         contacts: of the mesh, `path` in base pitches.
-        contact_ratio: eps_alpha.
-        stiffness: not used.
+        mesh: its contact ratio is eps_alpha.
+        yielding: not used.
 
     Source: Sanchez, Pleguezuelos, Pedrero (2017), in the form of Tian et al. (2024), eq. 11; within
     6 % of finite elements for pairs without profile modification.
     """
-    double = contact_ratio - 1.0
-    from_end = jnp.minimum(contacts.path, contact_ratio - contacts.path)
+    double = mesh.contact_ratio - 1.0
+    from_end = jnp.minimum(contacts.path, mesh.contact_ratio - contacts.path)
     share = jnp.where(from_end <= double, 0.36 + 0.28 * from_end / double, 1.0)
     return _normalised(jnp.where(contacts.active, share, 0.0))
+
+
+def xu_2021_cosine(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
+    """Tooth force as cos(4 phi) within 22.5 degrees of the long axis, at both of its ends.
+
+    Args:
+        contacts: of a strain-wave gear, `path` the angle from the long axis [turns].
+        mesh, yielding: not used.
+
+    Source: Xu et al. (2021), eqs. 4 and 5. Their eq. 6 sums over teeth beyond the zone and over one
+    end of the axis only; here the shares sum to one.
+    """
+    return _half_wave(contacts, _XU_END)
+
+
+def zhao_2022_cosine(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
+    """Tooth force as cos(pi phi/72 deg) within 36 degrees of the long axis, at both of its ends.
+
+    Args:
+        contacts: of a strain-wave gear, `path` the angle from the long axis [turns].
+        mesh, yielding: not used.
+
+    Source: Zhao et al. (2022), eq. 13 with its peak on the long axis and their half angle of
+    36 degrees, both sides of the axis alike as their torque, eq. 15, counts them.
+    """
+    return _half_wave(contacts, _ZHAO_END)
+
+
+def _half_wave(contacts: Contacts, end: float) -> Share:
+    angle = 2.0 * jnp.pi * contacts.path
+    inside = contacts.active & (jnp.abs(angle) < end)
+    force = jnp.cos(0.5 * jnp.pi * angle / end) * contacts.weight
+    return _normalised(jnp.where(inside, force, 0.0))
 
 
 def _normalised(share: Share) -> Share:
@@ -140,9 +210,16 @@ LOAD_SHARING = Registry(
         ("sanchez_2017", "tian_2024"),
         (1.0, 2.0),
         straight=True,
+        flanks="touching",
         note="Spur pairs of equal modulus without tip relief or deviation.",
     ),
-    LoadSharing("equal", "equal load per length of contact line", equal, ("hohn_2010",)),
+    LoadSharing(
+        "equal",
+        "equal load per length of contact line",
+        equal,
+        ("hohn_2010",),
+        flanks="touching",
+    ),
     LoadSharing(
         "from_stiffness",
         "load in proportion to the stiffness of the teeth along each contact line",
@@ -157,7 +234,24 @@ LOAD_SHARING = Registry(
         single,
         (),
         straight=True,
+        flanks="touching",
         hand_over=lambda ratio: jnp.mod((ratio + 1.0) / 2.0, 1.0)[None],
         note="A bound: what a pair would carry if its neighbours did not help.",
+    ),
+    LoadSharing(
+        "xu_2021_cosine",
+        "cosine over 22.5 degrees on both sides of the long axis",
+        xu_2021_cosine,
+        ("xu_2021",),
+        flanks="apart",
+        note="A law for a strain-wave gear at its rated load: clearances and load do not enter.",
+    ),
+    LoadSharing(
+        "zhao_2022_cosine",
+        "cosine over 36 degrees on both sides of the long axis",
+        zhao_2022_cosine,
+        ("zhao_2022",),
+        flanks="apart",
+        note="A law for a strain-wave gear at its rated load: clearances and load do not enter.",
     ),
 )

@@ -1,0 +1,350 @@
+"""Load over many pairs with clearances: which of them carry, and how far the loaded body moves."""
+
+from typing import NamedTuple
+
+import equinox as eqx
+from jaxtyping import Array, Bool, Float, Int
+
+from pitchpoint._jax import jax, jnp
+
+__all__ = ["Shared", "shared_load"]
+
+Lanes = Float[Array, "pair slice *b"]
+Each = Float[Array, "*b"]
+Rows = Float[Array, "*b lane"]
+
+MOST = 200
+"""Largest number of active sets that are tried; usual are two to six."""
+
+FULL_EXCHANGES = 3
+"""Exchanges of all wrong lanes that may leave as many of them, before it goes step by step."""
+
+FEASIBLE = 1e-12
+"""Share of the load (or of its deflection) that counts as zero."""
+
+UNSOLVED = 1e-10
+"""Residual above which forces are NaN."""
+
+FAR = 1e6
+"""Approach, over elastic deflection and clearance, at which a body that nothing holds is looked at."""
+
+LIGHTEST = 1e-9
+"""Least elastic deflection over the largest clearance: what lighter loads do is its limit."""
+
+
+class Shared(eqx.Module):
+    """Equilibrium of pairs that only push.
+
+    Attributes:
+        force: normal force of each slice [N].
+        share: part of the sum of all forces; without load the limit for a vanishing one.
+        approach: rotation (or displacement) of the loaded coordinate from where `gap` was measured
+            [rad or m].
+        stiffness: load over approach for a small change of the load, while the same pairs carry
+            [N m/rad or N/m].
+        loaded: True where a slice carries.
+        residual: largest violation of the equilibrium, over the load or its deflection.
+        iterations: active sets that were tried, common to the states that were solved together.
+    """
+
+    force: Lanes
+    share: Lanes
+    approach: Each
+    stiffness: Each
+    loaded: Bool[Array, "pair slice *b"]
+    residual: Each
+    iterations: Int[Array, ""]
+
+
+class _Problem(NamedTuple):
+    """C f + g - a d >= 0, f >= 0, f (C f + g - a d) = 0, sum of a f = load; all of order one."""
+
+    compliance: Float[Array, "*b lane lane"]
+    gap: Rows
+    arm: Rows
+    active: Bool[Array, "*b lane"]
+    load: Each
+
+
+class _Solution(NamedTuple):
+    force: Rows
+    approach: Each
+    stiffness: Each
+    slack: Rows
+
+
+class _Scale(NamedTuple):
+    """What turns numbers of order one into quantities: force [N], compliance [m/N], arm, approach."""
+
+    force: Each
+    compliance: Each
+    arm: Each
+    touch: Each
+
+
+def shared_load(
+    compliance: Float[Array, "lane lane *b"],
+    *,
+    gap: Lanes,
+    arm: Lanes,
+    active: Bool[Array, "pair slice *b"],
+    load: Each,
+) -> Shared:
+    """Forces between pairs with clearances that share a load.
+
+    Forces f >= 0 and one approach d: C f + gap - arm d is zero where a lane carries and not negative
+    elsewhere, and the sum of arm f is the load. The set of loaded lanes is found by exchanging all
+    wrong ones at once; where that does not lead to fewer of them, by steps that each lessen the
+    energy, of which there are finitely many for a positive definite C. The last solution on that
+    set carries the first derivatives. They jump where a pair comes to carry.
+
+    Args:
+        compliance: displacement of each lane (pair and slice, flattened) for a unit force on
+            another, along the normals [m/N]; symmetric positive definite.
+        gap: separation of the unloaded flanks; any sign, only differences over `arm` matter to the
+            forces [m].
+        arm: closing for a unit of approach, positive; lanes with none never carry [m or 1].
+        active: lanes that may carry.
+        load: not negative [N m or N].
+
+    Returns:
+        Forces and approach, broadcast over all batch axes; NaN where no equilibrium was found. A
+        load of zero gives the first pair that touches.
+    """
+    problem, scale = _normalised(compliance, gap, arm, active, load)
+    loaded, iterations = _loaded(jax.lax.stop_gradient(problem))
+    found = _solve(problem, loaded)
+    residual = jax.lax.stop_gradient(_residual(problem, loaded, found))
+    solved = (residual <= UNSOLVED) & (load >= 0.0)
+
+    def lanes(rows: Array) -> Array:
+        return jnp.moveaxis(rows, -1, 0).reshape(*gap.shape[:2], *rows.shape[:-1])
+
+    force = jnp.where(loaded, found.force, 0.0)
+    moved = scale.compliance * scale.force * found.approach / scale.arm
+    return Shared(
+        force=_where(solved, lanes(force) * scale.force),
+        share=_where(solved, lanes(force / jnp.sum(force, axis=-1, keepdims=True))),
+        approach=_where(solved, scale.touch + moved),
+        stiffness=_where(solved, found.stiffness * scale.arm**2 / scale.compliance),
+        loaded=lanes(loaded),
+        residual=residual,
+        iterations=iterations,
+    )
+
+
+def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Array, "..."]:
+    return jnp.where(solved, values, jnp.nan)
+
+
+def _normalised(
+    compliance: Float[Array, "lane lane *b"],
+    gap: Lanes,
+    arm: Lanes,
+    active: Bool[Array, "pair slice *b"],
+    load: Each,
+) -> tuple[_Problem, _Scale]:
+    """The problem counted from first touch, with mean compliance, arm and load of one.
+
+    Scales are constants to a derivative: the solution does not depend on them.
+    """
+    batch = jnp.broadcast_shapes(compliance.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
+
+    def rows(lanes: Array) -> Array:
+        flat = jnp.moveaxis(lanes.reshape(-1, *lanes.shape[2:]), 0, -1)
+        return jnp.broadcast_to(flat, (*batch, flat.shape[-1]))
+
+    may = rows(active) & (rows(arm) > 0.0)
+    own = jnp.moveaxis(compliance, (0, 1), (-2, -1))
+    own = jnp.broadcast_to(own, (*batch, *own.shape[-2:]))
+    arms, gaps = jnp.where(may, rows(arm), 0.0), rows(gap)
+    constant = jax.lax.stop_gradient
+    safe_arms = jnp.where(may, arms, 1.0)
+    touch = constant(jnp.min(jnp.where(may, gaps / safe_arms, jnp.inf), axis=-1))
+    touch = jnp.where(jnp.isfinite(touch), touch, 0.0)
+    gaps = jnp.where(may, gaps - arms * touch[..., None], 0.0)
+    mean_arm = constant(_mean(arms, may))
+    mean_compliance = constant(_mean(jnp.diagonal(own, axis1=-2, axis2=-1), may))
+    force = jnp.broadcast_to(load, batch) / mean_arm
+    least = LIGHTEST * constant(jnp.max(gaps, axis=-1)) / mean_compliance
+    light = (force < least) | (force <= 0.0)
+    reference = jnp.where(light, jnp.where(least > 0.0, least, 1.0), constant(force))
+    problem = _Problem(
+        compliance=_masked(own / mean_compliance[..., None, None], may),
+        gap=gaps / (mean_compliance * reference)[..., None],
+        arm=arms / mean_arm[..., None],
+        active=may,
+        load=jnp.where(light, 1.0, force / reference),
+    )
+    scale = jnp.where(light, force, reference)
+    return problem, _Scale(scale, mean_compliance, mean_arm, touch)
+
+
+def _mean(values: Rows, over: Bool[Array, "*b lane"]) -> Each:
+    """Mean over some lanes, one where there is none."""
+    count = jnp.sum(over, axis=-1)
+    mean = jnp.sum(jnp.where(over, values, 0.0), axis=-1) / jnp.maximum(count, 1)
+    return jnp.where(count > 0, mean, 1.0)
+
+
+def _masked(
+    matrix: Float[Array, "*b lane lane"], keep: Bool[Array, "*b lane"]
+) -> Float[Array, "*b lane lane"]:
+    """Rows and columns of some lanes, those of the unit matrix for the others."""
+    both = keep[..., :, None] & keep[..., None, :]
+    return jnp.where(both, matrix, jnp.eye(matrix.shape[-1]))
+
+
+class _Search(NamedTuple):
+    """State of the search for the loaded lanes.
+
+    Attributes:
+        loaded: set of lanes to try next.
+        force: not negative, of the whole load; only a search that goes step by step needs it.
+        open: True where the last set was wrong.
+        fewest: least number of wrong lanes so far.
+        patience: exchanges of all wrong lanes that are left; negative in a search step by step.
+        steps: sets that were tried.
+    """
+
+    loaded: Bool[Array, "*b lane"]
+    force: Rows
+    open: Bool[Array, "*b"]
+    fewest: Int[Array, "*b"]
+    patience: Int[Array, "*b"]
+    steps: Int[Array, ""]
+
+
+def _loaded(problem: _Problem) -> tuple[Bool[Array, "*b lane"], Int[Array, ""]]:
+    """Lanes that carry, and the number of sets that were tried."""
+    start = _as_if_alone(problem)
+    batch, lanes = start.shape[:-1], start.shape[-1]
+    begin = _Search(
+        loaded=start,
+        force=jnp.zeros(start.shape),
+        open=jnp.ones(batch, bool),
+        fewest=jnp.full(batch, lanes + 1),
+        patience=jnp.full(batch, FULL_EXCHANGES),
+        steps=jnp.asarray(0),
+    )
+    search = jax.lax.while_loop(
+        lambda at: (at.steps < MOST) & jnp.any(at.open), lambda at: _try(problem, at), begin
+    )
+    # A lane that carries nothing may be in the set by rounding.
+    return search.loaded & (_solve(problem, search.loaded).force > 0.0), search.steps
+
+
+def _try(problem: _Problem, at: _Search) -> _Search:
+    """Exchange all wrong lanes while that leaves fewer of them, else one lane at a time."""
+    found = _solve(problem, at.loaded)
+    pulls = at.loaded & (found.force < -FEASIBLE)
+    overlaps = problem.active & ~at.loaded & (found.slack < -FEASIBLE)
+    count = jnp.sum(pulls | overlaps, axis=-1)
+    careful = at.patience < 0
+    patience = jnp.where(count < at.fewest, FULL_EXCHANGES, at.patience - 1)
+    patience = jnp.where(careful, -1, patience)
+    first = _feasible(problem, found)
+    descent, force = _descend(at, found, pulls, overlaps)
+    loaded = jnp.where((patience < 0)[..., None], first > 0.0, at.loaded ^ (pulls | overlaps))
+    return _Search(
+        loaded=jnp.where(careful[..., None], descent, loaded),
+        force=jnp.where(careful[..., None], force, first),
+        open=count > 0,
+        fewest=jnp.minimum(count, at.fewest),
+        patience=patience,
+        steps=at.steps + 1,
+    )
+
+
+def _feasible(problem: _Problem, found: _Solution) -> Rows:
+    """Forces that push and carry the load, from some of which pull."""
+    pushing = jnp.maximum(found.force, 0.0)
+    carried = jnp.sum(problem.arm * pushing, axis=-1)
+    return pushing * (problem.load / jnp.where(carried > 0.0, carried, 1.0))[..., None]
+
+
+def _descend(
+    at: _Search,
+    found: _Solution,
+    pulls: Bool[Array, "*b lane"],
+    overlaps: Bool[Array, "*b lane"],
+) -> tuple[Bool[Array, "*b lane"], Rows]:
+    """A step that lessens the energy: drop the lane whose force ends first, else add the worst one."""
+    drop = jnp.where(pulls, at.force - found.force, 1.0)
+    until = jnp.where(pulls, at.force / drop, jnp.inf)
+    part = jnp.minimum(jnp.min(until, axis=-1, keepdims=True), 1.0)
+    force = at.force + part * (jnp.where(at.loaded, found.force, 0.0) - at.force)
+    ends = pulls & _only(jnp.argmin(until, axis=-1), pulls)
+    worst = jnp.argmin(jnp.where(overlaps, found.slack, jnp.inf), axis=-1)
+    begins = overlaps & _only(worst, overlaps) & ~jnp.any(pulls, axis=-1, keepdims=True)
+    return (at.loaded & ~ends) | begins, jnp.where(ends, 0.0, jnp.maximum(force, 0.0))
+
+
+def _only(lane: Int[Array, "*b"], like: Bool[Array, "*b lane"]) -> Bool[Array, "*b lane"]:
+    return lane[..., None] == jnp.arange(like.shape[-1])
+
+
+def _as_if_alone(problem: _Problem) -> Bool[Array, "*b lane"]:
+    """Lanes that would carry if none moved another: they touch one after the other."""
+    own = jnp.diagonal(problem.compliance, axis1=-2, axis2=-1)
+    touch = problem.gap / jnp.where(problem.active, problem.arm, 1.0)
+    touch = jnp.where(problem.active, touch, jnp.inf)
+    order = jnp.argsort(touch, axis=-1)
+
+    def until(values: Rows) -> Rows:
+        return jnp.cumsum(jnp.take_along_axis(values, order, axis=-1), axis=-1)
+
+    stiffness = until(problem.arm**2 / own)
+    lost = until(problem.arm * problem.gap / own)
+    approach = (problem.load[..., None] + lost) / jnp.where(stiffness > 0.0, stiffness, 1.0)
+    # As many touch as lie before the approach that they take together: its least value.
+    least = jnp.min(jnp.where(stiffness > 0.0, approach, jnp.inf), axis=-1, keepdims=True)
+    return problem.active & (touch < least)
+
+
+def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
+    """Forces on these lanes and the approach, as if all of them could pull."""
+    sides = jnp.stack([problem.arm, problem.gap], axis=-1) * loaded[..., None]
+    solved = _each_solved(_masked(problem.compliance, loaded), sides)
+    stiffness = jnp.sum(sides[..., :1] * solved, axis=-2)
+    carries = stiffness[..., 0] > 0.0
+    # With no lane at all the loaded body moves until every one is wrong.
+    approach = jnp.where(
+        carries,
+        (problem.load + jnp.sum(sides[..., 0] * solved[..., 1], axis=-1))
+        / jnp.where(carries, stiffness[..., 0], 1.0),
+        FAR * (1.0 + jnp.max(problem.gap, axis=-1)),
+    )
+    force = solved[..., 0] * approach[..., None] - solved[..., 1]
+    moved = jnp.squeeze(problem.compliance @ force[..., None], axis=-1)
+    slack = moved + problem.gap - problem.arm * approach[..., None]
+    return _Solution(force, approach, stiffness[..., 0], slack)
+
+
+def _each_solved(
+    matrix: Float[Array, "*b lane lane"], sides: Float[Array, "*b lane side"]
+) -> Float[Array, "*b lane side"]:
+    """Solutions for symmetric positive definite matrices, one after the other.
+
+    Several batched factorisations at once can wait for each other without end on a machine with two
+    cores (jaxlib 0.10); this is as fast.
+    """
+
+    def solved(one: tuple[Array, Array]) -> Array:
+        root = jnp.linalg.cholesky(one[0])
+        found: Array = jax.scipy.linalg.cho_solve((root, True), one[1])
+        return found
+
+    matrix = jnp.broadcast_to(matrix, (*sides.shape[:-2], *matrix.shape[-2:]))
+    flat = matrix.reshape(-1, *matrix.shape[-2:]), sides.reshape(-1, *sides.shape[-2:])
+    return jnp.reshape(jax.lax.map(solved, flat), sides.shape)
+
+
+def _residual(problem: _Problem, loaded: Bool[Array, "*b lane"], found: _Solution) -> Each:
+    free = problem.active & ~loaded
+    overlap = jnp.where(loaded, jnp.abs(found.slack), jnp.where(free, -found.slack, 0.0))
+    pull = jnp.where(loaded, -found.force, 0.0)
+    carried = jnp.sum(problem.arm * found.force, axis=-1)
+    violation = jnp.maximum(jnp.max(overlap, axis=-1), jnp.max(pull, axis=-1))
+    worst = jnp.maximum(violation, jnp.abs(carried - problem.load))
+    return jnp.where(jnp.any(loaded, axis=-1), jnp.maximum(worst, 0.0), jnp.inf)

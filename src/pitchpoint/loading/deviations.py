@@ -1,0 +1,119 @@
+"""Deviations of the teeth around both members of a strain-wave gear, and the kinematic error by them."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.loading.clearances import Shared, shared_load
+from pitchpoint.loading.yielding import Yielding
+
+__all__ = ["Deviations", "KinematicError", "added_gap", "kinematic_error", "places"]
+
+Each = Float[Array, "*b"]
+Lanes = Float[Array, "pair slice *b"]
+
+
+class Deviations(eqx.Module):
+    """How far the flanks of one member lie behind their places, as waves around it.
+
+    Attributes:
+        order: waves around the member; 1 is an eccentricity.
+        amplitude: along the normal of the flank [m].
+        phase: angle of each wave where the member's angle is zero [rad].
+    """
+
+    order: Float[Array, " wave"]
+    amplitude: Float[Array, " wave"]
+    phase: Float[Array, " wave"]
+
+    def at(self, angle: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Deviation at angles around the member [m]; positive where material is missing.
+
+        Args:
+            angle: of a tooth around the member [rad].
+        """
+        turn = self.order * angle[..., None] + self.phase
+        return jnp.sum(self.amplitude * jnp.cos(turn), axis=-1)
+
+
+class KinematicError(eqx.Module):
+    """Rotation of the loaded member at phases `*b` by deviations of the teeth.
+
+    Attributes:
+        elastic_mean: mean of the deviations over the pairs that share the load [rad].
+        under_load: what deviations add to the rotation under load, with the pairs that then carry
+            [rad].
+        wind_up: rotation under load without deviations; its changes with the phase are the part of
+            the transmission error that the mesh itself has [rad].
+    """
+
+    elastic_mean: Each
+    under_load: Each
+    wind_up: Each
+
+
+def places(
+    contacts: Contacts, phase: Each, teeth: Float[Array, "2"]
+) -> Float[Array, "member pair slice *b"]:
+    """Angles around flexspline and circular spline at which their teeth touch [rad].
+
+    Over one turn of the wave generator against the circular spline the phase moves by as many
+    periods as that has teeth.
+
+    Args:
+        contacts: of a strain-wave gear, `path` the angle from the long axis [turns]; the first half
+            of the pairs lies at one end of it, the second at the other.
+        phase: at which they were taken, counted on beyond one period [periods].
+        teeth: of flexspline and circular spline.
+    """
+    pairs = contacts.path.shape[0]
+    second = (jnp.arange(pairs) >= pairs // 2).reshape(-1, *(1 for _ in contacts.path.shape[1:]))
+    since_start = 2.0 * jnp.pi * (contacts.path - phase / teeth[0])
+    zone = jnp.pi * second
+    return jnp.stack([since_start + zone, since_start * (teeth[0] / teeth[1]) + zone])
+
+
+def added_gap(
+    deviations: tuple[Deviations, Deviations], place: Float[Array, "member pair slice *b"]
+) -> Lanes:
+    """What the deviations of both members add to the separation of their flanks [m].
+
+    Args:
+        deviations: of flexspline and circular spline.
+        place: angles around them, see `places` [rad].
+    """
+    return deviations[0].at(place[0]) + deviations[1].at(place[1])
+
+
+def kinematic_error(
+    contacts: Contacts, yields: Yielding, loaded: Float[Array, " dof"], added: Lanes
+) -> KinematicError:
+    """Rotation of the loaded member by deviations: their elastic mean, and under load.
+
+    The elastic mean sum q e/a, with shares q of the load, added gaps e and arms a, holds while the
+    deviations are small against what the teeth yield. Under load the equilibrium with the added
+    gaps is compared with that without them: pairs may leave it or join it.
+
+    Args:
+        contacts: of the mesh.
+        yields: how the pairs yield, and the load of the loaded member.
+        loaded: one for that member.
+        added: separation of the flanks by deviations [m].
+
+    Returns:
+        NaN where no equilibrium was found.
+    """
+    compliance = yields.compliance(contacts)
+    arm = jnp.abs(along(contacts.normal, loaded))
+
+    def under(gap: Lanes) -> Shared:
+        given = {"gap": gap, "arm": arm, "active": contacts.active}
+        return shared_load(compliance, **given, load=yields.load)
+
+    plain, deviating = under(contacts.gap), under(contacts.gap + added)
+    return KinematicError(
+        elastic_mean=total(plain.share * added) / total(plain.share * arm),
+        under_load=deviating.approach - plain.approach,
+        wind_up=plain.approach,
+    )
