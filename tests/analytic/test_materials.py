@@ -179,6 +179,32 @@ def test_constant_pressure_viscosity_does_not_change_with_temperature():
     np.testing.assert_allclose(oil.pressure_viscosity(jnp.array([300.0, 350.0])), 22e-9, rtol=1e-14)
 
 
+def test_oil_of_a_base_has_its_viscosities_and_the_values_of_the_base():
+    oil = lubricants.of_base("mine", "pao", nu_1=60e-6, nu_2=9e-6)
+    built, like = oil.build(), lubricants.find("pao-vg-220").build()
+    found = built.kinematic_viscosity(jnp.array([313.15, 373.15]))
+    np.testing.assert_allclose(found, [60e-6, 9e-6], rtol=1e-12)
+    assert float(built.density(300.0)) == float(like.density(300.0))
+    assert float(built.gold_s) == float(like.gold_s)
+    assert oil.note == ""
+    with pytest.raises(InputError, match='"PAO" is not a base oil'):
+        lubricants.of_base("mine", "PAO", nu_1=60e-6, nu_2=9e-6)
+    with pytest.raises(InputError, match=r"mine\.nu_1: must be above nu_2"):
+        lubricants.of_base("mine", "pao", nu_1=6e-6, nu_2=9e-6)
+
+
+def test_grease_is_its_base_oil_in_a_computation():
+    oil = lubricants.of_base("joint grease", "mineral", nu_1=60e-6, nu_2=8e-6)
+    grease = oil.thickened(thickener="lithium soap", consistency="2")
+    assert jax.tree.all(jax.tree.map(lambda a, b: a == b, grease.build(), oil.build()))
+    assert (grease.thickener, grease.consistency) == ("lithium soap", "2")
+    assert grease.data() == oil.data()
+    assert "joint grease is taken as its base oil" in grease.note
+    thinner = grease.with_values(nu_2=7e-6)
+    assert isinstance(thinner, lubricants.GreaseRecord)
+    assert float(thinner.build().nu_2) == 7e-6
+
+
 def test_range_of_temperature():
     oil = lubricants.find("fva-3").build()
     inside = oil.in_range(jnp.array([273.0, 273.15, 393.15, 393.3]))

@@ -1,7 +1,7 @@
 """States over a grid of positions and operating points, fast and in bounded memory."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import equinox as eqx
@@ -100,7 +100,7 @@ def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
     design, operation = inputs
     oil, surfaces = jax.tree.map(take, (design.lubricant, design.roughness))
     return (
-        Design(design.mesh, design.solids, oil, surfaces),
+        replace(design, lubricant=oil, roughness=surfaces),
         jax.tree.map(lambda leaf: take(leaf)[:, None], operation),
     )
 

@@ -7,13 +7,14 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
-from pitchpoint.loading.balance import Balance, balance
-from pitchpoint.loading.mesh_stiffness import slice_stiffness
+from pitchpoint.loading.balance import Balance, balance, tooth_load
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.loading.yielding import yielding
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import RollingResistance
@@ -26,21 +27,26 @@ __all__ = ["Cycle", "Design", "Models", "Operation", "State", "cycle", "cycle_no
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 
+ROUNDING = 1e-13
+"""Output over input power up to which no power is transmitted: an idle drive has rounding alone."""
+
 
 class Design(eqx.Module):
-    """What is built once: the mesh, its materials, oil and surfaces.
+    """What is built once: the mesh, its materials, oil and surfaces, and what brakes it beside the teeth.
 
     Attributes:
         mesh: any gear family.
         solids: material of each member.
         lubricant: the oil.
         roughness: of both flanks.
+        drag: places beside the teeth where power is lost; none by default.
     """
 
     mesh: Mesh
     solids: tuple[Solid, Solid]
     lubricant: Lubricant
     roughness: Roughness
+    drag: tuple[Drag, ...] = ()
 
     @property
     def modulus(self) -> Float[Array, ""]:
@@ -106,10 +112,10 @@ class Models(eqx.Module):
             contacts: of the mesh.
             load: that the driven coordinate carries [N m or N].
         """
-        mesh, stiffness = design.mesh, None
+        mesh, yields = design.mesh, None
         if self.sharing.by_stiffness:
-            stiffness = slice_stiffness(mesh, contacts, design.solids, self.compliance, load)
-        return self.sharing.function(contacts, mesh.contact_ratio, stiffness)
+            yields = yielding(mesh, contacts, design.solids, self.compliance, load)
+        return self.sharing.function(contacts, mesh, yields)
 
 
 class State(eqx.Module):
@@ -120,6 +126,7 @@ class State(eqx.Module):
         conditions: at each of them.
         balance: forces and torques.
         sliding_loss, rolling_loss: power lost at each slice [W].
+        drag_loss: power lost beside the teeth [W].
         input_torque: torque of the driver in its direction of motion [N m].
         output_power: power taken from all coordinates but the driver [W].
     """
@@ -129,13 +136,14 @@ class State(eqx.Module):
     balance: Balance
     sliding_loss: Lanes
     rolling_loss: Lanes
+    drag_loss: Each
     input_torque: Each
     output_power: Each
 
     @property
     def loss(self) -> Each:
-        """Power lost in all contacts [W]."""
-        return total(self.sliding_loss + self.rolling_loss)
+        """Power lost in all contacts and beside the teeth [W]."""
+        return total(self.sliding_loss + self.rolling_loss) + self.drag_loss
 
     @property
     def input_power(self) -> Each:
@@ -145,14 +153,14 @@ class State(eqx.Module):
     @property
     def efficiency(self) -> Each:
         """Output over input power; NaN where no power is transmitted."""
-        transmits = self.output_power > 0.0
+        transmits = self.output_power > ROUNDING * self.input_power
         return jnp.where(
             transmits, self.output_power / jnp.where(transmits, self.input_power, 1.0), jnp.nan
         )
 
     @property
     def contact_force_ratio(self) -> Each:
-        """Contact force over that without friction; one without load (Tian et al. 2024, eq. 18)."""
+        """Contact force over that without friction on teeth; one without load (Tian et al. 2024, eq. 18)."""
         loaded = self.balance.frictionless > 0.0
         return jnp.where(
             loaded, self.balance.force / jnp.where(loaded, self.balance.frictionless, 1.0), 1.0
@@ -175,15 +183,27 @@ def state(
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
     phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
     contacts = mesh.contacts(phase)
+    oil, temperature = design.lubricant, operation.temperature
+    drag = None
+    if design.drag:
+        drag = resistance(
+            design.drag,
+            mesh,
+            contacts,
+            speed=operation.speed,
+            kinematic_viscosity=oil.kinematic_viscosity(temperature),
+        )
+    carried = tooth_load(contacts, loaded=mesh.loaded, load=operation.load, drag=drag)
+    # Losses beside the teeth hardly move the shares; leaving them out, one sharing of each load
+    # serves all speeds and temperatures.
     share = models.share(design, contacts, operation.load)
     arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
-    oil, temperature = design.lubricant, operation.temperature
 
     def conditions(load: Lanes) -> Conditions:
         return Conditions(
             contacts=contacts,
             load=load,
-            nominal_load=operation.load / arm,
+            nominal_load=carried / arm,
             motion=mesh.motion,
             speed=operation.speed,
             modulus=design.modulus,
@@ -210,6 +230,7 @@ def state(
         load=operation.load,
         friction=friction,
         rolling=None if models.rolling.name == "none" else rolling,
+        drag=drag,
         unrolled=unrolled,
     )
     at_contact = conditions(balanced.load)
@@ -221,6 +242,7 @@ def state(
         balance=balanced,
         sliding_loss=balanced.load * balanced.friction * at_contact.sliding,
         rolling_loss=2.0 * balanced.rolling * at_contact.entrainment,
+        drag_loss=along(balanced.drag, mesh.motion) * operation.speed,
         input_torque=along(balanced.torque, driver),
         output_power=-along(balanced.torque, others) * operation.speed,
     )
@@ -285,10 +307,11 @@ class Cycle(eqx.Module):
     @property
     def mean_efficiency(self) -> Each:
         """Energy out over energy in within one period; NaN where no power is transmitted."""
-        power_out = self.mean(self.state.output_power)
-        transmits = power_out > 0.0
-        power_in = jnp.where(transmits, self.mean(self.state.input_power), 1.0)
-        return jnp.where(transmits, power_out / power_in, jnp.nan)
+        power_out, power_in = (
+            self.mean(power) for power in (self.state.output_power, self.state.input_power)
+        )
+        transmits = power_out > ROUNDING * power_in
+        return jnp.where(transmits, power_out / jnp.where(transmits, power_in, 1.0), jnp.nan)
 
     @property
     def ripple(self) -> Each:

@@ -29,7 +29,7 @@ def loss_factor(design: Design, models: Models) -> Array:
     mesh = design.mesh
     phase, weight = cycle_nodes(mesh, models.sharing, 6)
     contacts = mesh.contacts(phase)
-    share = equal(contacts, mesh.contact_ratio)
+    share = equal(contacts, mesh)
     sliding = jnp.abs(along(contacts.slip_arm, mesh.motion))
     arm = jnp.abs(along(contacts.normal, mesh.driver))
     return total(share * sliding / arm) @ weight
@@ -49,6 +49,7 @@ def summary(design: Design, operation: Operation, models: Models) -> dict[str, A
         "loss_factor": loss_factor(design, models),
         "mean_loss": result.mean_loss,
         "mean_loss_path": result.path_mean(state.loss),
+        "mean_drag_loss": result.mean(state.drag_loss),
         "mean_efficiency": result.mean_efficiency,
         "mean_efficiency_path": result.path_mean(state.efficiency),
         "min_efficiency": low,

@@ -1,4 +1,4 @@
-"""Lubricating oils: density, viscosity and pressure-viscosity coefficient against temperature."""
+"""Lubricating oils and greases: density, viscosity and pressure-viscosity coefficient against temperature."""
 
 from __future__ import annotations
 
@@ -17,7 +17,16 @@ from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_d
 from pitchpoint.materials.pressure_viscosity import gold_2001
 from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
 
-__all__ = ["Lubricant", "LubricantRecord", "base_oils", "catalogue", "constant_alpha", "find"]
+__all__ = [
+    "GreaseRecord",
+    "Lubricant",
+    "LubricantRecord",
+    "base_oils",
+    "catalogue",
+    "constant_alpha",
+    "find",
+    "of_base",
+]
 
 ZERO_CELSIUS = 273.15
 DENSITY_TEMPERATURE = ZERO_CELSIUS + 15.0
@@ -26,6 +35,8 @@ DENSITY_TEMPERATURE = ZERO_CELSIUS + 15.0
 
 class Lubricant(eqx.Module):
     """An oil, ready for a computation: array leaves only, so another oil does not recompile.
+
+    For a grease it is the base oil.
 
     Args:
         nu_1: kinematic viscosity at T_1, shape (...) [m2/s].
@@ -166,6 +177,11 @@ class LubricantRecord:
         check_positive(self.name, [item for item in self.data().items() if item[0] not in free])
         _check_order(self)
 
+    @property
+    def note(self) -> str:
+        """What is assumed of it, in a sentence; empty for an oil."""
+        return ""
+
     def data(self) -> dict[str, Datum]:
         """Return the values by name, each with its status and source."""
         every = {field.name: getattr(self, field.name) for field in fields(self)}
@@ -185,6 +201,43 @@ class LubricantRecord:
             raise InputError(f'"{key}" is not a property of an oil', allowed=self.data())
         given: dict[str, Any] = {key: Datum(value=value) for key, value in values.items()}
         return replace(self, **given)
+
+    def thickened(self, *, thickener: str = "", consistency: str = "") -> GreaseRecord:
+        """Return the grease that has this oil as its base oil.
+
+        Args:
+            thickener: in words.
+            consistency: NLGI number, as the maker writes it.
+        """
+        return GreaseRecord(
+            name=self.name,
+            title=self.title,
+            base=self.base,
+            thickener=thickener,
+            consistency=consistency,
+            **self.data(),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class GreaseRecord(LubricantRecord):
+    """A grease; its values are those of its base oil.
+
+    Args:
+        thickener: in words; changes nothing in a computation.
+        consistency: NLGI number, as the maker writes it; changes nothing in a computation.
+    """
+
+    thickener: str = ""
+    consistency: str = ""
+
+    @property
+    def note(self) -> str:
+        """What is assumed of a grease."""
+        return (
+            f"{self.name} is taken as its base oil: film, friction and bearing loss follow the "
+            "viscosity of that oil, contacts are fully supplied, and the thickener does nothing."
+        )
 
 
 def _check_order(record: LubricantRecord) -> None:
@@ -226,7 +279,35 @@ def _record(name: str, entry: dict[str, Any], bases: dict[str, Any]) -> Lubrican
     base = bases[entry["base"]]
     values = {key: read_datum(entry[column], scale=k) for key, (column, k) in _SCALES.items()}
     plain = {key: read_datum(entry.get(col, base[col])) for key, col in _PLAIN.items()}
-    return LubricantRecord(name=name, title=entry["title"], base=entry["base"], **values, **plain)
+    oil = LubricantRecord(name=name, title=entry["title"], base=entry["base"], **values, **plain)
+    words = {key: str(entry[key]) for key in ("thickener", "consistency") if key in entry}
+    return oil.thickened(**words) if words else oil
+
+
+def of_base(name: str, base: str, *, nu_1: float, nu_2: float, title: str = "") -> LubricantRecord:
+    """Return an oil from its viscosities alone; the rest is usual for its class of base oil.
+
+    Args:
+        name: a name of one's own.
+        base: class of base oil, one of `base_oils()`.
+        nu_1: kinematic viscosity at 40 degC [m2/s].
+        nu_2: kinematic viscosity at 100 degC [m2/s].
+        title: what it is, in words.
+
+    Raises:
+        InputError: an unknown base oil, or an impossible viscosity.
+
+    Example:
+        >>> oil = of_base("base oil", "pao", nu_1=60e-6, nu_2=9e-6)
+        >>> oil.thickened(thickener="lithium soap", consistency="2").consistency
+        '2'
+    """
+    if base not in base_oils():
+        raise unknown_name(base, base_oils(), what="a base oil")
+    viscosities = {"nu_1": Datum(value=nu_1), "nu_2": Datum(value=nu_2)}
+    return LubricantRecord(
+        name=name, title=title or name, base=base, **viscosities, **base_oils()[base]
+    )
 
 
 def base_oils() -> dict[str, dict[str, Datum]]:

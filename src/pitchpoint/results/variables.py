@@ -45,6 +45,14 @@ def _power(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "W", "W", "power")
 
 
+def _angle(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "rad", "deg", "angle")
+
+
+def _speed(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "m/s", "m/s", "velocity")
+
+
 VARIABLES: dict[str, Variable] = {
     "phase": Variable("phase of the mesh cycle", "φ", "1"),
     "weight": Variable("weight of the node in a mean over one period", "w", "1"),
@@ -67,6 +75,7 @@ VARIABLES: dict[str, Variable] = {
     "lambda_ratio": Variable("film thickness over composite Rq", "Λ", "1"),
     "sliding_loss": _power("sliding loss of the pair", "P_s"),
     "rolling_loss": _power("rolling loss of the pair", "P_r"),
+    "drag_loss": _power("power loss beside the teeth", "P_drag"),
     "entered": Variable("base pitches since the pair entered", "ε_0", "1"),
     "line_length": _length("length of the contact line", "l_c"),
     "pair_stiffness": _stiffness("stiffness of the pair along the line of action", "k_i"),
@@ -92,6 +101,62 @@ VARIABLES: dict[str, Variable] = {
     "printed_equivalent_mass": Variable(
         "equivalent mass, formula as printed", "m_e", "kg", "g", "mass"
     ),
+    "largest_tangential_load": Variable(
+        "largest tangential load per face width and length of the ring",
+        "q_t",
+        "Pa",
+        "MPa",
+        "pressure",
+    ),
+    "largest_tooth_force": Variable("largest tooth force", "F_0", "N", "N", "force"),
+    "one_zone_tooth_force": Variable(
+        "largest tooth force if one zone carried all", "F_0", "N", "N", "force"
+    ),
+    "printed_largest_tooth_force": Variable(
+        "largest tooth force, formula as printed", "F_0", "N", "N", "force"
+    ),
+    "printed_least_tooth_force": Variable(
+        "least tooth force, formula as printed", "F_min", "N", "N", "force"
+    ),
+    "recovered_torque": _torque("torque that the tooth forces carry", "T"),
+    "printed_recovered_torque": _torque(
+        "torque that the tooth forces carry, formula as printed", "T"
+    ),
+    "tangent_angle": _angle("flank angle of the common tangent", "θ_B"),
+    "tip_land": _length("thickness of the flexspline's tooth at its tip", "s_a"),
+    "flank_length": _length("arc length of the flexspline's flank", "s"),
+    "printed_sliding_distance": _length("sliding distance at the tip, formula as printed", "s_k"),
+    "printed_closure_residual": _length("gap of the common tangent, formula as printed", "Δy"),
+    "tooth_offset": _angle("turn of the outermost tooth by the oval ring", "u"),
+    "largest_tooth_offset": _angle("largest turn of a tooth by the oval ring", "u"),
+    "involute_tip_radius": _length("tip radius of the flexspline", "r_a"),
+    "involute_root_radius": _length("root radius of the flexspline", "r_f"),
+    "involute_pitch_thickness": _length("tooth thickness on the reference circle", "s"),
+    "tooth_ratio": Variable("teeth of the flexspline over tooth difference", "i", "1"),
+    "base_radius_flexspline": _length("base radius of the flexspline", "r_b1"),
+    "base_radius_circular_spline": _length("base radius of the circular spline", "r_b2"),
+    "printed_radius_root": Variable(
+        "relative radius on the long axis, formula as printed", "R", "m", "m", "length"
+    ),
+    "printed_radius_10": Variable(
+        "relative radius at 10 degrees, formula as printed", "R", "m", "m", "length"
+    ),
+    "printed_radius_end": Variable(
+        "relative radius at the end of the zone, formula as printed", "R", "m", "m", "length"
+    ),
+    "conformal_angle": _angle("angle at which the printed radii of curvature agree", "φ"),
+    "least_opposed_speed": _speed("least mesh point speed, tangential parts opposed", "u"),
+    "largest_opposed_speed": _speed("largest mesh point speed, tangential parts opposed", "u"),
+    "least_added_speed": _speed("least mesh point speed, tangential parts added", "u"),
+    "largest_added_speed": _speed("largest mesh point speed, tangential parts added", "u"),
+    "viscosity": Variable(
+        "viscosity without pressure by Roelands' law", "η", "Pa s", "mPa s", "dynamic viscosity"
+    ),
+    "printed_viscosity": Variable(
+        "viscosity without pressure, formula as printed", "η", "Pa s", "mPa s", "dynamic viscosity"
+    ),
+    "effective_modulus": Variable("equivalent modulus", "E'", "Pa", "GPa", "pressure"),
+    "composite_roughness": _deviation("composite Rq", "σ"),
     "mesh_frequency": Variable("mesh frequency", "f_z", "1/s", "Hz", "frequency"),
     "equivalent_mass": Variable("equivalent mass", "m_e", "kg", "g", "mass"),
     "largest_multiplier": Variable("largest Floquet multiplier", "|Λ|", "1"),
@@ -126,8 +191,31 @@ VARIABLES: dict[str, Variable] = {
     "undercut_limit_2": Variable(
         "smallest profile shift of gear 2 without undercut", "x_min2", "1"
     ),
+    "passing_angle": _angle("angle from the long axis", "p"),
+    "clearance_angle": _angle("angle from the long axis", "p"),
+    "rim_thickness": _length("thickness of the flexspline's rim", "t"),
+    "tip_height": _length("radius at which the circular spline's teeth end", "r_a2"),
+    "clearance": _deviation("clearance along the normal", "g"),
+    "wind_up": Variable("wind-up of the loaded member", "Δθ", "rad", "arcmin", "angle"),
+    "wind_up_range": Variable(
+        "change of the wind-up with the phase", "Δθ range", "rad", "arcmin", "angle"
+    ),
+    "torsional_stiffness": Variable(
+        "torsional stiffness", "K", "N m/rad", "kN m/rad", "torsional stiffness"
+    ),
+    "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
+    "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
+    "tooth_angle": _angle("angle of the tooth from its end of the long axis", "p"),
+    "tooth_force": Variable("normal force of the tooth", "F", "N", "N", "force"),
+    "loading_torque": _torque("torque while the wind-up grows", "T"),
+    "unloading_torque": _torque("torque while the wind-up shrinks", "T"),
+    "speed_ratio": Variable("driver speed over that of the loaded member", "i", "1"),
+    "deflection": _length("deflection of the flexspline on the long axis", "w_0"),
+    "neutral_radius": _length("radius of the flexspline's neutral line", "r_m"),
+    "engagement_depth": _length("depth by which the teeth reach into each other", "h_e"),
     "loss_factor": Variable("loss factor with equal sharing", "H_V", "1"),
     "mean_loss": _power("mean power loss", "P_loss"),
+    "mean_drag_loss": _power("mean power loss beside the teeth", "P_drag mean"),
     "mean_efficiency": _percent("mean efficiency", "η mean"),
     "min_efficiency": _percent("smallest efficiency", "η min"),
     "max_efficiency": _percent("largest efficiency", "η max"),
@@ -136,6 +224,9 @@ VARIABLES: dict[str, Variable] = {
     "min_input_torque": _torque("smallest input torque", "T_in min"),
     "max_input_torque": _torque("largest input torque", "T_in max"),
     "torque_ripple": _torque("ripple of the input torque", "ΔT_in"),
+    "no_load_torque": _torque("mean input torque without load", "T_0"),
+    "starting_torque": _torque("input torque that starts the drive", "T_start"),
+    "back_driving_torque": _torque("output torque that starts the drive backwards", "T_back"),
     "mean_friction": Variable("mean friction coefficient", "μ mean", "1"),
     "loss_factor_efficiency": _percent("efficiency by loss factor, 1 - μ H_V", "1 - μ H_V"),
     "iterations": Variable("iterations of the torque balance", "", "1"),

@@ -1,0 +1,154 @@
+"""Losses beside the teeth: bearings, seals and lubricant that brake one body against another."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Contacts, total
+from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, BearingLoss
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.materials._leaves import as_array
+
+__all__ = ["Drag", "at_rest", "resistance"]
+
+Lanes = Float[Array, "pair slice *b"]
+Each = Float[Array, "*b"]
+
+ROUNDING = 1e-13
+"""Relative rate, over the rates of the bodies, up to which two bodies turn together."""
+
+
+class Drag(eqx.Module):
+    """One place beside the teeth where a body is braked against another or against the housing.
+
+    The torques are those between the two bodies, whatever turns faster. They add up.
+
+    Attributes:
+        between: difference of rotations over which it acts, as factors of the coordinates: (1, -1, 0)
+            is body 0 against body 1, (1, 0, 0) body 0 against the housing.
+        bearing: model of a rolling bearing there; static.
+        mean_diameter: of the bearing [m].
+        factors: of the bearing model by name; for Palmgren's `f0` and `f1`.
+        preload: load on the bearing without load on the teeth, as from a wave generator that keeps a
+            ring deformed [N].
+        support: row of `Mesh.support` that loads it by the teeth, or None; static.
+        seal_torque: of sliding seals, the same at every speed [N m].
+        churning_torque: of the lubricant that is displaced, at `churning_speed` [N m].
+        churning_speed: relative speed at which that is its torque [rad/s].
+        churning_exponent: of the speed in it, positive.
+        breakaway_torque: that holds the bodies at rest, above what the others give there [N m]; acts
+            in starting torques alone.
+        resting: True if the bodies are about to move: bearing at speed zero, breakaway torque, no
+            churning; static.
+    """
+
+    between: Float[Array, " dof"] = eqx.field(converter=as_array)
+    bearing: BearingLoss = eqx.field(static=True, default=BEARING_LOSS["none"])
+    mean_diameter: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    factors: Mapping[str, Float[Array, ""]] = eqx.field(
+        converter=lambda values: {name: as_array(value) for name, value in values.items()},
+        default_factory=dict,
+    )
+    preload: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    support: int | None = eqx.field(static=True, default=None)
+    seal_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    churning_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    churning_speed: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
+    churning_exponent: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
+    breakaway_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    resting: bool = eqx.field(static=True, default=False)
+
+    def __check_init__(self) -> None:
+        """Refuse factors that the bearing model does not have, and demand those that it has."""
+        if set(self.factors) != set(self.bearing.factors):
+            wanted = ", ".join(self.bearing.factors) or "no factors"
+            raise InputError(f"'{self.bearing.name}' asks for {wanted}, got {[*self.factors]}")
+
+    def torque(self, *, speed: Each, load: Each, kinematic_viscosity: Each) -> Each:
+        """Torque between the bodies [N m], not negative.
+
+        Args:
+            speed: relative one, not negative [rad/s].
+            load: on the bearing, preload included [N].
+            kinematic_viscosity: of the lubricant [m2/s].
+        """
+        bearing = self.bearing.function(
+            speed=0.0 * speed if self.resting else speed,
+            load=load,
+            kinematic_viscosity=kinematic_viscosity,
+            mean_diameter=self.mean_diameter,
+            **self.factors,
+        )
+        other = self.breakaway_torque if self.resting else self._churning(speed)
+        return bearing + self.seal_torque + other
+
+    def _churning(self, speed: Each) -> Each:
+        moves = speed > 0.0
+        relative = jnp.where(moves, speed / self.churning_speed, 1.0)
+        power = jnp.exp(self.churning_exponent * jnp.log(relative))
+        return jnp.where(moves, self.churning_torque * power, 0.0)
+
+
+def at_rest(drags: Sequence[Drag]) -> tuple[Drag, ...]:
+    """The same places with bodies about to move, as for a starting torque."""
+    return tuple(replace(drag, resting=True) for drag in drags)
+
+
+def resistance(
+    drags: Sequence[Drag],
+    mesh: Mesh,
+    contacts: Contacts,
+    *,
+    speed: Each,
+    kinematic_viscosity: Each,
+) -> Callable[[Lanes], Float[Array, "dof *b"]]:
+    """External torques that overcome the losses beside the teeth, from the loads on the teeth.
+
+    Args:
+        drags: places where they arise, at least one.
+        mesh: any family.
+        contacts: of the mesh.
+        speed: of the driver [rad/s].
+        kinematic_viscosity: of the lubricant [m2/s].
+
+    Returns:
+        Function of the normal force of each slice [N] that gives the torque on every coordinate [N m];
+        its power at the rates of the mesh is the power lost, never negative.
+
+    Raises:
+        InputError: a place names a row of `Mesh.support` that the mesh does not have.
+    """
+    support = mesh.support(contacts)
+    rows = 0 if support is None else support.shape[0]
+    for drag in drags:
+        if drag.support is not None and drag.support >= rows:
+            raise InputError(f"this mesh loads {rows} bearings, there is no row {drag.support}")
+
+    def pressed(drag: Drag, load: Lanes) -> Each:
+        if support is None or drag.support is None:
+            return drag.preload
+        return drag.preload + total(support[drag.support] * load)
+
+    def torques(load: Lanes) -> Float[Array, "dof *b"]:
+        every = [
+            _on_bodies(drag, mesh.motion, speed, pressed(drag, load), kinematic_viscosity)
+            for drag in drags
+        ]
+        return jnp.stack([sum(one[k] for one in every) for k in range(mesh.motion.shape[0])])
+
+    return torques
+
+
+def _on_bodies(
+    drag: Drag, motion: Float[Array, " dof"], speed: Each, load: Each, viscosity: Each
+) -> list[Each]:
+    """External torque on each coordinate that overcomes the drag at one place."""
+    rate = drag.between @ motion
+    turns = jnp.abs(rate) > ROUNDING * (jnp.abs(drag.between) @ jnp.abs(motion))
+    torque = drag.torque(speed=jnp.abs(rate) * speed, load=load, kinematic_viscosity=viscosity)
+    sense = jnp.where(turns, jnp.sign(rate), 0.0)
+    return [factor * sense * torque for factor in drag.between]

@@ -1,0 +1,54 @@
+"""Torque that a drive takes to run without load, and to start from rest."""
+
+from dataclasses import replace
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.efficiency.drag import at_rest
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+
+__all__ = ["no_load_torque", "starting_torque"]
+
+Each = Float[Array, "*b"]
+
+
+@eqx.filter_jit
+def no_load_torque(design: Design, operation: Operation, models: Models) -> Each:
+    """Mean torque of the driver without load on the driven coordinate [N m].
+
+    The teeth carry the drag of the driven coordinate and lose power too.
+
+    Args:
+        design: mesh, materials, lubricant, surfaces, and the drag; without drag the torque is zero.
+        operation: operating points [*b]; their load is left out.
+        models: laws.
+
+    Returns:
+        Torque, shape [*b]; NaN where friction locks the mesh.
+    """
+    idle = replace(operation, load=jnp.zeros_like(operation.load))
+    return cycle(design, idle, models).mean_input_torque
+
+
+@eqx.filter_jit
+def starting_torque(design: Design, operation: Operation, models: Models) -> Each:
+    """Torque at which the driver begins to turn from rest, at the worst phase of the mesh [N m].
+
+    Beside the teeth act the breakaway and seal torques and the bearings at speed zero, where
+    Palmgren's torque of the lubricant keeps its lower value; nothing churns. Laws of tooth friction do
+    not hold at rest: the law is taken at the speed of the operating point, a creeping one.
+
+    Args:
+        design: mesh, materials, lubricant, surfaces, drag. For back-driving the same drive with
+            its mesh driven from the output: the loaded coordinate is then the input, whose breakaway
+            torque the teeth carry.
+        operation: operating points [*b]; with load zero for the starting torque of a catalogue.
+        models: laws.
+
+    Returns:
+        Torque, shape [*b]; NaN where friction holds the drive whatever the torque.
+    """
+    found = cycle(replace(design, drag=at_rest(design.drag)), operation, models)
+    return found.extremes(found.state.input_torque)[1]
