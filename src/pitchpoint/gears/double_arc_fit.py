@@ -210,7 +210,7 @@ def _objectives(
     radius = teeth[0] / 2.0 - dedendum - rim / 2.0
     deflection = values[-1] * (teeth[1] - teeth[0]) / 2.0
     line = NeutralLine(radius, deflection, jnp.eye(TERMS)[0])
-    motion = ToothMotion(safe, line, 1.0 - teeth[0] / teeth[1])
+    motion = ToothMotion(safe.prepared(), line, 1.0 - teeth[0] / teeth[1])
     groove = swept(motion, radius + deflection + rim / 2.0 + clearance, rounding)
     angle = jnp.linspace(0.0, 1.0, _STEPS) * zone
     found = nearest_points(motion, groove, angle)

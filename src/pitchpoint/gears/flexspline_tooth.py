@@ -8,7 +8,7 @@ from jaxtyping import Array, Complex, Float
 from pitchpoint._jax import jnp
 from pitchpoint.gears.involute import involute
 
-__all__ = ["DoubleArcFlank", "Flank", "InvoluteFlank"]
+__all__ = ["ArcChain", "DoubleArcFlank", "Flank", "InvoluteFlank"]
 
 Along = Float[Array, "*b"]
 Place = Complex[Array, "*b"]
@@ -43,6 +43,10 @@ class Flank(eqx.Module):
     def curvature(self, along: Along) -> Along:
         """Curvature, positive where the flank is convex [1/m]."""
 
+    def prepared(self) -> "Flank":
+        """The same curve in the form that is evaluated with the least work."""
+        return self
+
     @property
     def length(self) -> Float[Array, ""]:
         """Arc length from root to tip [m]."""
@@ -61,12 +65,51 @@ class Flank(eqx.Module):
         return jnp.real(self.place(jnp.zeros(())))
 
 
-def _rounding(
-    along: Along, start: Float[Array, ""], centre: Place, angle: Float[Array, ""], radius: Along
-) -> tuple[Place, Along]:
-    """Place and angle on the arc that rounds the tip, which begins at arc length `start`."""
-    turned = angle + (along - start) / radius
-    return centre + radius * 1j * jnp.exp(-1j * turned), turned
+class ArcChain(Flank):
+    """Circular arcs and straight lines that go over into each other without a bend.
+
+    Attributes:
+        starts: arc lengths at which the pieces begin [m].
+        places: where they begin.
+        angles: flank angles there [rad].
+        curvatures: of the pieces, zero for a line [1/m].
+        pieces: their arc lengths [m].
+        tip_rounding: radius of the last one [m].
+    """
+
+    starts: Float[Array, " piece"]
+    places: Complex[Array, " piece"]
+    angles: Float[Array, " piece"]
+    curvatures: Float[Array, " piece"]
+    pieces: Float[Array, " piece"]
+    tip_rounding: Float[Array, ""]
+
+    @property
+    def lengths(self) -> tuple[Float[Array, ""], ...]:
+        """Arc lengths of the pieces [m]."""
+        return tuple(self.pieces)
+
+    def _piece(self, along: Along) -> tuple[Array, Along]:
+        """Piece at an arc length, and the way from its beginning [m]."""
+        along = jnp.asarray(along)
+        piece = sum((along > start).astype(int) for start in self.starts[1:])
+        return piece, along - self.starts[piece]
+
+    def place(self, along: Along) -> Place:
+        """Place at an arc length from the root [m]."""
+        piece, way = self._piece(along)
+        half = self.curvatures[piece] * way / 2.0
+        chord = way * jnp.sinc(half / jnp.pi)
+        return self.places[piece] + chord * jnp.exp(-1j * (self.angles[piece] + half))
+
+    def angle(self, along: Along) -> Along:
+        """Flank angle [rad]."""
+        piece, way = self._piece(along)
+        return self.angles[piece] + self.curvatures[piece] * way
+
+    def curvature(self, along: Along) -> Along:
+        """Curvature, positive where the flank is convex [1/m]."""
+        return self.curvatures[self._piece(along)[0]]
 
 
 class DoubleArcFlank(Flank):
@@ -156,38 +199,49 @@ class DoubleArcFlank(Flank):
             self.tip_rounding * (STEEPEST - self.rounding_angle),
         )
 
-    def angle(self, along: Along) -> Along:
-        """Flank angle [rad]."""
-        concave, straight, convex, _ = self.lengths
-        rise = jnp.maximum(along - concave - straight, 0.0)
-        over = jnp.maximum(along - concave - straight - convex, 0.0)
-        return (
-            self.tangent_angle
-            + jnp.maximum(concave - along, 0.0) / self.concave_radius
-            + (rise - over) / self.convex_radius
-            + over / self.tip_rounding
+    def prepared(self) -> ArcChain:
+        """The arcs and the tangent as a chain."""
+        lengths = jnp.stack(self.lengths)
+        starts = jnp.concatenate([jnp.zeros(1), jnp.cumsum(lengths)[:-1]])
+        tangent, edge = self.tangent_angle, self.rounding_angle
+
+        def on(centre: Place, radius: Along, angle: Along) -> Place:
+            return centre + radius * 1j * jnp.exp(-1j * angle)
+
+        places = [
+            on(self.concave_centre, -self.concave_radius, self.root_angle),
+            on(self.concave_centre, -self.concave_radius, tangent),
+            on(self.convex_centre, self.convex_radius, tangent),
+            on(self.convex_centre, self.convex_radius, edge),
+        ]
+        none = jnp.zeros_like(self.convex_radius)
+        return ArcChain(
+            starts=starts,
+            places=jnp.stack(places),
+            angles=jnp.stack([self.root_angle, tangent, tangent, edge]),
+            curvatures=jnp.stack(
+                [
+                    -1.0 / self.concave_radius,
+                    none,
+                    1.0 / self.convex_radius,
+                    1.0 / self.tip_rounding,
+                ]
+            ),
+            pieces=lengths,
+            tip_rounding=self.tip_rounding,
         )
 
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
-        concave, straight, convex, _ = self.lengths
-        angle = self.angle(along)
-        normal = 1j * jnp.exp(-1j * angle)
-        start = self.concave_centre - self.concave_radius * 1j * jnp.exp(-1j * self.tangent_angle)
-        line = start + (along - concave) * jnp.exp(-1j * self.tangent_angle)
-        turned = 1j * jnp.exp(-1j * self.rounding_angle)
-        centre = self.convex_centre + (self.convex_radius - self.tip_rounding) * turned
-        found = jnp.where(along < concave, self.concave_centre - self.concave_radius * normal, line)
-        beyond = concave + straight
-        found = jnp.where(along > beyond, self.convex_centre + self.convex_radius * normal, found)
-        return jnp.where(along > beyond + convex, centre + self.tip_rounding * normal, found)
+        return self.prepared().place(along)
+
+    def angle(self, along: Along) -> Along:
+        """Flank angle [rad]."""
+        return self.prepared().angle(along)
 
     def curvature(self, along: Along) -> Along:
         """Curvature, positive where the flank is convex [1/m]."""
-        concave, straight, convex, _ = self.lengths
-        found = jnp.where(along < concave, -1.0 / self.concave_radius, 0.0)
-        found = jnp.where(along > concave + straight, 1.0 / self.convex_radius, found)
-        return jnp.where(along > concave + straight + convex, 1.0 / self.tip_rounding, found)
+        return self.prepared().curvature(along)
 
 
 class InvoluteFlank(Flank):

@@ -152,7 +152,7 @@ class StrainWave(Mesh):
     def tooth_motion(self) -> ToothMotion:
         """How a flexspline tooth passes the space that it meets."""
         lag = 1.0 - self.teeth[0] / self.teeth[1]
-        return ToothMotion(self.flank, self.line, lag)
+        return ToothMotion(self.flank.prepared(), self.line, lag)
 
     @property
     def tooth_angle(self) -> Float[Array, ""]:

@@ -125,7 +125,7 @@ def build_strain_wave(
     line = NeutralLine(
         jnp.asarray(neutral), jnp.asarray(w0), _weights(shape, force_angle, w0 / neutral)
     )
-    travel = ToothMotion(flank, line, jnp.asarray(1.0 - z1 / z2))
+    travel = ToothMotion(_prepared(flank), line, jnp.asarray(1.0 - z1 / z2))
     low = neutral + w0 + rim / 2.0 + clearance * module
     edge = tip_rounding * module
     if groove is None:
@@ -359,6 +359,11 @@ def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> j
 def _lanes(z1: int) -> int:
     pitch = 2.0 * pi / z1
     return int(floor(WINDOW[1] / pitch) - ceil(WINDOW[0] / pitch))
+
+
+@eqx.filter_jit
+def _prepared(flank: Flank) -> Flank:
+    return flank.prepared()
 
 
 _sweep = eqx.filter_jit(swept)
