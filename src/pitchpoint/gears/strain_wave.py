@@ -383,9 +383,14 @@ def nearest_points(
     stand, lean = frozen.foot(where)
     place = stand + jnp.exp(1j * lean) * local
     width, _ = space.width_and_slope(jnp.real(place))
-    apart = jnp.where(jnp.real(place) < space.low, jnp.inf, width - jnp.imag(place))
+    height = jnp.real(place)
+    apart = jnp.where(height < space.low, jnp.inf, width - jnp.imag(place))
     nearest = jnp.argmin(apart, axis=0)
-    first = station[jnp.maximum(nearest - 1, 0)]
+    before = jnp.maximum(nearest - 1, 0)
+    # What lies below the tip of the mate meets nothing.
+    below, above = (jnp.take_along_axis(height, k[None], 0)[0] for k in (before, nearest))
+    out = jnp.clip((space.low - below) / jnp.where(above > below, above - below, jnp.inf), 0.0, 1.0)
+    first = station[before] + out * (station[nearest] - station[before])
     most = station[jnp.minimum(nearest + 1, last)] - first
     foot, axis = motion.foot(angle)
     turned = jnp.exp(1j * axis)
@@ -408,14 +413,13 @@ def nearest_points(
     beyond, _ = root(widening, most / 2.0, most * (1.0 + _SLACK))
     found = first + jnp.clip(beyond, 0.0, most)
     at = motion.at(found, jnp.asarray(angle))
-    height = jnp.real(at.place)
-    width, _ = groove.width_and_slope(height)
+    width, _ = groove.width_and_slope(jnp.real(at.place))
     play = width + backlash / 2.0 - jnp.imag(at.place)
     return Touching(
         along=found,
         at=at,
         clearance=play * jnp.cos(at.direction),
-        mate=groove.curvature_at(height),
+        mate=groove.curvature_at(jnp.real(at.place)),
         held=(found <= 0.0) | (found >= frozen.flank.length * (1.0 - 1e-12)),
     )
 

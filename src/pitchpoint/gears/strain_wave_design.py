@@ -415,6 +415,12 @@ def _check_contact(drive: StrainWave, found: Survey) -> None:
             f"{np.degrees(found.angle[least]):.3g} degrees from the long axis",
             key=where,
         )
+    if not np.isfinite(clearance[least]):
+        raise InputError(
+            "no tooth of the flexspline engages: nowhere along the wave do its teeth reach those of the "
+            "circular spline",
+            key=where,
+        )
     if not clearance[least] - float(drive.backlash) < _FARTHEST * module:
         raise InputError(
             "no tooth of the flexspline engages: the least clearance is "
