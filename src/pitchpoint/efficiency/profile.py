@@ -5,7 +5,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import along
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
 
@@ -14,7 +14,12 @@ __all__ = ["profile"]
 
 @eqx.filter_jit
 def profile(
-    design: Design, operation: Operation, models: Models, film: FilmThickness, nodes: int = 48
+    design: Design,
+    operation: Operation,
+    models: Models,
+    film: FilmThickness,
+    nodes: int = 48,
+    engaged: Engagement | None = None,
 ) -> dict[str, Array]:
     """State over one period at one operating point.
 
@@ -24,12 +29,13 @@ def profile(
         models: laws.
         film: law of the film thickness.
         nodes: in each segment between events.
+        engaged: contacts and shares, where they are known already.
 
     Returns:
         Quantities by name, [node] for the mesh and [node, pair, slice] for each contact; zero where
         a pair is not in contact.
     """
-    result = cycle(design, operation, models, nodes)
+    result = cycle(design, operation, models, nodes, engaged)
     state = result.state
     at, contacts = state.conditions, state.contacts
     thickness = evaluate(film.function, at)

@@ -1,6 +1,7 @@
 """The quasi-static state of a mesh at any phase, and its cycle between events."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
@@ -22,7 +23,18 @@ from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
 
-__all__ = ["Cycle", "Design", "Models", "Operation", "State", "cycle", "cycle_nodes", "state"]
+__all__ = [
+    "Cycle",
+    "Design",
+    "Engagement",
+    "Models",
+    "Operation",
+    "State",
+    "cycle",
+    "cycle_nodes",
+    "engagement",
+    "state",
+]
 
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
@@ -118,6 +130,67 @@ class Models(eqx.Module):
         return self.sharing.function(contacts, mesh, yields)
 
 
+class Engagement(eqx.Module):
+    """Contacts of a mesh over one period and their shares of one load, computed beforehand.
+
+    Attributes:
+        phase, weight: nodes of the cycle and their weights [node].
+        contacts: at the nodes, batch axis `node`.
+        share: of the load on each slice.
+        nodes: static, nodes in each segment between events.
+    """
+
+    phase: Float[Array, " node"]
+    weight: Float[Array, " node"]
+    contacts: Contacts
+    share: Float[Array, "pair slice node"]
+    nodes: int = eqx.field(static=True)
+
+    def of_rank(self, rank: int) -> tuple[Contacts, Lanes]:
+        """Contacts and shares with so many batch axes, the last one that of the nodes."""
+
+        def widened(leaf: Array) -> Array:
+            return leaf.reshape(*leaf.shape[:-1], *(1 for _ in range(rank - 1)), leaf.shape[-1])
+
+        found: tuple[Contacts, Lanes] = jax.tree.map(widened, (self.contacts, self.share))
+        return found
+
+
+def engagement(
+    design: Design, load: Float[Array, ""], models: Models, nodes: int = 24
+) -> Engagement:
+    """Contacts and shares for one load, in two programs that serve all later ones.
+
+    Worth it for meshes with many pairs and clearances, whose contacts and shares take most of the
+    work; a cycle without it computes them itself.
+
+    Args:
+        design: mesh and materials.
+        load: that the driven coordinate carries [N m or N].
+        models: sharing and compliance.
+        nodes: in each segment between events.
+    """
+    phase, weight = _nodes(design.mesh, models.sharing, nodes)
+    contacts = _contacts(design.mesh, phase)
+    share = _shares(design, contacts, load, replace(models, friction=(), parameters={}))
+    return Engagement(phase, weight, contacts, share, nodes)
+
+
+@eqx.filter_jit
+def _nodes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
+    return cycle_nodes(mesh, sharing, nodes)
+
+
+@eqx.filter_jit
+def _contacts(mesh: Mesh, phase: Each) -> Contacts:
+    return mesh.contacts(phase)
+
+
+@eqx.filter_jit
+def _shares(design: Design, contacts: Contacts, load: Each, models: Models) -> Lanes:
+    return models.share(design, contacts, load)
+
+
 class State(eqx.Module):
     """Quasi-static state at phases and operating points `*b`.
 
@@ -168,7 +241,13 @@ class State(eqx.Module):
 
 
 def state(
-    design: Design, operation: Operation, phase: Each, models: Models, *, unrolled: int = 0
+    design: Design,
+    operation: Operation,
+    phase: Each,
+    models: Models,
+    *,
+    unrolled: int = 0,
+    engaged: Engagement | None = None,
 ) -> State:
     """State of the mesh in static equilibrium with friction.
 
@@ -178,11 +257,14 @@ def state(
         phase: [*b] periods.
         models: laws.
         unrolled: fixed number of steps of the balance, for speed; check the residual then.
+        engaged: contacts and shares at these phases, where they are known already.
     """
     mesh = design.mesh
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
     phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
-    contacts = mesh.contacts(phase)
+    contacts, share = (None, None) if engaged is None else engaged.of_rank(rank)
+    if contacts is None:
+        contacts = mesh.contacts(phase)
     oil, temperature = design.lubricant, operation.temperature
     drag = None
     if design.drag:
@@ -196,7 +278,8 @@ def state(
     carried = tooth_load(contacts, loaded=mesh.loaded, load=operation.load, drag=drag)
     # Losses beside the teeth hardly move the shares; leaving them out, one sharing of each load
     # serves all speeds and temperatures.
-    share = models.share(design, contacts, operation.load)
+    if share is None:
+        share = models.share(design, contacts, operation.load)
     arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
 
     def conditions(load: Lanes) -> Conditions:
@@ -330,7 +413,13 @@ class Cycle(eqx.Module):
         return jnp.any(self.state.balance.locked, axis=-1)
 
 
-def cycle(design: Design, operation: Operation, models: Models, nodes: int = 24) -> Cycle:
+def cycle(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    nodes: int = 24,
+    engaged: Engagement | None = None,
+) -> Cycle:
     """States over one period, integrated segment by segment between the events.
 
     Args:
@@ -338,14 +427,19 @@ def cycle(design: Design, operation: Operation, models: Models, nodes: int = 24)
         operation: operating points [*b].
         models: laws.
         nodes: Gauss-Lobatto nodes in each segment; its ends lie beside the events.
+        engaged: contacts and shares with their nodes, where they are known already.
     """
-    phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
+    if engaged is None:
+        phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
+    else:
+        phase, weight, nodes = engaged.phase, engaged.weight, engaged.nodes
     points = Operation(
         load=operation.load[..., None],
         speed=operation.speed[..., None],
         temperature=operation.temperature[..., None],
     )
-    return Cycle(phase, weight, state(design, points, phase, models), nodes)
+    found = state(design, points, phase, models, engaged=engaged)
+    return Cycle(phase, weight, found, nodes)
 
 
 def cycle_nodes(

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.efficiency.drag import at_rest
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 
 __all__ = ["no_load_torque", "starting_torque"]
 
@@ -15,7 +15,9 @@ Each = Float[Array, "*b"]
 
 
 @eqx.filter_jit
-def no_load_torque(design: Design, operation: Operation, models: Models) -> Each:
+def no_load_torque(
+    design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
+) -> Each:
     """Mean torque of the driver without load on the driven coordinate [N m].
 
     The teeth carry the drag of the driven coordinate and lose power too.
@@ -24,16 +26,19 @@ def no_load_torque(design: Design, operation: Operation, models: Models) -> Each
         design: mesh, materials, lubricant, surfaces, and the drag; without drag the torque is zero.
         operation: operating points [*b]; their load is left out.
         models: laws.
+        engaged: contacts and shares without load, where they are known already.
 
     Returns:
         Torque, shape [*b]; NaN where friction locks the mesh.
     """
     idle = replace(operation, load=jnp.zeros_like(operation.load))
-    return cycle(design, idle, models).mean_input_torque
+    return cycle(design, idle, models, engaged=engaged).mean_input_torque
 
 
 @eqx.filter_jit
-def starting_torque(design: Design, operation: Operation, models: Models) -> Each:
+def starting_torque(
+    design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
+) -> Each:
     """Torque at which the driver begins to turn from rest, at the worst phase of the mesh [N m].
 
     Beside the teeth act the breakaway and seal torques and the bearings at speed zero, where
@@ -46,9 +51,11 @@ def starting_torque(design: Design, operation: Operation, models: Models) -> Eac
             torque the teeth carry.
         operation: operating points [*b]; with load zero for the starting torque of a catalogue.
         models: laws.
+        engaged: contacts and shares at that load, where they are known already.
 
     Returns:
         Torque, shape [*b]; NaN where friction holds the drive whatever the torque.
     """
-    found = cycle(replace(design, drag=at_rest(design.drag)), operation, models)
+    resting = replace(design, drag=at_rest(design.drag))
+    found = cycle(resting, operation, models, engaged=engaged)
     return found.extremes(found.state.input_torque)[1]

@@ -9,35 +9,63 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
-from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, cycle_nodes
+from pitchpoint.efficiency.quasi_static import (
+    Cycle,
+    Design,
+    Engagement,
+    Models,
+    Operation,
+    cycle,
+    cycle_nodes,
+    engagement,
+)
 from pitchpoint.loading.sharing import equal
 
-__all__ = ["CHUNK", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
+__all__ = ["CHUNK", "engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
 
 CHUNK = 8
 """Cycles computed together: one compiled program serves any number of them."""
 
 Point = tuple[Design, Operation]
+Prepared = tuple[Design, Operation, Engagement | None]
 
 
-def loss_factor(design: Design, models: Models) -> Array:
-    """Loss factor H_V with equal load sharing: P_loss = P_in mu H_V to first order in mu.
+def loss_factor(design: Design, models: Models, engaged: Engagement | None = None) -> Array:
+    """Loss factor H_V: P_loss = P_in mu H_V to first order in mu.
 
-    Mean over one base pitch of the sliding arms over the driver's arm; for an involute pair it is
-    Ohlendorf's closed form.
+    Mean over one pitch of the sliding arms over the driver's arm; for an involute pair with equal
+    load sharing it is Ohlendorf's closed form. Pairs with clearances cannot share equally: they take
+    their shares of one load.
+
+    Args:
+        design: mesh.
+        models: for the nodes of the cycle.
+        engaged: contacts and shares of a mesh with clearances; equal shares by default.
     """
     mesh = design.mesh
-    phase, weight = cycle_nodes(mesh, models.sharing, 6)
-    contacts = mesh.contacts(phase)
-    share = equal(contacts, mesh)
+    if engaged is None:
+        phase, weight = cycle_nodes(mesh, models.sharing, 6)
+        contacts = mesh.contacts(phase)
+        share = equal(contacts, mesh)
+    else:
+        weight, contacts, share = engaged.weight, engaged.contacts, engaged.share
     sliding = jnp.abs(along(contacts.slip_arm, mesh.motion))
     arm = jnp.abs(along(contacts.normal, mesh.driver))
     return total(share * sliding / arm) @ weight
 
 
-def summary(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
-    """Figures of one cycle; powers in W, torques in N m, the rest dimensionless."""
-    result = cycle(design, operation, models)
+def summary(
+    design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
+) -> dict[str, Array]:
+    """Figures of one cycle; powers in W, torques in N m, the rest dimensionless.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: one operating point.
+        models: laws.
+        engaged: contacts and shares, where they are known already.
+    """
+    result = cycle(design, operation, models, engaged=engaged)
     state = result.state
     low, high = result.extremes(state.efficiency)
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
@@ -46,7 +74,7 @@ def summary(design: Design, operation: Operation, models: Models) -> dict[str, A
     return {
         **_by_gear(design.mesh.dimensions()),
         "contact_ratio": design.mesh.contact_ratio,
-        "loss_factor": loss_factor(design, models),
+        "loss_factor": loss_factor(design, models, engaged),
         "mean_loss": result.mean_loss,
         "mean_loss_path": result.path_mean(state.loss),
         "mean_drag_loss": result.mean(state.drag_loss),
@@ -95,7 +123,22 @@ def summarise(
         models: laws.
         progress: told the number of finished points after each chunk.
     """
-    return in_chunks(lambda chunk: _summaries(chunk, models), points, progress=progress)
+    prepared = [(*point, engaged(*point, models)) for point in points]
+    return in_chunks(lambda chunk: _summaries(chunk, models), prepared, progress=progress)
+
+
+def engaged(
+    design: Design, operation: Operation, models: Models, nodes: int = 24
+) -> Engagement | None:
+    """Contacts and shares of a mesh with clearances at one load; None for others, which are quick.
+
+    Args:
+        design, operation, models: of one point.
+        nodes: in each segment between events.
+    """
+    if not design.mesh.clearances:
+        return None
+    return engagement(design, operation.load, models, nodes)
 
 
 def in_chunks(
@@ -125,9 +168,9 @@ def in_chunks(
 
 
 @eqx.filter_jit
-def _summaries(points: Point, models: Models) -> dict[str, Array]:
+def _summaries(points: Prepared, models: Models) -> dict[str, Array]:
     result: dict[str, Array] = eqx.filter_vmap(
-        lambda design, operation: summary(design, operation, models)
+        lambda design, operation, known: summary(design, operation, models, known)
     )(*points)
     return result
 

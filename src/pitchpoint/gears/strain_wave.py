@@ -29,7 +29,8 @@ WINDOW = (np.deg2rad(-40.0), np.deg2rad(50.0))
 TRIES = (29, 14)
 """Places on a flank and on its rounding at which the clearance is looked at before its least is found."""
 
-_FLATTEST = 1e-2  # 1/m: relative curvature that counts as that of parallel flanks
+_FLATTEST = 1.0  # 1/m: with less, a contact under load would be wider than the flank is high
+_PREFERENCE = 1e-5  # clearance that a place nearer to the tip must gain on the way there
 _SLACK = 1e-9
 _AROUND = np.deg2rad(6.0)
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
@@ -384,7 +385,9 @@ def nearest_points(
     place = stand + jnp.exp(1j * lean) * local
     width, _ = space.width_and_slope(jnp.real(place))
     height = jnp.real(place)
-    apart = jnp.where(height < space.low, jnp.inf, width - jnp.imag(place))
+    # Near the long axis root and tip of a tooth touch at once: the root, which is stiffer, then counts.
+    bias = (_PREFERENCE * station).reshape(-1, *(1 for _ in where.shape))
+    apart = jnp.where(height < space.low, jnp.inf, width - jnp.imag(place) + bias)
     nearest = jnp.argmin(apart, axis=0)
     before = jnp.maximum(nearest - 1, 0)
     # What lies below the tip of the mate meets nothing.

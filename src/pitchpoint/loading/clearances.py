@@ -305,39 +305,28 @@ def _as_if_alone(problem: _Problem) -> Bool[Array, "*b lane"]:
 def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
     """Forces on these lanes and the approach, as if all of them could pull."""
     sides = jnp.stack([problem.arm, problem.gap], axis=-1) * loaded[..., None]
-    solved = _each_solved(_masked(problem.compliance, loaded), sides)
-    stiffness = jnp.sum(sides[..., :1] * solved, axis=-2)
-    carries = stiffness[..., 0] > 0.0
+    solved = _divided(_masked(problem.compliance, loaded), sides)
+    stiffness = jnp.sum(sides[..., 0] * solved[..., 0], axis=-1)
+    carries = stiffness > 0.0
+    carried = problem.load + jnp.sum(sides[..., 0] * solved[..., 1], axis=-1)
     # With no lane at all the loaded body moves until every one is wrong.
-    approach = jnp.where(
-        carries,
-        (problem.load + jnp.sum(sides[..., 0] * solved[..., 1], axis=-1))
-        / jnp.where(carries, stiffness[..., 0], 1.0),
-        FAR * (1.0 + jnp.max(problem.gap, axis=-1)),
-    )
+    far = FAR * (1.0 + jnp.max(problem.gap, axis=-1))
+    approach = jnp.where(carries, carried / jnp.where(carries, stiffness, 1.0), far)
     force = solved[..., 0] * approach[..., None] - solved[..., 1]
     moved = jnp.squeeze(problem.compliance @ force[..., None], axis=-1)
     slack = moved + problem.gap - problem.arm * approach[..., None]
-    return _Solution(force, approach, stiffness[..., 0], slack)
+    return _Solution(force, approach, stiffness, slack)
 
 
-def _each_solved(
-    matrix: Float[Array, "*b lane lane"], sides: Float[Array, "*b lane side"]
-) -> Float[Array, "*b lane side"]:
-    """Solutions for symmetric positive definite matrices, one after the other.
+def _divided(matrix: Float[Array, "*b lane lane"], by: Array) -> Array:
+    """Solution of a positive definite system; a last step from it carries the first derivatives.
 
-    Several batched factorisations at once can wait for each other without end on a machine with two
-    cores (jaxlib 0.10); this is as fast.
+    Factors are not differentiated: that would solve for a whole matrix, on which libraries under JAX
+    start threads of their own that wait for each other.
     """
-
-    def solved(one: tuple[Array, Array]) -> Array:
-        root = jnp.linalg.cholesky(one[0])
-        found: Array = jax.scipy.linalg.cho_solve((root, True), one[1])
-        return found
-
-    matrix = jnp.broadcast_to(matrix, (*sides.shape[:-2], *matrix.shape[-2:]))
-    flat = matrix.reshape(-1, *matrix.shape[-2:]), sides.reshape(-1, *sides.shape[-2:])
-    return jnp.reshape(jax.lax.map(solved, flat), sides.shape)
+    root = jnp.linalg.cholesky(jax.lax.stop_gradient(matrix)), True
+    found = jax.scipy.linalg.cho_solve(root, jax.lax.stop_gradient(by))
+    return found + jax.scipy.linalg.cho_solve(root, by - matrix @ found)
 
 
 def _residual(problem: _Problem, loaded: Bool[Array, "*b lane"], found: _Solution) -> Each:

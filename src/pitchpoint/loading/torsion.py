@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import along, total
+from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.clearances import Shared, shared_load
@@ -60,7 +60,12 @@ class Hysteresis(eqx.Module):
 
 
 def torsion(
-    mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Each, phase: Each
+    mesh: Mesh,
+    solids: tuple[Solid, Solid],
+    terms: Terms,
+    load: Each,
+    phase: Each,
+    contacts: Contacts | None = None,
 ) -> Torsion:
     """Wind-up of the loaded member at torques and phases, with the pairs that come to carry.
 
@@ -71,6 +76,7 @@ def torsion(
         terms: of the model of tooth compliance.
         load: torques of the loaded member, not negative, broadcast against the phases [N m].
         phase: of the mesh [periods], as many axes as `load`.
+        contacts: at these phases, where they are known already.
 
     Returns:
         NaN where no equilibrium was found. Teeth, ring and cup yield; shafts, bearings and their
@@ -79,7 +85,7 @@ def torsion(
     Raises:
         InputError: the mesh has no ring.
     """
-    contacts = mesh.contacts(phase)
+    contacts = mesh.contacts(phase) if contacts is None else contacts
     loads = mesh.ring_loads(contacts)
     if mesh.ring is None or loads is None:
         raise InputError("wind-up over pairs with clearances asks for a strain-wave gear")
