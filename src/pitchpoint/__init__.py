@@ -22,6 +22,8 @@ _LAZY: dict[str, str] = {
     "TwinDisc": "pitchpoint.gears.discs",
     "CylindricalPair": "pitchpoint.gears.cylindrical",
     "build_cylindrical_pair": "pitchpoint.gears.cylindrical",
+    "StrainWave": "pitchpoint.gears.strain_wave",
+    "build_strain_wave": "pitchpoint.gears.strain_wave_design",
     "Design": "pitchpoint.efficiency.quasi_static",
     "Operation": "pitchpoint.efficiency.quasi_static",
     "Models": "pitchpoint.efficiency.quasi_static",

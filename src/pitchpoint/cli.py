@@ -282,7 +282,12 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 
 def _summary(name: str, outcome: "Outcome") -> None:
-    from pitchpoint.cases.catalogue import summary_table, sweep_tables, vibration_table
+    from pitchpoint.cases.catalogue import (
+        summary_table,
+        sweep_tables,
+        vibration_table,
+        wind_up_table,
+    )
 
     manifest = outcome.manifest
     _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
@@ -290,9 +295,9 @@ def _summary(name: str, outcome: "Outcome") -> None:
     rows, columns, note = summary_table(outcome)
     _table(rows, columns)
     _console().print(_plain(note))
-    rows, columns = vibration_table(outcome)
-    if rows:
-        _table(rows, columns)
+    for rows, columns in (vibration_table(outcome), wind_up_table(outcome)):
+        if rows:
+            _table(rows, columns)
     for title, points in sweep_tables(outcome):
         _console().print(f"[bold]{_plain(title)}[/]")
         _table(points, tuple(points[0]))

@@ -189,6 +189,15 @@ _KINDS: dict[str, _Kind] = {
             "kN/mm": "kilonewton/millimeter",
         },
     ),
+    "torsional stiffness": _Kind(
+        "a torsional stiffness",
+        "10 kN m/rad",
+        {
+            "N m/rad": "newton*meter/radian",
+            "kN m/rad": "kilonewton*meter/radian",
+            "N m/arcmin": "newton*meter/arcminute",
+        },
+    ),
     "moment of inertia": _Kind(
         "a moment of inertia",
         "2 kg cm2",

@@ -2,21 +2,23 @@
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import cos, isfinite, pi, sin, tan
+from math import isfinite
 from typing import Any
 
 import equinox as eqx
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.document import Document
+from pitchpoint.cases.families import FAMILIES, Family, built_gears
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
-from pitchpoint.cases.schema import TEMPERATURE, Case, Gears, Oil, Surface
+from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Surface
 from pitchpoint.cases.solids import SolidInUse, datum, heated, solids_in_use
+from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import heat
 from pitchpoint.errors import InputError
-from pitchpoint.gears.checks import check_cylindrical
-from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical import CylindricalPair
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -27,11 +29,6 @@ from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 
 __all__ = ["Built", "build", "laws_of"]
-
-_AVAILABLE_FILLET = 0.38
-USUAL_TIP = 0.25
-"""Tip thickness of helical teeth that is kept where none is given, in normal modules."""
-_RING_FILLET = 0.2  # fits the narrow spaces of most rings
 
 
 @dataclass(frozen=True)
@@ -63,9 +60,24 @@ class Built:
 
     @property
     def pair(self) -> CylindricalPair:
-        """The gear pair."""
+        """The gears where they are a cylindrical pair."""
         assert isinstance(self.design.mesh, CylindricalPair)
         return self.design.mesh
+
+    @property
+    def family(self) -> Family:
+        """What a case asks of the family of its gears."""
+        return FAMILIES[type(self.case.gears)]
+
+    @property
+    def following(self) -> dict[str, Any]:
+        """Values that the table of the gears leaves open, by key inside it."""
+        return self.family.following(self.case.gears, self.design.mesh)
+
+    @property
+    def loaded(self) -> str:
+        """Name of the member that carries the load."""
+        return self.case.gears.members[int(self.design.mesh.loaded.argmax())]
 
 
 def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Built:
@@ -76,33 +88,32 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
             does not hold for this pair; with file and key.
     """
     try:
-        pair, warnings = _checked(case.gears, case.operation.driver, int(case.models.slices))
+        mesh, warnings = built_gears(case.gears, case.operation.driver, int(case.models.slices))
     except InputError as error:
-        inside = (
-            error.key if not error.key or error.key.startswith("gears") else f"gears.{error.key}"
-        )
-        raise error.at(file=document.name, key=inside or "gears") from None
+        raise error.at(file=document.name, key=f"gears.{error.key or ''}".rstrip(".")) from None
     used = solids_in_use(case.materials, document, case.operation.temperature)
-    record = _oil(case.lubricant, document)
+    record = _lubricant(case.lubricant, document)
     _check_temperature(case.operation.temperature, record, document, "operation.temperature")
     for temperature in (case.loss_map and case.loss_map.temperatures) or ():
         _check_temperature(temperature, record, document, "loss_map.temperatures")
     try:
-        LOAD_SHARING[case.models.load_sharing].check(pair)
+        _check_models(case, mesh)
     except InputError as error:
-        raise error.at(file=document.name, key="models.load_sharing") from None
+        raise error.at(file=document.name) from None
     design = Design(
-        mesh=pair,
+        mesh=mesh,
         solids=(used[0].solid, used[1].solid),
         lubricant=_built_oil(record),
         roughness=_roughness(case.roughness),
+        drag=tuple(_drag(loss, case, mesh) for loss in case.losses.values()),
     )
     operation = Operation(
         load=jnp.asarray(case.operation.torque),
         speed=jnp.asarray(case.operation.speed),
         temperature=jnp.asarray(case.operation.temperature),
     )
-    built = Built(case, design, operation, record, used, warnings + _yielding(case, pair), own)
+    told = (*warnings, *_yielding(case, mesh), *filter(None, [record.note]))
+    built = Built(case, design, operation, record, used, told, own)
     return built if case.models.tooth_temperature == "isothermal" else warmed(built, document)
 
 
@@ -135,7 +146,8 @@ def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
     chosen = [FRICTION[choice.name] for choice in case.models.friction]
     published = case.source in {law.sources[0] for law in CASE_LAWS}
     extra = CASE_LAWS if published or any(law in CASE_LAWS for law in chosen) else ()
-    laws: tuple[FrictionLaw, ...] = (*LAWS, *extra)
+    mesh = built.design.mesh
+    laws = tuple(law for law in (*LAWS, *extra) if _applies(law, mesh))
     if built.own is not None:
         chosen, laws = [built.own], (*laws, built.own)
     indices = tuple(laws.index(law) for law in chosen)
@@ -148,6 +160,75 @@ def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
         compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance].terms,
     )
     return models, indices
+
+
+_OF_PITCH_POINT = {
+    "face_width",
+    "pitch_line_speed",
+    "reference_line_load",
+    "reference_radius",
+    "reference_sum_speed",
+}
+"""Conditions that only a mesh with a pitch point has."""
+
+
+def _applies(law: FrictionLaw, mesh: Mesh) -> bool:
+    from pitchpoint.lubrication.conditions import arguments
+
+    return mesh.reference is not None or _OF_PITCH_POINT.isdisjoint(arguments(law.function)[0])
+
+
+def _check_models(case: Case, mesh: Mesh) -> None:
+    """InputError if a model of the case does not hold for these gears."""
+    models = case.models
+    for choice in models.friction:
+        if not _applies(FRICTION[choice.name], mesh):
+            others = ", ".join(law.name for law in LAWS if _applies(law, mesh))
+            raise InputError(
+                f"'{choice.name}' is a law for a whole mesh, and these gears have no pitch point; choose "
+                f"one of {others}",
+                key="models.friction",
+            )
+    try:
+        LOAD_SHARING[models.load_sharing].check(mesh)
+    except InputError as error:
+        raise error.at(key="models.load_sharing") from None
+    if models.tooth_temperature != "isothermal" and mesh.reference is None:
+        raise InputError(
+            f"'{models.tooth_temperature}' asks for a pitch point, which these gears do not have; use "
+            "isothermal",
+            key="models.tooth_temperature",
+        )
+    if case.dynamics is not None and mesh.line_of_action is None:
+        raise InputError(
+            "vibration is computed along a line of action, which these gears do not have; leave this "
+            "table out",
+            key="dynamics",
+        )
+
+
+def _drag(loss: Loss, case: Case, mesh: Mesh) -> Drag:
+    """Place beside the teeth where power is lost."""
+    members = case.gears.members
+    between = jnp.zeros(len(members))
+    for body, side in zip(loss.between, (1.0, -1.0), strict=True):
+        if body in members:
+            between = between.at[members.index(body)].set(side)
+    bearing = BEARING_LOSS[loss.bearing]
+    bearings = FAMILIES[type(case.gears)].bearings
+    return Drag(
+        between=between,
+        bearing=bearing,
+        mean_diameter=jnp.asarray(loss.mean_diameter or 0.0),
+        factors={name: jnp.asarray(value) for name, value in loss.factors.items()},
+        preload=jnp.asarray(loss.preload),
+        support=bearings.get(frozenset(loss.between)) if bearing.name != "none" else None,
+        seal_torque=jnp.asarray(loss.seal_torque),
+        churning_torque=jnp.asarray(loss.churning_torque),
+        churning_speed=jnp.asarray(loss.churning_speed or 1.0),
+        churning_exponent=jnp.asarray(loss.churning_exponent),
+        breakaway_torque=jnp.asarray(loss.breakaway_torque),
+    )
 
 
 def _parameters(case: Case, laws: tuple[FrictionLaw, ...]) -> dict[str, dict[str, jnp.ndarray]]:
@@ -168,39 +249,14 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
     return record.build()
 
 
-@lru_cache(maxsize=256)
-def _checked(gears: Gears, driver: str, slices: int) -> tuple[CylindricalPair, tuple[str, ...]]:
-    """Pair and its warnings; a sweep that leaves the gears alone builds them once."""
-    pair = _pair(gears, driver=2 if driver == "gear 2" else 1, slices=slices)
-    return pair, (*check_cylindrical(pair), *_shortened(pair, gears))
-
-
-def _least_tip(gears: Gears) -> float:
-    """Tip thickness that is kept, in modules: helical teeth are few more often, and then pointed."""
-    if gears.least_tip_thickness is not None:
-        return gears.least_tip_thickness
-    return USUAL_TIP if gears.helix_angle > 0.0 else 0.0
-
-
-def _shortened(pair: CylindricalPair, gears: Gears) -> list[str]:
-    """What was taken off tips that nobody asked to shorten."""
-    if gears.least_tip_thickness is not None:
-        return []
-    kept = float(pair.clearance_keeping_tip_alteration)
-    return [
-        f"The tip of gear {number} would be thinner than {USUAL_TIP:g} modules and is shortened by "
-        f"{kept - float(pair.tip_alteration[number - 1]):.3g} modules; least_tip_thickness sets the limit."
-        for number, short in enumerate(pair.shortened, 1)
-        if short
-    ]
-
-
-def _yielding(case: Case, pair: CylindricalPair) -> tuple[str, ...]:
+def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     """What the model of tooth compliance does not cover, where it is used."""
     sharing = LOAD_SHARING[case.models.load_sharing]
-    if case.dynamics is None and not sharing.by_stiffness:
+    if mesh.ring is not None or (case.dynamics is None and not sharing.by_stiffness):
         return ()
-    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(_sections(pair))
+    sections = _sections(mesh)
+    assert sections is not None
+    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections)
 
 
 @eqx.filter_jit
@@ -209,60 +265,15 @@ def _dimensions(mesh: Mesh) -> dict[str, Any]:
 
 
 @eqx.filter_jit
-def _sections(pair: CylindricalPair) -> tuple[ToothSection, ToothSection]:
-    return pair.sections
+def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection] | None:
+    return mesh.sections
 
 
-def _pair(gears: Gears, driver: int, slices: int) -> CylindricalPair:
-    dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
-    fillet = gears.fillet_radius or tuple(
-        _RING_FILLET
-        if teeth < 0
-        else min(_AVAILABLE_FILLET, _largest_fillet(depth, gears.pressure_angle))
-        for teeth, depth in zip(gears.teeth, dedendum, strict=True)
-    )
-    pair = build_cylindrical_pair(
-        teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
-        module=gears.module,
-        pressure_angle=gears.pressure_angle,
-        helix_angle=gears.helix_angle,
-        face_width=gears.face_width,
-        profile_shift=gears.profile_shift,
-        addendum=gears.addendum,
-        dedendum=dedendum,
-        fillet_radius=(fillet[0], fillet[1]),
-        tip_alteration=gears.tip_alteration,
-        least_tip=_least_tip(gears),
-        centre_distance=gears.centre_distance,
-        driver=driver,
-        right_flank=gears.flank == "right",
-        slices=slices,
-    )
-    if gears.bore_diameter is None:
-        return pair
-    return replace(pair, rim_ratio=jnp.asarray(_rim_ratios(pair, gears.bore_diameter)))
-
-
-def _rim_ratios(pair: CylindricalPair, bores: tuple[float, float]) -> list[float]:
-    """Root over bore radius of each gear; of a ring its outer radius over the root radius."""
-    found = []
-    for number, (gear, bore) in enumerate(zip(pair.gears, bores, strict=True), 1):
-        root = 2.0 * abs(float(gear.root_radius))
-        ratio = bore / root if gear.internal else root / bore
-        if ratio <= 1.0:
-            side = "larger" if gear.internal else "smaller"
-            raise InputError(
-                f"the bore diameter of gear {number} is {1e3 * bore:.6g} mm; it must be {side} than "
-                f"its root circle, {1e3 * root:.6g} mm",
-                key="bore_diameter",
-            )
-        found.append(ratio)
-    return found
-
-
-def _largest_fillet(dedendum: float, angle: float) -> float:
-    """Corner rounding of the rack that leaves no flat on its tip, in modules (ISO 53)."""
-    return max((pi / 4 - dedendum * tan(angle)) * cos(angle) / (1.0 - sin(angle)), 0.0)
+def _lubricant(oil: Oil, document: Document) -> lubricants.LubricantRecord:
+    record = _oil(oil, document)
+    if not (oil.thickener or oil.consistency):
+        return record
+    return record.thickened(thickener=oil.thickener, consistency=oil.consistency)
 
 
 def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:

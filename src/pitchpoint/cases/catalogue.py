@@ -10,7 +10,9 @@ from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
+from pitchpoint.gears.wave_generator import WAVE_SHAPES
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import UNITS
@@ -21,7 +23,14 @@ from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["entries", "figures", "summary_table", "sweep_tables", "vibration_table"]
+__all__ = [
+    "entries",
+    "figures",
+    "summary_table",
+    "sweep_tables",
+    "vibration_table",
+    "wind_up_table",
+]
 
 MAIN = (
     "mean_efficiency",
@@ -52,6 +61,8 @@ def entries() -> list[dict[str, str]]:
             ("tooth_compliance", TOOTH_COMPLIANCE),
             ("tooth_contact", CONTACT_LAWS),
             ("tooth_temperature", TOOTH_TEMPERATURE),
+            ("bearing", BEARING_LOSS),
+            ("wave_shape", WAVE_SHAPES),
         )
         for model in registry.values()
     ]
@@ -87,9 +98,12 @@ def figures(outcome: Outcome) -> dict[str, Any]:
     }
     return {
         "title": manifest["title"],
-        "units": {name: VARIABLES[name].unit for name in (*MAIN, *VIBRATION, *TEMPERATURES)},
+        "units": {
+            name: VARIABLES[name].unit for name in (*MAIN, *VIBRATION, *TEMPERATURES, *WIND_UP)
+        },
         "operation": _by_law(outcome.parts["operation"], MAIN),
-        "vibration": _by_torque(outcome),
+        "vibration": _by_torque(outcome, "vibration", VIBRATION),
+        "torsion": _by_torque(outcome, "torsion", WIND_UP),
         "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
         "back_driving": _by_law(outcome.parts["back_driving"], ("mean_efficiency", "locked")),
         "studies": studies,
@@ -118,6 +132,9 @@ def spread_sentence(outcome: Outcome) -> str:
     values = data["mean_efficiency"].values[:, 0]
     if np.isnan(values).any():
         return "No power is transmitted: the efficiency is undefined."
+    if len(values) == 1:
+        only = str(data["law"].values[0])
+        return f"One fitted friction law of the library applies, {only}; it gives {100 * values[0]:.2f} %."
     low, high = int(values.argmin()), int(values.argmax())
     names = [str(name) for name in data["law"].values]
     span = f"{100 * values[low]:.2f} % ({names[low]}) to {100 * values[high]:.2f} % ({names[high]})"
@@ -164,6 +181,23 @@ def vibration_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, 
     return rows, tuple(rows[0])
 
 
+WIND_UP = ("wind_up", "torsional_stiffness", "loaded_pairs")
+
+
+def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
+    """Rows and columns: wind-up and stiffness at some torques, none for teeth without clearances."""
+    data = outcome.parts.get("torsion")
+    if data is None:
+        return [], ()
+    torques = data["torque"].values
+    rows = [
+        {_head("torque"): f"{torques[k]:.5g}"}
+        | {_head(name): _shown(name, float(data[name].values[k])) for name in WIND_UP}
+        for k in range(torques.size // 4, torques.size, torques.size // 4)
+    ]
+    return rows, tuple(rows[0])
+
+
 def sweep_tables(outcome: Outcome) -> list[tuple[str, list[dict[str, str]]]]:
     """Title and rows of every sweep of the command line: the first friction law, point by point."""
     names = ("mean_efficiency", "torque_ripple", "mean_stiffness", "transmission_error_range")
@@ -186,11 +220,11 @@ def _place(value: float, key: str) -> str:
     return f"{value:.6g}" if quantity is None else quantity.show(float(value))
 
 
-def _by_torque(outcome: Outcome) -> dict[str, Any]:
-    data = outcome.parts.get("vibration")
+def _by_torque(outcome: Outcome, part: str, names: tuple[str, ...]) -> dict[str, Any]:
+    data = outcome.parts.get(part)
     if data is None:
         return {}
-    return {name: _numbers(data[name].values) for name in ("torque", *VIBRATION)}
+    return {name: _numbers(data[name].values) for name in ("torque", *names)}
 
 
 def _by_law(data: Any, names: tuple[str, ...]) -> dict[str, Any]:

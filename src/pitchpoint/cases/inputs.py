@@ -1,5 +1,6 @@
 """The inputs of a case as resolved, in the units in which people read them, with their status."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,7 @@ from pydantic import BaseModel
 
 from pitchpoint import units
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.document import Document
+from pitchpoint.cases.document import Document, leaves
 from pitchpoint.cases.schema import FrictionChoice, quantity_at
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.results.variables import VARIABLES
@@ -22,8 +23,12 @@ _TABLES = (
     "operation",
     "models",
     "housing",
+    "losses",
     "dynamics",
 )
+
+_APART = ("gears", "losses")
+"""Tables whose inner tables have a row for each value."""
 
 _SOLID = {"young": "Young's modulus", "poisson": "Poisson's ratio", "density": "density"}
 
@@ -65,12 +70,15 @@ def resolved(built: Built, document: Document) -> list[dict[str, str]]:
     ]
 
 
-_FOLLOWING = ("dedendum", "fillet_radius", "tip_alteration", "centre_distance")
 _GEOMETRY = (
     "transverse_contact_ratio",
     "overlap_ratio",
     "tip_thickness",
     "undercut_limit",
+    "speed_ratio",
+    "deflection",
+    "neutral_radius",
+    "engagement_depth",
 )
 
 
@@ -118,24 +126,22 @@ def _solid(gear: int, used: SolidInUse) -> list[dict[str, str]]:
 
 
 def _rows(built: Built, document: Document, table: str) -> list[dict[str, str]]:
-    model: BaseModel | None = getattr(built.case, table)
-    if model is None:
-        return []
-    given = document.tree.get(table, {})
     rows = []
-    for key in type(model).model_fields:
-        value = _value(getattr(model, key), f"{table}.{key}", built, key)
+    given = dict(leaves({table: document.tree.get(table, {})}))
+    following = built.following if table == "gears" else {}
+    for key, left in _leaves(getattr(built.case, table), table in _APART):
+        value = _value(following.get(key) if left is None else left, f"{table}.{key}")
         if value is None:
             continue
         mark = document.provenance.get(f"{table}.{key}")
-        followed = "derived" if getattr(model, key) is None else "default"
-        status = mark.status if mark else ("given" if key in given else followed)
+        followed = "derived" if left is None else "default"
+        status = "given" if any(_inside(path, f"{table}.{key}") for path in given) else followed
         rows.append(
             {
                 "table": table,
                 "key": key,
                 "value": value,
-                "status": status,
+                "status": mark.status if mark else status,
                 "where": mark.where if mark else "",
                 "note": mark.note if mark else "",
             }
@@ -143,18 +149,38 @@ def _rows(built: Built, document: Document, table: str) -> list[dict[str, str]]:
     return rows
 
 
-def _value(value: Any, key: str, built: Built, name: str) -> str | None:
-    """Value in words; what was left open is shown as computed, or not at all."""
-    if value is None:
-        value = _computed(built, name)
+def _leaves(table: Any, apart: bool) -> Iterator[tuple[str, Any]]:
+    """Keys and values of a table; of inner tables too, if they are to stand apart."""
+    if table is None:
+        return
+    inner = (
+        table.items() if isinstance(table, dict) else ((k, getattr(table, k)) for k in _keys(table))
+    )
+    for key, value in inner:
+        if apart and isinstance(value, BaseModel):
+            yield from ((f"{key}.{name}", one) for name, one in _leaves(value, apart))
+        else:
+            yield key, value
+
+
+def _keys(table: BaseModel) -> list[str]:
+    return [*type(table).model_fields]
+
+
+def _inside(path: str, key: str) -> bool:
+    return path == key or path.startswith(f"{key}.")
+
+
+def _value(value: Any, key: str) -> str | None:
+    """Value in words; None for what is left open."""
     if value is None:
         return None
     quantity = quantity_at(key)
     if quantity is not None:
-        each = value if isinstance(value, tuple) else (value,)
+        each = [float(number) for number in np.ravel(value)]
         shown = [quantity.show(number) for number in each]
         alike = key != "gears.profile_shift" and len(set(shown)) == 1
-        return " / ".join(shown[:1] if alike else shown)
+        return " / ".join(shown[:1] if alike else shown) or None
     if isinstance(value, BaseModel):
         return ", ".join(_part(key, *item) for item in value.model_dump().items())
     if isinstance(value, tuple):
@@ -168,18 +194,12 @@ def _part(table: str, name: str, item: Any) -> str:
 
 
 def _choice(item: Any) -> str:
+    if isinstance(item, str):
+        return item
     if not isinstance(item, FrictionChoice):
         return " ".join(f"{key} {number:g}" for key, number in item.model_dump().items())
     own = ", ".join(f"{key} {value:g}" for key, value in item.parameters.items())
     return f"{item.name} ({own})" if own else str(item.name)
-
-
-def _computed(built: Built, name: str) -> Any:
-    names = {name: name for name in _FOLLOWING} | {"least_tip_thickness": "least_tip"}
-    if name not in names:
-        return None
-    number = getattr(built.pair, names[name])
-    return float(number) if number.ndim == 0 else tuple(float(one) for one in number)
 
 
 def _shown(value: float, unit: str, kind: str) -> str:

@@ -7,10 +7,16 @@ import numpy as np
 
 from pitchpoint.cases.atanasiu2011 import printed as atanasiu2011
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.xu2021 import printed as xu2021
+from pitchpoint.cases.zhao2022 import printed as zhao2022
 
 __all__ = ["READINGS", "readings_of"]
 
-READINGS: dict[str, Callable[[Built], dict[str, float]]] = {"atanasiu_2011": atanasiu2011.readings}
+READINGS: dict[str, Callable[[Built], dict[str, float]]] = {
+    "atanasiu_2011": atanasiu2011.readings,
+    "xu_2021": xu2021.readings,
+    "zhao_2022": zhao2022.readings,
+}
 """By source of the case."""
 
 

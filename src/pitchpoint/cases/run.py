@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from math import prod
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -16,9 +17,10 @@ from pitchpoint.cases.comparison import Row, compare
 from pitchpoint.cases.document import Tree, variants
 from pitchpoint.cases.library import find
 from pitchpoint.cases.schema import Study
-from pitchpoint.cases.studies import Job, Variant, few, jobs
+from pitchpoint.cases.studies import Job, Variant, jobs
 from pitchpoint.citations import cite
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -281,8 +283,9 @@ def _part(
             if len(job.pieces) > 1:
                 _keep(piece, path)
         pieces.append(piece)
-        progress.points(sum(part.sizes.get("point", 0) for part in pieces))
-    data = pieces[0] if len(pieces) == 1 else _joined(pieces)
+        progress.points(sum(map(_points, pieces)))
+    data = job.joined(pieces)
+    data.attrs.update(labels)
     _keep(data, whole)
     if folder is not None:
         for path in folder.glob(f"{job.name}.[0-9][0-9][0-9][0-9].nc"):
@@ -299,12 +302,10 @@ def _computed(
         raise error.at(file=error.file or variant.name) from None
 
 
-def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Pieces of a sweep as one; their warnings too."""
-    data = xr.concat(pieces, "point", combine_attrs="override")
-    told = [text for piece in pieces for text in json.loads(piece.attrs["warnings"])]
-    data.attrs["warnings"] = json.dumps(few([*dict.fromkeys(told)]))
-    return data
+def _points(piece: xr.Dataset) -> int:
+    """Operating points of a piece."""
+    each = ("point", "torque", "speed", "temperature")
+    return prod(size for name, size in piece.sizes.items() if name in each)
 
 
 def _found(path: Path | None, mark: str) -> xr.Dataset | None:
@@ -365,6 +366,9 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}
             for effect, law in others.items()
         ],
+        "family": case.gears.family,
+        "driver": case.operation.driver,
+        "loaded": built.loaded,
         "averaging": case.models.averaging,
         "plastic": any(used.plastic for used in built.solids),
         "oil": built.lubricant.title or built.lubricant.name,
@@ -388,6 +392,9 @@ def _models(built: Built) -> dict[str, Any]:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
     if case.dynamics is not None:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
+    for name, loss in case.losses.items():
+        if loss.bearing != "none":
+            found[f"bearing {name}".replace("_", " ")] = BEARING_LOSS[loss.bearing]
     if case.models.tooth_temperature != "isothermal":
         found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
     return found

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator, Mapping
 from math import inf, pi
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_origin
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Field,
     ValidationError,
     model_validator,
 )
@@ -16,7 +17,9 @@ from pydantic.fields import FieldInfo
 
 from pitchpoint import units
 from pitchpoint.cases.document import Document, check_name
+from pitchpoint.cases.gear_tables import BORE, Gears
 from pitchpoint.cases.quantities import Pair, Quantity, named, shorten, shown
+from pitchpoint.cases.tables import DECIDING, Table, alternatives, forms
 from pitchpoint.errors import InputError
 from pitchpoint.registry import nearest
 
@@ -24,18 +27,6 @@ __all__ = ["Case", "quantity_at", "validate"]
 
 _ZERO_CELSIUS = 273.15
 
-TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
-MODULE = Quantity("length", 1e-5, 0.1, "mm")
-WIDTH = Quantity("length", 1e-5, 10.0, "mm")
-DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
-HELIX = Quantity("angle", 0.0, 60 * pi / 180, "deg")
-ANGLE = Quantity("angle", 5 * pi / 180, 45 * pi / 180, "deg")
-SHIFT = Quantity("dimensionless", -2.0, 3.0)
-RACK = Quantity("dimensionless", 0.1, 4.0)
-FILLET = Quantity("dimensionless", 0.0, 1.0)
-TIP = Quantity("dimensionless", -2.0, 2.0)
-LEAST_TIP = Quantity("dimensionless", 0.0, 1.5)
-BORE = Quantity("length", 1e-5, 100.0, "mm")
 INERTIA = Quantity("moment of inertia", 0.0, 1e9, "kg m2", open_low=True)
 RATIO = Quantity("dimensionless", 0.0, 1.0, open_low=True)
 DEVIATION = Quantity("length", 0.0, 1e-2, "um")
@@ -59,6 +50,10 @@ MAP_SPEED = Quantity("rotational speed", 0.0, 1e5, "rpm")
 TEMPERATURE = Quantity("temperature", 150.0, 600.0, "degC")
 COEFFICIENT = Quantity("dimensionless", 0.0, 2.0)
 COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
+MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
+BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
+FORCE = Quantity("force", 0.0, 1e7, "N")
+EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
 NOT_NEGATIVE = Quantity("dimensionless", 0.0, inf)
@@ -122,6 +117,12 @@ def _tooth_temperatures() -> list[str]:
     return list(TOOTH_TEMPERATURE)
 
 
+def _bearing_losses() -> list[str]:
+    from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+
+    return list(BEARING_LOSS)
+
+
 def _rollings() -> list[str]:
     from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
@@ -152,61 +153,6 @@ def _bases() -> list[str]:
     return list(base_oils())
 
 
-class Table(BaseModel):
-    """A table of a case file: no unknown keys, values fixed once read."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-FEWEST_TEETH = 2
-FEWEST_RING_TEETH = 10
-
-
-def _teeth(value: tuple[float, float]) -> tuple[float, float]:
-    first, second = value
-    if first < FEWEST_TEETH:
-        raise InputError(
-            f"gear 1 was given {first:.0f} teeth; allowed are {FEWEST_TEETH} or more, and only gear 2 "
-            "may be a ring, with its number of teeth negative"
-        )
-    if -FEWEST_RING_TEETH < second < FEWEST_TEETH:
-        raise InputError(
-            f"gear 2 was given {second:.0f} teeth; allowed are {FEWEST_TEETH} or more, or for a ring "
-            f"with internal teeth -{FEWEST_RING_TEETH} or less"
-        )
-    return value
-
-
-class Gears(Table):
-    """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring."""
-
-    family: Literal["cylindrical"] = "cylindrical"
-    teeth: Annotated[tuple[float, float], Pair(TEETH), AfterValidator(_teeth)]
-    module: Annotated[float, MODULE]
-    face_width: Annotated[float, WIDTH]
-    pressure_angle: Annotated[float, ANGLE] = pi / 9
-    helix_angle: Annotated[float, HELIX] = 0.0
-    profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] = (0.0, 0.0)
-    addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
-    dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
-    fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
-    tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
-    least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
-    centre_distance: Annotated[float, DISTANCE] | None = None
-    bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
-    flank: Literal["left", "right"] = "left"
-
-    @model_validator(mode="after")
-    def _one_tip(self) -> "Gears":
-        if self.tip_alteration is not None and self.least_tip_thickness:
-            raise InputError(
-                "tip_alteration and least_tip_thickness were both given; a tip alteration by value is "
-                "kept as it is",
-                key="least_tip_thickness",
-            )
-        return self
-
-
 class SolidValues(Table):
     """A material by value."""
 
@@ -219,14 +165,17 @@ SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]
 
 
 class Materials(Table):
-    """Materials of both gears, by name or by value."""
+    """Materials of both gears, by name or by value; of a strain wave gear, gear 1 is the flexspline."""
 
     gear_1: SolidValues | SolidName = "steel"
     gear_2: SolidValues | SolidName = "steel"
 
 
 class Oil(Table):
-    """An oil of the catalogue, by value, or a catalogue oil with some values of one's own."""
+    """An oil of the catalogue, by value, or a catalogue oil with some values of one's own.
+
+    With a thickener or a consistency (NLGI number) it is a grease, and the values are those of its base oil.
+    """
 
     name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
     base: Annotated[str, BeforeValidator(named(_bases, "class of base oil"))] | None = None
@@ -238,6 +187,8 @@ class Oil(Table):
     lubricant_factor: Annotated[float, FACTOR] | None = None
     temperature_min: Annotated[float, TEMPERATURE] | None = None
     temperature_max: Annotated[float, TEMPERATURE] | None = None
+    thickener: Text = ""
+    consistency: Text = ""
 
     @model_validator(mode="after")
     def _known(self) -> "Oil":
@@ -272,12 +223,17 @@ class Surface(Table):
 
 
 class Operating(Table):
-    """Torque on the driven gear, speed of the driving one, temperature of the oil."""
+    """Torque on the driven member, speed of the driving one, temperature of the oil.
+
+    The driver, where it is not given, is the first member of the gears that is not fixed.
+    """
 
     torque: Annotated[float, TORQUE]
     speed: Annotated[float, SPEED]
     temperature: Annotated[float, TEMPERATURE]
-    driver: Literal["gear 1", "gear 2"] = "gear 1"
+    driver: Literal["gear 1", "gear 2", "wave generator", "flexspline", "circular spline"] = (
+        "gear 1"
+    )
 
 
 class FrictionChoice(BaseModel):
@@ -331,7 +287,7 @@ def _slices(value: float) -> float:
 
 
 class Choices(Table):
-    """Which law stands for which effect."""
+    """Which law stands for which effect; friction and load sharing, where not given, by the gears."""
 
     friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(_choices)] = (
         FrictionChoice(name="iso_tr_14179_2"),
@@ -367,6 +323,50 @@ class Housing(Table):
     def _both(self) -> "Housing":
         if (self.thermal_resistance > 0.0) != (self.area is not None):
             raise InputError("thermal_resistance and area of a housing belong together")
+        return self
+
+
+class Loss(Table):
+    """A place beside the teeth where two bodies brake each other, or one of them and the housing.
+
+    Torques are those between the two bodies. A bearing between wave generator and flexspline bears the
+    radial load of the teeth beside its preload.
+    """
+
+    between: tuple[Text, Text]
+    bearing: Annotated[str, BeforeValidator(named(_bearing_losses, "bearing loss model"))] = "none"
+    mean_diameter: Annotated[float, BORE] | None = None
+    f0: Annotated[float, BEARING_FACTOR] | None = None
+    f1: Annotated[float, BEARING_FACTOR] | None = None
+    preload: Annotated[float, FORCE] = 0.0
+    seal_torque: Annotated[float, TORQUE] = 0.0
+    churning_torque: Annotated[float, TORQUE] = 0.0
+    churning_speed: Annotated[float, SPEED] | None = None
+    churning_exponent: Annotated[float, EXPONENT] = 1.0
+    breakaway_torque: Annotated[float, TORQUE] = 0.0
+
+    @property
+    def factors(self) -> dict[str, float]:
+        """Factors of the bearing model by name."""
+        given = {"f0": self.f0, "f1": self.f1}
+        return {name: value for name, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Loss":
+        from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+
+        wanted = BEARING_LOSS[self.bearing].factors
+        needed = ("mean_diameter", *wanted) if self.bearing != "none" else ()
+        given = {*self.factors, *(["mean_diameter"] if self.mean_diameter is not None else [])}
+        for name in (*needed, *sorted(given)):
+            if (name in needed) != (name in given):
+                told = "is missing; " if name in needed else "was given; "
+                has = ", ".join(needed) or "no values"
+                raise InputError(f"{told}{self.bearing} asks for {has}", key=name)
+        if self.churning_torque > 0.0 and self.churning_speed is None:
+            raise InputError(
+                "is missing; churning_torque is that at this speed", key="churning_speed"
+            )
         return self
 
 
@@ -428,17 +428,22 @@ class Study(Table):
     """One computation of the case: its operating point with changes, swept or not."""
 
     title: Text = ""
-    change: dict[str, Any] = {}
+    change: dict[str, Any] = Field(default_factory=dict)
     sweep: Sweep | None = None
 
 
 class LossMap(Table):
-    """Axes of the loss map; zero torque and zero speed are allowed."""
+    """Axes of the loss map; zero torque and zero speed are allowed.
+
+    `count` is that of both axes, `torque_count` and `speed_count` are those of one.
+    """
 
     torque: Annotated[float, TORQUE] | None = None
     speed: Annotated[float, MAP_SPEED] | None = None
     temperatures: tuple[Annotated[float, TEMPERATURE], ...] | None = None
-    count: Annotated[float, Quantity("dimensionless", 2, 200, whole=True)] = 9.0
+    count: Annotated[float, MAP_COUNT] = 9.0
+    torque_count: Annotated[float, MAP_COUNT] | None = None
+    speed_count: Annotated[float, MAP_COUNT] | None = None
 
 
 class Target(Table):
@@ -485,8 +490,9 @@ class Case(Table):
     operation: Operating
     models: Choices = Choices()
     housing: Housing = Housing()
+    losses: Annotated[dict[str, Loss], BeforeValidator(_named)] = Field(default_factory=dict)
     dynamics: Dynamics | None = None
-    studies: Annotated[dict[str, Study], BeforeValidator(_named)] = {}
+    studies: Annotated[dict[str, Study], BeforeValidator(_named)] = Field(default_factory=dict)
     loss_map: LossMap | None = None
     targets: tuple[Target, ...] = ()
     issues: tuple[Issue, ...] = ()
@@ -501,6 +507,52 @@ class Case(Table):
                 )
         return self
 
+    @model_validator(mode="after")
+    def _of_family(self) -> "Case":
+        """What is not given stands as is usual for the family; bodies are those that it has."""
+        _check_bodies(self)
+        operation, models = self.operation, self.models
+        driver = operation.driver if _given(operation, "driver") else self.gears.drivers[0]
+        if driver not in self.gears.drivers:
+            why = (
+                "is fixed and cannot drive"
+                if driver in self.gears.members
+                else "is not in this drive"
+            )
+            raise InputError(
+                f"the {driver} {why}; use {' or '.join(self.gears.drivers)}", key="operation.driver"
+            )
+        usual: dict[str, Any] = {
+            "friction": (FrictionChoice(name=self.gears.friction),),
+            "load_sharing": self.gears.load_sharing,
+        }
+        left = {name: value for name, value in usual.items() if not _given(models, name)}
+        return self.model_copy(
+            update={
+                "operation": operation.model_copy(update={"driver": driver}),
+                "models": models.model_copy(update=left),
+            }
+        )
+
+
+def _given(table: Table, key: str) -> bool:
+    return key in table.model_fields_set
+
+
+def _check_bodies(case: Case) -> None:
+    """InputError if losses arise between bodies that the gears do not have."""
+    known = (*case.gears.members, "housing")
+    for name, loss in case.losses.items():
+        first, second = loss.between
+        strange = next((body for body in loss.between if body not in known), None)
+        told = (
+            f"{shown(strange)} is no body of this drive{nearest(strange, dict.fromkeys(known))}"
+            if strange is not None
+            else f"{shown(first)} was given twice; name two bodies of {', '.join(known)}"
+        )
+        if strange is not None or first == second:
+            raise InputError(told, key=f"losses.{name}.between")
+
 
 def validate(document: Document) -> Case:
     """Case out of a document.
@@ -509,25 +561,77 @@ def validate(document: Document) -> Case:
         InputError: the first value that is wrong, with file, key, value and what is allowed.
     """
     try:
-        return Case.model_validate(document.tree)
+        return Case.model_validate(_in_form(document))
     except ValidationError as error:
         raise _sentence(error, document) from None
 
 
-def quantity_at(key: str) -> Quantity | None:
-    """Kind and range of the value at a dotted key, None where it is no quantity."""
-    fields: Mapping[str, FieldInfo] = Case.model_fields
+def _in_form(document: Document) -> dict[str, Any]:
+    """Tables as they are meant where a setting or a study changes the form of one.
+
+    The values of the former form do not belong to the new one: those that it does not have are left out.
+    """
+    tree = document.tree
+    for key, mark in document.provenance.items():
+        *above, decided = key.split(".")
+        if decided in DECIDING and mark.status == "set":
+            tree = _without_former(tree, above, document)
+    return tree
+
+
+def _without_former(tree: dict[str, Any], above: list[str], document: Document) -> dict[str, Any]:
+    """Copy in which one table has lost the keys that its form does not have, unless they were set too."""
+    model: type[BaseModel] = Case
+    copied = table = dict(tree)
+    for part in above:
+        info, inner = model.model_fields.get(part), table.get(part)
+        meant = forms(info.annotation, inner) if info is not None else []
+        if not meant or not isinstance(inner, dict):
+            return tree  # what is wrong there is told by the schema
+        model, table[part] = meant[0], dict(inner)
+        table = table[part]
+    for key in [*table]:
+        mark = document.provenance.get(".".join((*above, key)))
+        if key not in model.model_fields and (mark is None or mark.status != "set"):
+            del table[key]
+    return copied
+
+
+def quantity_at(key: str, tree: Any = None) -> Quantity | None:
+    """Kind and range of the value at a dotted key, None where it is no quantity.
+
+    Args:
+        key: in a case file; a last part 1 or 2 is one of two values.
+        tree: plain values of the case; without them every family has its keys.
+
+    Raises:
+        InputError: there is no such key.
+    """
+    models: list[type[BaseModel]] = [Case]
     parts = [part for part in key.split(".") if not part.isdigit()]
+    named = False
     for position, part in enumerate(parts):
-        if part not in fields:
-            raise InputError(f"there is no such key{nearest(part, fields)}", key=key)
-        tables = list(_tables(fields[part].annotation))
+        if named:  # a name of the user's own
+            named = False
+            continue
+        fields = [model.model_fields for model in models]
+        holding = [each[part] for each in fields if part in each]
+        if not holding:
+            known = dict.fromkeys(name for each in fields for name in each)
+            raise InputError(f"there is no such key{nearest(part, known)}", key=key)
         if position == len(parts) - 1:
-            return _quantity(fields[part])
-        if not tables:
+            return _quantity(holding[0])
+        tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
+        models = [model for info in holding for model in forms(info.annotation, tree)]
+        named = _named_tables(holding[0])
+        if not models:
             raise InputError(f"'{part}' is a value, not a table", key=key)
-        fields = tables[0].model_fields
     return None
+
+
+def _named_tables(info: FieldInfo) -> bool:
+    """True if a field holds tables under names of the user's own."""
+    return get_origin(info.annotation) is dict
 
 
 def _quantity(info: FieldInfo) -> Quantity | None:
@@ -543,13 +647,6 @@ def _marks(info: FieldInfo) -> Iterator[Any]:
     yield from info.metadata
     for option in getattr(info.annotation, "__args__", ()):
         yield from getattr(option, "__metadata__", ())
-
-
-def _tables(annotation: Any) -> Iterator[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for option in getattr(annotation, "__args__", ()):
-        yield from _tables(option)
 
 
 def _sentence(error: ValidationError, document: Document) -> InputError:
@@ -568,6 +665,9 @@ def _clearest(details: list[Any]) -> Any:
 
     For a value that may be a name or a table, the complaint about the form that was given.
     """
+    for item in details:  # a misspelt form makes its own keys unknown
+        if item["type"] == "literal_error" and item["loc"][-1] in DECIDING:
+            return item
     unknown = [item for item in details if item["type"] == "extra_forbidden"]
     first = (unknown or details)[0]
     same = [item for item in details if item["loc"][:2] == first["loc"][:2]]
@@ -599,7 +699,8 @@ def _message(detail: Any) -> str:
         known = _siblings(detail["loc"])
         return f"is not a known {what}{nearest(str(detail['loc'][-1]), known)}"
     if kind == "literal_error":
-        return f"{shown(given)} is not allowed; use {context['expected']}"
+        allowed = _options(detail["loc"]) or context["expected"]
+        return f"{shown(given)} is not allowed; use {allowed}"
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return f"{shown(given)} was given where a table belongs"
     if kind in ("tuple_type", "list_type"):
@@ -611,13 +712,29 @@ def _siblings(location: tuple[Any, ...]) -> dict[str, None]:
     return dict.fromkeys(_fields(location))
 
 
+def _options(location: tuple[Any, ...]) -> str:
+    """Forms that a deciding key may name, those of all tables that stand there; else nothing."""
+    *above, _, key = location
+    if key not in DECIDING:
+        return ""
+    info = _fields(tuple(above)).get(above[-1]) if above else None
+    return " or ".join(f"'{name}'" for name in alternatives(info.annotation)) if info else ""
+
+
 def _fields(location: tuple[Any, ...]) -> Mapping[str, FieldInfo]:
     """Fields of the table in which the last part of a location stands."""
     fields: Mapping[str, FieldInfo] = Case.model_fields
+    tables: Mapping[str, type[BaseModel]] = {}
+    named = False
     for part in location[:-1]:
-        if isinstance(part, str) and part in fields:
-            tables = list(_tables(fields[part].annotation))
-            fields = tables[0].model_fields if tables else {}
+        if named:
+            named = False
+        elif part in tables:
+            fields, tables = tables[part].model_fields, {}
+        elif isinstance(part, str) and part in fields:
+            named = _named_tables(fields[part])
+            tables = alternatives(fields[part].annotation)
+            fields = next(iter(tables.values())).model_fields if tables else {}
     return fields
 
 
@@ -632,5 +749,7 @@ def _needed(location: tuple[Any, ...]) -> str:
     if len(location) == 1:
         needed = [name for name, field in fields.items() if field.is_required()]
         return f"; a case file needs the tables {', '.join(needed)}"
+    if get_origin(info.annotation) is tuple:
+        return "; write a list"
     options = getattr(info.annotation, "__args__", ())
     return f"; use one of {', '.join(options)}" if options else "; write text"

@@ -1,8 +1,9 @@
-"""Computations of a case: the cycle in detail, studies, spread of the laws, loss map, back-driving."""
+"""Computations of a case: the cycle in detail, studies, spread of the laws, back-driving."""
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import equinox as eqx
@@ -11,6 +12,7 @@ import xarray as xr
 from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.cases import loss_map
 from pitchpoint.cases.build import Built, build, laws_of
 from pitchpoint.cases.document import Document, leaves, resolve
 from pitchpoint.cases.laws import CASE_LAWS
@@ -26,8 +28,8 @@ from pitchpoint.cases.schema import (
     validate,
 )
 from pitchpoint.efficiency.profile import profile
-from pitchpoint.efficiency.quasi_static import Models, Operation
-from pitchpoint.efficiency.summary import summarise
+from pitchpoint.efficiency.quasi_static import Models
+from pitchpoint.efficiency.summary import engaged, summarise
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -69,13 +71,20 @@ class Job:
     Attributes:
         name: of the part, and of its file.
         title: for progress and figures.
-        pieces: each computes one dataset, told a callback for progress; a long sweep has several,
-            to be put together along its points.
+        pieces: each computes one dataset, told a callback for progress; a long sweep has several.
+        whole: puts several pieces together; along their points by default.
     """
 
     name: str
     title: str
     pieces: "tuple[Callable[[Progress], xr.Dataset], ...]"
+    whole: "Callable[[Sequence[xr.Dataset]], xr.Dataset] | None" = None
+
+    def joined(self, pieces: Sequence[xr.Dataset]) -> xr.Dataset:
+        """The whole dataset."""
+        if self.whole is not None:
+            return self.whole(pieces)
+        return pieces[0] if len(pieces) == 1 else _joined(pieces)
 
 
 @dataclass(frozen=True)
@@ -136,14 +145,39 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
         raise InputError("is a study of the case already", file=variant.name, key=f"studies.{name}")
     studies = [_study(variant, n, study, f"studies.{n}") for n, study in built.case.studies.items()]
     studies += [_study(variant, name, study, "--sweep") for name, study in extra.items()]
-    yield Job("teeth", "teeth", (lambda _: _teeth(built),))
+    mesh = built.design.mesh
+    if _drawing(mesh):
+        yield Job("teeth", "teeth", (lambda _: _teeth(built),))
     yield Job("cycle", "mesh cycle", (lambda _: _cycle(built),))
     yield Job("operation", "operating point", (lambda _: _operation(built),))
     yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
-    yield from _yielding(built)
+    yield from _wind_up(built) if mesh.clearances else _yielding(built)
     yield from studies
-    yield Job("loss_map", "loss map", (lambda progress: _loss_map(built, progress),))
+    yield from _running(variant, built)
+    models, chosen = laws_of(built)
+    titles = [models.friction[law].title for law in chosen]
+    whole = partial(loss_map.joined, laws=titles)
+    yield Job("loss_map", "loss map", tuple(loss_map.pieces(built)), whole)
     yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
+
+
+def _wind_up(built: Built) -> Iterator[Job]:
+    """Part on the wind-up of teeth with clearances, which come to mesh under load."""
+    from pitchpoint.cases import torsion
+
+    yield Job("torsion", "torsion", (lambda _: torsion.torsion_part(built),))
+
+
+def _running(variant: Variant, built: Built) -> Iterator[Job]:
+    """Torque that runs and starts a drive with losses beside its teeth."""
+    if not built.design.drag:
+        return
+    from pitchpoint.cases import running
+
+    def compute(_: Progress) -> xr.Dataset:
+        return running.running_part(built, _backwards(variant, built))
+
+    yield Job("running", "running without load", (compute,))
 
 
 def _yielding(built: Built) -> Iterator[Job]:
@@ -163,14 +197,19 @@ def _yielding(built: Built) -> Iterator[Job]:
 
 
 def _teeth(built: Built) -> xr.Dataset:
-    """Outline of one tooth of each gear, circles and points of the path, for drawing to scale."""
+    """What a drawing of the teeth to scale needs."""
     numbers = jax.device_get(_drawing(built.design.mesh))
-    dims = {"outline": ("gear", "corner", "xy"), "points": ("point",)}
-    return dataset(
-        {name: (dims.get(name, ("gear",)[: np.ndim(v)]), v) for name, v in numbers.items()},
-        {"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
-        title="teeth",
-    )
+    dims, labels = built.family.drawing, built.family.coordinates
+    data = {name: (dims.get(name) or _dims(name, v), v) for name, v in numbers.items()}
+    used = {name for each, _ in data.values() for name in each}
+    return dataset(data, {k: v for k, v in labels.items() if k in used}, title="teeth")
+
+
+def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
+    """Dimensions of an array that the family does not name: two values are those of two gears."""
+    if np.shape(values) == (2,):
+        return ("gear",)
+    return tuple(f"{name}_{axis}" for axis in range(np.ndim(values)))
 
 
 @eqx.filter_jit
@@ -181,8 +220,10 @@ def _drawing(mesh: Mesh) -> dict[str, Array]:
 def _cycle(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
     film = FILM_THICKNESS[built.case.models.film_thickness]
+    known = engaged(built.design, built.operation, models)
     runs = [
-        profile(built.design, built.operation, _choose(models, index), film) for index in chosen
+        profile(built.design, built.operation, _choose(models, index), film, engaged=known)
+        for index in chosen
     ]
     names = _names(models, chosen)
     _demand_motion(np.stack([run["locked"].any(keepdims=True) for run in runs]), [built], names)
@@ -205,7 +246,7 @@ def _cycle(built: Built) -> xr.Dataset:
         for law, run in zip(laws, runs, strict=True)
         for text in _film_warnings(built, law, run)
     ]
-    return dataset(
+    data = dataset(
         {**common, **each},
         {"law": names},
         title="mesh cycle",
@@ -213,6 +254,9 @@ def _cycle(built: Built) -> xr.Dataset:
         film_law=film.name,
         events=[float(phase) for phase in built.design.mesh.events()],
     )
+    if built.design.mesh.clearances:
+        data["path"].attrs.update(long_name="angle from the long axis, in turns", symbol="p/2π")
+    return data
 
 
 def _operation(built: Built) -> xr.Dataset:
@@ -237,7 +281,7 @@ def _study(variant: Variant, name: str, study: Study, where: str) -> Job:
         _point(variant, fixed, where)
         return Job(f"study_{name}", title, (_points(variant, [fixed], {}, title, {}, where),))
     where = where if where.startswith("--") else f"{where}.sweep"
-    values, kind = sweep_values(study.sweep, where, variant.name)
+    values, kind = sweep_values(study.sweep, where, variant.name, variant.document().tree)
     _demand_one(variant, study.sweep, where)
     told = {
         "sweep_key": study.sweep.key,
@@ -313,14 +357,21 @@ def _told(key: str, value: Any) -> str:
     return quantity.show(value) if quantity and isinstance(value, float) else shown(value)
 
 
-def sweep_values(sweep: Sweep, where: str, name: str) -> tuple[list[Any], Any]:
+def sweep_values(
+    sweep: Sweep, where: str, name: str, tree: Mapping[str, Any]
+) -> tuple[list[Any], Any]:
     """Values of a sweep, numbers in SI, and their kind.
+
+    Args:
+        sweep: as given.
+        where, name: key and file, for messages.
+        tree: plain values of the case.
 
     Raises:
         InputError: an unknown key, or a value that the key does not take.
     """
     try:
-        quantity = quantity_at(sweep.key)
+        quantity = quantity_at(sweep.key, tree)
         if sweep.key.partition(".")[0] not in SWEPT:
             raise InputError(f"cannot be swept; keys of {', '.join(SWEPT)} can")
         if sweep.values is not None:
@@ -343,65 +394,23 @@ def _read(quantity: Quantity, value: Any) -> Any:
     return SIValue(quantity.read(value))
 
 
-def _loss_map(built: Built, progress: Progress) -> xr.Dataset:
-    axes = _map_axes(built)
-    torque, speed, temperature = np.meshgrid(*axes, indexing="ij")
-    models, chosen = laws_of(built)
-    points = [
-        (
-            built.design,
-            Operation(jnp.asarray(load), jnp.asarray(rate or 1.0), jnp.asarray(degree)),
-        )
-        for load, rate, degree in zip(torque.flat, speed.flat, temperature.flat, strict=True)
-    ]
-    shape = torque.shape
-    losses, efficiencies, warnings = [], [], []
-    for law in chosen:
-        out = summarise(points, _choose(models, law), progress)
-        warnings += _lock_warning(models.friction[law], out["locked"] & (torque > 0.0).ravel())
-        losses.append(np.where(speed > 0.0, out["mean_loss"].reshape(shape), 0.0))
-        efficiencies.append(np.where(speed > 0.0, out["mean_efficiency"].reshape(shape), np.nan))
-    dims = ("law", "torque", "speed", "temperature")
-    return dataset(
-        {"mean_loss": (dims, np.stack(losses)), "mean_efficiency": (dims, np.stack(efficiencies))},
-        {
-            "law": _names(models, chosen),
-            **{name: (name, values) for name, values in zip(dims[1:], axes, strict=True)},
-        },
-        title="loss map",
-        warnings=warnings,
-        note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
-    )
-
-
-def _map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    asked, point = built.case.loss_map, built.case.operation
-    count = int(asked.count) if asked else 9
-    torque = (asked and asked.torque) or 1.5 * point.torque or 1.0
-    speed = (asked and asked.speed) or 1.5 * point.speed
-    oil = built.lubricant
-    around = point.temperature + np.array([-20.0, 0.0, 20.0])
-    degrees = np.unique(np.clip(around, oil.T_min.value, oil.T_max.value))
-    if asked and asked.temperatures:
-        degrees = np.array(asked.temperatures)
-    return np.linspace(0.0, torque, count), np.linspace(0.0, speed, count), degrees
-
-
 def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
-    """The other gear drives at its own speed and carries the same power."""
-    case = built.case
-    mesh = built.design.mesh
-    step = abs(float((mesh.driver @ mesh.motion) / (mesh.loaded @ mesh.motion)))
-    forward = case.operation.driver == "gear 1"
-    other = variant.built(
-        {
-            "operation.driver": "gear 2" if forward else "gear 1",
-            "operation.torque": SIValue(case.operation.torque / step),
-            "operation.speed": SIValue(case.operation.speed / step),
-        }
-    )
+    """The loaded member drives at its own speed and carries the same power to the former driver."""
+    other = _backwards(variant, built)
     models, chosen = laws_of(built)
     return _summaries([other], models, chosen, {}, title="back-driving", may_lock=True)
+
+
+def _backwards(variant: Variant, built: Built) -> Built:
+    point, mesh = built.case.operation, built.design.mesh
+    step = abs(float((mesh.driver @ mesh.motion) / (mesh.loaded @ mesh.motion)))
+    return variant.built(
+        {
+            "operation.driver": built.loaded,
+            "operation.torque": SIValue(point.torque / step),
+            "operation.speed": SIValue(point.speed / step),
+        }
+    )
 
 
 def _temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
@@ -454,7 +463,10 @@ def _summaries(
     out = {name: values for name, values in out.items() if not name.endswith("_path")}
     out["efficiency_fluctuation"] = out["max_efficiency"] - out["min_efficiency"]
     out["torque_ripple"] = out["max_input_torque"] - out["min_input_torque"]
-    out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
+    if points[0].design.mesh.clearances:
+        del out["loss_factor"]  # of equal shares, which such teeth never have
+    else:
+        out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
     told = dict.fromkeys(text for point in points for text in point.warnings)
     warnings = few([*told])
     if "vibration_status" in extra:
@@ -470,6 +482,14 @@ def _summaries(
         title=title,
         warnings=warnings,
     )
+
+
+def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Pieces of a sweep as one; their warnings too."""
+    data = xr.concat(pieces, "point", combine_attrs="override")
+    told = [text for piece in pieces for text in json.loads(piece.attrs["warnings"])]
+    data.attrs["warnings"] = json.dumps(few([*dict.fromkeys(told)]))
+    return data
 
 
 def few(sentences: list[str]) -> list[str]:
@@ -500,7 +520,8 @@ def _in_groups(
     """Results [point] in order, from computations of points of equal static structure."""
     groups: dict[Any, list[int]] = {}
     for position, point in enumerate(points):
-        groups.setdefault(jax.tree.structure(point.design), []).append(position)
+        shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(point.design))
+        groups.setdefault((jax.tree.structure(point.design), shapes), []).append(position)
     parts = [(where, compute([points[i] for i in where])) for where in groups.values()]
     result = {name: np.empty(len(points), values.dtype) for name, values in parts[0][1].items()}
     for where, values in parts:
@@ -559,8 +580,8 @@ def _where(built: Built) -> str:
 def _film_warnings(built: Built, law: FrictionLaw, run: Mapping[str, Any]) -> list[str]:
     """A full-film law where there is no full film, and conditions outside the fitted range."""
     told = []
-    active = np.asarray(run["active"])
-    thinnest = float(np.asarray(run["lambda_ratio"])[active].min())
+    loaded = np.asarray(run["load"]) > 0.0
+    thinnest = float(np.asarray(run["lambda_ratio"]).min(where=loaded, initial=np.inf))
     if law.full_film and built.case.operation.torque > 0.0 and thinnest < 1.0:
         highest = float(np.asarray(run["friction"]).max())
         told.append(

@@ -318,15 +318,25 @@ def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
     return _Solution(force, approach, stiffness, slack)
 
 
-def _divided(matrix: Float[Array, "*b lane lane"], by: Array) -> Array:
-    """Solution of a positive definite system; a last step from it carries the first derivatives.
+def _divided(
+    matrix: Float[Array, "*b lane lane"], by: Float[Array, "*b lane side"]
+) -> Float[Array, "*b lane side"]:
+    """Solution of positive definite systems; a last step from it carries the first derivatives.
 
-    Factors are not differentiated: that would solve for a whole matrix, on which libraries under JAX
-    start threads of their own that wait for each other.
+    Factors are not differentiated: that would solve for a whole matrix. The systems are taken one
+    after the other: batches of them wait for threads of the pool that they run on (`_jax`).
     """
-    root = jnp.linalg.cholesky(jax.lax.stop_gradient(matrix)), True
-    found = jax.scipy.linalg.cho_solve(root, jax.lax.stop_gradient(by))
-    return found + jax.scipy.linalg.cho_solve(root, by - matrix @ found)
+    matrix = jnp.broadcast_to(matrix, (*by.shape[:-2], *matrix.shape[-2:]))
+    flat = matrix.reshape(-1, *matrix.shape[-2:])
+    root = jax.lax.map(jnp.linalg.cholesky, jax.lax.stop_gradient(flat))
+
+    def solve(pair: tuple[Array, Array]) -> Array:
+        found: Array = jax.scipy.linalg.cho_solve((pair[0], True), pair[1])
+        return found
+
+    sides = by.reshape(-1, *by.shape[-2:])
+    found = jax.lax.map(solve, (root, jax.lax.stop_gradient(sides)))
+    return jnp.reshape(found + jax.lax.map(solve, (root, sides - flat @ found)), by.shape)
 
 
 def _residual(problem: _Problem, loaded: Bool[Array, "*b lane"], found: _Solution) -> Each:

@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
-from pitchpoint.views.facts import Facts, facts
+from pitchpoint.views.facts import Facts, Wave, facts, has_wave, timed
 from pitchpoint.views.figures import (
     Curve,
     Curves,
@@ -25,7 +25,17 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 
-__all__ = ["PLACE", "along", "cycle_panel", "gapped", "loss_places", "marks", "path_panel"]
+__all__ = [
+    "PLACE",
+    "along",
+    "cycle_panel",
+    "cycle_pitch",
+    "gapped",
+    "loss_places",
+    "marks",
+    "path_panel",
+    "regimes",
+]
 
 # Nodes beside an event are closer than this; a segment shorter than the second is no segment.
 _EVENT, _SHORT = 1e-7, 1e-6
@@ -45,7 +55,14 @@ _LINES = {
     "loss": "Of the whole contact line.",
 }
 PLACE = "place on the path from A [base pitches]"
-_REGIMES = ((0.0, 1.0, "#fbe9e2", "boundary"), (1.0, 3.0, "#fdf5dc", "mixed"))
+_REGIMES = (
+    (0.0, 1.0, "#fbe9e2", "boundary"),
+    (1.0, 3.0, "#fdf5dc", "mixed"),
+    (3.0, np.inf, "#e7f2ea", "full film"),
+)
+_FEW = 8
+"""Pairs above which the friction of each cannot be told apart."""
+
 _PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
 Points = tuple[np.ndarray, np.ndarray]
@@ -61,18 +78,24 @@ def path_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
 
 def cycle_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     """Efficiency and input torque over phase and time and against each other, friction of the pairs."""
-    seen = list(_seen(outcomes, known))
+    seen = list(_timed(outcomes, known))
     if not seen:
         return Panel("Over the mesh cycle", [])
+    pitch = cycle_pitch(outcomes)
     figures = [
-        _over("efficiency", "phase", seen),
-        _over("input_torque", "phase", seen),
-        _over("efficiency", "time", seen),
-        _over("input_torque", "time", seen),
+        _over("efficiency", "phase", seen, pitch),
+        _over("input_torque", "phase", seen, pitch),
+        _over("efficiency", "time", seen, pitch),
+        _over("input_torque", "time", seen, pitch),
         _against(seen),
-        _pairs(seen),
+        (_pairs if seen[0][1].sizes["pair"] <= _FEW else _count)(seen, pitch),
     ]
     return Panel("Over the mesh cycle", figures, [curve for curve, *_ in seen])
+
+
+def cycle_pitch(outcomes: Mapping[str, Outcome]) -> str:
+    """What the phase of the mesh cycle counts: the mesh repeats with every pitch of this kind."""
+    return "tooth pitch" if all(map(has_wave, outcomes.values())) else "base pitch"
 
 
 def loss_places(data: xr.Dataset, law: int, fact: Facts) -> dict[tuple[str, str], float]:
@@ -172,6 +195,17 @@ def _seen(
                 yield known[variant, law], data, position, fact
 
 
+def _timed(
+    outcomes: Mapping[str, Outcome], known: Curves
+) -> Iterator[tuple[Curve, xr.Dataset, int, Facts | Wave]]:
+    """The same as `_seen`, with the period of a mesh of any kind."""
+    for variant, outcome in outcomes.items():
+        if "cycle" in outcome.parts:
+            data, fact = outcome.parts["cycle"], timed(outcome)
+            for position, law in enumerate(laws(data)):
+                yield known[variant, law], data, position, fact
+
+
 def _along_figure(
     name: str, seen: list[tuple[Curve, xr.Dataset, int, Facts]], first: Facts
 ) -> Figure:
@@ -192,7 +226,7 @@ def _along_figure(
     )
     title = "Loss of the pair" if name == "loss" else _title(name)
     if name == "lambda_ratio":
-        _add_regimes(look, shown)
+        regimes(look, shown)
     note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
     return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (note, same))))
 
@@ -232,35 +266,55 @@ def marks(fact: Facts) -> dict[str, Any]:
     }
 
 
-def _add_regimes(look: dict[str, Any], traces: list[Trace]) -> None:
-    """Bands of the lubrication regimes behind the curves."""
-    highest = max((y for t in traces for y in t["y"] if y is not None), default=1.0)
-    top = max(1.25, 1.1 * highest)
-    look["yaxis"]["range"] = [0, top]
-    for low, high, colour, words in _REGIMES:
-        if low >= top:
-            continue
+def regimes(look: dict[str, Any], traces: list[Trace]) -> None:
+    """Bands of the lubrication regimes behind the curves; sets the range of the axis of values.
+
+    Args:
+        look: layout with lists of shapes and annotations.
+        traces: curves of the film thickness over the roughness.
+    """
+    values = [y for t in traces for y in t["y"] if y is not None]
+    top = max(1.25, 1.1 * max(values, default=1.0))
+    bottom = 0.0
+    if look["yaxis"].get("type") == "log":
+        bottom = 0.7 * min(values)
+        top *= 1.3
+    if "range" in look["yaxis"]:
+        bottom, top = (10.0**end for end in look["yaxis"]["range"])
+        top = max(top, 1.25)
+    look["yaxis"]["range"] = [_place(bottom, bottom), _place(top, bottom)]
+    bands = [band for band in _REGIMES if bottom < band[1] and band[0] < top]
+    for low, high, colour, words in bands:
+        ends = {"y0": max(low, bottom), "y1": min(high, top)}
         look["shapes"].insert(
             0,
-            {"type": "rect", "xref": "paper", "x0": 0, "x1": 1, "y0": low, "y1": min(high, top)}
+            {"type": "rect", "xref": "paper", "x0": 0, "x1": 1, **ends}
             | {"fillcolor": colour, "line": {"width": 0}, "layer": "below"},
         )
         look["annotations"].append(
             {"text": words, "xref": "paper", "x": 0.99, "xanchor": "right", "showarrow": False}
-            | {"y": min(high, top), "yanchor": "top", "font": {"size": 11, "color": "#7a6a4f"}}
+            | {"y": _place(ends["y1"], bottom), "yanchor": "top", "yshift": 3}
+            | {"font": {"size": 11, "color": "#7a6a4f"}}
         )
 
 
-def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
+def _place(value: float, bottom: float) -> float:
+    """Place on the axis: logarithmic axes, which begin above zero, count in powers of ten."""
+    return float(np.log10(value)) if bottom > 0.0 else value
+
+
+def _over(
+    name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Facts | Wave]], pitch: str
+) -> Figure:
     abscissa = _phase if axis == "phase" else _time
     unit = show.unit(VARIABLES[name].display)
     traces = []
     for curve, data, law, fact in seen:
         x, y = abscissa(data, data[name].values[law], fact)
         traces.append(line(curve, x, display(name, y), unit))
-    words = {"phase": "phase of the mesh cycle [base pitches]", "time": "time [ms]"}[axis]
-    title = {"phase": "over one base pitch", "time": "over time, two base pitches"}[axis]
-    note = "Time runs against the phase: the wheel drives." if seen[0][3].backwards else ""
+    words = {"phase": _phase_axis(pitch), "time": "time [ms]"}[axis]
+    title = {"phase": f"over one {pitch}", "time": f"over time, two {pitch}es"}[axis]
+    note = _BACKWARDS[pitch] if seen[0][3].backwards else ""
     return Figure(
         f"cycle_{name}_{axis}",
         f"{_title(name)} {title}",
@@ -270,19 +324,31 @@ def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Facts]]
     )
 
 
-def _phase(data: xr.Dataset, values: np.ndarray, _: Facts) -> Points:
-    return gapped(data["phase"].values, values)
+_BACKWARDS = {
+    "base pitch": "Time runs against the phase: the wheel drives.",
+    "tooth pitch": "Time runs against the phase: teeth come from positive angles.",
+}
 
 
-def _time(data: xr.Dataset, values: np.ndarray, fact: Facts) -> Points:
+def _phase_axis(pitch: str) -> str:
+    return f"phase of the mesh cycle [{pitch}es]"
+
+
+def _phase(data: xr.Dataset, values: np.ndarray, _: Facts | Wave) -> Points:
+    phase = np.where(data["phase"].values > 1.0, data["phase"].values - 1.0, data["phase"].values)
+    order = np.argsort(phase, kind="stable")
+    return gapped(phase[order], values[order])
+
+
+def _time(data: xr.Dataset, values: np.ndarray, fact: Facts | Wave) -> Points:
     phase = data["phase"].values
     if fact.backwards:
         phase, values = 1.0 - phase[::-1], values[::-1]
-    x, y = gapped(np.concatenate([phase, phase + 1.0]), np.tile(values, 2))
+    x, y = gapped(np.concatenate([phase, phase + 1.0]) - phase[0], np.tile(values, 2))
     return x * fact.period * 1e3, y
 
 
-def _against(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
+def _against(seen: list[tuple[Curve, xr.Dataset, int, Facts | Wave]]) -> Figure:
     """Efficiency against input torque; curves lie on each other, so the first ones are wider."""
     traces = []
     for position, (curve, data, law, _) in enumerate(seen):
@@ -306,7 +372,7 @@ def _against(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
     )
 
 
-def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
+def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts | Wave]], pitch: str) -> Figure:
     """Friction of all pairs that are in contact at a phase."""
     traces = []
     for curve, data, law, _ in seen:
@@ -329,8 +395,26 @@ def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Facts]]) -> Figure:
         "cycle_friction",
         "Friction coefficient of the pairs in contact",
         traces,
-        layout("phase of the mesh cycle [base pitches]", "μ", yaxis={"rangemode": "tozero"}),
+        layout(_phase_axis(pitch), "μ", yaxis={"rangemode": "tozero"}),
         f"Line styles here: {names}.",
+    )
+
+
+def _count(seen: list[tuple[Curve, xr.Dataset, int, Facts | Wave]], pitch: str) -> Figure:
+    """Number of pairs that carry; steps, since it is a whole number."""
+    traces = []
+    for curve, data, law, fact in seen:
+        carrying = (data["load"].values[law].max(axis=-1) > 0.0).sum(axis=-1)
+        traces.append(line(curve, *_phase(data, carrying, fact), "pairs"))
+    shown, same = merged(traces)
+    for trace in shown:
+        trace["line"]["shape"] = "hvh"
+    return Figure(
+        "cycle_pairs",
+        "Number of pairs that carry",
+        shown,
+        layout(_phase_axis(pitch), "pairs", yaxis={"rangemode": "tozero"}),
+        same,
     )
 
 

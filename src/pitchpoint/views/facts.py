@@ -8,17 +8,47 @@ import numpy as np
 from pitchpoint import units
 from pitchpoint.cases.run import Outcome
 
-__all__ = ["Facts", "facts", "given", "same_geometry"]
+__all__ = [
+    "MEMBERS",
+    "Facts",
+    "OperatingPoint",
+    "Wave",
+    "facts",
+    "given",
+    "has_path",
+    "has_wave",
+    "operating_point",
+    "same_geometry",
+    "timed",
+    "wave",
+]
+
+MEMBERS = ("wave generator", "flexspline", "circular spline")
+"""Bodies of a drive whose teeth are carried by a wave, in the order of their coordinates."""
 
 
 @dataclass(frozen=True)
-class Facts:
+class OperatingPoint:
+    """Where a variant is run.
+
+    Attributes:
+        torque: of the loaded member [N m].
+        speed: of the driver [rad/s].
+        temperature: of the oil [K].
+    """
+
+    torque: float
+    speed: float
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Facts(OperatingPoint):
     """Operating point and gears of one variant.
 
     Attributes:
         driver: 1 or 2.
         right_flank: True if the right flanks touch.
-        torque, speed, temperature: of the operating point [N m, rad/s, K].
         teeth: of both gears; negative for a ring.
         points: by letter, positions on the path from A in base pitches, in order.
         transverse_ratio, overlap_ratio: transverse contact ratio and overlap ratio.
@@ -26,9 +56,6 @@ class Facts:
 
     driver: int
     right_flank: bool
-    torque: float
-    speed: float
-    temperature: float
     teeth: tuple[int, int]
     points: dict[str, float]
     transverse_ratio: float
@@ -65,25 +92,97 @@ class Facts:
         return self.driver == 2
 
 
+@dataclass(frozen=True)
+class Wave(OperatingPoint):
+    """Operating point and bodies of a drive whose teeth are carried by a wave.
+
+    Attributes:
+        teeth: of flexspline and circular spline.
+        rates: of wave generator, flexspline and circular spline for a radian of the driver.
+        driver, loaded, fixed: names of the members.
+    """
+
+    teeth: tuple[int, int]
+    rates: tuple[float, float, float]
+    driver: str
+    loaded: str
+    fixed: str
+
+    @property
+    def period_angle(self) -> float:
+        """Driver angle in which the wave moves on by one tooth of the flexspline [rad]."""
+        return 2.0 * pi / self.teeth[0] / abs(self.rates[1] - self.rates[0])
+
+    @property
+    def period(self) -> float:
+        """Time in which the wave moves on by one tooth of the flexspline [s]."""
+        return self.period_angle / self.speed
+
+    @property
+    def backwards(self) -> bool:
+        """True if teeth move against the sense of rotation along the wave."""
+        return self.rates[1] < self.rates[0]
+
+
+def has_path(outcome: Outcome) -> bool:
+    """True if the teeth are drawn on a path of contact with its points."""
+    return "points" in outcome.parts.get("teeth", ())
+
+
+def has_wave(outcome: Outcome) -> bool:
+    """True if the teeth are drawn on a neutral line that a wave deforms."""
+    return "wave_weights" in outcome.parts.get("teeth", ())
+
+
 def given(outcome: Outcome, table: str, key: str) -> str:
     """Value of an input as shown; empty if there is none."""
     rows = outcome.manifest["inputs"]
     return next((r["value"] for r in rows if r["table"] == table and r["key"] == key), "")
 
 
+def operating_point(outcome: Outcome) -> OperatingPoint:
+    """Where a result was run, whatever its gears."""
+    return OperatingPoint(**_point(outcome))
+
+
+def timed(outcome: Outcome) -> Facts | Wave:
+    """Facts of a result whose teeth are there, with the period of its mesh."""
+    return wave(outcome) if has_wave(outcome) else facts(outcome)
+
+
+def wave(outcome: Outcome) -> Wave:
+    """Facts of a result whose teeth are carried by a wave.
+
+    The rates obey z2 C = z1 F + (z2 - z1) W; the loaded member turns so that its teeth are pressed.
+    """
+    z1, z2 = (round(float(z)) for z in outcome.parts["teeth"]["teeth"].values)
+    driver, loaded = (str(outcome.manifest[key]) for key in ("driver", "loaded"))
+    law = (z2 - z1, z1, -z2)
+    drives, carries = MEMBERS.index(driver), MEMBERS.index(loaded)
+    rates = [0.0, 0.0, 0.0]
+    rates[drives] = 1.0 if law[drives] > 0 else -1.0
+    rates[carries] = -law[drives] * rates[drives] / law[carries]
+    return Wave(
+        **_point(outcome),
+        teeth=(z1, z2),
+        rates=(rates[0], rates[1], rates[2]),
+        driver=driver,
+        loaded=loaded,
+        fixed=next(name for name in MEMBERS if name not in (driver, loaded)),
+    )
+
+
 def facts(outcome: Outcome) -> Facts:
-    """Facts of a result whose teeth are there."""
+    """Facts of a result whose teeth are there, on a path of contact."""
     teeth = outcome.parts["teeth"]
     places = (teeth["points"].values - teeth["points"].values[0]) / float(teeth["base_pitch"])
     named = sorted(zip(places.tolist(), teeth["point"].values.tolist(), strict=True))
     ratio = float(teeth["transverse_contact_ratio"])
     inside = {str(name): place for place, name in named if -1e-9 <= place <= ratio + 1e-9}
     return Facts(
+        **_point(outcome),
         driver=2 if given(outcome, "operation", "driver") == "gear 2" else 1,
         right_flank=given(outcome, "gears", "flank") == "right",
-        torque=_read(outcome, "torque", "torque"),
-        speed=_read(outcome, "speed", "rotational speed"),
-        temperature=_read(outcome, "temperature", "temperature"),
         teeth=(round(float(teeth["teeth"][0])), round(float(teeth["teeth"][1]))),
         points=inside,
         transverse_ratio=ratio,
@@ -94,12 +193,24 @@ def facts(outcome: Outcome) -> Facts:
 def same_geometry(first: Outcome, second: Outcome) -> bool:
     """True if both variants have the same teeth and drive the same flanks the same way."""
     one, two = first.parts["teeth"], second.parts["teeth"]
-    keys = (("operation", "driver"), ("gears", "flank"))
+    keys = (("operation", "driver"), ("gears", "flank"), ("gears", "fixed"))
     return (
         one.sizes == two.sizes
-        and all(np.array_equal(one[name].values, two[name].values) for name in one.data_vars)
+        and set(one.data_vars) == set(two.data_vars)
+        and all(
+            np.array_equal(one[name].values, two[name].values, equal_nan=True)
+            for name in one.data_vars
+        )
         and all(given(first, *key) == given(second, *key) for key in keys)
     )
+
+
+def _point(outcome: Outcome) -> dict[str, float]:
+    return {
+        "torque": _read(outcome, "torque", "torque"),
+        "speed": _read(outcome, "speed", "rotational speed"),
+        "temperature": _read(outcome, "temperature", "temperature"),
+    }
 
 
 def _read(outcome: Outcome, key: str, kind: str) -> float:

@@ -36,6 +36,7 @@ __all__ = [
     "law_title",
     "laws",
     "layout",
+    "level",
     "line",
     "merged",
     "plain",
@@ -222,6 +223,12 @@ def layout(x: str, y: str, **more: Any) -> dict[str, Any]:
         "separators": ".\u2009",
         **more,
     }
+
+
+def level(name: str, value: float) -> str:
+    """A value at which a line holds, with its unit, for a legend [SI in]."""
+    unit = show.unit(VARIABLES[name].display)
+    return f"{show.number(float(display(name, value)))}\u00a0{unit}"
 
 
 def short_axis(name: str) -> str:

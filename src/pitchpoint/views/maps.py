@@ -1,4 +1,4 @@
-"""Loss and efficiency over torque and speed."""
+"""Loss and efficiency over torque, speed and temperature."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -9,19 +9,27 @@ import xarray as xr
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
-from pitchpoint.views.facts import facts
+from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (
+    DASHES,
+    INK,
     Choice,
+    Curve,
     Curves,
     Figure,
+    Key,
     Panel,
+    Trace,
     display,
     laws,
     layout,
+    level,
+    line,
     rounded,
+    short_axis,
 )
 
-__all__ = ["map_panel"]
+__all__ = ["efficiency_panel", "map_panel"]
 
 _SHOWN = ("mean_loss", "mean_efficiency")
 _MOST = 60
@@ -47,7 +55,7 @@ def _choices(
     """Distance from the operating temperature, variant, temperature and law of every map."""
     for variant, outcome in outcomes.items():
         if "loss_map" in outcome.parts:
-            data, fact = outcome.parts["loss_map"], facts(outcome)
+            data, fact = outcome.parts["loss_map"], operating_point(outcome)
             for law in range(data.sizes["law"]):
                 for position, degree in enumerate(data["temperature"].values):
                     yield abs(float(degree) - fact.temperature), variant, position, law
@@ -83,7 +91,7 @@ def _thinned(size: int) -> np.ndarray:
 
 
 def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature: int) -> Figure:
-    variable, fact = VARIABLES[name], facts(outcome)
+    variable, fact = VARIABLES[name], operating_point(outcome)
     unit = show.unit(variable.display)
     heat = {
         "type": "heatmap",
@@ -114,3 +122,64 @@ def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature
         layout("driver speed [rpm]", "output torque [N m]"),
         "The cross marks the operating point.",
     )
+
+
+_AXES = {"torque": "temperature", "speed": "temperature", "temperature": "torque"}
+"""For the axis of a figure, what its lines differ in."""
+
+
+def efficiency_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+    """Efficiency against torque, speed and temperature, lines through the operating point and beside it."""
+    seen = [
+        (known[variant, law], outcome, position)
+        for variant, outcome in outcomes.items()
+        if "loss_map" in outcome.parts
+        for position, law in enumerate(laws(outcome.parts["loss_map"]))
+    ]
+    figures = [_lines(axis, other, seen) for axis, other in _AXES.items() if _worth(axis, seen)]
+    return Panel("Efficiency", figures, [curve for curve, *_ in seen])
+
+
+def _worth(axis: str, seen: list[tuple[Curve, Outcome, int]]) -> bool:
+    """True if there are enough values for a line."""
+    return any(outcome.parts["loss_map"].sizes[axis] > 2 for _, outcome, _ in seen)
+
+
+def _lines(axis: str, other: str, seen: list[tuple[Curve, Outcome, int]]) -> Figure:
+    traces: list[Trace] = []
+    unit = show.unit(VARIABLES["mean_efficiency"].display)
+    values = _spread([o.parts["loss_map"][other].values for _, o, _ in seen], other)
+    held: dict[str, None] = {}
+    for curve, outcome, law in seen:
+        data = outcome.parts["loss_map"].isel(law=law)
+        (third,) = {"torque", "speed", "temperature"} - {axis, other}
+        near = data.sel({third: getattr(operating_point(outcome), third)}, method="nearest")
+        held[level(third, float(near[third]))] = None
+        for dash, value in zip(DASHES, values, strict=False):
+            if value not in near[other].values:
+                continue
+            found = near["mean_efficiency"].sel({other: value})
+            trace = line(curve, display(axis, near[axis]), display("mean_efficiency", found), unit)
+            trace["line"] = {"color": curve.colour, "dash": dash, "width": 2}
+            traces.append(trace)
+    words = VARIABLES[axis].long_name
+    return Figure(
+        f"efficiency_{axis}",
+        f"Mean efficiency against {words}",
+        traces,
+        layout(f"{words} [{show.unit(VARIABLES[axis].display)}]", short_axis("mean_efficiency")),
+        f"At {' and '.join(held)}, which of the loss map is nearest to the operating point.",
+        tuple(
+            Key(level(other, value), INK, dash) for dash, value in zip(DASHES, values, strict=False)
+        ),
+        missing="Undefined here: no power is transmitted, or the mesh is locked.",
+    )
+
+
+def _spread(axes: list[np.ndarray], name: str) -> list[float]:
+    """At most so many values of an axis as there are dashes, from its least to its largest."""
+    every = np.unique(np.concatenate(axes))
+    if name == "torque":
+        every = every[every > 0.0]
+    count = min(every.size, len(DASHES))
+    return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]

@@ -13,13 +13,15 @@ from pitchpoint.cases.comparison import Row, counts
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.store import write_text
 from pitchpoint.views import show
-from pitchpoint.views.cycle import cycle_panel, loss_places, path_panel
+from pitchpoint.views.cycle import cycle_panel, cycle_pitch, loss_places, path_panel
 from pitchpoint.views.design_chart import design_charts
-from pitchpoint.views.facts import Facts, facts, given, same_geometry
+from pitchpoint.views.drive import picture, wave_dimensions
+from pitchpoint.views.facts import Facts, facts, given, has_path, has_wave, same_geometry, timed
 from pitchpoint.views.figures import Curve, Curves, Panel, curves, law_title, laws
 from pitchpoint.views.geometry import dimensions, drawing
-from pitchpoint.views.maps import map_panel
+from pitchpoint.views.maps import efficiency_panel, map_panel
 from pitchpoint.views.plane_of_action import plane_of_action
+from pitchpoint.views.running import drag_answer, drag_panel, starting_answer
 from pitchpoint.views.sliding import sliding_figure
 from pitchpoint.views.stiffness import (
     outside_standard,
@@ -29,12 +31,14 @@ from pitchpoint.views.stiffness import (
     stiffness_table,
 )
 from pitchpoint.views.sweeps import study_panels, study_tables
+from pitchpoint.views.torsion import torsion_answer, torsion_panels
 from pitchpoint.views.vibration import (
     resonance_panels,
     vibration_answer,
     vibration_panels,
     vibration_tables,
 )
+from pitchpoint.views.wave import arc_panel, gap_panel, told_arcs, wave_losses, wave_sentence
 
 if TYPE_CHECKING:
     import jinja2
@@ -54,7 +58,7 @@ STATUSES = {
     "default": "not given, taken as usual",
 }
 AVERAGES = {
-    "base_pitch": "Averages run over one base pitch, after which the state repeats.",
+    "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
     "path": "Averages run over the path of one pair, so double contact counts twice, as published.",
 }
 KINDS = {
@@ -104,19 +108,26 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
     from plotly.offline import get_plotlyjs
 
     known = curves(outcomes)
-    drawn = {name: one for name, one in outcomes.items() if "teeth" in one.parts}
+    drawn = {name: one for name, one in outcomes.items() if has_path(one)}
+    waves = {name: one for name, one in outcomes.items() if has_wave(one)}
+    toothed = drawn | waves
     panels = {
         "path": path_panel(drawn, known) if drawn else Panel("", []),
-        "cycle": cycle_panel(drawn, known) if drawn else Panel("", []),
-        "map": map_panel(drawn, known) if drawn else Panel("", []),
+        "arc": arc_panel(waves, known),
+        "cycle": cycle_panel(toothed, known) if toothed else Panel("", []),
+        "drag": drag_panel(outcomes, known),
+        "map": map_panel(toothed, known) if toothed else Panel("", []),
+        "efficiency": efficiency_panel(_lossy(toothed), known),
     }
     sweeps = study_panels(outcomes, known)
     charts = design_charts(outcomes)
     teeth = _teeth(drawn)
+    drives = _drives(waves)
     moving = {
         "stiffness": stiffness_panels(outcomes),
         "vibration": vibration_panels(outcomes),
         "resonance": resonance_panels(outcomes),
+        "torsion": torsion_panels(outcomes, known),
     }
     first = next(iter(outcomes.values())).manifest
     return (
@@ -129,6 +140,7 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             inputs=_inputs(outcomes),
             statuses=STATUSES,
             teeth=teeth,
+            drives=drives,
             panels=panels,
             moving=moving,
             stiffness_table=stiffness_table(outcomes),
@@ -137,9 +149,10 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             sweeps=sweeps,
             study_warnings=_study_warnings(outcomes),
             tables=study_tables(outcomes, known),
-            losses=_losses(drawn, known),
+            losses=_losses(toothed, known),
             point_notes=_point_notes(drawn),
-            cycle_words=_cycle_words(drawn),
+            cycle_words=_cycle_words(toothed),
+            pitch=cycle_pitch(toothed) if toothed else "",
             entry="enters at one end of the face" if _helical(drawn) else "is at A",
             rows=_rows(outcomes),
             kinds=KINDS,
@@ -155,6 +168,7 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
                 _payload(
                     [
                         *(one["sliding"] for one in teeth),
+                        *(one["gap"] for one in drives),
                         *panels.values(),
                         *(panel for each in moving.values() for panel in each),
                         *charts,
@@ -165,6 +179,11 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             plotly=Markup(get_plotlyjs()),
         )
     )
+
+
+def _lossy(outcomes: Mapping[str, Outcome]) -> dict[str, Outcome]:
+    """Those that lose enough for lines of the efficiency to say more than the map does."""
+    return {name: one for name, one in outcomes.items() if has_wave(one) or "running" in one.parts}
 
 
 @cache
@@ -223,7 +242,7 @@ def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
         "sharing": manifest["models"][0]["title"],
-        "averaging": AVERAGES.get(manifest["averaging"], manifest["averaging"]),
+        "averaging": _averaging(outcome),
         "operation": _operation(outcome),
         "laws": manifest["laws"],
         "warnings": _warnings(outcome),
@@ -231,6 +250,7 @@ def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
         "settings": manifest["settings"],
         "spread": _spread(outcome),
         "stiffness": stiffness_answer(outcome),
+        "torsion": torsion_answer(outcome),
         "vibration": vibration_answer(outcome),
         "answers": [
             _answer(outcome, law, position, known[name, law])
@@ -239,6 +259,11 @@ def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
         if "operation" in parts
         else [],
     }
+
+
+def _averaging(outcome: Outcome) -> str:
+    told = str(outcome.manifest["averaging"])
+    return AVERAGES.get(told, told).format(pitch=cycle_pitch({"": outcome}))
 
 
 def _oil_note(outcome: Outcome) -> str:
@@ -255,7 +280,8 @@ _ENDS = ("lower", "upper")
 def _operation(outcome: Outcome) -> str:
     """The operating point in words."""
     value = {key: show.pretty(given(outcome, "operation", key)) for key in _POINT}
-    driven = "gear 1" if value["driver"] == "gear 2" else "gear 2"
+    other = "gear 1" if value["driver"] == "gear 2" else "gear 2"
+    driven = outcome.manifest.get("loaded", other)
     return (
         f"{value['driver']} drives at {value['speed']}, {driven} carries {value['torque']}, "
         f"oil at {value['temperature']}"
@@ -285,6 +311,8 @@ def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str
         "ripple": show.quantity("torque_ripple", value("torque_ripple")),
         "locked": bool(data["locked"].values[position, 0]),
         "back": _back_driving(outcome, law),
+        "drag": drag_answer(outcome, position),
+        "starting": starting_answer(outcome, law),
     }
 
 
@@ -403,6 +431,35 @@ def _input(key: str, by_variant: Mapping[str, dict[str, str]], variants: int) ->
 
 def _teeth(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
     """Drawings, one for variants that share their teeth."""
+    return [
+        {
+            "variants": variants,
+            "picture": drawing(outcome).picture(f"mesh{position}"),
+            "plane": _plane(outcome),
+            "sliding": Panel("", [sliding_figure(f"sliding{position}", outcome)]),
+            "dimensions": dimensions(outcome),
+            "fact": facts(outcome),
+        }
+        for position, (variants, outcome) in enumerate(_of_geometry(outcomes))
+    ]
+
+
+def _drives(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
+    """Drawings of drives whose teeth are carried by a wave, one for variants that share their teeth."""
+    return [
+        {
+            "variants": variants,
+            "picture": picture(outcome, f"drive{position}"),
+            "gap": gap_panel(outcome, f"drive{position}"),
+            "dimensions": wave_dimensions(outcome),
+            "arcs": told_arcs(outcome),
+        }
+        for position, (variants, outcome) in enumerate(_of_geometry(outcomes))
+    ]
+
+
+def _of_geometry(outcomes: Mapping[str, Outcome]) -> list[tuple[str, Outcome]]:
+    """Names of the variants that share their teeth, and one of them; no names if all do."""
     groups: list[tuple[list[str], Outcome]] = []
     for variant, outcome in outcomes.items():
         for names, other in groups:
@@ -411,17 +468,8 @@ def _teeth(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
                 break
         else:
             groups.append(([variant], outcome))
-    return [
-        {
-            "variants": ", ".join(names) if len(outcomes) > 1 and len(groups) > 1 else "",
-            "picture": drawing(outcome).picture(f"mesh{position}"),
-            "plane": _plane(outcome),
-            "sliding": Panel("", [sliding_figure(f"sliding{position}", outcome)]),
-            "dimensions": dimensions(outcome),
-            "fact": facts(outcome),
-        }
-        for position, (names, outcome) in enumerate(groups)
-    ]
+    several = len(outcomes) > 1 and len(groups) > 1
+    return [(", ".join(names) if several else "", outcome) for names, outcome in groups]
 
 
 def _plane(outcome: Outcome) -> dict[str, Any]:
@@ -440,11 +488,16 @@ def _losses(outcomes: Mapping[str, Outcome], known: Curves) -> list[tuple[Curve,
     result = []
     for variant, outcome in outcomes.items():
         if "cycle" in outcome.parts:
-            data, fact = outcome.parts["cycle"], facts(outcome)
-            for position, law in enumerate(laws(data)):
-                sentence = loss_sentence(loss_places(data, position, fact), fact)
-                result.append((known[variant, law], sentence))
+            for position, law in enumerate(laws(outcome.parts["cycle"])):
+                result.append((known[variant, law], _loss_words(outcome, position)))
     return result
+
+
+def _loss_words(outcome: Outcome, law: int) -> str:
+    if has_wave(outcome):
+        return wave_sentence(wave_losses(outcome, law))
+    fact = facts(outcome)
+    return loss_sentence(loss_places(outcome.parts["cycle"], law, fact), fact)
 
 
 def loss_sentence(shares: Mapping[tuple[str, str], float], fact: Facts) -> str:
@@ -507,7 +560,7 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
     """Driver angle and time of one base pitch."""
     seen: dict[str, list[str]] = {}
     for variant, outcome in outcomes.items():
-        fact = facts(outcome)
+        fact = timed(outcome)
         angle, time = show.number(degrees(fact.period_angle)), show.number(1e3 * fact.period)
         seen.setdefault(f"{angle}° of the driver, {time} ms", []).append(variant)
     if len(seen) < 2:

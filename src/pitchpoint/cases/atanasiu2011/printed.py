@@ -7,6 +7,7 @@ import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.gear_tables import CylindricalGears
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]
 
@@ -49,6 +50,7 @@ def equivalent_mass(*, inertia: Sequence[float], base_radius: Sequence[float]) -
 def readings(built: Built) -> dict[str, float]:
     """Both formulas for a case, under the names of result variables."""
     gears, mesh = built.case.gears, built.design.mesh
+    assert isinstance(gears, CylindricalGears)
     angle = float(np.arctan(tan(gears.pressure_angle) / cos(gears.helix_angle)))
     pair = mesh.standard
     density = jnp.stack([solid.density for solid in built.design.solids])

@@ -1,0 +1,253 @@
+"""The table [gears] of a case file, one class for each family of gears."""
+
+from math import pi
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field, Tag, model_validator
+
+from pitchpoint.cases.quantities import Pair, Quantity, named
+from pitchpoint.cases.tables import Table, by
+from pitchpoint.errors import InputError
+
+__all__ = ["MEMBERS", "CylindricalGears", "Gears", "StrainWaveGears"]
+
+TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
+MODULE = Quantity("length", 1e-5, 0.1, "mm")
+WIDTH = Quantity("length", 1e-5, 10.0, "mm")
+DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
+HELIX = Quantity("angle", 0.0, 60 * pi / 180, "deg")
+ANGLE = Quantity("angle", 5 * pi / 180, 45 * pi / 180, "deg")
+SHIFT = Quantity("dimensionless", -2.0, 3.0)
+RACK = Quantity("dimensionless", 0.1, 4.0)
+FILLET = Quantity("dimensionless", 0.0, 1.0)
+TIP = Quantity("dimensionless", -2.0, 2.0)
+LEAST_TIP = Quantity("dimensionless", 0.0, 1.5)
+BORE = Quantity("length", 1e-5, 100.0, "mm")
+
+SPLINE_TEETH = Quantity("dimensionless", 30, 2_000, whole=True)
+SPLINE_SHIFT = Quantity("dimensionless", -5.0, 10.0)
+ARC = Quantity("dimensionless", 0.1, 20.0)
+OFFSET = Quantity("dimensionless", -10.0, 20.0)
+DEFLECTION = Quantity("dimensionless", 0.1, 3.0)
+FORCE_ANGLE = Quantity("angle", 0.0, 60 * pi / 180, "deg")
+AMPLITUDE = Quantity("dimensionless", -10.0, 10.0)
+BOTTOM = Quantity("dimensionless", 0.0, 2.0)
+ROUNDING = Quantity("dimensionless", 0.01, 0.5)
+PLAY = Quantity("length", 0.0, 1e-3, "um")
+THICKNESS = Quantity("length", 1e-5, 0.1, "mm")
+SUPPORT = Quantity("pressure", 1e6, 1e16, "N/mm2")
+
+MEMBERS = ("gear 1", "gear 2", "wave generator", "flexspline", "circular spline")
+"""Bodies of all families."""
+
+FEWEST_TEETH = 2
+FEWEST_RING_TEETH = 10
+
+
+def _teeth(value: tuple[float, float]) -> tuple[float, float]:
+    first, second = value
+    if first < FEWEST_TEETH:
+        raise InputError(
+            f"gear 1 was given {first:.0f} teeth; allowed are {FEWEST_TEETH} or more, and only gear 2 "
+            "may be a ring, with its number of teeth negative"
+        )
+    if -FEWEST_RING_TEETH < second < FEWEST_TEETH:
+        raise InputError(
+            f"gear 2 was given {second:.0f} teeth; allowed are {FEWEST_TEETH} or more, or for a ring "
+            f"with internal teeth -{FEWEST_RING_TEETH} or less"
+        )
+    return value
+
+
+class CylindricalGears(Table):
+    """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring."""
+
+    members: ClassVar[tuple[str, ...]] = ("gear 1", "gear 2")
+    friction: ClassVar[str] = "iso_tr_14179_2"
+    load_sharing: ClassVar[str] = "equal"
+
+    family: Literal["cylindrical"] = "cylindrical"
+    teeth: Annotated[tuple[float, float], Pair(TEETH), AfterValidator(_teeth)]
+    module: Annotated[float, MODULE]
+    face_width: Annotated[float, WIDTH]
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+    helix_angle: Annotated[float, HELIX] = 0.0
+    profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] = (0.0, 0.0)
+    addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
+    dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
+    fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
+    tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
+    least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
+    centre_distance: Annotated[float, DISTANCE] | None = None
+    bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
+    flank: Literal["left", "right"] = "left"
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """Members that may drive, the usual one first."""
+        return self.members
+
+    @model_validator(mode="after")
+    def _one_tip(self) -> "CylindricalGears":
+        if self.tip_alteration is not None and self.least_tip_thickness:
+            raise InputError(
+                "tip_alteration and least_tip_thickness were both given; a tip alteration by value is "
+                "kept as it is",
+                key="least_tip_thickness",
+            )
+        return self
+
+
+def _double_arcs() -> list[str]:
+    from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS
+
+    return list(DOUBLE_ARCS)
+
+
+def _wave_shapes() -> list[str]:
+    from pitchpoint.gears.wave_generator import WAVE_SHAPES
+
+    return list(WAVE_SHAPES)
+
+
+_ARCS = (
+    "convex_radius",
+    "convex_offset",
+    "convex_shift",
+    "concave_radius",
+    "concave_offset",
+    "concave_shift",
+)
+
+
+class DoubleArcTooth(Table):
+    """A flexspline tooth of two arcs and their tangent: a named set, by value, or a set with own values.
+
+    Lengths are in modules.
+    """
+
+    form: Literal["double arc"] = "double arc"
+    set: Annotated[str, BeforeValidator(named(_double_arcs, "double-arc tooth"))] | None = None
+    convex_radius: Annotated[float, ARC] | None = None
+    convex_offset: Annotated[float, OFFSET] | None = None
+    convex_shift: Annotated[float, OFFSET] | None = None
+    concave_radius: Annotated[float, ARC] | None = None
+    concave_offset: Annotated[float, OFFSET] | None = None
+    concave_shift: Annotated[float, OFFSET] | None = None
+    addendum: Annotated[float, RACK] | None = None
+    dedendum: Annotated[float, RACK] | None = None
+
+    @model_validator(mode="after")
+    def _whole(self) -> "DoubleArcTooth":
+        missing = [name for name in _ARCS if getattr(self, name) is None]
+        if self.set is None and 0 < len(missing) < len(_ARCS):
+            raise InputError(
+                f"a double-arc tooth by value needs {', '.join(missing)} too; or name the set that gives "
+                f"what is left out, one of {', '.join(_double_arcs())}",
+            )
+        return self
+
+
+class InvoluteTooth(Table):
+    """An involute flexspline tooth by the basic rack that cuts it, in modules."""
+
+    form: Literal["involute"] = "involute"
+    profile_shift: Annotated[float, SPLINE_SHIFT]
+    addendum: Annotated[float, RACK] = 1.0
+    dedendum: Annotated[float, RACK] = 1.35
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+
+
+class ConjugateGroove(Table):
+    """A circular spline whose flanks are those that the flexspline's teeth sweep."""
+
+    form: Literal["conjugate"] = "conjugate"
+
+
+class InvoluteGroove(Table):
+    """A circular spline with involute teeth, in modules."""
+
+    form: Literal["involute"] = "involute"
+    profile_shift: Annotated[float, SPLINE_SHIFT]
+    addendum: Annotated[float, RACK] = 1.0
+    dedendum: Annotated[float, RACK] = 1.35
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+
+
+class WaveGenerator(Table):
+    """How the flexspline is deformed: a shape by name, or amplitudes of cos 2p, cos 4p, ...
+
+    The deflection is the radial displacement on the long axis over half the module times the tooth
+    difference.
+    """
+
+    shape: Annotated[str, BeforeValidator(named(_wave_shapes, "wave shape"))] = "cosine"
+    weights: tuple[Annotated[float, AMPLITUDE], ...] = ()
+    deflection: Annotated[float, DEFLECTION] = 1.0
+    force_angle: Annotated[float, FORCE_ANGLE] = pi / 6
+
+    @model_validator(mode="after")
+    def _one(self) -> "WaveGenerator":
+        if self.weights and "shape" in self.model_fields_set:
+            raise InputError("shape and weights were both given; give one of them", key="weights")
+        return self
+
+
+class Flexspline(Table):
+    """Rim and cup of the flexspline, and the bearing that holds it round.
+
+    By default the rim is two modules thick, the wall of the cup half of that, the cup half a pitch
+    diameter long, and the bearing rigid.
+    """
+
+    rim_thickness: Annotated[float, THICKNESS] | None = None
+    wall_thickness: Annotated[float, THICKNESS] | None = None
+    cup_length: Annotated[float, BORE] | None = None
+    support_stiffness: Annotated[float, SUPPORT] | None = None
+
+
+Tooth = Annotated[
+    Annotated[DoubleArcTooth, Tag("double arc")] | Annotated[InvoluteTooth, Tag("involute")],
+    Field(discriminator=by("form", DoubleArcTooth, InvoluteTooth)),
+]
+CircularSpline = Annotated[
+    Annotated[ConjugateGroove, Tag("conjugate")] | Annotated[InvoluteGroove, Tag("involute")],
+    Field(discriminator=by("form", ConjugateGroove, InvoluteGroove)),
+]
+
+
+class StrainWaveGears(Table):
+    """A strain wave gear with two lobes: wave generator, flexspline and circular spline.
+
+    Clearance and rounding of the tips are in modules. Gear 1 is the flexspline, gear 2 the circular
+    spline, in this table and in that of the materials.
+    """
+
+    members: ClassVar[tuple[str, ...]] = ("wave generator", "flexspline", "circular spline")
+    friction: ClassVar[str] = "constant"
+    load_sharing: ClassVar[str] = "from_stiffness"
+
+    family: Literal["strain_wave"] = "strain_wave"
+    teeth: Annotated[tuple[float, float], Pair(SPLINE_TEETH)]
+    module: Annotated[float, MODULE]
+    face_width: Annotated[float, WIDTH]
+    fixed: Literal["wave generator", "flexspline", "circular spline"] = "circular spline"
+    clearance: Annotated[float, BOTTOM] = 0.25
+    tip_rounding: Annotated[float, ROUNDING] = 0.1
+    backlash: Annotated[float, PLAY] = 0.0
+    tooth: Tooth = DoubleArcTooth(set="liu")
+    wave_generator: WaveGenerator = WaveGenerator()
+    flexspline: Flexspline = Flexspline()
+    circular_spline: CircularSpline = ConjugateGroove()
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """Members that may drive, the usual one first."""
+        return tuple(name for name in self.members if name != self.fixed)
+
+
+Gears = Annotated[
+    Annotated[CylindricalGears, Tag("cylindrical")]
+    | Annotated[StrainWaveGears, Tag("strain_wave")],
+    Field(discriminator=by("family", CylindricalGears, StrainWaveGears)),
+]

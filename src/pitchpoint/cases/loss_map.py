@@ -1,0 +1,160 @@
+"""The loss map of a case: mean loss and efficiency over torque, speed and temperature."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import equinox as eqx
+import numpy as np
+import xarray as xr
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.efficiency.quasi_static import (
+    Design,
+    Engagement,
+    Models,
+    Operation,
+    cycle,
+    cycle_nodes,
+)
+from pitchpoint.efficiency.summary import engaged
+from pitchpoint.results.store import dataset
+
+__all__ = ["joined", "map_axes", "pieces"]
+
+STATES = 1 << 20
+"""Contacts (pairs, slices, nodes of the cycle, operating points) that are computed together at most."""
+
+Piece = Callable[[Callable[[int], None]], xr.Dataset]
+
+
+def pieces(built: Built) -> Iterator[Piece]:
+    """One computation for each torque; its share of the load serves all speeds and temperatures."""
+    axes = map_axes(built)
+    for torque in axes[0]:
+        yield _piece(built, float(torque), axes[1], axes[2])
+
+
+def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Torques [N m], speeds [rad/s] and temperatures [K]."""
+    asked, point = built.case.loss_map, built.case.operation
+    count = int(asked.count) if asked else 9
+    torque = (asked and asked.torque) or 1.5 * point.torque or 1.0
+    speed = (asked and asked.speed) or 1.5 * point.speed
+    oil = built.lubricant
+    around = point.temperature + np.array([-20.0, 0.0, 20.0])
+    degrees = np.unique(np.clip(around, oil.T_min.value, oil.T_max.value))
+    if asked and asked.temperatures:
+        degrees = np.array(asked.temperatures)
+    loads = int(asked.torque_count or count) if asked else count
+    speeds = int(asked.speed_count or count) if asked else count
+    return np.linspace(0.0, torque, loads), np.linspace(0.0, speed, speeds), degrees
+
+
+def joined(parts: Sequence[xr.Dataset], laws: Sequence[str]) -> xr.Dataset:
+    """The whole map, with what there is to say about it.
+
+    Args:
+        parts: of the torques, in order.
+        laws: titles of the friction laws, in order.
+    """
+    data = xr.concat(parts, "torque", combine_attrs="override")
+    locked = data["locked"].values & (data["torque"].values > 0.0)[:, None, None]
+    moving = (data["torque"] > 0.0) & (data["speed"] > 0.0)
+    lost = np.isnan(data["mean_efficiency"].where(moving, 1.0).values) & ~locked
+    told = [
+        f"{law}: {what} at {where[k].sum()} of {where[k].size} points."
+        for what, where in (("friction locks the mesh", locked), ("no balance was found", lost))
+        for k, law in enumerate(laws)
+        if where[k].any()
+    ]
+    return dataset(
+        {name: (_DIMS, data[name].values) for name in _NAMES},
+        {name: (name, data[name].values) for name in _DIMS},
+        title="loss map",
+        warnings=told,
+        note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
+    )
+
+
+def _piece(built: Built, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Piece:
+    def compute(progress: Callable[[int], None]) -> xr.Dataset:
+        models, chosen = laws_of(built)
+        point = replace(built.operation, load=jnp.asarray(torque))
+        known = engaged(built.design, point, models, _NODES)
+        runs = []
+        for count, law in enumerate(chosen, 1):
+            own = replace(models, choice=jnp.asarray(law))
+            runs.append(_map(built.design, torque, speeds, degrees, own, known))
+            progress(count * speeds.size * degrees.size)
+        found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
+        return dataset(
+            {name: (_DIMS, values) for name, values in zip(_NAMES, found, strict=True)},
+            {
+                "law": [models.friction[law].name for law in chosen],
+                "torque": ("torque", [torque]),
+                "speed": ("speed", speeds),
+                "temperature": ("temperature", degrees),
+            },
+            warnings=[],
+        )
+
+    return compute
+
+
+_DIMS = ("law", "torque", "speed", "temperature")
+_NAMES = ("mean_loss", "mean_efficiency", "locked")
+
+
+def _map(
+    design: Design,
+    torque: float,
+    speeds: np.ndarray,
+    degrees: np.ndarray,
+    models: Models,
+    known: Engagement | None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
+    moving = np.where(speeds > 0.0, speeds, 1.0)  # at rest nothing is lost, whatever the laws say
+    together = max(1, min(speeds.size, STATES // (_lanes(design, models) * degrees.size)))
+    parts = []
+    for start in range(0, speeds.size, together):
+        part = moving[start : start + together]
+        filled = np.concatenate([part, np.full(together - part.size, part[-1])])
+        found = _figures(
+            design, jnp.asarray(torque), jnp.asarray(filled), jnp.asarray(degrees), models, known
+        )
+        parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
+    loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
+    turns = (speeds > 0.0)[:, None]
+    return np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
+
+
+def _lanes(design: Design, models: Models) -> int:
+    """Contacts in all nodes of a cycle."""
+    shapes = eqx.filter_eval_shape(_contacts, design, models)
+    return int(np.prod(shapes.shape))
+
+
+def _contacts(design: Design, models: Models) -> Array:
+    phase, _ = cycle_nodes(design.mesh, models.sharing, _NODES)
+    return design.mesh.contacts(phase).weight
+
+
+_NODES = 24
+
+
+@eqx.filter_jit
+def _figures(
+    design: Design,
+    torque: Float[Array, ""],
+    speeds: Float[Array, " speed"],
+    degrees: Float[Array, " temperature"],
+    models: Models,
+    known: Engagement | None,
+) -> tuple[Array, Array, Array]:
+    speed, degree = jnp.meshgrid(speeds, degrees, indexing="ij")
+    points = Operation(jnp.full(speed.shape, torque), speed, degree)
+    found = cycle(design, points, models, _NODES, known)
+    return found.mean_loss, found.mean_efficiency, found.locked

@@ -1,0 +1,62 @@
+"""Torque that runs and starts a drive with losses beside its teeth, as a dataset of a case."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Array
+
+from pitchpoint._jax import jnp
+from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.loss_map import map_axes
+from pitchpoint.efficiency.quasi_static import Operation
+from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
+from pitchpoint.efficiency.summary import engaged
+from pitchpoint.results.store import dataset
+
+__all__ = ["running_part"]
+
+SPEEDS = 9
+CREEPING = 2.0 * np.pi / 60.0
+"""Speed of a driver that begins to turn, at which laws of tooth friction are taken [rad/s]."""
+
+_DIMS = ("law", "speed", "temperature")
+_AT_REST = ("law", "temperature")
+
+
+def running_part(built: Built, backwards: Built) -> xr.Dataset:
+    """Torque without load over speed and temperature, and torques that start the drive either way.
+
+    Args:
+        built: the case.
+        backwards: the same drive with its loaded member driving.
+    """
+    speeds, degrees = map_axes(built)[1:]
+    speeds = np.linspace(0.0, speeds[-1], SPEEDS + 1)[1:]
+    models, chosen = laws_of(built)
+    each = [replace(models, choice=jnp.asarray(law)) for law in chosen]
+    idle = replace(built.operation, load=jnp.asarray(0.0))
+
+    def over(torque: Callable[..., Array], rates: np.ndarray, one: Built) -> np.ndarray:
+        speed, degree = np.meshgrid(rates, degrees, indexing="ij")
+        points = Operation(*map(jnp.asarray, (0.0 * speed, speed, degree)))
+        known = engaged(one.design, idle, models)
+        return np.stack([np.asarray(torque(one.design, points, own, known)) for own in each])
+
+    creeping = np.array([CREEPING])
+    data = {
+        "no_load_torque": (_DIMS, over(no_load_torque, speeds, built)),
+        "starting_torque": (_AT_REST, over(starting_torque, creeping, built)[:, 0]),
+        "back_driving_torque": (_AT_REST, over(starting_torque, creeping, backwards)[:, 0]),
+    }
+    return dataset(
+        data,
+        {
+            "law": [models.friction[law].name for law in chosen],
+            "speed": ("speed", speeds),
+            "temperature": ("temperature", degrees),
+        },
+        title="running without load",
+        note="NaN where friction holds the drive whatever the torque",
+    )

@@ -1,0 +1,99 @@
+"""Wind-up of a drive whose teeth come to mesh under load, as a dataset of a case."""
+
+from dataclasses import replace
+
+import equinox as eqx
+import numpy as np
+import xarray as xr
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.efficiency.quasi_static import Engagement, Models, engagement
+from pitchpoint.efficiency.summary import summarise
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.tooth_compliance import Terms
+from pitchpoint.loading.torsion import hysteresis, torsion
+from pitchpoint.materials.solids import Solid
+from pitchpoint.results.store import dataset
+
+__all__ = ["torsion_part"]
+
+TORQUES = 25
+SHOWN = 3
+"""Every so many phases the load on every tooth is kept."""
+
+
+def torsion_part(built: Built) -> xr.Dataset:
+    """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
+    models, chosen = laws_of(built)
+    torques = np.linspace(0.0, 2.0 * built.case.operation.torque or 1.0, TORQUES)
+    friction = _mean_friction(built, models, chosen)
+    known = engagement(built.design, built.operation.load, models)
+    found = jax.device_get(
+        _torsion(
+            built.design.mesh,
+            built.design.solids,
+            models.compliance,
+            known,
+            jnp.asarray(torques),
+            jnp.asarray(friction),
+        )
+    )
+    dims = {
+        "tooth_angle": ("phase", "pair"),
+        "tooth_force": ("torque", "phase", "pair"),
+        "zone_load": ("torque", "zone"),
+        "loading_torque": ("law", "torque"),
+        "unloading_torque": ("law", "torque"),
+    }
+    data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
+    lost = np.isnan(found["wind_up"]).sum()
+    told = [f"Wind-up: no equilibrium was found at {lost} of {TORQUES} torques."] if lost else []
+    return dataset(
+        {**data, "mean_friction": (("law",), friction)},
+        {
+            "law": [models.friction[law].name for law in chosen],
+            "torque": ("torque", torques),
+            "phase": ("phase", np.asarray(known.phase[::SHOWN])),
+        },
+        title="torsion",
+        warnings=told,
+        note="teeth, ring and cup of the flexspline yield; shafts, bearings and joints are not in it",
+    )
+
+
+def _mean_friction(built: Built, models: Models, laws: tuple[int, ...]) -> np.ndarray:
+    """Coefficient at the operating point by each law, as for sliding that begins anew."""
+    point = [(built.design, built.operation)]
+    runs = [summarise(point, replace(models, choice=jnp.asarray(law))) for law in laws]
+    return np.array([run["mean_friction"][0] for run in runs])
+
+
+@eqx.filter_jit
+def _torsion(
+    mesh: Mesh,
+    solids: tuple[Solid, Solid],
+    terms: Terms,
+    known: Engagement,
+    torques: Float[Array, " torque"],
+    friction: Float[Array, " law"],
+) -> dict[str, Array]:
+    contacts, _ = known.of_rank(2)
+    found = torsion(mesh, solids, terms, torques[:, None], known.phase[None], contacts)
+    loop = hysteresis(found, friction[:, None, None])
+
+    def mean(values: Array) -> Array:
+        return values @ known.weight
+
+    return {
+        "wind_up": mean(found.wind_up),
+        "wind_up_range": jnp.ptp(found.wind_up, axis=-1),
+        "torsional_stiffness": mean(found.stiffness),
+        "loaded_pairs": mean(found.loaded_pairs),
+        "zone_load": mean(found.radial_load).T,
+        "tooth_angle": 2.0 * jnp.pi * known.contacts.path[:, 0, ::SHOWN].T,
+        "tooth_force": jnp.moveaxis(jnp.sum(found.force, axis=1), 0, -1)[:, ::SHOWN],
+        "loading_torque": mean(loop.loading),
+        "unloading_torque": mean(loop.unloading),
+    }

@@ -1,0 +1,167 @@
+"""A drive whose teeth are carried by a wave, drawn to scale: what the page needs to place every tooth.
+
+The page gets one tooth, one space and the shape of the wave; it places the teeth on the deformed
+neutral line for every angle of the wave generator. Corners are (across, outwards) in mm, across in
+the sense of positive rotation, which the page shows counter-clockwise.
+"""
+
+import json
+from math import hypot
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.facts import MEMBERS, given, wave
+
+__all__ = ["loaded_arcs", "picture", "simplified", "wave_dimensions"]
+
+_FINE = 1e-3
+"""Largest distance that a corner of an outline may be moved by, in tooth heights."""
+
+_PITCHES = 5.0
+"""Width of the close-up in pitches of the flexspline."""
+
+
+def picture(outcome: Outcome, name: str) -> dict[str, Any]:
+    """Everything that the page draws of a drive, in mm and radians.
+
+    Args:
+        outcome: a result whose teeth are carried by a wave.
+        name: of the drawing in the page.
+    """
+    teeth, fact = outcome.parts["teeth"], wave(outcome)
+    tooth, space = (1e3 * teeth[key].values for key in ("tooth", "space"))
+    height = float(np.ptp(tooth[:, 1]))
+    outside = float(space[:, 1].max()) + 2.5 * height
+    radius = 1e3 * float(teeth["neutral_radius"])
+    pitch = round(2.0 * np.pi * radius / fact.teeth[0], 5)
+    motion = {
+        "teeth": fact.teeth,
+        "rates": [round(rate, 9) for rate in _rates(fact.rates)],
+        "members": MEMBERS,
+        "radius": round(radius, 6),
+        "deflection": round(1e3 * float(teeth["deflection"]), 6),
+        "weights": [round(float(w), 7) for w in np.trim_zeros(teeth["wave_weights"].values, "b")],
+        "rim": round(1e3 * float(teeth["rim_thickness"]), 5),
+        "root": round(float(tooth[:, 1].min()), 5),
+        "tooth": _corners(tooth, _FINE * height),
+        "space": _corners(space, _FINE * height),
+        "outside": round(outside, 4),
+        "width": _PITCHES,
+        "arcs": loaded_arcs(outcome),
+    }
+    middle = float(space[:, 1].min()) + 0.1 * height
+    wide = _PITCHES * pitch
+    return {
+        "name": name,
+        "motion_json": json.dumps(motion, separators=(",", ":")),
+        "overview": [round(v, 3) for v in _around(1.02 * outside)],
+        "window": [round(v, 4) for v in (-wide / 2.0, -middle - wide / 3.8, wide, wide / 1.9)],
+        "loaded": bool(motion["arcs"]),
+        "turns": MEMBERS[int(np.argmax(np.abs(_rates(fact.rates))))],
+        "fact": fact,
+    }
+
+
+def _rates(rates: tuple[float, float, float]) -> list[float]:
+    """Rates for a radian of the wave generator, or of the faster spline where that one is fixed."""
+    most = abs(rates[0]) or max(abs(rate) for rate in rates)
+    return [rate / most for rate in rates]
+
+
+def _around(radius: float) -> tuple[float, float, float, float]:
+    return -radius, -radius, 2.0 * radius, 2.0 * radius
+
+
+def _corners(outline: np.ndarray, fine: float) -> list[list[float]]:
+    return simplified(outline, fine).round(5).tolist()  # type: ignore[no-any-return]
+
+
+def simplified(outline: np.ndarray, fine: float) -> np.ndarray:
+    """Outline without the corners that lie closer than `fine` to a line between others [corner, xy].
+
+    Source: Douglas and Peucker's method.
+    """
+    kept = np.zeros(len(outline), bool)
+    kept[[0, -1]] = True
+    stack = [(0, len(outline) - 1)]
+    while stack:
+        first, last = stack.pop()
+        inside = outline[first + 1 : last]
+        if not len(inside):
+            continue
+        (dx, dy), (x, y) = outline[last] - outline[first], (inside - outline[first]).T
+        span = hypot(dx, dy)
+        away = np.abs(dx * y - dy * x) / span if span > 0.0 else np.hypot(x, y)
+        farthest = int(np.argmax(away))
+        if away[farthest] > fine:
+            middle = first + 1 + farthest
+            kept[middle] = True
+            stack += [(first, middle), (middle, last)]
+    return outline[kept]
+
+
+def loaded_arcs(outcome: Outcome) -> list[list[float]]:
+    """Angles from the long axis between which teeth carry under the first law [rad]; empty if unknown.
+
+    Gaps of less than half a pitch are not told.
+    """
+    data = outcome.parts.get("cycle")
+    if data is None:
+        return []
+    angle, load = arc_of(data), data["load"].values[0]
+    order = np.argsort(angle.ravel(), kind="stable")
+    angle, carries = angle.ravel()[order], load.ravel()[order] > 0.0
+    found = angle[carries]
+    if not found.size:
+        return []
+    half_pitch = np.pi / float(outcome.parts["teeth"]["teeth"].values[0])
+    cuts = np.flatnonzero(np.diff(found) > half_pitch) + 1
+    return [[round(float(one[0]), 5), round(float(one[-1]), 5)] for one in np.split(found, cuts)]
+
+
+def arc_of(data: xr.Dataset) -> np.ndarray:
+    """Angle of each contact from the long axis [rad], of its path in turns."""
+    return np.asarray(2.0 * np.pi * data["path"].values)
+
+
+def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
+    """Names of the main dimensions, each with the values of flexspline and circular spline or of both."""
+    teeth, fact = outcome.parts["teeth"], wave(outcome)
+
+    def length(name: str, factor: float = 1.0) -> str:
+        return show.number(1e3 * factor * float(teeth[name]), 6)
+
+    tip = 1e3 * (float(teeth["neutral_radius"]) + float(teeth["tooth"].values[:, 1].max()))
+    drives, carries = (fact.rates[MEMBERS.index(name)] for name in (fact.driver, fact.loaded))
+    rows: list[tuple[str, ...]] = [("number of teeth z", *map(str, fact.teeth))]
+    module, width = (show.pretty(given(outcome, "gears", key)) for key in ("module", "face_width"))
+    rows += [("module m", module)] if module else []
+    rows += [("face width b", width)] if width else []
+    return [
+        *rows,
+        (f"speed ratio, {fact.driver} to {fact.loaded}", show.number(drives / carries, 6)),
+        ("fixed member", fact.fixed),
+        ("deflection w_0 [mm]", length("deflection")),
+        ("diameter of the undeformed neutral line [mm]", length("neutral_radius", 2.0)),
+        ("rim thickness of the flexspline [mm]", length("rim_thickness")),
+        (
+            "tip diameter, undeformed [mm]",
+            show.number(2.0 * tip, 6),
+            length("tip_height", 2.0),
+        ),
+        ("tooth height above the neutral line [mm]", show.number(tip - _mm(teeth), 4)),
+        ("depth to which the teeth reach into each other [mm]", show.number(_depth(teeth), 4)),
+    ]
+
+
+def _mm(teeth: xr.Dataset) -> float:
+    return 1e3 * float(teeth["neutral_radius"])
+
+
+def _depth(teeth: xr.Dataset) -> float:
+    """From the tip of the circular spline's teeth to the deepest point of their spaces [mm]."""
+    return 1e3 * float(np.ptp(teeth["space"].values[:, 1]))

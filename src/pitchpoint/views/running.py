@@ -1,0 +1,206 @@
+"""Losses beside the teeth: how the loss is split, and the torque that a drive takes without load."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.facts import operating_point
+from pitchpoint.views.figures import (
+    DASHES,
+    INK,
+    PALETTE,
+    Curve,
+    Curves,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    laws,
+    layout,
+    level,
+    line,
+    rounded,
+    text,
+)
+
+__all__ = ["drag_answer", "drag_panel", "starting_answer"]
+
+_TEETH = Key("in the teeth", PALETTE[5], "")
+_BESIDE = Key("beside the teeth", "#9aa5ad", "")
+
+
+def drag_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+    """Split of the loss, torque without load, torques that start the drive; empty without such losses."""
+    split = [one for one in _split(outcomes, known) if one[2] > 0.0]
+    seen = list(_running(outcomes, known))
+    figures = [_shares(list(_split(outcomes, known)))] if split else []
+    if seen:
+        figures.append(_no_load("speed", "temperature", seen))
+        if any(data.sizes["temperature"] > 1 for _, data, *_ in seen):
+            figures += [_no_load("temperature", "speed", seen), _starting("starting_torque", seen)]
+            figures.append(_starting("back_driving_torque", seen))
+    curves = [curve for curve, *_ in seen]
+    return Panel("Losses beside the teeth", figures, curves)
+
+
+def drag_answer(outcome: Outcome, law: int) -> str:
+    """Loss in and beside the teeth in words; empty where there is none beside."""
+    found = _parts(outcome.parts["operation"], law)
+    if found is None or not found[1] > 0.0:
+        return ""
+    teeth, beside = (show.quantity("mean_loss", value) for value in found)
+    return f"{teeth} in the teeth, {beside} beside them"
+
+
+def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
+    """Torque without load and torques that start the drive at the operating point, names and words."""
+    data = outcome.parts.get("running")
+    if data is None or law not in laws(data):
+        return []
+    at = operating_point(outcome)
+    near = data.isel(law=laws(data).index(law)).sel(temperature=at.temperature, method="nearest")
+    running = float(np.interp(at.speed, near["speed"].values, near["no_load_torque"].values))
+    return [
+        ("torque without load", show.quantity("no_load_torque", running)),
+        ("starting torque", _held("starting_torque", float(near["starting_torque"]))),
+        ("back-driving torque", _held("back_driving_torque", float(near["back_driving_torque"]))),
+    ]
+
+
+def _held(name: str, value: float) -> str:
+    return show.quantity(name, value) if np.isfinite(value) else "friction holds the drive"
+
+
+def _parts(data: xr.Dataset, law: int) -> tuple[float, float] | None:
+    """Loss in the teeth and beside them [W]."""
+    if "mean_drag_loss" not in data:
+        return None
+    beside = float(data["mean_drag_loss"].values[law, 0])
+    whole = float(data["mean_loss"].values[law, 0])
+    return (whole - beside, beside) if np.isfinite(whole) else None
+
+
+def _split(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[Curve, float, float]]:
+    for variant, outcome in outcomes.items():
+        if "operation" not in outcome.parts:
+            continue
+        data = outcome.parts["operation"]
+        for position, law in enumerate(laws(data)):
+            found = _parts(data, position)
+            if found is not None:
+                yield known[variant, law], *found
+
+
+def _running(
+    outcomes: Mapping[str, Outcome], known: Curves
+) -> Iterator[tuple[Curve, xr.Dataset, int, Outcome]]:
+    for variant, outcome in outcomes.items():
+        if "running" not in outcome.parts:
+            continue
+        data = outcome.parts["running"]
+        for position, law in enumerate(laws(data)):
+            yield known[variant, law], data, position, outcome
+
+
+def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
+    places = list(range(len(split)))
+    traces = [
+        {
+            "type": "bar",
+            "orientation": "h",
+            "y": places,
+            "x": rounded([one[part] for one in split]),
+            "marker": {"color": key.colour},
+            "width": 0.4,
+            "hovertemplate": f"%{{x:.4~g}} W {key.label}<extra></extra>",
+        }
+        for part, key in ((1, _TEETH), (2, _BESIDE))
+    ]
+    names = [
+        {"text": text(curve.label), "x": 0, "xanchor": "left", "showarrow": False}
+        | {"y": place - 0.22, "yanchor": "bottom"}
+        for place, (curve, *_) in zip(places, split, strict=True)
+    ]
+    return Figure(
+        "loss_split",
+        "Power loss in the teeth and beside them",
+        traces,
+        layout(
+            "mean power loss P_loss [W]",
+            "",
+            barmode="stack",
+            xaxis={"rangemode": "tozero", "nticks": 6},
+            yaxis={"range": [len(split) - 0.6, -0.7], "showticklabels": False, "ticks": ""}
+            | {"showgrid": False},
+            annotations=names,
+        ),
+        "At the operating point; beside the teeth: bearings, seals and churning, as the case gives them.",
+        (_TEETH, _BESIDE),
+    )
+
+
+def _no_load(axis: str, other: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> Figure:
+    values = _chosen([data[other].values for _, data, *_ in seen])
+    unit = show.unit(VARIABLES["no_load_torque"].display)
+    traces = [
+        _dashed(curve, data[axis], data["no_load_torque"][law].sel({other: value}), dash, unit)
+        for curve, data, law, _ in seen
+        for dash, value in zip(DASHES, values, strict=False)
+        if value in data[other].values
+    ]
+    return Figure(
+        f"no_load_{axis}",
+        f"Input torque without load against {_WORDS[axis]}",
+        traces,
+        _look(axis, "T_0"),
+        keys=tuple(
+            Key(level(other, value), INK, dash) for dash, value in zip(DASHES, values, strict=False)
+        ),
+        missing="Friction holds the drive whatever the torque.",
+    )
+
+
+_WORDS = {"speed": "speed", "temperature": "temperature"}
+_TITLES = {
+    "starting_torque": ("Input torque that starts the drive", "T_start"),
+    "back_driving_torque": ("Output torque that starts the drive backwards", "T_back"),
+}
+
+
+def _starting(name: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> Figure:
+    title, symbol = _TITLES[name]
+    unit = show.unit(VARIABLES[name].display)
+    traces = [
+        _dashed(curve, data["temperature"], data[name][law], curve.dash, unit)
+        for curve, data, law, _ in seen
+    ]
+    return Figure(
+        f"running_{name}",
+        title,
+        traces,
+        _look("temperature", symbol),
+        "From rest, without load, at the worst phase of the mesh.",
+        missing="Friction holds the drive whatever the torque.",
+    )
+
+
+def _look(axis: str, symbol: str) -> dict[str, object]:
+    words, unit = VARIABLES[axis].long_name, show.unit(VARIABLES[axis].display)
+    axes = {"yaxis": {"rangemode": "tozero"}}
+    return layout(f"{words} [{unit}]", f"{symbol} [{show.unit('N m')}]", **axes)
+
+
+def _dashed(curve: Curve, x: xr.DataArray, y: xr.DataArray, dash: str, unit: str) -> Trace:
+    trace = line(curve, display(str(x.name), x), display("no_load_torque", y), unit)
+    return {**trace, "line": {"color": curve.colour, "dash": dash, "width": 2}}
+
+
+def _chosen(axes: list[np.ndarray]) -> list[float]:
+    every = np.unique(np.concatenate(axes))
+    count = min(every.size, len(DASHES))
+    return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]

@@ -1,0 +1,199 @@
+"""Wind-up of a drive under torque: load on every tooth, torque loop, stiffness, load on the bearing."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.facts import operating_point
+from pitchpoint.views.figures import (
+    GREY,
+    INK,
+    PALETTE,
+    Curves,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    laws,
+    layout,
+    level,
+    plain,
+    short_axis,
+)
+from pitchpoint.views.wave import ANGLE
+
+__all__ = ["torsion_answer", "torsion_panels"]
+
+_SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
+"""Colours from small to large torque, which differ in lightness alone."""
+
+_ELASTIC = Key("without friction", INK, "dash")
+_STIFFNESS = Key("slope of the torque over the wind-up", PALETTE[0])
+_PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
+_ENDS = (Key("one end of the long axis", PALETTE[0]), Key("the other end", PALETTE[1], "dash"))
+
+
+def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
+    """Figures for each variant whose wind-up is there."""
+    return [
+        _panel(f"torsion{position}", name, len(outcomes) > 1, one, known)
+        for position, (name, one) in enumerate(outcomes.items())
+        if "torsion" in one.parts
+    ]
+
+
+def torsion_answer(outcome: Outcome) -> str:
+    """Wind-up and stiffness at the operating point in words; empty if they are not there."""
+    data = outcome.parts.get("torsion")
+    if data is None:
+        return ""
+    at = operating_point(outcome).torque
+    told = {
+        name: level(name, float(np.interp(at, data["torque"], data[name])))
+        for name in ("torsional_stiffness", "wind_up", "loaded_pairs")
+    }
+    return (
+        f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
+        f"{told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in the mean"
+    )
+
+
+def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
+    data = outcome.parts["torsion"]
+    figures = [
+        _distribution(f"{name}_load", data),
+        _loop(f"{name}_loop", variant, data, known),
+        _against(
+            f"{name}_stiffness", "torsional_stiffness", "Torsional stiffness", data, _STIFFNESS
+        ),
+        _against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS),
+        _bearing(f"{name}_bearing", data),
+    ]
+    return Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
+
+
+def _distribution(name: str, data: xr.Dataset) -> Figure:
+    """Force on every tooth at one end of the long axis at several torques, all phases together."""
+    force = display("tooth_force", data["tooth_force"])
+    torques = display("torque", data["torque"])
+    half = data.sizes["pair"] // 2
+    angle = np.degrees(data["tooth_angle"].values[:, :half]).ravel()
+    order = np.argsort(angle, kind="stable")
+    chosen = np.unique(np.linspace(0, torques.size - 1, len(_SHADES) + 1).round().astype(int))
+    chosen = chosen[torques[chosen] > 0.0]
+    keys = [
+        Key(level("torque", float(data["torque"].values[k])), shade)
+        for k, shade in zip(chosen, _SHADES, strict=False)
+    ]
+    traces = [
+        _course(key, angle[order], force[k, :, :half].ravel()[order])
+        for k, key in zip(chosen, keys, strict=False)
+    ]
+    touched = [x for trace in traces for x, y in zip(trace["x"], trace["y"], strict=True) if y]
+    ends = [min(touched, default=-20.0), max(touched, default=20.0)]
+    edge = 0.06 * (ends[1] - ends[0])
+    return Figure(
+        name,
+        "Load on the teeth at one end of the long axis",
+        traces,
+        layout(
+            ANGLE,
+            short_axis("tooth_force"),
+            xaxis={"range": [ends[0] - edge, ends[1] + edge]},
+            yaxis={"rangemode": "tozero"},
+        ),
+        "Without friction. Every line is the way of a tooth through the zone; the teeth stand one "
+        "pitch apart on it. The other end of the long axis carries alike.",
+        tuple(keys),
+        missing="No tooth carries.",
+    )
+
+
+def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
+    unit = show.unit(VARIABLES["tooth_force"].display)
+    carries = force > 0.0
+    near = carries.copy()
+    near[1:] |= carries[:-1]
+    near[:-1] |= carries[1:]
+    return plain(key, angle[near], force[near], unit)
+
+
+def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
+    """Torque over wind-up: growing, shrinking, and without friction."""
+    wind_up, unit = display("wind_up", data["wind_up"]), show.unit("N m")
+    keys, traces = [], []
+    for position, law in enumerate(laws(data)):
+        curve = known.get((variant, law))
+        key = Key(law if curve is None else curve.label, PALETTE[position % len(PALETTE)])
+        up, down = (
+            display("torque", data[branch].values[position])
+            for branch in ("loading_torque", "unloading_torque")
+        )
+        x = np.concatenate([wind_up, wind_up[::-1]])
+        colour = key.colour if curve is None else curve.colour
+        key = Key(f"with friction: {key.label}", colour)
+        trace = plain(key, x, np.concatenate([up, down[::-1]]), unit)
+        traces.append({**trace, "fill": "toself", "fillcolor": f"{colour}22"})
+        keys.append(key)
+    traces.append(plain(_ELASTIC, wind_up, display("torque", data["torque"]), unit))
+    unit_x = show.unit(VARIABLES["wind_up"].display)
+    return Figure(
+        name,
+        "Torque over wind-up, growing and shrinking",
+        traces,
+        layout(
+            f"wind-up Δθ [{unit_x}]",
+            "torque T [N\u00a0m]",
+            xaxis={"rangemode": "tozero"},
+            yaxis={"rangemode": "tozero"},
+        ),
+        "Upper branch: the torque grows; lower branch: it shrinks. The loop is that of tooth friction "
+        "alone, for one sense of torque from first touch of the flanks.",
+        (*keys, _ELASTIC),
+    )
+
+
+def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -> Figure:
+    unit = show.unit(VARIABLES[variable].display)
+    values = data[variable].where(data["torque"] > 0.0)
+    return Figure(
+        name,
+        f"{title} against torque",
+        [plain(key, display("torque", data["torque"]), display(variable, values), unit)],
+        layout(
+            "torque T [N\u00a0m]",
+            short_axis(variable),
+            xaxis={"rangemode": "tozero"},
+            yaxis={"rangemode": "tozero"},
+        ),
+        keys=(key,),
+    )
+
+
+def _bearing(name: str, data: xr.Dataset) -> Figure:
+    """Inward load of the teeth at both ends of the long axis."""
+    unit = show.unit(VARIABLES["zone_load"].display)
+    torque, loads = display("torque", data["torque"]), display("zone_load", data["zone_load"])
+    traces = [plain(key, torque, values, unit) for key, values in zip(_ENDS, loads.T, strict=False)]
+    alike = np.allclose(loads[:, 0], loads[:, -1], rtol=1e-4, equal_nan=True)
+    keys = (Key("either end of the long axis", GREY),) if alike else _ENDS
+    if alike:
+        traces = [plain(keys[0], torque, loads[:, 0], unit)]
+    return Figure(
+        name,
+        "Radial load of the teeth on the wave generator",
+        traces,
+        layout(
+            "torque T [N\u00a0m]",
+            short_axis("zone_load"),
+            xaxis={"rangemode": "tozero"},
+            yaxis={"rangemode": "tozero"},
+        ),
+        "Inwards, sum over the teeth of one end.",
+        keys,
+    )
