@@ -1,0 +1,577 @@
+"""Strain wave geometry: closed forms, and positions alone against what the library derives.
+
+The positions are those of `strain_wave_positions`, which differentiates no formula.
+"""
+
+from types import SimpleNamespace
+
+import equinox as eqx
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from strain_wave_positions import bend, drive, slope
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import along
+from pitchpoint.errors import InputError
+from pitchpoint.gears.strain_wave_design import (
+    DOUBLE_ARCS,
+    DoubleArcForm,
+    InvoluteForm,
+    build_strain_wave,
+    double_arc_flank,
+)
+from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
+from pitchpoint.loading.clearances import shared_load
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.yielding import yielding
+from pitchpoint.materials import solids
+
+MODULE, RIM = 0.3e-3, 0.7e-3
+INVOLUTE = InvoluteForm(3.32)
+FORMS = {"flat": DOUBLE_ARCS["flat"], "liu": DOUBLE_ARCS["liu"], "involute": INVOLUTE}
+STEEL = solids.find("steel").build()
+TERMS_OF_TEETH = TOOTH_COMPLIANCE["beam_foundation_weber"].terms
+
+
+def build(**options):
+    form = options.setdefault("form", DOUBLE_ARCS["flat"])
+    options.setdefault("clearance", 0.35 if isinstance(form, InvoluteForm) else 0.25)
+    options = {"teeth": (200, 202), "rim_thickness": RIM} | options
+    return build_strain_wave(module=MODULE, face_width=0.01, **options)
+
+
+@pytest.fixture(scope="module")
+def drives():
+    return {name: build(form=form) for name, form in FORMS.items()}
+
+
+BY = {name: drive(form) for name, form in FORMS.items()}
+
+
+@eqx.filter_jit
+def passing(motion, along_flank, angle):
+    at = motion.at(along_flank, angle)
+    derived = ("closing", "sliding", "rolling", "relative_curvature", "change", "approach")
+    given = ("place", "direction", "curvature", "velocity", "turning", "acceleration")
+    return {name: getattr(at, name) for name in (*derived, *given, "shift", "whole")}
+
+
+def seen(drive, along_flank, angle):
+    found = passing(drive.tooth_motion, jnp.asarray(along_flank), jnp.asarray(angle))
+    return SimpleNamespace(**{name: np.asarray(value) for name, value in found.items()})
+
+
+# Tooth forms.
+
+
+@pytest.mark.parametrize(
+    ("name", "theta_b", "theta_a", "land"),
+    [("liu", 16.5, 38.9, 0.805), ("flat", 10.5, 26.1, 1.004)],
+)
+def test_double_arc_closes_with_its_common_tangent(name, theta_b, theta_a, land):
+    form = DOUBLE_ARCS[name]
+    flank = double_arc_flank(form, module=1.0, rim_thickness=2.0)
+    assert np.degrees(flank.tangent_angle) == pytest.approx(
+        theta_b, abs=0.06
+    )  # 16.446 for the first
+    assert np.degrees(flank.tip_angle) == pytest.approx(theta_a, abs=0.05)
+    assert float(flank.tip_land) == pytest.approx(land, abs=5e-4)
+    # Zhao et al. (2022), eq. 4, by coordinates across and along the tooth's axis.
+    angle, length = float(flank.tangent_angle), float(flank.tangent_length)
+    normal, tangent = (
+        np.array([np.cos(angle), np.sin(angle)]),
+        np.array([-np.sin(angle), np.cos(angle)]),
+    )
+    convex = np.array([-form.convex_offset, 1.75 - form.convex_shift]) + form.convex_radius * normal
+    space = np.array([np.pi / 2.0 + form.concave_offset, 1.75 + form.concave_shift])
+    concave = space - form.concave_radius * normal
+    np.testing.assert_allclose(concave + length * tangent, convex, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_flank_is_its_own_arc_length_angle_and_curvature(drives, name):
+    flank, outline = drives[name].flank, BY[name].outline
+    station = (np.arange(40) + 0.5) / 40.0 * outline.length
+    np.testing.assert_allclose(flank.lengths, outline.lengths, rtol=1e-12, atol=1e-17)
+    np.testing.assert_allclose(
+        flank.place(jnp.asarray(station)), outline.place(station), atol=1e-15
+    )
+    smooth = BY[name].smooth(station, 1e-6)
+    rate = slope(outline.place, station, 2e-7)[smooth]
+    np.testing.assert_allclose(np.abs(rate), 1.0, rtol=1e-9)
+    np.testing.assert_allclose(-np.angle(rate), flank.angle(station)[smooth], atol=1e-9)
+    turning = (bend(outline.place, station, 2e-7)[smooth] / rate).imag
+    np.testing.assert_allclose(-turning, flank.curvature(station)[smooth], rtol=1e-6, atol=0.05)
+    joints = np.cumsum(outline.lengths)[:-1]
+    for side in (-1e-12, 1e-12):
+        there = joints + side
+        np.testing.assert_allclose(flank.place(there), outline.place(joints), atol=1e-11)
+
+
+def test_involute_of_the_wear_paper_has_its_figures():
+    """200 teeth, m = 0.3 mm, x = 3.32: r_a 31.296, r_f 30.591 mm, tip land 0.123 mm."""
+    flank = build(form=INVOLUTE).flank
+    assert float(flank.tip_radius) == pytest.approx(31.296e-3, abs=1e-9)
+    assert float(flank.root_radius) == pytest.approx(30.591e-3, abs=1e-9)
+    thickness = MODULE * (np.pi / 2.0 + 2.0 * 3.32 * np.tan(np.deg2rad(20.0)))
+    assert float(flank.pitch_thickness) == pytest.approx(thickness, rel=1e-14)
+    assert float(flank.tip_land) == pytest.approx(0.123e-3, abs=0.5e-6)
+    # Tooth and space at the tip circle, from the definition of the involute function.
+    inv = np.tan(np.deg2rad(20.0)) - np.deg2rad(20.0)
+    at_tip = np.arccos(30e-3 * np.cos(np.deg2rad(20.0)) / 31.296e-3)
+    land = 2.0 * 31.296e-3 * (thickness / 60e-3 + inv - np.tan(at_tip) + at_tip)
+    assert float(flank.tip_land) == pytest.approx(land, rel=1e-10)
+
+
+def test_neutral_radii_of_the_wear_paper(drives):
+    assert float(drives["flat"].line.radius) == pytest.approx(29.425e-3, rel=1e-12)
+    assert float(drives["involute"].line.radius) == pytest.approx(30.241e-3, rel=1e-12)
+
+
+# Neutral line.
+
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 512, endpoint=False)
+
+
+def line_of(name, wave=0.3e-3, force_angle=np.pi / 6.0, radius=29.425e-3):
+    weights = WAVE_SHAPES[name].harmonics(force_angle, wave / radius)
+    return NeutralLine(*map(jnp.asarray, (radius, wave, weights)))
+
+
+@pytest.mark.parametrize("name", WAVE_SHAPES)
+def test_velocities_of_the_neutral_line_are_differences_of_its_places(name):
+    line = line_of(name)
+    # The last of 16 even harmonics turns 32 times as fast.
+    for values in (line.radial, line.tangential, line.rotation):
+        for order in (0, 1):
+            expected = slope(lambda p, at=values, k=order: np.asarray(at(p, k)), ANGLES, 2e-3)
+            found = np.asarray(values(ANGLES, order + 1))
+            np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(found).max())
+    np.testing.assert_allclose(line.tangential(ANGLES, 1), -line.radial(ANGLES), atol=1e-18)
+    tilt = -slope(lambda p: np.asarray(line.radial(p)), ANGLES, 2e-3) / float(line.radius)
+    np.testing.assert_allclose(line.rotation(ANGLES), tilt, atol=1e-9 * np.abs(tilt).max())
+    assert float(line.radial(jnp.zeros(()))) == pytest.approx(0.3e-3, rel=1e-12)
+
+
+def stretched(line):
+    """Strain of the whole neutral line by its length, and how far its normal is from the given one."""
+    radius = float(line.radius)
+
+    def place(p):
+        reach = radius + np.asarray(line.radial(p))
+        return reach * np.exp(1j * (p + np.asarray(line.tangential(p)) / radius))
+
+    rate = slope(place, ANGLES, 2e-3)
+    normal = (
+        ANGLES + np.asarray(line.tangential(ANGLES)) / radius + np.asarray(line.rotation(ANGLES))
+    )
+    off = np.angle(-1j * rate * np.exp(-1j * normal))
+    return np.mean(np.abs(rate)) / radius - 1.0, np.abs(off).max()
+
+
+@pytest.mark.parametrize("name", WAVE_SHAPES)
+def test_neutral_line_keeps_its_length_and_normal_to_first_order(name):
+    """What is left is of the second order: a quarter for half the deflection."""
+    # The normal is right to the second order too.
+    (strain, off), (quarter, off_quarter) = (stretched(line_of(name, w)) for w in (0.3e-3, 0.15e-3))
+    assert 1e-5 < strain < 5e-4
+    assert strain / quarter == pytest.approx(4.0, rel=0.02)
+    assert off < 1.5e-3
+    assert off / off_quarter == pytest.approx(8.0, rel=0.05)
+
+
+def two_forces(p):
+    """Ring under two opposite forces on the axis p = 0, over P r^3/(4 E I): Timoshenko (1955)."""
+    p = np.abs((p + np.pi / 2.0) % np.pi - np.pi / 2.0)
+    return np.sin(p) + (np.pi / 2.0 - p) * np.cos(p) - 4.0 / np.pi
+
+
+@pytest.mark.parametrize(("name", "at"), [("two_rollers", 0.0), ("four_forces", 0.4)])
+def test_rollers_give_the_ring_of_the_strength_of_materials(name, at):
+    def shape(p):
+        return two_forces(p - at) + two_forces(p + at)
+
+    def amplitude(k):
+        return quad(
+            lambda p: shape(p) * np.cos(2 * k * p), 0, np.pi, points=(at, np.pi - at), epsabs=1e-13
+        )[0]
+
+    line = line_of(name, force_angle=at)
+    weights = np.asarray(line.weights)
+    expected = np.array([amplitude(k) for k in range(1, TERMS + 1)])
+    np.testing.assert_allclose(weights / weights[0], expected / expected[0], atol=1e-10)
+    found = np.asarray(line.radial(ANGLES)) / 0.3e-3
+    np.testing.assert_allclose(found, shape(ANGLES) / shape(0.0), atol=3e-4)
+
+
+def test_elliptical_wave_is_an_ellipse():
+    line = line_of("elliptical")
+    long, short = 29.425e-3 + 0.3e-3, 29.425e-3 - 0.3e-3
+    radius = 1.0 / np.hypot(np.cos(ANGLES) / long, np.sin(ANGLES) / short)
+    beyond = radius - radius.mean()
+    np.testing.assert_allclose(line.radial(ANGLES), 0.3e-3 * beyond / beyond[0], atol=1e-16)
+
+
+# Motion of teeth.
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_motion_of_a_point_is_differences_of_its_places(drives, name):
+    by, rng = BY[name], np.random.default_rng(5)
+    station = rng.uniform(0.0, by.outline.length, 60)
+    angle = rng.uniform(-np.pi / 2.0, np.pi / 2.0, 60)
+    at = seen(drives[name], station, angle)
+    np.testing.assert_allclose(at.place, by.place(station, angle), atol=1e-16)
+    step = 2e-3
+    velocity = slope(lambda p: by.place(station, p), angle, step)
+    np.testing.assert_allclose(at.velocity, velocity, atol=1e-9 * np.abs(velocity).max())
+    bent = bend(lambda p: by.place(station, p), angle, step)
+    np.testing.assert_allclose(at.acceleration, bent, atol=1e-8 * np.abs(bent).max())
+    for found, rates in ((at.shift, (-1, 0, 0)), (at.whole, (0, 0, -1))):
+        expected = by.velocity(station, angle, rates)
+        np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
+    smooth = by.smooth(station)
+    direction = by.direction(station, angle, 2e-7)
+    assert np.abs(at.direction - direction)[smooth].max() < 1e-8
+
+
+def envelope(by, station, low, high, step):
+    """Phases in a bracket at which points of the flank move along it, by positions alone."""
+
+    def closing(p):
+        velocity = slope(lambda at: by.place(station, at), p, 2e-3)
+        return np.imag(velocity * np.exp(-1j * by.direction(station, p, step)))
+
+    low, high = np.full(station.shape, low), np.full(station.shape, high)
+    rises = np.sign(closing(high))
+    assert np.all(np.sign(closing(low)) == -rises), "no root in the bracket"
+    for _ in range(52):
+        middle = (low + high) / 2.0
+        above = np.sign(closing(middle)) == rises
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    return (low + high) / 2.0
+
+
+# Parts of the flank from root to tip as shares of its pieces, and a bracket of phases [deg].
+BRANCHES = {
+    "flat, root, deep": ("flat", 0, (0.2, 0.5, 0.8), (-2.0, 6.0)),
+    "flat, tip, deep": ("flat", 2, (0.3, 0.6, 0.85), (0.5, 8.0)),
+    "flat, tip, outer": ("flat", 2, (0.6, 0.7, 0.85), (25.0, 46.0)),
+    "involute, deep": ("involute", 0, (0.3, 0.6, 0.9), (0.5, 8.0)),
+    "involute, outer": ("involute", 0, (0.3, 0.6, 0.9), (30.0, 50.0)),
+}
+
+
+@pytest.mark.parametrize("case", BRANCHES)
+def test_flank_rolls_and_slides_on_its_envelope(drives, case):
+    name, piece, parts, bracket = BRANCHES[case]
+    by = BY[name]
+    start = np.sum(by.outline.lengths[:piece])
+    station = start + np.array(parts) * by.outline.lengths[piece]
+    low, high = np.deg2rad(bracket)
+    step = by.outline.lengths[piece] / 60.0
+
+    def phase(s):
+        return envelope(by, s, low, high, step / 4.0)
+
+    def along_envelope(s):
+        return by.place(s, phase(s))
+
+    angle = phase(station)
+    at = seen(drives[name], station, angle)
+    assert np.max(np.abs(at.closing) / np.abs(at.velocity)) < 1e-9, "residual of the envelope"
+    rate = slope(phase, station, step)
+    np.testing.assert_allclose(at.rolling * rate, 1.0, rtol=1e-6)
+    moved = slope(along_envelope, station, step)
+    size = np.real(moved * np.exp(-1j * at.direction))
+    assert np.max(np.abs(np.imag(moved * np.exp(-1j * at.direction))) / np.abs(size)) < 1e-7
+    np.testing.assert_allclose((at.rolling + at.sliding) * rate, size, rtol=1e-8, atol=1e-8)
+    # The envelope has the flank's direction, so that its curvature is the turn of the flank on the way.
+    turned = slope(lambda s: by.direction(s, phase(s), step / 4.0), station, step)
+    np.testing.assert_allclose(at.relative_curvature, at.curvature + turned / size, rtol=1e-5)
+
+
+def branches(drive, by):
+    """Phases [deg] and relative curvatures of all points at which parts of the flank have an envelope."""
+    station = (np.arange(300) + 0.5) / 300.0 * np.sum(by.outline.lengths[:-1])
+    angle = np.deg2rad(np.arange(-5.0, 60.0, 0.05))
+    at = seen(drive, station[:, None], angle[None])
+    row, column = np.nonzero(np.sign(at.closing[:, 1:]) != np.sign(at.closing[:, :-1]))
+    return np.degrees(angle[column]), at.relative_curvature[row, column], row
+
+
+def test_conjugate_branches_are_where_the_wear_notes_found_them(drives):
+    for name, by in BY.items():
+        phase, curvature, row = branches(drives[name], by)
+        deep = phase < 6.0
+        assert np.unique(row[deep]).size == 300
+        assert phase[deep].min() > -0.5
+        assert phase[deep].max() < 4.6
+        assert np.all(curvature[deep] > 0.0)
+        outer = phase > 6.0
+        if name == "involute":
+            assert phase[outer].min() == pytest.approx(37.0, abs=0.5)
+            assert phase[outer].max() == pytest.approx(41.0, abs=0.5)
+            assert np.all(curvature[outer] < 0.0)
+        if name == "flat":
+            assert phase[outer].min() == pytest.approx(15.0, abs=0.5)
+            assert phase[outer].max() == pytest.approx(47.0, abs=0.6)
+            assert np.unique(row[outer & (curvature > 0.0)]).size / 300 == pytest.approx(
+                0.34, abs=0.04
+            )
+
+
+# Kinematics of the drive.
+
+
+@pytest.mark.parametrize("teeth", [(200, 202), (200, 204), (201, 203)])
+def test_ten_turns_of_the_wave_generator(teeth):
+    z1, z2 = teeth
+    mesh = build(teeth=teeth)
+    assert float(mesh.ratio) == -z1 / (z2 - z1)
+    wave, flexspline, circular = 10.0 * 2.0 * np.pi * np.asarray(mesh.motion)
+    assert circular == 0.0
+    assert flexspline == pytest.approx(-2.0 * np.pi * 10.0 * (z2 - z1) / z1, rel=1e-15)
+    # The wave passes every space of the circular spline once a turn, and teeth as fast as it turns past them.
+    passed = (wave - flexspline) / float(mesh.tooth_angle)
+    assert passed == pytest.approx(10.0 * z2, rel=1e-14)
+    assert 10.0 * 2.0 * np.pi / float(mesh.period) == pytest.approx(10.0 * z2, rel=1e-14)
+    # A tooth stands in the middle of a space whenever an end of the long axis passes it.
+    ends = np.arange(21) * np.pi
+    foot, axis = mesh.tooth_motion.foot(jnp.asarray(ends))
+    spaces = np.unwrap(np.angle(np.asarray(foot))) * z2 / (2.0 * np.pi)
+    np.testing.assert_allclose(np.diff(spaces), (z2 - z1) / 2.0, rtol=1e-10)
+    np.testing.assert_allclose(np.asarray(axis) * z2 / (2.0 * np.pi), spaces, rtol=0.0, atol=1e-10)
+
+
+# Flanks and grooves.
+
+
+@pytest.fixture(scope="module", params=FORMS)
+def pair(request, drives):
+    mesh, by = drives[request.param], BY[request.param]
+    heights, widths = by.groove(float(mesh.groove.low), float(mesh.tip_rounding))
+    return SimpleNamespace(name=request.param, mesh=mesh, by=by, heights=heights, widths=widths)
+
+
+def test_groove_is_the_outermost_place_of_the_tooth(pair):
+    groove, by = pair.mesh.groove, pair.by
+    edge = float(pair.mesh.tip_height + pair.mesh.tip_rounding)
+    nodes = np.asarray(groove.heights)
+    inside = nodes[(nodes > edge) & (nodes < nodes[-1] - 1e-7)][::7]
+    far, phase = by.outermost(inside)
+    found, slopes = map(np.asarray, groove.width_and_slope(jnp.asarray(inside)))
+    assert np.max(np.abs(found - far)) < 1e-10
+    # There the tooth's flank and the groove have one direction, or an end of the flank passes.
+    station = by.reach(inside, phase)[1]
+    smooth = by.smooth(station)
+    assert smooth.mean() > 0.4
+    direction = np.tan(by.direction(station, phase, 2e-7))
+    assert np.max(np.abs(slopes - direction)[smooth] / (1.0 + direction[smooth] ** 2)) < 1e-6
+    between = np.abs(np.asarray(groove.width_and_slope(jnp.asarray(pair.heights))[0]) - pair.widths)
+    # The table goes smoothly round edges, which a cell of it wide.
+    assert between.max() < (1e-7 if pair.name == "involute" else 5e-9)
+    assert np.median(between) < 1e-12
+
+
+@pytest.mark.parametrize("shape", [None, "two_rollers", "elliptical"])
+def test_teeth_pass_the_whole_turn_without_interference(drives, pair, shape):
+    """Every part of a tooth, at every phase, is in the space or inside the tips beside it."""
+    mesh, by = pair.mesh, pair.by
+    if shape:
+        if pair.name == "involute":
+            pytest.skip("the double-arc pairs are those that are shipped")
+        mesh = build(form=FORMS[pair.name], shape=shape)
+        by = drive(FORMS[pair.name], weights=np.asarray(mesh.line.weights))
+    heights, widths = np.asarray(mesh.groove.heights), np.asarray(mesh.groove.half_width)
+    station = np.append(np.linspace(0.0, 1.0, 400) * by.outline.length, by.outline.length)
+    angle = np.deg2rad(np.arange(-90.0, 90.01, 0.1))[:, None]
+    flank = by.place(station, angle)
+    tooth = np.concatenate([flank, by.mirrored(station, angle)], axis=1)
+    # The end of the rounding closes the outline with a straight tip land.
+    last = tooth[:, [station.size - 1]]
+    land = last + np.linspace(0.0, 1.0, 9) * (tooth[:, [-1]] - last)
+    outline = np.concatenate([tooth, land], axis=1)
+    pitch = 2.0 * np.pi / float(mesh.teeth[1])
+    outline = outline * np.exp(-1j * pitch * np.round(np.angle(outline) / pitch))
+    within = outline.real >= heights[0]
+    room = np.interp(outline.real, heights, widths, right=-np.inf) - np.abs(outline.imag)
+    deepest = outline.real > heights[-1]  # above it there is the ground of the space
+    room = np.where(deepest, widths[-1] - np.abs(outline.imag), room)
+    assert np.min(room[within]) > -3e-8
+    assert not within[np.abs(np.degrees(angle[:, 0])) > 88.0].any(), (
+        "teeth are free at the short axis"
+    )
+
+
+@eqx.filter_jit
+def engaged(mesh, phase, load):
+    contacts = mesh.contacts(phase)
+    yields = yielding(mesh, contacts, (STEEL, STEEL), TERMS_OF_TEETH, load)
+    compliance = yields.compliance(contacts)
+    arm = jnp.abs(along(contacts.normal, mesh.loaded))
+    found = shared_load(compliance, gap=contacts.gap, arm=arm, active=contacts.active, load=load)
+    force = found.force.reshape(-1, *phase.shape)
+    moved = jnp.einsum("ij...,j...->i...", compliance, force)
+    return {
+        "angle": 2.0 * jnp.pi * contacts.path[:, 0],
+        "active": contacts.active[:, 0],
+        "gap": contacts.gap[:, 0],
+        "force": force,
+        "moved": moved,
+        "reach": (arm * found.approach)[:, 0],
+    }
+
+
+@pytest.fixture(scope="module")
+def loaded(pair):
+    phase = jnp.asarray([0.0, 0.21, 0.43, 0.64, 0.86])
+    found = engaged(pair.mesh, phase, jnp.full(phase.shape, 16.0))
+    found = SimpleNamespace(**{name: np.asarray(value) for name, value in found.items()})
+    clear = pair.by.clearance(found.angle.ravel(), pair.heights, pair.widths)
+    found.clearance = clear.reshape(found.angle.shape)
+    found.name = pair.name
+    tip = pair.by.place(pair.by.outline.length, found.angle).real
+    found.inside = found.active & (tip > pair.heights[0] + float(pair.mesh.tip_rounding))
+    return found
+
+
+def test_gaps_are_those_of_the_positions(loaded):
+    """Edges of the mate of an involute are blunter in the table, by 3e-8 m."""
+    assert np.all(np.isinf(loaded.clearance[~loaded.active]))
+    assert loaded.inside.sum() > 0.7 * loaded.active.sum()
+    found, expected = loaded.gap[loaded.inside], loaded.clearance[loaded.inside]
+    tolerance = 3e-8 if loaded.name == "involute" else 1e-8
+    np.testing.assert_allclose(found, np.maximum(expected, 0.0), rtol=1e-4, atol=tolerance)
+
+
+def test_pairs_that_count_as_touching_touch_and_none_lies_inside(loaded):
+    touching = loaded.active & (loaded.gap < 1e-12)
+    assert np.all(touching.sum(axis=0) >= 2)
+    assert np.max(np.abs(loaded.clearance[touching])) < 1e-9
+    assert np.min(loaded.clearance) > -1e-9
+
+
+def test_load_closes_the_gap_of_every_pair_that_carries(loaded):
+    """Tooth and ring yield by what the rigid motion moves a pair beyond its clearance."""
+    carries = loaded.force > 0.0
+    left = loaded.moved + loaded.clearance - loaded.reach
+    assert np.all(loaded.force >= 0.0)
+    assert np.all(carries.sum(axis=0) >= 6)
+    assert np.any(loaded.clearance[carries] > 1e-8)
+    assert np.max(np.abs(left[carries])) < 1e-8
+    assert np.min(left[loaded.active & ~carries]) > -1e-8
+
+
+def test_tooth_sections_are_the_outlines(pair):
+    """Half thickness, height and slope of the sections by which teeth yield."""
+    mesh, by = pair.mesh, pair.by
+    node = -np.cos(np.pi * np.arange(24) / 23.0)
+    for index, section in enumerate(mesh.sections):
+        low, high = np.asarray(section.reach)
+        reach = (high + low + node * (high - low)) / 2.0
+        half, height = np.asarray(section.flank)
+        place = by.outline.place if index == 0 else mate_outline(pair)
+        expected = place(reach**2)
+        tolerance = 1e-13 if index == 0 else 1e-7  # its arc length is that of chords
+        np.testing.assert_allclose(half, expected.imag, atol=tolerance)
+        np.testing.assert_allclose(height, expected.real, atol=tolerance)
+        step = 1e-9 if index == 0 else 1e-7
+        rate = (high - low) * reach * slope(lambda s, at=place: at(s).real, reach**2, step)
+        error = np.abs(np.asarray(section.slope) - rate)[1:-1]
+        assert np.max(error) < (1e-5 if index == 0 else 5e-3) * np.max(np.abs(rate))
+        assert np.all(half > 0.0)
+        assert np.all(np.diff(height) > 0.0)
+
+
+def mate_outline(pair):
+    """Tooth of the circular spline by arc length from the deepest point of the groove."""
+    grown = np.hypot(np.diff(pair.heights), np.diff(pair.widths))
+    depth = np.append(np.cumsum(grown[::-1])[::-1], 0.0)
+    pitch = np.pi / float(pair.mesh.teeth[1])
+
+    def place(at):
+        height = np.interp(at, depth[::-1], pair.heights[::-1])
+        half = pitch * height - np.interp(height, pair.heights, pair.widths)
+        return pair.heights[-1] - height + 1j * half
+
+    return place
+
+
+# What cannot be built.
+
+BAD = {
+    "no common tangent": (
+        {"form": DoubleArcForm(2.5, 0.6, 0.3, 2.5, 0.6, 0.3)},
+        "form",
+        "no common tangent: their centres are 2.835 modules apart, less than the sum of their radii, 5",
+    ),
+    "interference": (
+        {"form": INVOLUTE, "groove": InvoluteForm(3.0)},
+        "groove",
+        "interfere: 33.6 um of overlap",
+    ),
+    "zero engaged teeth": (
+        {"form": INVOLUTE, "groove": InvoluteForm(5.0)},
+        "groove",
+        "no tooth of the flexspline engages: the least clearance is",
+    ),
+    "deflection larger than the tooth": (
+        {"deflection": 1.4},
+        "deflection",
+        "deflects the flexspline by 1.4 modules for each pair of teeth of difference, more than its teeth",
+    ),
+    "deflection too small": (
+        {"deflection": 0.4},
+        "deflection",
+        "do not come free at the short axis",
+    ),
+    "pointed teeth": (
+        {"form": InvoluteForm(5.0)},
+        "form",
+        "teeth are pointed: their tip land is 0.012 modules",
+    ),
+    "odd difference": ({"teeth": (200, 203)}, "teeth", "200 and 203 teeth were given"),
+    "driver fixed": (
+        {"fixed": "wave generator"},
+        "driver",
+        "the wave generator is fixed and cannot drive",
+    ),
+    "no member": ({"driver": "sun"}, "driver", "'sun' is no member; use one of wave generator"),
+    "no wave": ({"shape": (1.0, -1.0)}, "shape", "must have a positive sum"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_cannot_be_built_says_why(name):
+    options, key, words = BAD[name]
+    with pytest.raises(InputError) as told:
+        build(**options)
+    assert told.value.key == key
+    message = str(told.value)
+    assert words in message
+    assert "\n" not in message
+
+
+def test_double_arc_needs_centres_farther_apart_than_its_radii():
+    """At the limit the tangent has no length; a hair less and there is none."""
+    form = DOUBLE_ARCS["flat"]
+    across = np.pi / 2.0 + form.convex_offset + form.concave_offset
+    apart = np.hypot(across, form.convex_shift + form.concave_shift)
+    for beyond, possible in ((1e-3, False), (-1e-3, True)):
+        radius = apart - form.convex_radius + beyond
+        changed = DoubleArcForm(
+            form.convex_radius,
+            form.convex_offset,
+            form.convex_shift,
+            radius,
+            form.concave_offset,
+            form.concave_shift,
+        )
+        if possible:
+            flank = double_arc_flank(changed, module=1.0, rim_thickness=2.0)
+            assert 0.0 < float(flank.tangent_length) < 0.2
+        else:
+            with pytest.raises(InputError, match="no common tangent"):
+                double_arc_flank(changed, module=1.0, rim_thickness=2.0)

@@ -1,0 +1,274 @@
+"""Wind-up of strain-wave gears, hysteresis by friction of the teeth, kinematic error by deviations."""
+
+from types import SimpleNamespace
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.gears.flexible_ring import RingLoads
+from pitchpoint.gears.strain_wave_design import build_strain_wave
+from pitchpoint.loading import torsion as module
+from pitchpoint.loading.balance import balance
+from pitchpoint.loading.deviations import Deviations, added_gap, kinematic_error, places
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.torsion import hysteresis, torsion
+from pitchpoint.loading.yielding import Yielding
+from pitchpoint.materials.solids import Solid
+
+STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
+TERMS = TOOTH_COMPLIANCE["beam_weber"].terms
+LOADS = np.geomspace(1e-3, 200.0, 12)
+PHASES = np.array([0.0, 0.3, 0.8])
+ARM = 0.02
+
+
+def contacts(path, gap=0.0, slip=0.0):
+    """Pairs along the first axis; rotations of wave generator, flexspline and circular spline."""
+    path = jnp.asarray(path)
+    none = jnp.zeros(path.shape)
+    surface = jnp.zeros((2, 3, *path.shape)).at[0, 2].set(none + slip)
+    return Contacts(
+        active=jnp.ones(path.shape, bool),
+        path=path,
+        width=none,
+        weight=none + 0.01,
+        curvature=jnp.ones((2, 2, *path.shape)),
+        surface=surface,
+        normal=jnp.stack([none, none, none - ARM]),
+        gap=none + gap,
+        flank=jnp.stack([none, none]),
+        shape="line",
+    )
+
+
+LOADED = jnp.asarray([0.0, 0.0, 1.0])
+
+# ------------------------------------------------------------------ springs one after the other
+
+GAPS = np.array([0.0, 1e-6, 4e-6, 0.0, 1e-6, 4e-6]).reshape(6, 1, 1)
+SLIPS = np.array([1e-3, 2e-3, 3e-3, 1e-3, 2e-3, -3e-3]).reshape(6, 1, 1)
+SPRING = 1e9 * 0.01
+
+
+@pytest.fixture
+def springs(monkeypatch):
+    """Three equal pairs at each end of the axis, the second and the third of them with a clearance."""
+
+    def yielding(mesh, contacts, solids, terms, load):
+        return Yielding(jnp.full(contacts.path.shape, 1e9), None, load)
+
+    at = contacts(np.zeros((6, 1, 1)), GAPS + ARM * 3e-5, SLIPS)
+    radial = jnp.asarray([-0.1, -0.2, -0.3, -0.4, -0.5, -0.6]).reshape(6, 1, 1)
+    monkeypatch.setattr(module, "yielding", yielding)
+    return SimpleNamespace(
+        contacts=lambda phase: at,
+        ring=object(),
+        ring_loads=lambda contacts: RingLoads(radial, -radial, radial, radial),
+        loaded=LOADED,
+    )
+
+
+def test_springs_that_come_to_carry_one_after_the_other(springs):
+    wind_up = np.linspace(0.0, 1.013e-3, 41)
+    force = SPRING * np.maximum(ARM * wind_up - GAPS, 0.0)
+    load = (ARM * force).sum(axis=(0, 1))
+    found = torsion(springs, (STEEL, STEEL), TERMS, jnp.asarray(load), jnp.zeros(1))
+    np.testing.assert_allclose(found.wind_up, wind_up, rtol=1e-10, atol=1e-15)
+    np.testing.assert_allclose(found.touch, 3e-5, rtol=1e-12)
+    np.testing.assert_allclose(found.force, force, rtol=1e-9, atol=1e-9)
+    carry = np.maximum((force > 0.0).sum(axis=(0, 1)), 2)
+    np.testing.assert_array_equal(found.loaded_pairs, carry)
+    np.testing.assert_allclose(found.stiffness, carry * SPRING * ARM**2, rtol=1e-10)
+    inward = force[:, 0] * np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])[:, None]
+    expected = [inward[:3].sum(axis=0), inward[3:].sum(axis=0)]
+    np.testing.assert_allclose(found.radial_load, expected, rtol=1e-9, atol=1e-9)
+    loop = hysteresis(found, 0.1)
+    held = 0.1 * (force * np.abs(SLIPS)).sum(axis=(0, 1))
+    np.testing.assert_allclose(loop.loading, load + held, rtol=1e-10)
+    np.testing.assert_allclose(loop.unloading, load - held, rtol=1e-10)
+
+
+# ------------------------------------------------------------------ a drive
+
+
+@eqx.filter_jit
+def _torsion(mesh, load, phase):
+    return torsion(mesh, (STEEL, STEEL), TERMS, load, phase)
+
+
+def wound_up(mesh, loads):
+    """Of any loads at all phases, by one compiled program."""
+    load, phase = np.meshgrid(np.resize(loads, LOADS.size), PHASES, indexing="ij")
+    found = _torsion(mesh, load, phase)
+    return jax.tree.map(lambda x: np.asarray(x)[..., : len(loads), :] if x.ndim else x, found)
+
+
+@pytest.fixture(scope="module")
+def drive():
+    return build_strain_wave(teeth=(100, 102), module=0.5e-3, face_width=10e-3)
+
+
+@pytest.fixture(scope="module")
+def found(drive):
+    return wound_up(drive, LOADS)
+
+
+@pytest.fixture(scope="module")
+def at(drive):
+    contacts = eqx.filter_jit(lambda mesh, phase: mesh.contacts(phase))(drive, PHASES)
+    return jax.tree.map(np.asarray, contacts)
+
+
+def test_wind_up_stiffness_and_pairs_grow_with_the_torque(found):
+    assert np.all(found.residual < 1e-12)
+    assert np.all(np.diff(found.wind_up, axis=0) > 0.0)
+    secant = found.load / found.wind_up
+    assert np.all(np.diff(secant, axis=0) > 0.0)
+    assert np.all(np.diff(found.loaded_pairs, axis=0) >= 0)
+    assert np.all(found.loaded_pairs[0] >= 2)
+    assert np.all(found.loaded_pairs[-1] >= found.loaded_pairs[0] + 6)
+    assert np.all(found.stiffness > 0.999 * secant)
+
+
+def test_torque_is_carried_alike_at_both_ends_of_the_axis(found, drive, at):
+    arm = np.abs(np.asarray(along(at.normal, drive.loaded)))
+    torque = (found.force * arm[:, :, None]).sum(axis=(0, 1))
+    np.testing.assert_allclose(torque, found.load, rtol=1e-11)
+    np.testing.assert_allclose(found.radial_load[0], found.radial_load[1], rtol=1e-9)
+    assert np.all(found.radial_load[0] > 0.0)
+
+
+def test_stiffness_is_the_slope_of_the_torque(drive):
+    """With the springs as they change with the load, where the same pairs carry on both sides."""
+    loads = np.array([0.3, 3.0, 30.0])
+    here, more, less = (wound_up(drive, loads * (1.0 + e)) for e in (0.0, 1e-6, -1e-6))
+    same = more.loaded_pairs == less.loaded_pairs
+    slope = 2e-6 * here.load / (more.wind_up - less.wind_up)
+    assert same.sum() > 5
+    np.testing.assert_allclose(here.stiffness[same], slope[same], rtol=1e-6)
+
+
+def test_without_torque_the_first_pairs_touch(drive, found, at):
+    zero = wound_up(drive, [0.0])
+    np.testing.assert_array_equal(zero.wind_up, 0.0)
+    np.testing.assert_array_equal(zero.force, 0.0)
+    assert np.all(zero.stiffness > 0.5 * found.stiffness[0])
+    assert np.all(zero.stiffness <= found.stiffness[0])
+    play = at.gap / np.abs(along(at.normal, np.asarray(drive.loaded)))
+    first = play <= zero.touch[0] + 1e-7 * play[at.active].max()
+    np.testing.assert_array_equal(zero.loaded_pairs[0], (first & at.active).sum(axis=(0, 1)))
+    np.testing.assert_array_equal(zero.touch[0], np.where(at.active, play, np.inf).min(axis=(0, 1)))
+
+
+def test_branches_are_in_balance_with_friction(found, drive, at):
+    """Turning the loaded member alone with its torque of the branch asks for the forces without friction."""
+    mu, force = 0.08, found.force[..., 0]
+    at = jax.tree.map(lambda x: x[..., :1], at)
+    side = float(np.sign(np.sum(along(at.normal, drive.loaded) * force[..., :1])))
+    loop = hysteresis(found, mu)
+
+    @jax.jit
+    def force_of(load, sense):
+        share = force / force.sum(axis=(0, 1))
+        given = {"motion": sense * side * drive.loaded, "loaded": drive.loaded, "load": load}
+        return balance(at, share, **given, friction=lambda x: jnp.full_like(x, mu)).force
+
+    for sense, branch in ((1.0, loop.loading), (-1.0, loop.unloading)):
+        np.testing.assert_allclose(
+            force_of(branch[:, 0], sense), force.sum(axis=(0, 1)), rtol=1e-10
+        )
+    assert np.all(loop.unloading > 0.0)
+    assert np.all(loop.loading > 1.01 * loop.unloading)
+
+
+def test_only_a_ring_winds_up():
+    pair = build_cylindrical_pair(
+        teeth=(20, 30), module=2e-3, pressure_angle=np.deg2rad(20.0), face_width=0.02
+    )
+    with pytest.raises(InputError, match="asks for a strain-wave gear"):
+        torsion(pair, (STEEL, STEEL), TERMS, jnp.ones(1), jnp.zeros(1))
+
+
+# ------------------------------------------------------------------ kinematic error
+
+TEETH = jnp.asarray([20.0, 22.0])
+PAIRS = 8
+TURNS = 10  # of the wave generator: after ten all teeth meet as at first
+SAMPLES = TURNS * 22 * 4
+PHASE = np.arange(SAMPLES) / SAMPLES * TURNS * 22
+NONE = Deviations(*jnp.zeros((3, 1)))
+
+
+def two_zones():
+    """Four pairs at each end of the axis, equal springs without clearances."""
+    number = np.arange(PAIRS).reshape(-1, 1, 1) % (PAIRS // 2) - 2.0
+    return contacts((number + np.mod(PHASE, 1.0)) / 20.0)
+
+
+def one(order, amplitude=1e-8, phase=0.4):
+    return Deviations(*(jnp.asarray([float(value)]) for value in (order, amplitude, phase)))
+
+
+@jax.jit
+def errors(deviations, load):
+    at = two_zones()
+    added = added_gap(deviations, places(at, PHASE, TEETH))
+    yields = Yielding(jnp.full(at.path.shape, 1e9), None, jnp.full(SAMPLES, load))
+    return kinematic_error(at, yields, LOADED, added)
+
+
+def lines(values):
+    """Amplitudes against order per turn of the wave generator."""
+    return 2.0 * np.abs(np.fft.rfft(np.asarray(values))) / SAMPLES
+
+
+def order_of_the_largest(values):
+    return np.argmax(lines(values)) / TURNS
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 7])
+@pytest.mark.parametrize("member", [0, 1])
+def test_orders_of_deviations_in_the_kinematic_error(member, order):
+    """Odd ones cancel over two zones; k of the circular spline stays k, of the other is k z2/z1."""
+    both = (one(order), NONE) if member == 0 else (NONE, one(order))
+    found = errors(both, 50.0)
+    if order % 2:
+        assert np.abs(found.elastic_mean).max() < 1e-12 * 1e-8 / ARM
+        return
+    assert order_of_the_largest(found.elastic_mean) == order * (22.0 / 20.0 if member == 0 else 1.0)
+    # Pairs spread over the wave average it, as the mean of four pitches does.
+    pitch = 2.0 * np.pi / 20.0 * (1.0 if member == 0 else 20.0 / 22.0)
+    mean = np.sin(2.0 * order * pitch) / (2.0 * order * pitch)
+    size = lines(found.elastic_mean).max() / (1e-8 / ARM)
+    assert size == pytest.approx(mean, rel=0.02)
+
+
+def test_under_load_small_deviations_add_up_to_their_elastic_mean():
+    found = errors((one(2), one(4)), 50.0)
+    size = np.abs(found.elastic_mean).max()
+    np.testing.assert_allclose(found.under_load, found.elastic_mean, atol=1e-9 * size)
+    np.testing.assert_allclose(found.wind_up, 50.0 / (PAIRS * SPRING * ARM**2), rtol=1e-12)
+
+
+def test_without_load_the_pair_that_stands_out_leads():
+    """Teeth do not yield then: the rotation is that at which the first flank touches."""
+    both = one(2, 1e-6), one(3, 1e-6)
+    place = places(two_zones(), PHASE, TEETH)
+    added = np.asarray(added_gap(both, place))
+    found = errors(both, 0.0)
+    np.testing.assert_allclose(
+        found.under_load, added.min(axis=(0, 1)) / ARM, rtol=1e-9, atol=1e-12
+    )
+
+
+def test_teeth_keep_their_places_while_the_wave_passes():
+    """Around both members places are whole pitches, at any phase."""
+    at = places(two_zones(), PHASE, TEETH)
+    for member, teeth in enumerate((20.0, 22.0)):
+        pitches = np.asarray(at[member]) / (2.0 * np.pi / teeth)
+        np.testing.assert_allclose(pitches, np.round(pitches), atol=1e-9)

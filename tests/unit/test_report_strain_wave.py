@@ -1,0 +1,504 @@
+"""Report of a drive whose teeth are carried by a wave: drawing, figures, and nothing that is not there."""
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from math import pi, radians
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.store import dataset
+from pitchpoint.views.cycle import cycle_panel
+from pitchpoint.views.drive import loaded_arcs, picture, simplified, wave_dimensions
+from pitchpoint.views.facts import MEMBERS, wave
+from pitchpoint.views.figures import Figure, Panel, curves
+from pitchpoint.views.maps import efficiency_panel
+from pitchpoint.views.report import render
+from pitchpoint.views.running import drag_panel, starting_answer
+from pitchpoint.views.torsion import torsion_answer, torsion_panels
+from pitchpoint.views.wave import arc_panel, gap_panel, wave_losses, wave_sentence
+
+EVIL = "</script><b>&"
+LAWS = ["constant", "own"]
+Z1, Z2 = 40, 42
+MODULE, RADIUS, DEFLECTION = 1e-3, 19.5e-3, 1e-3
+LANES, NODES = 14, 6
+
+
+def teeth() -> xr.Dataset:
+    """A trapezium on a cosine wave."""
+    tooth = 1e-3 * np.array([[-0.9, 0.5], [-0.4, 1.6], [0.4, 1.6], [0.9, 0.5]])
+    angle = np.deg2rad(np.linspace(-90.0, 90.0, 13))
+    lag = 1.0 - Z1 / Z2
+    foot = RADIUS + DEFLECTION * np.cos(2.0 * angle)
+    turn = np.exp(1j * lag * angle)[:, None]
+    placed = (foot[:, None] + tooth[:, 1] + 1j * tooth[:, 0]) * turn
+    low, high = 21e-3, 22.1e-3
+    space = np.array([[-0.8e-3, low], [-0.4e-3, high], [0.4e-3, high], [0.8e-3, low]])
+    around = np.deg2rad(np.linspace(-40.0, 50.0, 181))
+    return dataset(
+        {
+            "teeth": (("gear",), [Z1, Z2]),
+            "tooth": (("corner", "xy"), tooth),
+            "space": (("space_corner", "xy"), space),
+            "passing_angle": (("place",), angle),
+            "passing": (("place", "corner", "xy"), np.stack([placed.imag, placed.real], axis=-1)),
+            "neutral_radius": ((), RADIUS),
+            "deflection": ((), DEFLECTION),
+            "wave_weights": (("wave",), [1.0, 0.0, 0.0]),
+            "rim_thickness": ((), 1e-3),
+            "tip_height": ((), low),
+            "clearance_angle": (("angle",), around),
+            "clearance": (("angle",), np.where(around < radians(45), 5e-5 * around**2, np.nan)),
+        },
+        {},
+        title="teeth",
+    )
+
+
+def bell(angle: np.ndarray, width: float = radians(15.0)) -> np.ndarray:
+    return np.maximum(1.0 - (angle / width) ** 2, 0.0)
+
+
+def angles(phase: np.ndarray) -> np.ndarray:
+    """Angles [phase, pair] of the teeth at both ends of the long axis."""
+    lane = np.tile(np.arange(LANES) - LANES // 2, 2)
+    return (lane + phase[:, None]) * 2.0 * pi / Z1
+
+
+def cycle() -> xr.Dataset:
+    phase = np.linspace(0.0, 1.0, NODES)
+    angle = angles(phase)[..., None]
+    share = np.stack([bell(angle), bell(angle)])
+    lanes = ("law", "node", "pair", "slice")
+    each = {
+        "load": 100.0 * share,
+        "friction": 0.08 * (share > 0.0) * np.array([1.0, 0.5])[:, None, None, None],
+        "sliding_velocity": np.broadcast_to(angle, share.shape),
+        "entrainment": 0.01 + 0.0 * share,
+        "pressure": 4e8 * np.sqrt(share),
+        "film_thickness": 1e-8 * (1.0 + 1e3 * share),
+        "lambda_ratio": 0.02 * np.exp(6.0 * share),
+        "sliding_loss": 0.1 * share,
+        "rolling_loss": 0.0 * share,
+        "radius": 1e-3 + 0.0 * share,
+    }
+    mesh = {
+        "input_torque": 0.7 + 0.01 * phase,
+        "efficiency": 0.9 - 0.01 * phase,
+        "loss": 2.0 + 0.0 * phase,
+    }
+    both = {name: np.stack([values, 1.01 * values]) for name, values in mesh.items()}
+    return dataset(
+        {
+            "phase": (("node",), phase),
+            "weight": (("node",), np.full(NODES, 1.0 / NODES)),
+            "path": (lanes[1:], angle / (2.0 * pi)),
+            "active": (lanes[1:], np.abs(angle) < radians(40.0)),
+            **{name: (lanes, values) for name, values in each.items()},
+            **{name: (lanes[:2], values) for name, values in both.items()},
+        },
+        {"law": LAWS},
+        title="mesh cycle",
+        warnings=[],
+    )
+
+
+def operation(drag: float = 3.0) -> xr.Dataset:
+    names = {
+        "mean_efficiency": 0.85,
+        "min_efficiency": 0.84,
+        "max_efficiency": 0.86,
+        "mean_loss": 5.0,
+        "mean_drag_loss": drag,
+        "mean_input_torque": 0.7,
+        "min_input_torque": 0.69,
+        "max_input_torque": 0.71,
+        "torque_ripple": 0.02,
+        "mean_friction": 0.05,
+        "loss_factor": 1.0,
+        "contact_ratio": 8.0,
+    }
+    each = {name: (("law", "point"), np.full((2, 1), value)) for name, value in names.items()}
+    locked = {"locked": (("law", "point"), np.zeros((2, 1), bool))}
+    return dataset({**each, **locked}, {"law": LAWS}, title="operating point", warnings=[])
+
+
+def torsion() -> xr.Dataset:
+    torque = np.linspace(0.0, 40.0, 9)
+    phase = np.array([0.0, 0.5])
+    angle = angles(phase)
+    width = radians(4.0) + radians(14.0) * torque / 40.0
+    force = torque[:, None, None] * bell(angle, width[:, None, None])
+    wind_up = 2e-4 * torque**0.8
+    return dataset(
+        {
+            "wind_up": (("torque",), wind_up),
+            "wind_up_range": (("torque",), 0.01 * wind_up),
+            "torsional_stiffness": (("torque",), 1e4 + 100.0 * torque),
+            "loaded_pairs": (("torque",), 1.0 + torque / 4.0),
+            "zone_load": (("torque", "zone"), np.stack([torque, torque], axis=-1)),
+            "tooth_angle": (("phase", "pair"), angle),
+            "tooth_force": (("torque", "phase", "pair"), force),
+            "loading_torque": (("law", "torque"), np.stack([1.1 * torque, 1.05 * torque])),
+            "unloading_torque": (("law", "torque"), np.stack([0.9 * torque, 0.95 * torque])),
+            "mean_friction": (("law",), [0.1, 0.05]),
+        },
+        {"law": LAWS, "torque": ("torque", torque), "phase": ("phase", phase)},
+        title="torsion",
+        note="teeth and ring yield",
+        warnings=[],
+    )
+
+
+DEGREES = np.array([293.15, 313.15, 333.15])
+
+
+def running() -> xr.Dataset:
+    speed = np.linspace(20.0, 200.0, 5)
+    torque = 1e-3 * speed[:, None] * np.exp(-(DEGREES - 300.0) / 30.0)
+    return dataset(
+        {
+            "no_load_torque": (("law", "speed", "temperature"), np.stack([torque, 1.1 * torque])),
+            "starting_torque": (("law", "temperature"), np.full((2, 3), 0.03)),
+            "back_driving_torque": (("law", "temperature"), np.array([[2.0] * 3, [np.nan] * 3])),
+        },
+        {"law": LAWS, "speed": ("speed", speed), "temperature": ("temperature", DEGREES)},
+        title="running without load",
+        warnings=[],
+    )
+
+
+def loss_map() -> xr.Dataset:
+    axes = ("law", "torque", "speed", "temperature")
+    torque, speed = np.linspace(0.0, 30.0, 4), np.linspace(0.0, 200.0, 3)
+    power = torque[:, None, None] * speed[None, :, None] + 0.0 * DEGREES
+    with np.errstate(invalid="ignore", divide="ignore"):
+        efficiency = np.where(power > 0.0, 1.0 - 200.0 / (400.0 + power), np.nan)
+    return dataset(
+        {
+            "mean_loss": (axes, np.stack([power, power]) / 10.0),
+            "mean_efficiency": (axes, np.stack([efficiency, 0.99 * efficiency])),
+            "locked": (axes, np.zeros((2, *power.shape), bool)),
+        },
+        {
+            "law": LAWS,
+            "torque": ("torque", torque),
+            "speed": ("speed", speed),
+            "temperature": ("temperature", DEGREES),
+        },
+        title="loss map",
+        warnings=[],
+    )
+
+
+def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
+    given = {
+        "operation.driver": "wave generator",
+        "operation.torque": "20 N m",
+        "operation.speed": "1000 rpm",
+        "operation.temperature": "40 degC",
+        "gears.fixed": "circular spline",
+        "gears.module": "1 mm",
+        "gears.face_width": "10 mm",
+    }
+    entries = [
+        dict(zip(("table", "key"), name.split("."), strict=True))
+        | {"value": value, "status": "given", "where": "", "note": ""}
+        for name, value in given.items()
+    ]
+    empty: dict[str, Any] = {"sources": [], "issues": [], "rows": [], "settings": {}}
+    manifest = {
+        "case": "by hand",
+        "variant": "default",
+        "title": EVIL,
+        "summary": "",
+        "oil": "oil",
+        "driver": "wave generator",
+        "loaded": "flexspline",
+        "averaging": "base_pitch",
+        "finished": True,
+        "warnings": [],
+        "inputs": entries,
+        "laws": [{"name": "own", "title": EVIL, "note": ""}],
+        "models": [{"effect": "load sharing", "name": "a", "title": "a", "note": ""}],
+        **empty,
+        **changes,
+    }
+    return Outcome(manifest, dict(parts))
+
+
+@pytest.fixture(scope="module")
+def whole() -> Outcome:
+    return outcome(
+        {
+            "teeth": teeth(),
+            "cycle": cycle(),
+            "operation": operation(),
+            "torsion": torsion(),
+            "running": running(),
+            "loss_map": loss_map(),
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def page(whole: Outcome) -> str:
+    return render({"default": whole})
+
+
+def words(page: str) -> str:
+    body = re.sub(r"<(script|style).*?</\1>", "", page, flags=re.S)
+    return " ".join(re.sub(r"<[^>]*>", " ", body).split())
+
+
+def drawn(page: str) -> dict[str, Any]:
+    found = re.search(r'id="figures">(.*?)</script>', page, re.S)
+    assert found
+    figures: dict[str, Any] = json.loads(found.group(1))["figures"]
+    return figures
+
+
+def figure(panel: Panel, ending: str) -> Figure:
+    return next(one for one in panel.figures if one.name.endswith(ending))
+
+
+def heights(shown: Figure, trace: int = 0) -> list[float]:
+    return [y for y in shown.data[trace]["y"] if y is not None]
+
+
+def test_every_figure_has_a_place_and_data(page: str) -> None:
+    figures = drawn(page)
+    assert sorted(figures) == sorted(re.findall(r'class="plot" id="([^"]*)"', page))
+    assert 'class="empty"' not in page
+    assert len(figures) == 2 + 9 + 6 + 5 + 5 + 2 + 3
+
+
+def test_page_speaks_of_the_drive(page: str) -> None:
+    text = words(page)
+    for told in (
+        "wave generator drives at 1000 rpm, flexspline carries 20 N m",
+        "Averages run over one tooth pitch",
+        "One period is one tooth pitch: 8.571° of the driver, 1.429 ms.",
+        "2.000 W in the teeth, 3.000 W beside them",
+        "speed ratio, wave generator to flexspline −20",
+        "pairs carry in the mean",
+    ):
+        assert told in text
+    for told in ("base pitch", "gear 1", "gear 2", "Plane of action", "pitch point"):
+        assert told not in text
+    assert not re.search(r"\b(nan|none|inf)\b", text, re.I)
+
+
+def test_what_a_user_typed_is_text(page: str) -> None:
+    assert "<b>" not in page
+    assert "&lt;/script&gt;&lt;b&gt;&amp;" in page
+
+
+def test_page_stays_small(page: str) -> None:
+    """One tooth and one space, not the polygons of every frame."""
+    found = re.search(r'class="drive" data-motion="([^"]*)"', page)
+    assert found
+    assert len(found.group(1)) < 2500
+
+
+@pytest.mark.parametrize("kept", [("teeth",), ("teeth", "cycle"), ("operation",), ()])
+def test_sections_appear_with_their_parts(whole: Outcome, kept: tuple[str, ...]) -> None:
+    part = replace(whole, parts={name: whole.parts[name] for name in kept})
+    bare = render({"default": part})
+    headings = {
+        "Drive and path of the teeth": "teeth" in kept,
+        "Along the wave": "cycle" in kept,
+        "Torsion": False,
+        "Loss map": False,
+        "Losses beside the teeth": "operation" in kept,
+    }
+    for heading, there in headings.items():
+        assert (f"<h2>{heading}" in bare) == there
+    assert sorted(drawn(bare)) == sorted(re.findall(r'class="plot" id="([^"]*)"', bare))
+
+
+@pytest.mark.parametrize("fixed", MEMBERS)
+@pytest.mark.parametrize("driver", MEMBERS)
+def test_members_turn_by_the_law_of_the_drive(whole: Outcome, fixed: str, driver: str) -> None:
+    if fixed == driver:
+        return
+    loaded = next(name for name in MEMBERS if name not in (fixed, driver))
+    one = outcome(whole.parts, driver=driver, loaded=loaded)
+    fact = wave(one)
+    w, f, c = fact.rates
+    assert fact.fixed == fixed
+    assert fact.rates[MEMBERS.index(fixed)] == 0.0
+    assert abs(fact.rates[MEMBERS.index(driver)]) == 1.0
+    assert Z2 * c == pytest.approx(Z1 * f + (Z2 - Z1) * w, abs=1e-12)
+    assert fact.period_angle * abs(f - w) == pytest.approx(2.0 * pi / Z1)
+    motion = json.loads(picture(one, "one")["motion_json"])
+    w, f, c = motion["rates"]
+    assert max(map(abs, (w, f, c))) >= 1.0
+    assert Z2 * c == pytest.approx(Z1 * f + (Z2 - Z1) * w, abs=1e-6)
+    assert wave_dimensions(one)[-1][1] == "1.1"
+
+
+def test_backwards_teeth_come_from_positive_angles(whole: Outcome) -> None:
+    lost = wave_losses(whole, 0)
+    angle = 2.0 * pi * whole.parts["cycle"]["path"].values
+    loss = 0.1 * bell(angle)
+    assert lost["in"] == pytest.approx(loss[angle > 0.0].sum() / NODES)
+    assert lost["in"] + lost["out"] == pytest.approx(loss.sum() / NODES)
+    assert lost["beside"] == 3.0
+    turned = outcome(whole.parts, driver="flexspline", loaded="wave generator")
+    assert wave_losses(turned, 0)["in"] == pytest.approx(loss[angle < 0.0].sum() / NODES)
+
+
+def test_where_the_loss_is_made_in_words() -> None:
+    told = wave_sentence({"in": 1.0, "out": 2.0, "beside": 1.0})
+    assert told.startswith("75 % in the teeth: 25 % before they reach the long axis")
+    assert told.endswith("25 % beside the teeth.")
+    assert "beside" not in wave_sentence({"in": 1.0, "out": 2.0, "beside": 0.0})
+    assert wave_sentence({"in": 0.0, "out": 0.0, "beside": 0.0}) == "There is no loss."
+
+
+def test_simplified_outlines_keep_their_shape() -> None:
+    turn = np.linspace(0.0, 2.0, 400)
+    arc = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    few = simplified(arc, 1e-3)
+    assert len(few) < 40
+    assert np.array_equal(few[[0, -1]], arc[[0, -1]])
+    middles = (few[1:] + few[:-1]) / 2.0
+    assert np.abs(1.0 - np.hypot(*middles.T)).max() < 1e-3
+    assert len(simplified(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 1e-9)) == 2
+
+
+def test_loaded_arcs_end_where_teeth_let_go(whole: Outcome) -> None:
+    (arc,) = loaded_arcs(whole)
+    step = 2.0 * pi / Z1 / (NODES - 1)
+    assert arc[0] == pytest.approx(-radians(15.0), abs=step)
+    assert arc[1] == pytest.approx(radians(15.0), abs=step)
+    assert loaded_arcs(replace(whole, parts={"teeth": whole.parts["teeth"]})) == []
+    idle = whole.parts["cycle"].copy()
+    idle["load"] = 0.0 * idle["load"]
+    assert loaded_arcs(replace(whole, parts={**whole.parts, "cycle": idle})) == []
+
+
+def test_quantities_stand_over_the_angle_of_the_tooth(whole: Outcome) -> None:
+    known = curves({"default": whole})
+    panel = arc_panel({"default": whole}, known)
+    sliding = figure(panel, "sliding_velocity").data[0]
+    for x, y in zip(sliding["x"], sliding["y"], strict=True):
+        if y is not None:
+            assert y == pytest.approx(radians(x), abs=1e-5)
+    load = figure(panel, "arc_load").data[0]
+    assert max(y for y in load["y"] if y is not None) == pytest.approx(100.0, rel=1e-3)
+    ratio = figure(panel, "lambda_ratio")
+    bands = [one["text"] for one in ratio.layout["annotations"]]
+    assert bands == ["boundary", "mixed", "full film"]
+    assert ratio.layout["yaxis"]["type"] == "log"
+    assert figure(panel, "pressure").layout["yaxis"].get("type") != "log"
+
+
+def test_an_idle_drive_says_so(whole: Outcome) -> None:
+    idle = whole.parts["cycle"].copy()
+    idle["load"] = 0.0 * idle["load"]
+    one = replace(whole, parts={**whole.parts, "cycle": idle})
+    panel = arc_panel({"default": one}, curves({"default": one}))
+    assert not figure(panel, "radius").drawn
+    assert figure(panel, "radius").missing == "No tooth carries."
+    assert len(gap_panel(one, "x").figures[1].data) == 1
+
+
+def test_teeth_that_carry_lie_on_the_clearance(whole: Outcome) -> None:
+    line, dots = gap_panel(whole, "x").figures[1].data
+    assert len(dots["x"]) == np.sum(np.abs(angles(np.zeros(1))[0, :LANES]) < radians(14.99))
+    known = np.array([(x, y) for x, y in zip(line["x"], line["y"], strict=True) if y]).T
+    for x, y in zip(dots["x"], dots["y"], strict=True):
+        assert y == pytest.approx(np.interp(x, *known), rel=1e-3)
+    assert min(y for y in line["y"] if y is not None) == pytest.approx(0.01)
+
+
+def test_every_pair_is_counted_over_the_cycle(whole: Outcome) -> None:
+    known = curves({"default": whole})
+    (count,) = figure(cycle_panel({"default": whole}, known), "cycle_pairs").data
+    carrying = (whole.parts["cycle"]["load"].values[0] > 0.0).sum(axis=(1, 2))
+    assert [y for y in count["y"] if y is not None][:NODES] == carrying.tolist()
+
+
+def test_a_cycle_that_begins_at_an_event_is_shown_from_zero(whole: Outcome) -> None:
+    begun = whole.parts["cycle"].copy()
+    begun["phase"] = begun["phase"] + 0.3
+    one = replace(whole, parts={**whole.parts, "cycle": begun})
+    panel = cycle_panel({"default": one}, curves({"default": one}))
+    places = [x for x in figure(panel, "efficiency_phase").data[0]["x"] if x is not None]
+    assert places == sorted(places)
+    assert min(places) == pytest.approx(0.1)
+    assert max(places) == pytest.approx(0.9)
+    times = [x for x in figure(panel, "efficiency_time").data[0]["x"] if x is not None]
+    assert min(times) == 0.0
+    assert max(times) == pytest.approx(2e3 * wave(one).period, rel=1e-4)
+
+
+def test_load_grows_over_more_teeth_with_torque(whole: Outcome) -> None:
+    known = curves({"default": whole})
+    (panel,) = torsion_panels({"default": whole}, known)
+    load = figure(panel, "_load")
+    assert load.keys[-1].label == "40\u00a0N\u00a0m"
+    tops = [max(heights(load, k)) for k in range(len(load.data))]
+    wide = [sum(y > 0.0 for y in heights(load, k)) for k in range(len(load.data))]
+    assert tops == sorted(tops)
+    assert wide == sorted(wide)
+    assert wide[-1] > wide[0]
+
+
+def test_torque_loop_lies_around_the_line_without_friction(whole: Outcome) -> None:
+    known = curves({"default": whole})
+    loop = figure(torsion_panels({"default": whole}, known)[0], "_loop")
+    first, second, elastic = loop.data
+    half = len(elastic["x"])
+    assert first["x"] == [*elastic["x"], *elastic["x"][::-1]]
+    assert first["y"][half - 1] == pytest.approx(1.1 * elastic["y"][-1])
+    assert first["y"][half] == pytest.approx(0.9 * elastic["y"][-1])
+    assert max(second["y"]) < max(first["y"])
+
+
+def test_both_ends_are_one_line_only_if_they_are_alike(whole: Outcome) -> None:
+    known = curves({"default": whole})
+    bearing = figure(torsion_panels({"default": whole}, known)[0], "_bearing")
+    assert len(bearing.data) == 1
+    uneven = whole.parts["torsion"].copy(deep=True)
+    uneven["zone_load"].values[:, 1] *= 1.1
+    one = replace(whole, parts={**whole.parts, "torsion": uneven})
+    assert len(figure(torsion_panels({"default": one}, known)[0], "_bearing").data) == 2
+    assert torsion_answer(outcome({})) == ""
+
+
+def test_losses_are_split_only_where_there_are_others(whole: Outcome) -> None:
+    known = curves({"default": whole})
+    teeth_loss, beside = figure(drag_panel({"default": whole}, known), "loss_split").data
+    assert (teeth_loss["x"], beside["x"]) == ([2.0, 2.0], [3.0, 3.0])
+    none = outcome({"operation": operation(drag=0.0)})
+    assert drag_panel({"default": none}, curves({"default": none})).figures == []
+
+
+def test_a_drive_that_friction_holds_is_said(whole: Outcome) -> None:
+    told = dict(starting_answer(whole, "own"))
+    assert told["back-driving torque"] == "friction holds the drive"
+    assert dict(starting_answer(whole, "constant"))["back-driving torque"] == "2.000 N\u00a0m"
+    assert starting_answer(whole, "another") == []
+
+
+def test_efficiency_lines_are_those_of_the_map(whole: Outcome) -> None:
+    known = curves({"default": whole})
+    panel = efficiency_panel({"default": whole}, known)
+    assert [one.name for one in panel.figures] == [
+        "efficiency_torque",
+        "efficiency_speed",
+        "efficiency_temperature",
+    ]
+    data = whole.parts["loss_map"]
+    expected = 100.0 * data["mean_efficiency"].values[0, 1:, 1, 0]
+    assert heights(panel.figures[0]) == pytest.approx(expected, rel=1e-4)
+    assert "At 954.9\u00a0rpm" in panel.figures[0].note
