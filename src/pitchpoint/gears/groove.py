@@ -21,6 +21,7 @@ _STEPS = 8
 _CURVATURES = (-1e6, 1e6)  # 1/m: sharper than any edge that is made
 _FLATTEST = 1e-2  # 1/m
 _APART = np.deg2rad(1.0)
+_JUMP = 0.1  # relative change of the curvature between neighbours
 _KINK = 3e-3  # rad between neighbours that no smooth flank turns
 _STRIDE = 0.02  # rad: the longest step of an iteration
 
@@ -77,10 +78,17 @@ class Groove(eqx.Module):
         return width + slope * step * (t - inside), slope
 
     def curvature_at(self, height: Each) -> Each:
-        """Curvature at heights [1/m]."""
+        """Curvature at heights [1/m].
+
+        Where it jumps between two nodes, because the flank that left the groove behind has a joint
+        there, the larger one: the other might belong to the other side of the joint.
+        """
         cell, _, t = self._cell(height)
         inside = jnp.clip(t, 0.0, 1.0)
-        smooth = self.curvature[cell] * (1.0 - inside) + self.curvature[cell + 1] * inside
+        low, high = self.curvature[cell], self.curvature[cell + 1]
+        smooth = low * (1.0 - inside) + high * inside
+        jumps = jnp.abs(high - low) > _JUMP * (jnp.abs(high) + jnp.abs(low))
+        smooth = jnp.where(jumps, jnp.maximum(low, high), smooth)
         return jnp.where(self.edge[cell] > 0.0, self.edge[cell], smooth)
 
     def depth(self, height: Each) -> Each:

@@ -32,7 +32,8 @@ TRIES = (29, 14)
 _FLATTEST = 1.0  # 1/m: with less, a contact under load would be wider than the flank is high
 _PREFERENCE = 1e-5  # clearance that a place nearer to the tip must gain on the way there
 _SLACK = 1e-9
-_AROUND = np.deg2rad(6.0)
+_AROUND = np.deg2rad(2.0)
+_ALONG = np.unique(np.concatenate([np.linspace(*WINDOW, 541), np.linspace(-_AROUND, _AROUND, 321)]))
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
@@ -133,19 +134,19 @@ class StrainWave(Mesh):
 
     def survey(self) -> "Survey":
         """Clearances along the wave, and what follows from them for the whole drive."""
-        angle = jnp.linspace(WINDOW[0], WINDOW[1], 721)
+        angle = jnp.asarray(_ALONG)
         found, overlaps = self.touching(angle), self.overlaps(angle)
         touches = overlaps & (found.clearance < _LIGHT * self.module)
         slides = found.at.sliding
         # Teeth stop their inward motion near the long axis; sliding changes its sense there.
-        near = (jnp.abs(angle) < _AROUND) & (slides > 0.0)
+        near = (jnp.abs(angle) < _AROUND) & (slides < 0.0)
         after = jnp.maximum(jnp.argmax(near), 1)
         part = slides[after] / (slides[after] - slides[after - 1])
         return Survey(
             angle=angle,
             clearance=jnp.where(overlaps, found.clearance, jnp.nan),
             rolls=~found.held & (found.at.curvature + found.mate > 0.0),
-            pairs=jnp.mean(touches) * 2.0 * (WINDOW[1] - WINDOW[0]) / self.tooth_angle,
+            pairs=2.0 * jnp.trapezoid(touches * 1.0, angle) / self.tooth_angle,
             reversal=angle[after] - part * (angle[after] - angle[after - 1]),
         )
 

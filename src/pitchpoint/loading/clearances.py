@@ -321,7 +321,7 @@ def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
 def _divided(
     matrix: Float[Array, "*b lane lane"], by: Float[Array, "*b lane side"]
 ) -> Float[Array, "*b lane side"]:
-    """Solution of positive definite systems; a last step from it carries the first derivatives.
+    """Solution of positive definite systems; two last steps from it carry two orders of derivatives.
 
     Factors are not differentiated: that would solve for a whole matrix. The systems are taken one
     after the other: batches of them wait for threads of the pool that they run on (`_jax`).
@@ -336,7 +336,9 @@ def _divided(
 
     sides = by.reshape(-1, *by.shape[-2:])
     found = jax.lax.map(solve, (root, jax.lax.stop_gradient(sides)))
-    return jnp.reshape(found + jax.lax.map(solve, (root, sides - flat @ found)), by.shape)
+    for _ in range(2):
+        found = found + jax.lax.map(solve, (root, sides - flat @ found))
+    return jnp.reshape(found, by.shape)
 
 
 def _residual(problem: _Problem, loaded: Bool[Array, "*b lane"], found: _Solution) -> Each:

@@ -30,7 +30,7 @@ class _Stiffness(eqx.Module):
     """
 
     tangential: Float[Array, " wave"]
-    radial: Float[Array, " wave"]
+    yielding: Float[Array, " wave"]
     coupling: Float[Array, " wave"]
 
 
@@ -79,9 +79,11 @@ def _stiffness(ring: FlexibleRing, solid: Solid, waves: int) -> _Stiffness:
     tangential = square * (stretch + bend) + cup
     # The determinant of the form over `tangential`, written so that nothing cancels.
     alone = stretch * bend * square * (square - 1.0) ** 2 + cup * (stretch + bend * square**2)
+    rigid = jnp.isinf(ring.support_stiffness)
+    support = jnp.where(rigid, 0.0, ring.support_stiffness)  # no infinite numbers in derivatives
     return _Stiffness(
         tangential=tangential,
-        radial=alone / tangential + ring.support_stiffness,
+        yielding=jnp.where(rigid, 0.0, 1.0) / (alone / tangential + support),
         coupling=number * (stretch + bend * square) / tangential,
     )
 
@@ -97,7 +99,7 @@ def _modes(ring: FlexibleRing, loads: RingLoads, stiffness: _Stiffness) -> Modes
     def of_wave(values: Float[Array, " wave"]) -> Float[Array, "1 wave *b"]:
         return values.reshape(1, -1, *(1 for _ in range(rank - 2)))
 
-    number = of_wave(jnp.arange(stiffness.radial.shape[0] + 0.0))
+    number = of_wave(jnp.arange(stiffness.yielding.shape[0] + 0.0))
     length = ring.radius * jnp.where(number == 0.0, 2.0 * jnp.pi, jnp.pi)
     cosine, sine = jnp.cos(number * angle), jnp.sin(number * angle)
     lever = height / ring.radius
@@ -111,5 +113,7 @@ def _modes(ring: FlexibleRing, loads: RingLoads, stiffness: _Stiffness) -> Modes
     ):
         beyond = radial - of_wave(stiffness.coupling) * tangential
         parts.append(tangential / jnp.sqrt(length * of_wave(stiffness.tangential)))
-        parts.append(beyond / jnp.sqrt(length * of_wave(stiffness.radial)))
+        yields = of_wave(stiffness.yielding) > 0.0
+        share = jnp.where(yields, of_wave(stiffness.yielding), 1.0) / length
+        parts.append(jnp.where(yields, beyond * jnp.sqrt(share), 0.0))
     return jnp.concatenate(parts, axis=1)
