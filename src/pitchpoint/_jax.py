@@ -10,7 +10,8 @@ FEW_CORES = 4
 # Factorisations of a batch wait for other threads of the pool that runs them, and several at once
 # then wait for each other without end where the pool is small (jaxlib 0.10). A pool of one runs them
 # in place. It is made with the first array and asks this variable for its size.
-if (os.cpu_count() or 1) <= FEW_CORES:
+_ALLOWED = getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count() or 1))(0)
+if len(_ALLOWED) <= FEW_CORES:
     os.environ.setdefault("NPROC", "1")
 
 import jax  # noqa: E402

@@ -549,6 +549,11 @@ def _demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Seq
     failed = ~(residual <= TOLERANCE)
     if failed.any():
         law, point = divmod(int(np.argmax(failed)), residual.shape[1])
+        if np.isposinf(residual[law, point]):
+            raise ConvergenceError(
+                "losses beside the teeth drive the loaded member with more than its load "
+                f"{_where(points[min(point, len(points) - 1)])}: other flanks would touch"
+            )
         raise ConvergenceError(
             f"the torque balance did not converge (relative residual {residual[law, point]:.2g}, "
             f"allowed {TOLERANCE:g}) with {laws[law]} {_where(points[min(point, len(points) - 1)])}"

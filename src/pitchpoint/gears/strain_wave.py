@@ -147,7 +147,10 @@ class StrainWave(Mesh):
             clearance=jnp.where(overlaps, found.clearance, jnp.nan),
             rolls=~found.held & (found.at.curvature + found.mate > 0.0),
             pairs=2.0 * jnp.trapezoid(touches * 1.0, angle) / self.tooth_angle,
-            reversal=angle[after] - part * (angle[after] - angle[after - 1]),
+            # Without a change of sense the long axis stands for it.
+            reversal=jnp.where(
+                jnp.any(near), angle[after] - part * (angle[after] - angle[after - 1]), 0.0
+            ),
         )
 
     @property

@@ -122,9 +122,8 @@ def build_strain_wave(
     neutral = module * (z1 / 2.0 - dedendum) - rim / 2.0
     w0 = deflection * module * (z2 - z1) / 2.0
     _check_depth(form, deflection, clearance, module, z2 - z1)
-    line = NeutralLine(
-        jnp.asarray(neutral), jnp.asarray(w0), _weights(shape, force_angle, w0 / neutral)
-    )
+    weights = _weights(shape, force_angle, w0 / neutral)
+    line = NeutralLine(jnp.asarray(neutral), jnp.asarray(w0), jnp.asarray(weights))
     travel = ToothMotion(_prepared(flank), line, jnp.asarray(1.0 - z1 / z2))
     low = neutral + w0 + rim / 2.0 + clearance * module
     edge = tip_rounding * module
@@ -342,18 +341,31 @@ def _rates(z1: int, z2: int, fixed: str, driver: str) -> tuple[np.ndarray, int]:
     return motion, loaded
 
 
-def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> jnp.ndarray:
+def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> np.ndarray:
+    """Amplitudes over the deflection, of a wave with its crests on the long axis and nowhere else."""
     if isinstance(shape, str):
-        return jnp.asarray(WAVE_SHAPES[shape].harmonics(angle, relative))
-    weights = np.zeros(TERMS)
-    if not 1 <= len(shape) <= TERMS:
+        weights = WAVE_SHAPES[shape].harmonics(angle, relative)
+    elif 1 <= len(shape) <= TERMS:
+        weights = np.pad(np.asarray(shape, dtype=float), (0, TERMS - len(shape)))
+    else:
         raise InputError(
             f"{len(shape)} amplitudes of the wave were given; allowed are 1 to {TERMS}", key="shape"
         )
-    weights[: len(shape)] = shape
-    if not np.isfinite(weights).all() or not weights.sum() > 0.0:
-        raise InputError("the amplitudes of the wave must have a positive sum", key="shape")
-    return jnp.asarray(weights / weights.sum())
+    places = np.linspace(0.0, pi / 2.0, 91)
+    radial = np.cos(2.0 * np.arange(1, TERMS + 1) * places[:, None]) @ weights
+    if not (
+        np.isfinite(radial).all() and radial[0] > 0.0 and radial[0] >= radial.max() * (1 - 1e-9)
+    ):
+        raise InputError(
+            "the flexspline would not be pushed out most on the long axis; "
+            + (
+                f"forces {np.degrees(angle):.3g} degrees beside it are too far away"
+                if shape == "four_forces"
+                else "the amplitudes of the wave must have their sum as its largest value"
+            ),
+            key="force_angle" if shape == "four_forces" else "shape",
+        )
+    return weights / weights.sum()
 
 
 def _lanes(z1: int) -> int:
@@ -395,6 +407,13 @@ def _swept(
 def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: ToothMotion) -> Groove:
     flank = _involute(form, z2, module, 0.0, 0.0)
     high = jnp.real(travel.place(travel.flank.length, jnp.zeros(())))
+    root = module * (z2 / 2.0 + form.profile_shift + form.dedendum)
+    if float(high) > root:
+        raise InputError(
+            f"the flexspline's tips reach a radius of {1e3 * float(high):.5g} mm on the long axis, and the root "
+            f"circle of the circular spline has {1e3 * root:.5g} mm",
+            key="groove",
+        )
     tip = max(low, module * (z2 / 2.0 + form.profile_shift - form.addendum))
     return _given_groove(flank, jnp.asarray(tip), high)
 
@@ -424,7 +443,8 @@ def _check_contact(drive: StrainWave, found: Survey) -> None:
     if not clearance[least] - float(drive.backlash) < _FARTHEST * module:
         raise InputError(
             "no tooth of the flexspline engages: the least clearance is "
-            f"{1e6 * float(clearance[least]):.3g} um, a tenth of the module is the most that load can close",
+            f"{1e6 * (clearance[least] - float(drive.backlash)):.3g} um beyond the backlash, and a tenth of "
+            "the module is the most that load can close",
             key=where,
         )
     near = clearance < clearance[least] + 1e-2 * module

@@ -33,7 +33,8 @@ class Balance(eqx.Module):
         rolling: rolling resistance of each slice, on each of its surfaces [N].
         torque: external torque or force on each coordinate [N m or N].
         drag: part of it that overcomes the losses beside the teeth.
-        residual: relative error of the balance.
+        residual: relative error of the balance; infinite where losses beside the teeth drive the loaded
+            coordinate with more than its load, so that other flanks would touch.
         iterations: of the solver, common to the states that were solved together.
         locked: True where friction holds the load: no force up to `LARGEST_RATIO` times the
             frictionless one moves it. Forces and torques are NaN there, and where the drag takes the
@@ -143,6 +144,7 @@ def balance(
         torque = torque + beside
         grip = grip - pressed(force) / jnp.where(ratio == 0.0, 1.0, ratio)
     residual = jnp.abs(jnp.abs(along(torque, loaded)) - load) / safe_load
+    residual = jnp.where(carried < 0.0, jnp.inf, residual)
     locked = (ratio > 0.999 * most) | (grip <= 0.0)
     solved = (residual <= UNSOLVED) & (ratio > 0.0) & (carried >= 0.0) & ~locked
     return Balance(
