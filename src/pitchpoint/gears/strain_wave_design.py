@@ -365,7 +365,7 @@ def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> n
             ),
             key="force_angle" if shape == "four_forces" else "shape",
         )
-    return weights / weights.sum()
+    return np.asarray(weights / weights.sum())
 
 
 def _lanes(z1: int) -> int:
@@ -410,8 +410,8 @@ def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: Tooth
     root = module * (z2 / 2.0 + form.profile_shift + form.dedendum)
     if float(high) > root:
         raise InputError(
-            f"the flexspline's tips reach a radius of {1e3 * float(high):.5g} mm on the long axis, and the root "
-            f"circle of the circular spline has {1e3 * root:.5g} mm",
+            f"the flexspline's tips reach a radius of {1e3 * float(high):.5g} mm on the long axis, and "
+            f"the root circle of the circular spline has {1e3 * root:.5g} mm",
             key="groove",
         )
     tip = max(low, module * (z2 / 2.0 + form.profile_shift - form.addendum))

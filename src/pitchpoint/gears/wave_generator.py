@@ -88,7 +88,8 @@ def _four_forces(force_angle: float, relative: float) -> np.ndarray:
     """Ring under two pairs of equal outward forces at plus and minus an angle from the long axis."""
     orders = 2.0 * np.arange(1, TERMS + 1)
     found = np.cos(orders * force_angle) / (orders**2 - 1.0) ** 2
-    return np.asarray(found / found.sum())
+    # Outward forces far from the long axis pull it in; the sign tells.
+    return np.asarray(found / abs(found.sum()))
 
 
 def _two_rollers(force_angle: float, relative: float) -> np.ndarray:
