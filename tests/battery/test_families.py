@@ -15,6 +15,8 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.discs import BallOnDisc, TwinDisc
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.strain_wave import StrainWave
+from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -35,6 +37,12 @@ def spur(teeth, module=3e-3, **options):
 
 def helical(teeth, helix, module=3e-3, **options):
     return spur(teeth, module, helix_angle=np.deg2rad(helix), slices=6, **options)
+
+
+def strain_wave(teeth=(200, 202), form=DOUBLE_ARCS["flat"], **options):
+    return build_strain_wave(
+        teeth=teeth, module=0.3e-3, face_width=0.01, rim_thickness=0.7e-3, form=form, **options
+    )
 
 
 RING = {"fillet_radius": (0.38, 0.2), "profile_shift": (0.3, 0.2)}
@@ -68,6 +76,16 @@ FAMILIES: Mapping[str, Callable[[], Mesh]] = {
     "helical ring 18/-71, right flank": lambda: helical(
         (18, -71), 25.0, 1e-3, right_flank=True, **RING
     ),
+    # Alike for the compiler; involute teeth and odd numbers are in test_strain_wave.py.
+    "strain wave 200/202": strain_wave,
+    "strain wave 200/202, flexspline fixed": lambda: strain_wave(
+        form=DOUBLE_ARCS["liu"], fixed="flexspline"
+    ),
+    "strain wave 200/202, wave generator fixed": lambda: strain_wave(
+        fixed="wave generator", driver="flexspline"
+    ),
+    "strain wave 200/202, back-driving": lambda: strain_wave(driver="flexspline"),
+    "strain wave 200/204": lambda: strain_wave((200, 204)),
 }
 
 
@@ -147,14 +165,20 @@ def gradient_of_state(design, operation, phase, models):
 
 def models_for(mesh, law="constant", rolling="none"):
     names = LOCAL if mesh.reference is None else WHOLE_MESH
-    spur_pair = isinstance(mesh, CylindricalPair) and mesh.lanes == 2 and not mesh.helical
     return Models(
         friction=tuple(LAW[name] for name in names),
         choice=jnp.asarray(names.index(law)),
         parameters={"constant": {"coefficient": jnp.asarray(0.07)}},
-        sharing=LOAD_SHARING["sanchez_2017" if spur_pair else "equal"],
+        sharing=LOAD_SHARING[sharing_for(mesh)],
         rolling=ROLLING_RESISTANCE[rolling],
     )
+
+
+def sharing_for(mesh):
+    if isinstance(mesh, StrainWave):
+        return "zhao_2022_cosine"
+    spur_pair = isinstance(mesh, CylindricalPair) and mesh.lanes == 2 and not mesh.helical
+    return "sanchez_2017" if spur_pair else "equal"
 
 
 def xu_alone(mesh):
@@ -162,8 +186,15 @@ def xu_alone(mesh):
 
 
 def operation_for(mesh, load=None):
-    usual = 100.0 if isinstance(mesh, CylindricalPair) else 400.0
-    return Operation(*map(jnp.asarray, (usual if load is None else load, 150.0, 330.0)))
+    load = usual_load(mesh) if load is None else load
+    speed = 150.0 / max(1.0, float(jnp.max(jnp.abs(mesh.motion))))  # of the fastest member
+    return Operation(*map(jnp.asarray, (load, speed, 330.0)))
+
+
+def usual_load(mesh):
+    if isinstance(mesh, StrainWave):
+        return 0.2 if mesh.loaded[0] else 20.0  # a wave generator carries a hundredth
+    return 100.0 if isinstance(mesh, CylindricalPair) else 400.0
 
 
 def design_for(mesh):
@@ -173,6 +204,10 @@ def design_for(mesh):
         lubricants.find("pao-vg-220").build(),
         Roughness.from_composite_rq(0.4e-6),
     )
+
+
+INSIDE = (np.arange(26) + 0.4) / 26.0
+"""As many phases everywhere, so that one program serves."""
 
 
 @pytest.fixture(scope="module", params=FAMILIES, ids=list(FAMILIES))
@@ -204,8 +239,10 @@ def test_sliding_is_the_difference_of_the_surface_speeds(family):
     first, second = (np.asarray(along(arms, motion)) for arms in family.at.surface)
     np.testing.assert_allclose(first, dot(motion, family.at.surface[0]), rtol=1e-14)
     slip, roll = dot(motion, family.at.slip_arm), dot(motion, family.at.roll_arm)
-    np.testing.assert_allclose(slip, first - second, rtol=1e-13, atol=1e-16)
-    np.testing.assert_allclose(roll, first + second, rtol=1e-13, atol=1e-16)
+    # Coordinates may turn a hundred times as fast against each other as the contact sees.
+    rounding = max(1e-16, 1e-15 * dot(np.abs(motion), np.abs(family.at.surface[0])).max())
+    np.testing.assert_allclose(slip, first - second, rtol=1e-13, atol=rounding)
+    np.testing.assert_allclose(roll, first + second, rtol=1e-13, atol=rounding)
 
 
 def test_driver_moves_by_one_radian_and_load_is_on_another_coordinate(family):
@@ -338,7 +375,12 @@ def circle(radius, across):
     return across**2 / (radius + np.sqrt(radius**2 - across**2))
 
 
+BY_POSITIONS = "checked by positions alone in test_strain_wave.py"
+
+
 def test_curvature_is_the_second_derivative_of_the_gap(family):
+    if isinstance(family.mesh, StrainWave):
+        pytest.skip(BY_POSITIONS)
     if isinstance(family.mesh, CylindricalPair):
         check_involute_curvature(family)
         return
@@ -393,6 +435,8 @@ def check_involute_curvature(family):
 
 
 def test_arms_are_the_velocities_of_the_turning_flanks(family):
+    if isinstance(family.mesh, StrainWave):
+        pytest.skip(BY_POSITIONS)
     if isinstance(family.mesh, CylindricalPair):
         slope = transverse(family.mesh)[2]
         for index, path in active_lanes(family):
@@ -412,10 +456,11 @@ def test_arms_are_the_velocities_of_the_turning_flanks(family):
 
 
 def test_contact_moves_along_each_flank_as_it_rolls(family):
-    inside = (np.arange(20) + 0.4) / 20.0
+    if isinstance(family.mesh, StrainWave):
+        pytest.skip(BY_POSITIONS)
     step = 1e-5
     before, after = (
-        jax.tree.map(np.asarray, contacts_of(family.mesh, jnp.asarray(inside + move)))
+        jax.tree.map(np.asarray, contacts_of(family.mesh, jnp.asarray(INSIDE + move)))
         for move in (-step, step)
     )
     # Slices of a helical contact line move along it; at a fixed place of the face the path grows by
@@ -426,7 +471,7 @@ def test_contact_moves_along_each_flank_as_it_rolls(family):
     active = before.active & after.active & moves
     assert np.mean(active[before.active]) > 0.2
     for arms, moved in zip(
-        contacts_of(family.mesh, jnp.asarray(inside)).surface, rate, strict=True
+        contacts_of(family.mesh, jnp.asarray(INSIDE)).surface, rate, strict=True
     ):
         speed = dot(family.told.motion, arms)[active]
         np.testing.assert_allclose(
@@ -458,52 +503,67 @@ def leaves_of(found):
     }
 
 
+ROUNDING = 1e-10
+"""Nearest points of flanks that are almost parallel are less certain than places on an involute."""
+
+
 @pytest.mark.parametrize("turns", [-1.0, 1.0, 6.0])
 def test_one_period_later_all_is_the_same(family, turns):
-    inside = (np.arange(20) + 0.4) / 20.0
-    here = leaves_of(contacts_of(family.mesh, jnp.asarray(inside)))
-    there = leaves_of(contacts_of(family.mesh, jnp.asarray(inside + turns)))
+    here = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE)))
+    there = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE + turns)))
     for name, values in here.items():
-        np.testing.assert_allclose(there[name], values, rtol=1e-12, atol=1e-15, err_msg=name)
+        rtol = ROUNDING if family.mesh.clearances else 1e-12
+        np.testing.assert_allclose(there[name], values, rtol=rtol, atol=1e-15, err_msg=name)
 
 
 def test_pairs_move_up_by_one_where_a_period_ends(family):
     near = 1e-9
     end, start = (
-        leaves_of(contacts_of(family.mesh, jnp.full(20, at))) for at in (1.0 - near, near)
+        leaves_of(contacts_of(family.mesh, jnp.full(INSIDE.shape, at))) for at in (1.0 - near, near)
     )
     pairs = end["active"].shape[0]
-    moved = pairs - 1 if pairs > 1 else 1  # a rig keeps its only contact
-    shift = slice(1, None) if pairs > 1 else slice(None)
-    both = end["active"][:moved] & start["active"][shift]
+    now, then = successors(family.mesh, pairs)
+    both = end["active"][now] & start["active"][then]
     assert both.any()
     for name in ("path", "curvature", "surface", "normal", "flank", "gap", "weight", "width"):
         if pairs == 1 and name in ("path", "flank"):
             continue  # a rig counts turns anew
         before, after = (
             values.reshape(-1, *end["active"].shape)[:, part][:, both]
-            for values, part in ((end[name], slice(moved)), (start[name], shift))
+            for values, part in ((end[name], now), (start[name], then))
         )
         np.testing.assert_allclose(before, after, rtol=1e-6, atol=1e-9, err_msg=name)
+
+
+def successors(mesh, pairs):
+    """Lanes of one period, and those that hold the same pairs in the next."""
+    lane = np.arange(pairs)
+    if pairs == 1:
+        return lane, lane  # a rig keeps its only contact
+    if not isinstance(mesh, StrainWave):
+        return lane[:-1], lane[1:]
+    # Each end of the long axis has its own teeth; with an odd number they are half a pitch apart.
+    first, second = np.split(lane, 2)
+    if mesh.teeth[0] % 2:
+        return np.append(first[:-1], second), np.append(first[1:], second)
+    return np.append(first[:-1], second[:-1]), np.append(first[1:], second[1:])
 
 
 def test_batch_equals_loop(family):
     phase = jnp.asarray(family.phase)
     alone, mapped = each_alone(family.mesh, phase), vectorised(family.mesh, phase)
-    square = contacts_of(family.mesh, phase[:20].reshape(4, 5))
+    square = contacts_of(family.mesh, phase.reshape(2, 13))
+    close = (
+        {"rtol": ROUNDING, "atol": 1e-15}
+        if family.mesh.clearances
+        else {"rtol": 1e-14, "atol": 1e-17}
+    )
     for name, values in leaves_of(family.at).items():
         for other in (alone, mapped):
-            np.testing.assert_allclose(
-                np.moveaxis(getattr(other, name), 0, -1),
-                values,
-                rtol=1e-14,
-                atol=1e-17,
-                err_msg=name,
-            )
-        shaped = values[..., :20].reshape(*values.shape[:-1], 4, 5)
-        np.testing.assert_allclose(
-            np.asarray(getattr(square, name)), shaped, rtol=1e-14, atol=1e-17, err_msg=name
-        )
+            found = np.moveaxis(getattr(other, name), 0, -1)
+            np.testing.assert_allclose(found, values, **close, err_msg=name)
+        shaped = values.reshape(*values.shape[:-1], 2, 13)
+        np.testing.assert_allclose(np.asarray(getattr(square, name)), shaped, **close, err_msg=name)
 
 
 def test_states_together_equal_states_alone(family):
@@ -536,10 +596,19 @@ def test_every_state_is_finite_with_its_gradient(family, load):
 
 def test_rigid_flanks_touch_where_they_are_active(family):
     assert np.all(family.at.gap >= 0.0)
-    assert np.all(family.at.gap[family.at.active] == 0.0)
+    touching = family.at.gap[family.at.active]
+    if family.mesh.clearances:
+        # Only some of the pairs that reach into each other touch, to the table of the groove.
+        least = np.where(family.at.active, family.at.gap, np.inf).min(axis=(0, 1))
+        assert np.all(least < 1e-10)
+        assert touching.max() > 1e-6
+    else:
+        assert np.all(touching == 0.0)
 
 
 def test_number_of_pairs_changes_at_events_only(family):
+    if family.mesh.clearances:
+        pytest.skip("pairs come and go unloaded; the number that touches depends on the load")
     events = family.told.events
     assert events.shape == jax.eval_shape(type(family.mesh).events, family.mesh).shape
     assert np.all((events >= 0.0) & (events < 1.0))
@@ -547,7 +616,7 @@ def test_number_of_pairs_changes_at_events_only(family):
     edges = np.unique(np.concatenate([[0.0], events, [1.0]]))
     counts = []
     for low, high in pairwise(edges):
-        inside = low + (high - low) * np.linspace(1e-6, 1.0 - 1e-6, 20)
+        inside = low + (high - low) * np.linspace(1e-6, 1.0 - 1e-6, INSIDE.size)
         pairs = np.asarray(contacts_of(family.mesh, jnp.asarray(inside)).active).any(1).sum(0)
         assert np.all(pairs == pairs[0])
         counts.append(pairs[0] * (high - low))
@@ -555,9 +624,11 @@ def test_number_of_pairs_changes_at_events_only(family):
 
 
 def test_sliding_changes_its_sense_at_events_only(family):
+    if family.mesh.clearances:
+        pytest.skip("each tooth reverses its sliding near the long axis, one of many that carry")
     edges = np.unique(np.concatenate([[0.0], family.told.events, [1.0]]))
     for low, high in pairwise(edges):
-        inside = low + (high - low) * np.linspace(1e-6, 1.0 - 1e-6, 20)
+        inside = low + (high - low) * np.linspace(1e-6, 1.0 - 1e-6, INSIDE.size)
         at = contacts_of(family.mesh, jnp.asarray(inside))
         slip = np.sign(dot(family.told.motion, at.slip_arm))
         slip = np.where(np.asarray(at.active), slip, 0.0)
@@ -573,4 +644,4 @@ def test_the_pairs_are_what_their_names_say():
     mesh = FAMILIES["20/60, pitch point in double contact"]()
     base_pitch = np.pi * 3e-3 * np.cos(np.deg2rad(20.0))
     phase = (mesh.pitch_position - mesh.limits[0]) / base_pitch
-    assert int(contacts_of(mesh, jnp.full(20, phase)).active[..., 0].sum()) == 2
+    assert int(contacts_of(mesh, jnp.full(INSIDE.shape, phase)).active[..., 0].sum()) == 2

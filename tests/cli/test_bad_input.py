@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
@@ -22,10 +22,11 @@ import pytest
 from pydantic import BaseModel, BeforeValidator
 
 from pitchpoint import cli, units
-from pitchpoint.cases import schema
+from pitchpoint.cases import gear_tables, schema
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.quantities import Pair, Quantity
 from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.cases.tables import Table, tag
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import arguments
 
@@ -64,6 +65,10 @@ friction = [{ name = "constant", coefficient = 0.05 }, "xu_2007"]
 [housing]
 thermal_resistance = "0.06 K m2/W"
 area = "0.05 m2"
+
+[losses.seal]
+between = ["gear 1", "housing"]
+seal_torque = "0.1 N m"
 
 [dynamics]
 damping_ratio = 0.1
@@ -105,13 +110,63 @@ issue = "a misprint"
 verdict = "corrected"
 """)
 
+STRAIN_WAVE = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads("""
+[gears]
+family = "strain_wave"
+teeth = [200, 202]
+module = "0.3 mm"
+face_width = "10 mm"
+fixed = "circular spline"
+
+[gears.tooth]
+form = "double arc"
+set = "liu"
+
+[gears.wave_generator]
+weights = [1.0, -0.02]
+
+[gears.flexspline]
+rim_thickness = "0.6 mm"
+
+[gears.circular_spline]
+form = "conjugate"
+
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+driver = "wave generator"
+
+[losses.bearing]
+between = ["wave generator", "flexspline"]
+bearing = "palmgren_1959"
+mean_diameter = "45 mm"
+f0 = 1.5
+f1 = 0.001
+preload = "300 N"
+""")
+
+INVOLUTE = copy.deepcopy(STRAIN_WAVE)
+INVOLUTE["gears"]["tooth"] = {"form": "involute", "profile_shift": 3.32}
+INVOLUTE["gears"]["circular_spline"] = {"form": "involute", "profile_shift": 3.3}
+
+BASES = {"cylindrical": BASE, "strain wave": STRAIN_WAVE, "involute": INVOLUTE}
+WALKS = [
+    ("cylindrical", schema.Case, ()),
+    ("strain wave", gear_tables.StrainWaveGears, ("gears",)),
+    ("involute", gear_tables.InvoluteTooth, ("gears", "tooth")),
+    ("involute", gear_tables.InvoluteGroove, ("gears", "circular_spline")),
+]
+"""Sound case, table and its place: together every table of the schema."""
+
 Path_ = tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
 class Site:
-    """A place in the schema: its path, and what belongs there."""
+    """A place in the schema: in which sound case, its path, and what belongs there."""
 
+    base: str
     path: Path_
     annotation: Any
     marks: tuple[Any, ...]
@@ -126,13 +181,14 @@ class Site:
 
 @dataclass(frozen=True)
 class Bad:
-    """A broken case: what is put where, and what the message must contain."""
+    """A broken case: what is put where, what the message must contain, and in which sound case."""
 
     name: str
     path: Path_
     value: Any
     words: tuple[str, ...]
     key: str
+    base: str = "cylindrical"
 
 
 # ---- walking the schema
@@ -160,30 +216,31 @@ def containers(annotation: Any) -> set[Any]:
     return found
 
 
-def inside(site: Site) -> Path_:
-    """Path of the first member of a table or list of tables, as BASE has it."""
-    node = at(BASE, site.path)
+def inner(site: Site) -> Iterator[tuple[type[BaseModel], Path_]]:
+    """Table that stands at a place of the sound case, and its path; of a list or many the first."""
+    found = list(tables_in(site.annotation))
+    if not found:
+        return
+    path, node = site.path, at(BASES[site.base], site.path)
     if containers(site.annotation) & {tuple}:
-        return (*site.path, 0)
-    return (*site.path, next(iter(node))) if dict in containers(site.annotation) else site.path
+        path = (*path, 0)
+    elif dict in containers(site.annotation):
+        path = (*path, next(iter(node)))
+    forms = [table for table in found if len(found) > 1 and tag(table) in node.values()]
+    yield from ((table, path) for table in forms or found)
 
 
-def sites(model: type[BaseModel] = schema.Case, path: Path_ = ()) -> Iterator[Site]:
+def tables(base: str, model: type[BaseModel], path: Path_) -> Iterator[tuple[Any, str, Path_]]:
+    yield model, base, path
+    for site in places(base, model, path):
+        for table, where in inner(site):
+            yield from tables(base, table, where)
+
+
+def places(base: str, model: type[BaseModel], path: Path_) -> Iterator[Site]:
     for name, info in model.model_fields.items():
         marks = (*info.metadata, *marks_in(info.annotation))
-        site = Site((*path, name), info.annotation, marks)
-        yield site
-        for table in tables_in(info.annotation):
-            yield from sites(table, inside(site))
-
-
-def tables(
-    model: type[BaseModel] = schema.Case, path: Path_ = ()
-) -> Iterator[tuple[type[BaseModel], Path_]]:
-    yield model, path
-    for name, info in model.model_fields.items():
-        for table in tables_in(info.annotation):
-            yield from tables(table, inside(Site((*path, name), info.annotation, ())))
+        yield Site(base, (*path, name), info.annotation, marks)
 
 
 def at(tree: Any, path: Path_) -> Any:
@@ -192,10 +249,15 @@ def at(tree: Any, path: Path_) -> Any:
     return tree
 
 
-def put(path: Path_, value: Any) -> dict[str, Any]:
-    tree = copy.deepcopy(BASE)
+def put(bad: Bad) -> dict[str, Any]:
+    tree = copy.deepcopy(BASES[bad.base])
+    path, value = bad.path, bad.value
     at(tree, path[:-1])[path[-1]] = value
     return tree
+
+
+TABLES = [table for walk in WALKS for table in tables(*walk)]
+SITES = [site for model, base, path in TABLES for site in places(base, model, path)]
 
 
 # ---- what can be wrong at each kind of place
@@ -309,21 +371,21 @@ def bad_structures(site: Site) -> Iterator[Bad]:
 
 
 def bad_keys() -> Iterator[Bad]:
-    for model, path in tables():
+    for model, base, path in TABLES:
         if model is schema.FrictionChoice:
             continue  # its keys are parameters, see below
         first = next(iter(model.model_fields))
         wrong = f"{first}x"
         key = ".".join(map(str, (*path, wrong)))
         for name, value in (("key", 1), ("table", TABLE)):
-            yield Bad(f"unknown {name}", (*path, wrong), value, (name, first), key)
+            yield Bad(f"unknown {name}", (*path, wrong), value, (name, first), key, base)
 
 
 def bad_sweeps() -> Iterator[Bad]:
     sweep = ("studies", "scan", "sweep")
-    for name, value, shown in of_quantity(schema.MODULE):
+    for name, value, shown in of_quantity(gear_tables.MODULE):
         for end in ("start", "stop"):
-            words = (shown, schema.MODULE.allowed, "gears.module")
+            words = (shown, gear_tables.MODULE.allowed, "gears.module")
             yield Bad(f"{end} {name}", (*sweep, end), value, words, ".".join(sweep))
         listed = ("studies", "list", "sweep", "values")
         yield Bad(f"values {name}", listed, [value], words, "studies.list.sweep")
@@ -392,7 +454,8 @@ def bad_marks() -> Iterator[Bad]:
             f"status {value}", ("gears", "module"), mark, ("printed", "assumed"), "gears.module"
         )
     table = {"value": "2 mm", "unit": "mm"}
-    yield Bad("no mark", ("gears", "module"), table, (schema.MODULE.allowed,), "gears.module")
+    words = (gear_tables.MODULE.allowed,)
+    yield Bad("no mark", ("gears", "module"), table, words, "gears.module")
 
 
 def bad_targets() -> Iterator[Bad]:
@@ -409,7 +472,38 @@ def bad_names() -> Iterator[Bad]:
     yield Bad("variant", ("variants",), {"a": 3}, ("3", "table"), "variants.a")
 
 
-WALKED = [bad for site in sites() for bad in bads_at(site)]
+def bad_drives() -> Iterator[Bad]:
+    for name, path, value, words in [
+        ("fixed", ("operation", "driver"), "circular spline", ("fixed", "wave generator or flex")),
+        (
+            "driver",
+            ("operation", "driver"),
+            "gear 1",
+            ("gear 1 is not in this drive", "flexspline"),
+        ),
+        ("family", ("gears", "family"), "strainwave", ("'cylindrical' or 'strain_wave'",)),
+        ("form", ("gears", "tooth", "form"), "involut", ("'double arc' or 'involute'",)),
+        ("set", ("gears", "tooth"), {"convex_radius": 1.4}, ("convex_offset", "liu, flat")),
+        ("shape", ("gears", "wave_generator", "shape"), "cosine", ("weights were both given",)),
+        ("mixed", ("gears", "tooth", "profile_shift"), 3.3, ("profile_shift", "not a known key")),
+        ("body", ("losses", "bearing", "between", 0), "wave", ("wave generator", "housing")),
+        ("bodies", ("losses", "bearing", "between", 0), "flexspline", ("given twice", "housing")),
+        ("factor", ("losses", "bearing", "bearing"), "none", ("asks for no values",)),
+        ("helix", ("gears", "helix_angle"), "10 deg", ("known are family, teeth", "backlash")),
+    ]:
+        key = ".".join(part for part in path if isinstance(part, str)).removesuffix(".shape")
+        key = key.replace("bearing.bearing", "bearing")
+        yield Bad(f"drive {name}", path, value, words, key, "strain wave")
+    churned = {"between": ["gear 1", "housing"], "churning_torque": "1 N m"}
+    yield Bad(
+        "churning", ("losses",), {"oil": churned}, ("is missing",), "losses.oil.churning_speed"
+    )
+    bearing = {"between": ["gear 1", "housing"], "bearing": "palmgren_1959", "f1": 0.001}
+    words = ("is missing", "mean_diameter, f0, f1")
+    yield Bad("bearing", ("losses",), {"oil": bearing}, words, "losses.oil.mean_diameter")
+
+
+WALKED = [replace(bad, base=site.base) for site in SITES for bad in bads_at(site)]
 LISTED = [
     *bad_keys(),
     *bad_sweeps(),
@@ -419,10 +513,11 @@ LISTED = [
     *bad_marks(),
     *bad_targets(),
     *bad_names(),
+    *bad_drives(),
 ]
 REQUIRED = [
-    (*path, name)
-    for model, path in tables()
+    (base, (*path, name))
+    for model, base, path in TABLES
     for name, info in model.model_fields.items()
     if info.is_required()
 ]
@@ -470,40 +565,43 @@ def refuse(
     return run
 
 
+@pytest.mark.parametrize("base", ["cylindrical", "strain wave"])
 def test_the_whole_case_is_sound(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    base: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(sys, "argv", ["pitchpoint", "show", str(written(BASE, tmp_path)), "--json"])
+    path = str(written(BASES[base], tmp_path))
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "show", path, "--json"])
     with pytest.raises(SystemExit) as caught:
         cli.main()
     assert caught.value.code == 0
-    assert json.loads(capsys.readouterr().out)[0]["title"] == "a title"
+    assert json.loads(capsys.readouterr().out)[0]["title"] == BASES[base].get("title", "bad.toml")
 
 
 def test_the_walk_reaches_every_table() -> None:
     defined = {
         each
-        for each in vars(schema).values()
+        for module in (schema, gear_tables)
+        for each in vars(module).values()
         if isinstance(each, type) and issubclass(each, BaseModel)
     }
-    assert {model for model, _ in tables()} == defined - {BaseModel, schema.Table}
-    tested = {bad.path[: len(site.path)] for site in sites() for bad in WALKED + LISTED}
-    assert tested >= {site.path for site in sites() if site.annotation is not Any}
+    assert {model for model, *_ in TABLES} == defined - {BaseModel, Table}
+    tested = {(bad.base, bad.path[:n]) for bad in WALKED + LISTED for n in range(len(bad.path) + 1)}
+    assert tested >= {(site.base, site.path) for site in SITES if site.annotation is not Any}
 
 
-@pytest.mark.parametrize("bad", WALKED + LISTED, ids=lambda bad: f"{bad.path}-{bad.name}")
+@pytest.mark.parametrize(
+    "bad", WALKED + LISTED, ids=lambda bad: f"{bad.base}-{bad.path}-{bad.name}"
+)
 def test_a_wrong_value(bad: Bad, refuse: Callable[..., str], tmp_path: Path) -> None:
-    told = refuse("show", written(put(bad.path, bad.value), tmp_path))
+    told = refuse("show", written(put(bad), tmp_path))
     assert f"bad.toml: {bad.key}" in told
     for word in bad.words:
         assert word in told
 
 
-@pytest.mark.parametrize("path", REQUIRED, ids=lambda path: ".".join(map(str, path)))
-def test_a_missing_key(path: Path_, refuse: Callable[..., str], tmp_path: Path) -> None:
-    tree = copy.deepcopy(BASE)
-    if path == ("gears", "teeth"):
-        assert path in REQUIRED
+@pytest.mark.parametrize(("base", "path"), REQUIRED, ids=str)
+def test_a_missing_key(base: str, path: Path_, refuse: Callable[..., str], tmp_path: Path) -> None:
+    tree = copy.deepcopy(BASES[base])
     del at(tree, path[:-1])[path[-1]]
     told = refuse("show", written(tree, tmp_path))
     assert f"bad.toml: {'.'.join(map(str, path))}: is missing; " in told

@@ -1,6 +1,7 @@
 """Gradients against differences, and properties that hold for any load, friction and unit."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import equinox as eqx
 import numpy as np
@@ -226,7 +227,8 @@ def contacts_on(path, active):
 @eqx.filter_jit
 def shares(sharing, ratio, phase, lanes):
     path = (phase + jnp.arange(float(lanes)))[:, None]
-    return sharing.function(contacts_on(path, path <= ratio), ratio, None), path <= ratio
+    mesh = SimpleNamespace(contact_ratio=ratio)
+    return sharing.function(contacts_on(path, path <= ratio), mesh, None), path <= ratio
 
 
 def check_shares(name, ratio, phase, lanes):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import cache
 
 import equinox as eqx
 import numpy as np
@@ -31,9 +32,10 @@ Piece = Callable[[Callable[[int], None]], xr.Dataset]
 
 def pieces(built: Built) -> Iterator[Piece]:
     """One computation for each torque; its share of the load serves all speeds and temperatures."""
-    axes = map_axes(built)
-    for torque in axes[0]:
-        yield _piece(built, float(torque), axes[1], axes[2])
+    torques, *axes = map_axes(built)
+    lanes = cache(lambda: _lanes(built.design, laws_of(built)[0]))  # traces the contacts: once
+    for torque in torques:
+        yield _piece(built, float(torque), axes[0], axes[1], lanes)
 
 
 def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -78,15 +80,22 @@ def joined(parts: Sequence[xr.Dataset], laws: Sequence[str]) -> xr.Dataset:
     )
 
 
-def _piece(built: Built, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Piece:
+def _piece(
+    built: Built,
+    torque: float,
+    speeds: np.ndarray,
+    degrees: np.ndarray,
+    lanes: Callable[[], int],
+) -> Piece:
     def compute(progress: Callable[[int], None]) -> xr.Dataset:
         models, chosen = laws_of(built)
         point = replace(built.operation, load=jnp.asarray(torque))
         known = engaged(built.design, point, models, _NODES)
+        together = max(1, min(speeds.size, STATES // (lanes() * degrees.size)))
         runs = []
         for count, law in enumerate(chosen, 1):
             own = replace(models, choice=jnp.asarray(law))
-            runs.append(_map(built.design, torque, speeds, degrees, own, known))
+            runs.append(_map(built.design, torque, speeds, degrees, own, known, together))
             progress(count * speeds.size * degrees.size)
         found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
         return dataset(
@@ -114,10 +123,10 @@ def _map(
     degrees: np.ndarray,
     models: Models,
     known: Engagement | None,
+    together: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
     moving = np.where(speeds > 0.0, speeds, 1.0)  # at rest nothing is lost, whatever the laws say
-    together = max(1, min(speeds.size, STATES // (_lanes(design, models) * degrees.size)))
     parts = []
     for start in range(0, speeds.size, together):
         part = moving[start : start + together]

@@ -1,23 +1,40 @@
-"""Figures that only a published case needs: formulas as its source prints them."""
+"""Figures that only a published case needs: formulas as its source prints them, and what stands beside."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
+import equinox as eqx
 import numpy as np
+from jaxtyping import Array, Float
 
+from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.atanasiu2011 import printed as atanasiu2011
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.xu2021 import printed as xu2021
 from pitchpoint.cases.zhao2022 import printed as zhao2022
+from pitchpoint.gears.strain_wave import StrainWave, Survey
 
-__all__ = ["READINGS", "readings_of"]
+__all__ = ["READINGS", "conjugate_readings", "readings_of"]
 
 READINGS: dict[str, Callable[[Built], dict[str, float]]] = {
     "atanasiu_2011": atanasiu2011.readings,
-    "xu_2021": xu2021.readings,
-    "zhao_2022": zhao2022.readings,
+    "xu_2021": lambda built: {**xu2021.readings(built), **conjugate_readings(built)},
+    "zhao_2022": lambda built: {**zhao2022.readings(built), **conjugate_readings(built)},
 }
 """By source of the case."""
+
+PLACES = 121
+"""Points of the flank at which its conjugate branches are looked for."""
+
+BRANCHES = ((-5.0, 10.0), (10.0, 65.0))
+"""Angles between which the deep and the outer branch lie [deg]."""
+
+_STEP = 0.25  # deg
+_NEWTON_STEPS = 5
+_TOUCHING = 1e-5  # modules
+
+Points = Float[Array, "branch place"]
 
 
 def readings_of(points: Sequence[Built], laws: int) -> dict[str, Any]:
@@ -29,4 +46,88 @@ def readings_of(points: Sequence[Built], laws: int) -> dict[str, Any]:
     return {
         name: (("law", "point"), np.array([[one[name] for one in found]] * laws))
         for name in found[0]
+    }
+
+
+def conjugate_readings(built: Built) -> dict[str, float]:
+    """Where points of the flank touch their envelope, how they roll on it, and what the groove leaves of it.
+
+    Every point does so twice, deep in the space near the long axis and again on its way out. Ends are
+    those of the flank without the rounding of its tip.
+    """
+    mesh = built.design.mesh
+    assert isinstance(mesh, StrainWave)
+    found = _conjugate(mesh)
+    rate = float(found["phase_rate"])
+    (deep, outer), (r_deep, r_outer) = found["angle"], found["radius"]
+    speed = np.abs(found["entrainment"][0]) * rate * built.case.operation.speed
+    return {
+        "phase_rate": rate,
+        "deep_angle_first": float(np.nanmin(deep)),
+        "deep_angle_last": float(np.nanmax(deep)),
+        "deep_radius_root": float(r_deep[0]),
+        "deep_radius_tip": float(r_deep[-1]),
+        "deep_entrainment_root": float(speed[0]),
+        "deep_entrainment_tip": float(speed[-1]),
+        "outer_angle_first": float(np.nanmin(outer)),
+        "outer_angle_last": float(np.nanmax(outer)),
+        "outer_radius_least": float(np.nanmin(r_outer)),
+        "outer_radius_largest": float(np.nanmax(r_outer)),
+        "outer_clearance_least": float(np.nanmin(found["clearance"][1])),
+        "clearance_between": _clearance_between(mesh),
+    }
+
+
+def _clearance_between(mesh: StrainWave) -> float:
+    """Largest clearance between the first and the last angle at which rigid teeth touch [m]."""
+    found = np.asarray(_surveyed(mesh).clearance)
+    (touching,) = np.nonzero(found < _TOUCHING * float(mesh.module))
+    return float(found[touching[0] : touching[-1] + 1].max())
+
+
+def _conjugate(mesh: StrainWave) -> dict[str, Any]:
+    """Points of both branches along the flank, NaN where a branch leaves one out.
+
+    Clearances are those of the drive's own flank with its rounded tip, where it reaches its mate.
+    """
+    sharp = replace(mesh, flank=replace(mesh.flank, tip_rounding=1e-6 * mesh.module))
+    names = ("phase_rate", "angle", "radius", "entrainment")
+    found = jax.device_get(_branches(sharp))
+    own: dict[str, Any] = jax.device_get(_branches(mesh))
+    return {**{name: found[name] for name in names}, "clearance": own["clearance"]}
+
+
+@eqx.filter_jit
+def _surveyed(mesh: StrainWave) -> Survey:
+    return mesh.survey()
+
+
+@eqx.filter_jit
+def _branches(mesh: StrainWave) -> dict[str, Array]:
+    """Where a drive's flank moves along its tangent, and what it does there [branch, place]."""
+    motion = mesh.tooth_motion
+    along = jnp.linspace(0.0, 1.0, PLACES) * (mesh.flank.length - mesh.flank.lengths[-1])
+    grid = jnp.deg2rad(jnp.arange(BRANCHES[0][0], BRANCHES[-1][-1], _STEP))
+    closing = motion.at(along[:, None], grid).closing
+    turns = closing[:, 1:] * closing[:, :-1] < 0.0
+    ends = jnp.deg2rad(jnp.asarray(BRANCHES))[..., None, None]
+    turns = turns & (grid[:-1] >= ends[:, 0]) & (grid[:-1] < ends[:, 1])
+    along = jnp.broadcast_to(along, turns.shape[:2])
+
+    def newton(_: int, angle: Points) -> Points:
+        at = motion.at(along, angle)
+        return angle - at.closing / at.change
+
+    start = grid[jnp.argmax(turns, axis=2)] + jnp.deg2rad(_STEP / 2.0)
+    angle = jax.lax.fori_loop(0, _NEWTON_STEPS, newton, start)
+    angle = jnp.where(jnp.any(turns, axis=2), angle, jnp.nan)
+    at = motion.at(along, angle)
+    width, _ = mesh.groove.width_and_slope(jnp.real(at.place))
+    clearance = (width - jnp.imag(at.place)) * jnp.cos(at.direction)
+    return {
+        "phase_rate": jnp.abs(mesh.motion[1] - mesh.motion[0]),
+        "angle": angle,
+        "radius": 1.0 / at.relative_curvature,
+        "entrainment": at.rolling + at.sliding / 2.0,
+        "clearance": jnp.where(jnp.real(at.place) > mesh.groove.low, clearance, jnp.nan),
     }

@@ -149,6 +149,25 @@ VARIABLES: dict[str, Variable] = {
     "largest_opposed_speed": _speed("largest mesh point speed, tangential parts opposed", "u"),
     "least_added_speed": _speed("least mesh point speed, tangential parts added", "u"),
     "largest_added_speed": _speed("largest mesh point speed, tangential parts added", "u"),
+    "phase_rate": Variable("speed of the wave over the teeth over that of the driver", "φ'/ω", "1"),
+    "deep_angle_first": _angle("least angle of the deep conjugate branch", "p"),
+    "deep_angle_last": _angle("largest angle of the deep conjugate branch", "p"),
+    "deep_radius_root": Variable(
+        "relative radius on the deep branch at the root", "R", "m", "m", "length"
+    ),
+    "deep_radius_tip": Variable(
+        "relative radius on the deep branch at the tip", "R", "m", "m", "length"
+    ),
+    "deep_entrainment_root": _speed("entrainment on the deep branch at the root", "u"),
+    "deep_entrainment_tip": _speed("entrainment on the deep branch at the tip", "u"),
+    "outer_angle_first": _angle("least angle of the outer conjugate branch", "p"),
+    "outer_angle_last": _angle("largest angle of the outer conjugate branch", "p"),
+    "outer_radius_least": _length("least relative radius on the outer branch, with its sign", "R"),
+    "outer_radius_largest": _length(
+        "largest relative radius on the outer branch, with its sign", "R"
+    ),
+    "outer_clearance_least": _deviation("least clearance on the outer branch", "g"),
+    "clearance_between": _deviation("largest clearance between pairs that touch", "g"),
     "viscosity": Variable(
         "viscosity without pressure by Roelands' law", "η", "Pa s", "mPa s", "dynamic viscosity"
     ),

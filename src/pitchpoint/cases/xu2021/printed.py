@@ -1,12 +1,16 @@
 """Formulas as Xu et al. (2021) print them, beside what their derivation asks for."""
 
-from math import cos, hypot, log, pi
-from typing import Any
+from functools import partial
+from math import log, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.gear_tables import StrainWaveGears
+from pitchpoint.cases.schema import Operating
+from pitchpoint.gears.flexspline_tooth import InvoluteFlank
+from pitchpoint.gears.strain_wave import StrainWave
 
 __all__ = [
     "assumed_radius",
@@ -266,71 +270,89 @@ OIL = {"viscosity_0": 0.04, "alpha": 2.2e-8, "beta": 0.0476, "temperature_0": 31
 
 
 def readings(built: Built) -> dict[str, float]:
-    """What the formulas give for a case, under the names of result variables."""
-    case: Any = built.case
-    roughness = case.roughness.rq
-    solids = (case.materials.gear_1, case.materials.gear_2)
+    """What the formulas give for a case, under the names of result variables.
+
+    Those with base circles are left out for teeth that have none.
+    """
+    gears, mesh, case = built.case.gears, built.design.mesh, built.case
+    assert isinstance(gears, StrainWaveGears)
+    assert isinstance(mesh, StrainWave)
     return {
-        **_loads(case.gears, case.operation.torque),
-        **_curvatures(case.gears),
-        **_speeds(case.gears, case.operation.speed),
-        "viscosity": float(viscosity(temperature=case.operation.temperature, **OIL)),
-        "printed_viscosity": float(
-            printed_viscosity(temperature=case.operation.temperature, **OIL)
-        ),
+        "tooth_ratio": gears.teeth[0] / (gears.teeth[1] - gears.teeth[0]),
+        **_of_base_circles(gears, mesh, case.operation),
+        **_of_oil(case.operation.temperature),
         "effective_modulus": effective_modulus(
-            young=(solids[0].young, solids[1].young),
-            poisson=(solids[0].poisson, solids[1].poisson),
+            young=_both(built, "young"), poisson=_both(built, "poisson")
         ),
-        "composite_roughness": hypot(*roughness),
+        "composite_roughness": float(built.design.roughness.composite_rq),
     }
 
 
-def _base_radii(gears: Any) -> tuple[float, float]:
-    z1, z2 = gears.teeth
-    scale = gears.module / 2.0 * cos(gears.tooth.pressure_angle)
-    return z1 * scale, z2 * scale
+def _both(built: Built, name: str) -> tuple[float, float]:
+    first, second = built.design.solids
+    return float(getattr(first, name)), float(getattr(second, name))
 
 
-def _loads(gears: Any, torque: float) -> dict[str, float]:
-    z1, teeth = gears.teeth
-    radii = _base_radii(gears)
-    given = {"torque": torque, "base_radius": radii[1], "teeth": teeth}
-    too_many, loaded = printed_count(teeth=teeth), loaded_count(teeth=teeth)
-    printed = largest_force(count=too_many, **given)
-    largest = largest_force(count=loaded, zones=2, **given)
-    forces = tooth_forces(largest=largest, teeth=teeth, count=loaded)
+def _of_oil(temperature: float) -> dict[str, float]:
     return {
-        "tooth_ratio": z1 / (teeth - z1),
+        "viscosity": float(viscosity(temperature=temperature, **OIL)),
+        "printed_viscosity": float(printed_viscosity(temperature=temperature, **OIL)),
+    }
+
+
+def _of_base_circles(
+    gears: StrainWaveGears, mesh: StrainWave, operation: Operating
+) -> dict[str, float]:
+    if not isinstance(mesh.flank, InvoluteFlank):
+        return {}
+    radii = _base_radii(mesh.flank, gears.teeth)
+    deflection = float(mesh.line.deflection)
+    return {
         "base_radius_flexspline": radii[0],
         "base_radius_circular_spline": radii[1],
+        **_loads(gears, radii, operation.torque),
+        **_curvatures(gears, radii, deflection),
+        **_speeds(gears, radii, deflection, operation.speed),
+    }
+
+
+def _base_radii(flank: InvoluteFlank, teeth: tuple[float, float]) -> tuple[float, float]:
+    first = float(flank.base_radius)
+    return first, first * teeth[1] / teeth[0]
+
+
+def _loads(gears: StrainWaveGears, radii: tuple[float, float], torque: float) -> dict[str, float]:
+    teeth = gears.teeth[1]
+    force = partial(largest_force, torque=torque, base_radius=radii[1], teeth=teeth)
+    too_many, loaded = printed_count(teeth=teeth), loaded_count(teeth=teeth)
+    printed = force(count=too_many)
+    largest = force(count=loaded, zones=2)
+    forces = tooth_forces(largest=largest, teeth=teeth, count=loaded)
+    return {
         "printed_largest_tooth_force": printed,
         "printed_least_tooth_force": float(
             tooth_forces(largest=printed, teeth=teeth, count=too_many).min()
         ),
-        "one_zone_tooth_force": largest_force(count=loaded, **given),
+        "one_zone_tooth_force": force(count=loaded),
         "largest_tooth_force": largest,
         "recovered_torque": 2.0 * radii[1] * float(forces.sum()),
     }
 
 
-def _deflection(gears: Any) -> float:
-    z1, z2 = gears.teeth
-    return float(gears.wave_generator.deflection * gears.module * (z2 - z1) / 2.0)
-
-
-def _distances(gears: Any) -> tuple[Array, Array]:
+def _distances(gears: StrainWaveGears) -> tuple[Array, Array]:
     angle = np.linspace(0.0, ZONE_END, 226)
     pitch = gears.module * gears.teeth[0] / 2.0
     return angle, assumed_radius(angle=angle, pitch_radius=pitch, module=gears.module)
 
 
-def _curvatures(gears: Any) -> dict[str, float]:
+def _curvatures(
+    gears: StrainWaveGears, radii: tuple[float, float], deflection: float
+) -> dict[str, float]:
     angle, distance = _distances(gears)
     first, second = curvature_radii(
         distance=distance,
-        radial=_deflection(gears) * np.cos(2.0 * angle),
-        base_radius=_base_radii(gears),
+        radial=deflection * np.cos(2.0 * angle),
+        base_radius=radii,
     )
     radius = relative_radius(first=first, second=second)
     return {
@@ -341,14 +363,16 @@ def _curvatures(gears: Any) -> dict[str, float]:
     }
 
 
-def _speeds(gears: Any, wave_speed: float) -> dict[str, float]:
+def _speeds(
+    gears: StrainWaveGears, radii: tuple[float, float], deflection: float, wave_speed: float
+) -> dict[str, float]:
     angle, distance = _distances(gears)
     opposed, added = (
         mesh_point_speed(
             angle=angle,
             distance=distance,
-            base_radius=_base_radii(gears)[0],
-            deflection=_deflection(gears),
+            base_radius=radii[0],
+            deflection=deflection,
             teeth=gears.teeth,
             wave_speed=wave_speed,
             sense=sense,

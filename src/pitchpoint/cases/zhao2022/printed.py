@@ -1,21 +1,19 @@
 """Formulas as Zhao et al. (2022) print them, beside what their derivation asks for."""
 
 from math import atan, cos, pi, sin, sqrt, tan
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pitchpoint._jax import jnp
 from pitchpoint.cases.build import Built
-from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, InvoluteFlank
+from pitchpoint.cases.gear_tables import StrainWaveGears
+from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.strain_wave import StrainWave
 
 __all__ = [
     "arc_distance",
     "closure_residual",
     "deflection_offset",
-    "double_arc_flank",
-    "involute_flank",
     "largest_tangential_load",
     "printed_tooth_forces",
     "readings",
@@ -135,7 +133,9 @@ def closure_residual(
 
 def readings(built: Built) -> dict[str, float]:
     """What the formulas give for a case, under the names of result variables."""
-    gears: Any = built.case.gears
+    gears, mesh = built.case.gears, built.design.mesh
+    assert isinstance(gears, StrainWaveGears)
+    assert isinstance(mesh, StrainWave)
     torque = built.case.operation.torque
     diameter = gears.module * (gears.teeth[0] - ENGAGED_HEIGHT)
     zone = {"half_zone": HALF_ZONE, "diameter": diameter, "face_width": gears.face_width}
@@ -143,89 +143,53 @@ def readings(built: Built) -> dict[str, float]:
     step = 2.0 * pi / gears.teeth[0]
     closed = tooth_forces(load=load, step=step, **zone)
     printed = printed_tooth_forces(load=load, step=step, **zone)
-    form = _double_arc if gears.tooth.form == "double arc" else _involute
     return {
         "largest_tangential_load": load,
         "largest_tooth_force": float(closed.max()),
         "recovered_torque": recovered_torque(forces=closed, diameter=diameter),
         "printed_least_tooth_force": float(printed.min()),
         "printed_recovered_torque": recovered_torque(forces=printed, diameter=diameter),
-        **form(gears, HALF_ZONE - step / 2.0),
+        **_flank(mesh),
+        **_offsets(mesh, HALF_ZONE - step / 2.0),
     }
 
 
-def _double_arc(gears: Any, end: float) -> dict[str, float]:
-    flank = double_arc_flank(gears)
+def _flank(mesh: StrainWave) -> dict[str, float]:
+    """Dimensions of the flank, were its tip not rounded."""
+    flank = mesh.flank
+    return _double_arc(flank) if isinstance(flank, DoubleArcFlank) else _involute(flank)
+
+
+def _double_arc(flank: DoubleArcFlank) -> dict[str, float]:
     theta_a, theta_b = float(flank.tip_angle), float(flank.tangent_angle)
     convex = float(flank.convex_radius)
     at_tip = arc_distance(radius=convex, boundary=theta_b, angle=theta_a)
     concave = float(flank.concave_radius * (flank.root_angle - flank.tangent_angle))
-    length = convex * (theta_a - theta_b) + float(flank.tangent_length) + concave
-    pitch_radius = gears.module * gears.teeth[0] / 2.0
     return {
         "tangent_angle": theta_b,
         "tip_land": float(flank.tip_land),
-        "flank_length": length,
+        "flank_length": convex * (theta_a - theta_b) + float(flank.tangent_length) + concave,
         "printed_sliding_distance": float(at_tip),
         "printed_closure_residual": closure_residual(flank=flank, theta_c=pi + theta_b),
-        **_offsets(gears, pitch_radius - float(flank.pitch_height), end),
     }
 
 
-def _involute(gears: Any, end: float) -> dict[str, float]:
-    flank = involute_flank(gears)
+def _involute(flank: Flank) -> dict[str, float]:
+    assert isinstance(flank, InvoluteFlank)
     return {
         "involute_tip_radius": float(flank.tip_radius),
         "involute_root_radius": float(flank.root_radius),
         "involute_pitch_thickness": float(flank.pitch_thickness),
         "tip_land": float(flank.tip_land),
-        **_offsets(gears, float(flank.neutral_radius), end),
     }
 
 
-def _offsets(gears: Any, radius: float, end: float) -> dict[str, float]:
+def _offsets(mesh: StrainWave, end: float) -> dict[str, float]:
     """Offset of the outermost tooth of a zone and the largest of all."""
-    deflection = (
-        gears.wave_generator.deflection * gears.module * (gears.teeth[1] - gears.teeth[0]) / 2.0
-    )
+    radius, deflection = float(mesh.line.radius), float(mesh.line.deflection)
     ring = {"radius": radius, "deflection": deflection}
     steepest = atan(sqrt((radius - deflection) / (radius + deflection)))
     return {
         "tooth_offset": float(deflection_offset(angle=end, **ring)),
         "largest_tooth_offset": float(deflection_offset(angle=steepest, **ring)),
     }
-
-
-def double_arc_flank(gears: Any) -> DoubleArcFlank:
-    """Flank of the flexspline of a case with double-arc teeth; its tip is all but sharp."""
-    scale, tooth = jnp.asarray(gears.module), gears.tooth
-    return DoubleArcFlank(
-        pitch=jnp.pi * scale,
-        pitch_height=tooth.h_f * scale + gears.flexspline.rim_thickness / 2.0,
-        addendum=tooth.h_a * scale,
-        dedendum=tooth.h_f * scale,
-        convex_radius=tooth.rho_a * scale,
-        convex_offset=tooth.l_a * scale,
-        convex_shift=tooth.e_a * scale,
-        concave_radius=tooth.rho_f * scale,
-        concave_offset=tooth.l_f * scale,
-        concave_shift=tooth.e_f * scale,
-        tip_rounding=1e-6 * scale,
-    )
-
-
-def involute_flank(gears: Any) -> InvoluteFlank:
-    """Flank of the flexspline of a case with involute teeth; its tip is all but sharp."""
-    tooth, half_rim = gears.tooth, gears.flexspline.rim_thickness / 2.0
-    dedendum = tooth.addendum + tooth.bottom_clearance
-    root = gears.module * (gears.teeth[0] / 2.0 + tooth.profile_shift - dedendum)
-    return InvoluteFlank(
-        teeth=jnp.asarray(gears.teeth[0], float),
-        module=jnp.asarray(gears.module),
-        pressure_angle=jnp.asarray(tooth.pressure_angle),
-        profile_shift=jnp.asarray(tooth.profile_shift),
-        addendum=jnp.asarray(tooth.addendum),
-        dedendum=jnp.asarray(dedendum),
-        neutral_radius=jnp.asarray(root - half_rim),
-        tip_rounding=jnp.asarray(1e-6 * gears.module),
-    )

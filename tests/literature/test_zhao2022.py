@@ -1,0 +1,328 @@
+"""Zhao et al. (2022): geometry, load and conjugate kinematics, formulas as printed beside the closed ones.
+
+The paper gives no numbers of any: they are compared with an independent calculation of the same
+formulas, rows of the kind "reference". Everything else that it prints needs the wear march.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.integrate import quad
+from scipy.optimize import brentq, minimize_scalar
+
+from pitchpoint.cases.comparison import compare, counts
+from pitchpoint.cases.document import leaves, resolve
+from pitchpoint.cases.library import find
+from pitchpoint.cases.readings import readings_of
+from pitchpoint.cases.run import compare_case
+from pitchpoint.cases.studies import Variant
+from pitchpoint.cases.zhao2022 import printed
+from pitchpoint.cases.zhao2022.printed import (
+    arc_distance,
+    closure_residual,
+    deflection_offset,
+    largest_tangential_load,
+    printed_tooth_forces,
+    recovered_torque,
+    tooth_forces,
+)
+from pitchpoint.citations import cite
+
+NAME, TREE = find("zhao2022")
+VARIANTS = {name: Variant(TREE, NAME, name) for name in ("as_published", "physical")}
+ZONE = {"half_zone": np.deg2rad(36.0), "diameter": 59.4e-3, "face_width": 12e-3}
+STEP = np.deg2rad(1.8)
+LOAD = largest_tangential_load(torque=16.0, **ZONE)
+RING = {"radius": 29.425e-3, "deflection": 0.3e-3}
+
+
+@cache
+def case(variant="as_published"):
+    return VARIANTS[variant].built({}).case
+
+
+def built(study, **changes):
+    own = dict(leaves(case().studies[study].change))
+    return VARIANTS["as_published"].built({**own, **changes})
+
+
+def flank(study):
+    return built(study).design.mesh.flank
+
+
+def readings(studies, **changes):
+    points = {name: [built(name, **changes)] for name in studies}
+    return {f"study_{name}": xr.Dataset(readings_of(each, 1)) for name, each in points.items()}
+
+
+def read(study, variant="as_published"):
+    """Targets that follow from the geometry alone, the balance of the drive left out."""
+    every = [one for one in case(variant).targets if one.study == study]
+    return [one for one in every if one.variable != "mean_efficiency"]
+
+
+def missed(study, **changes):
+    found = compare(read(study), readings([study], **changes))
+    return {row.quantity for row in found if row.verdict == "miss"}
+
+
+# ------------------------------------------------------------------ the comparison
+
+
+def test_no_row_misses():
+    rows = compare_case("zhao2022")[2]
+    assert [(row.quantity, row.computed) for row in rows if row.verdict == "miss"] == []
+    assert {kind: dict(found) for kind, found in counts(rows).items()} == {
+        "reference": {"pass": 33},
+        "excluded": {"excluded": 15},
+    }
+
+
+def test_no_row_of_the_physical_variant_misses():
+    targets = case("physical").targets
+    studies = {one.study for one in targets if one.study}
+    found = counts(compare(targets, readings(studies)))
+    assert {kind: dict(each) for kind, each in found.items()} == {
+        "reference": {"pass": 5},
+        "excluded": {"excluded": 2},
+    }
+
+
+@pytest.mark.parametrize("variant", [*VARIANTS])
+def test_reference_values_are_never_called_those_of_the_paper(variant):
+    for target in case(variant).targets:
+        if target.kind != "excluded" or variant == "physical":
+            assert target.where == "reference calculation"
+        else:
+            assert target.where.startswith("section")
+
+
+@pytest.mark.parametrize("variant", [*VARIANTS])
+def test_every_number_on_wear_is_left_out_with_its_reason(variant):
+    left_out = [target for target in case(variant).targets if target.kind == "excluded"]
+    assert left_out
+    assert all("needs the wear march" in target.reason for target in left_out)
+
+
+def test_no_printed_number_on_wear_is_forgotten():
+    left_out = {target.printed for target in case().targets if target.kind == "excluded"}
+    assert left_out >= {0.0557, 0.0554, 8.15, 2.03, 444.66, 481.67, 4e10, 2.8e10}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "names"),
+    [
+        ("gears.tooth.convex_shift", 0.34, {"angle of the common tangent"}),
+        ("gears.tooth.convex_offset", 1.296, {"tip land"}),
+        ("gears.flexspline.rim_thickness", "0.8 mm", {"turn of the tooth"}),
+        ("gears.face_width", "12.1 mm", set()),
+        ("gears.fixed", "flexspline", {"speed of the wave"}),
+        ("operation.torque", "16.02 N m", {"largest tangential force", "torque from the forces"}),
+    ],
+)
+def test_other_inputs_miss_what_rests_on_them(key, value, names):
+    """A tooth force is one per pitch: it does not depend on the face width."""
+    found = missed("double_arc", **{key: value})
+    assert bool(found) == bool(names)
+    assert all(any(name in one for one in found) for name in names)
+
+
+def test_another_wave_generator_misses_the_branches():
+    found = missed("double_arc", **{"gears.wave_generator.deflection": 0.95})
+    assert "double arc, outer conjugate branch begins at" in found
+
+
+def test_other_arcs_miss_the_branches_of_these():
+    """With the arcs of a published design nothing of the outer branch touches."""
+    swapped = readings(["double_arc_liu"])
+    found = compare(read("double_arc"), {"study_double_arc": swapped["study_double_arc_liu"]})
+    misses = {row.quantity for row in found if row.verdict == "miss"}
+    assert any("outer conjugate branch begins" in one for one in misses)
+    assert any("least clearance of the outer branch" in one for one in misses)
+
+
+def test_a_zone_of_30_degrees_misses_the_loads(monkeypatch):
+    monkeypatch.setattr(printed, "HALF_ZONE", np.deg2rad(30.0))
+    found = missed("double_arc")
+    for name in ("largest tangential force", "eq. 19 as printed", "turn of the tooth"):
+        assert any(name in one for one in found)
+
+
+# ------------------------------------------------------------------ load
+
+
+def test_largest_load_closes_the_torque_integral():
+    """Eq. 15 with the diameter of eq. 16."""
+    half, d, b = ZONE["half_zone"], ZONE["diameter"], ZONE["face_width"]
+    torque, _ = quad(lambda p: 4 * b * (d / 2) ** 2 * LOAD * np.cos(np.pi * p / 2 / half), 0, half)
+    assert torque == pytest.approx(16.0, rel=1e-12)
+
+
+def test_corrected_forces_close_the_torque():
+    forces = tooth_forces(load=LOAD, step=STEP, **ZONE)
+    assert forces.shape == (20,)
+    assert forces.max() == pytest.approx(10.57, abs=0.005)
+    assert np.all(np.diff(forces) > 0.0)
+    assert np.all(forces > 0.0)
+    found = recovered_torque(forces=forces, diameter=ZONE["diameter"])
+    assert found == pytest.approx(16.004, abs=0.0005)
+
+
+def test_sum_converges_to_the_integral():
+    """The middle rule errs by the square of the step."""
+    error = [
+        recovered_torque(
+            forces=tooth_forces(load=LOAD, step=STEP / n, **ZONE), diameter=ZONE["diameter"]
+        )
+        - 16.0
+        for n in (1, 2, 4)
+    ]
+    np.testing.assert_allclose(error[:-1], np.array(error[1:]) * 4.0, rtol=2e-3)
+
+
+def test_printed_forces_are_negative_at_the_entry_and_lose_torque():
+    forces = printed_tooth_forces(load=LOAD, step=STEP, **ZONE)
+    assert np.all(forces[:4] < 0.0)
+    assert np.all(forces[4:] > 0.0)
+    np.testing.assert_allclose(forces[[0, 3]], [-2.9, -0.5], atol=0.05)
+    found = recovered_torque(forces=forces, diameter=ZONE["diameter"])
+    assert found == pytest.approx(9.3, abs=0.05)
+
+
+# ------------------------------------------------------------------ geometry
+
+
+def test_offset_of_the_teeth():
+    assert deflection_offset(angle=np.deg2rad(35.1), **RING) == pytest.approx(0.00963, abs=5e-6)
+    most = minimize_scalar(lambda p: -deflection_offset(angle=p, **RING), bounds=(0.1, 1.4))
+    assert -most.fun == pytest.approx(0.0102, abs=5e-5)
+    assert -most.fun == pytest.approx(np.arcsin(0.3 / 29.425), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("study", "theta_b", "theta_a", "land"),
+    [("double_arc", 10.5, 26.1, 1.004), ("double_arc_liu", 16.5, 38.9, 0.805)],
+)
+def test_double_arc_flank_has_the_angles_and_the_land_of_the_reference(
+    study, theta_b, theta_a, land
+):
+    found = flank(study)
+    assert np.rad2deg(found.tangent_angle) == pytest.approx(theta_b, abs=0.06)
+    assert np.rad2deg(found.tip_angle) == pytest.approx(theta_a, abs=0.05)
+    assert found.tip_land / 0.3e-3 == pytest.approx(land, abs=5e-4)
+
+
+@pytest.mark.parametrize("study", ["double_arc", "double_arc_liu"])
+def test_tangent_closes_with_equal_angles_only(study):
+    found = flank(study)
+    theta_b, offset = float(found.tangent_angle), float(found.convex_offset)
+    closed = closure_residual(flank=found, theta_c=theta_b)
+    as_printed = closure_residual(flank=found, theta_c=np.pi + theta_b)
+    wrong_side = closure_residual(flank=found, theta_c=theta_b, convex_offset=-offset)
+    assert abs(closed) < 1e-15
+    assert 3e-3 < abs(as_printed) < 7.5e-3
+    assert abs(wrong_side) > 1e-3
+    # The line of eq. 2 is tangent to both circles.
+    slope, apart = -1.0 / np.tan(theta_b), complex(found.concave_centre - found.convex_centre)
+    distance = abs(apart.real - slope * apart.imag) / np.hypot(1.0, slope)
+    radii = float(found.convex_radius + found.concave_radius)
+    assert distance == pytest.approx(radii, rel=1e-12)
+
+
+def test_printed_distances_are_negative():
+    found = flank("double_arc")
+    convex = {"radius": float(found.convex_radius), "boundary": float(found.tangent_angle)}
+    angle = np.linspace(float(found.tangent_angle), float(found.tip_angle), 9)
+    distance = arc_distance(angle=angle, **convex)
+    assert distance[0] == 0.0
+    assert np.all(np.diff(distance) < 0.0)
+    assert distance[-1] * 1e3 == pytest.approx(-0.162, abs=0.0015)
+
+
+def test_involute_teeth_have_the_figures_of_table_1():
+    mesh = built("involute").design.mesh
+    assert mesh.flank.tip_radius * 1e3 == pytest.approx(31.296, abs=5e-4)
+    assert mesh.flank.root_radius * 1e3 == pytest.approx(30.591, abs=5e-4)
+    assert mesh.line.radius * 1e3 == pytest.approx(30.241, abs=5e-4)
+    assert mesh.flank.tip_land * 1e3 == pytest.approx(0.123, abs=5e-4)
+
+
+# ------------------------------------------------------------------ conjugate kinematics
+
+
+def placed(point, p, w0=0.3e-3, radius=29.425e-3):
+    """A point of the flank in the space of the circular spline, and the turn of its tooth."""
+    w, v = w0 * np.cos(2.0 * p), -w0 / 2.0 * np.sin(2.0 * p)
+    polar = p * (1.0 - 200.0 / 202.0) + v / radius
+    turn = polar + 2.0 * w0 * np.sin(2.0 * p) / radius
+    return (radius + w) * np.exp(1j * polar) + np.exp(1j * turn) * point, turn
+
+
+def convex(theta):
+    """Point of the convex arc of the base case, from its foot on the neutral line."""
+    half_rim, scale = 0.35e-3, 0.3e-3
+    centre = half_rim + scale * (0.75 - 0.33) - 1j * scale * 1.294
+    return centre + 2.0 * scale * 1j * np.exp(-1j * theta)
+
+
+def envelope(theta, low, high):
+    """Where the point touches the swept flank, found by positions alone."""
+    point, h = convex(theta), 1e-5
+
+    def closing(p):
+        step = (placed(point, p + h)[0] - placed(point, p - h)[0]) / (2.0 * h)
+        return np.imag(step * np.exp(-1j * (placed(point, p)[1] - theta)))
+
+    p = brentq(closing, low, high, xtol=1e-14)
+    return placed(point, p)[0], p
+
+
+@pytest.mark.parametrize(
+    ("branch", "low", "high", "radius"),
+    [("deep", 0.0, 0.085, "deep_radius_tip"), ("outer", 0.25, 0.85, "outer_radius_largest")],
+)
+def test_relative_radius_is_that_of_the_places(branch, low, high, radius):
+    """Curvature of the envelope by differences of its places, against the closed form."""
+    expected = read_value(radius)
+    tip, h = np.arcsin((0.55 + 0.33) / 2.0), 1e-3
+    thetas = [tip] if branch == "deep" else np.linspace(np.deg2rad(11.0), tip, 31)
+    found = []
+    for theta in thetas:
+        before, here, after = (envelope(theta + k * h, low, high)[0] for k in (-1, 0, 1))
+        first, second = (after - before) / (2.0 * h), (after - 2.0 * here + before) / h**2
+        _, turn = placed(convex(theta), envelope(theta, low, high)[1])
+        outwards = 1j * np.exp(1j * (turn - theta))
+        bend = second - first * np.real(second * np.conj(first)) / abs(first) ** 2
+        across = np.real(bend * np.conj(outwards)) / abs(first) ** 2
+        found.append(1.0 / (across + 1.0 / 0.6e-3))
+    assert max(found) == pytest.approx(expected, rel=1e-3)
+
+
+def read_value(name):
+    return float(readings(["double_arc"])["study_double_arc"][name].values[0, 0])
+
+
+# ------------------------------------------------------------------ the file
+
+
+@pytest.mark.parametrize("variant", [*VARIANTS])
+def test_inputs_carry_their_marks(variant):
+    document = resolve(dict(TREE), name=NAME, variant=variant)
+    values = {
+        key
+        for table in ("gears", "materials", "lubricant", "roughness", "operation", "models")
+        for key, _ in leaves({table: document.tree[table]})
+    }
+    unmarked = values - document.provenance.keys() - {"gears.family"}
+    assert {key for key in unmarked if not key.startswith("models.friction")} == set()
+    assert "zhao" in cite(TREE["source"]).lower()
+
+
+def test_errors_of_the_paper_are_issues_of_the_case():
+    found = case().issues
+    assert all(one.verdict for one in found)
+    places = " ".join(one.where for one in found)
+    for where in ("eq. 1", "eq. 4", "eq. 19", "eq. 26", "eq. 28", "eq. 29", "eq. 31", "eq. 32"):
+        assert where in places
