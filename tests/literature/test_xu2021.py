@@ -123,7 +123,11 @@ def test_no_printed_number_on_films_is_forgotten():
     ("key", "value", "names"),
     [
         ("gears.tooth.pressure_angle", "20.1 deg", {"base radius", "tooth force, eq. 6 as"}),
-        ("gears.wave_generator.deflection", 1.1, {"relative radius at 10", "parts opposed"}),
+        (
+            "gears.wave_generator.deflection",
+            1.15,
+            {"relative radius at 10", "in deep mesh, largest"},
+        ),
         ("operation.speed", "2500 rpm", {"eq. 3, largest, parts opposed", "entrainment in deep"}),
         ("operation.torque", "401 N m", {"largest tooth force, N = 12, two zones", "torque from"}),
         ("gears.teeth", [180, 182], {"transmission ratio", "base radius", "speed of the wave"}),
