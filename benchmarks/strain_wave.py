@@ -1,0 +1,216 @@
+"""Strain wave gear: conjugate groove and efficiency map, beside a NumPy loop, on one thread.
+
+    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/strain_wave.py
+
+The groove that 200 teeth of the shipped drive sweep, after the first run: asked are less than 1 s.
+The map is the loss map of the same case: torques by speeds by temperatures, load shared by stiffness
+of teeth and ring, friction constant, bearing loss by Palmgren's law. The rival is
+`rivals/strain_wave_numpy.py`, timed for a few of the torques; it says there what it is given.
+Efficiencies are compared twice: from the rival's own contacts, and from the package's. Near the long
+axis root and tip of a tooth are equally near to the groove within nanometres, and the places at which
+each looks first decide which of them counts; the first comparison shows what that is worth.
+Compile time is told apart. Times are those of the processor, which others on it do not change; the
+parts of the package's time are those of one torque.
+"""
+
+import argparse
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+sys.path.insert(0, str(Path(__file__).parent / "rivals"))
+
+import equinox as eqx
+import jax
+import numpy as np
+import strain_wave_numpy as rival
+import xarray as xr
+
+from pitchpoint._jax import jnp
+from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.loss_map import map_axes, pieces
+from pitchpoint.cases.run import load_case
+from pitchpoint.efficiency import quasi_static
+from pitchpoint.efficiency.quasi_static import Engagement, Operation, cycle, engagement
+from pitchpoint.gears import strain_wave
+from pitchpoint.gears.groove import swept
+from pitchpoint.loading.yielding import yielding
+
+OUTLINE = 400_001
+
+
+def timed(work: Callable[[], Any]) -> tuple[float, Any]:
+    start = time.process_time()
+    found = jax.block_until_ready(work())
+    return time.process_time() - start, found
+
+
+def median(work: Callable[[], Any], repeats: int) -> float:
+    return statistics.median(timed(work)[0] for _ in range(repeats))
+
+
+def the_case(torques: int, speeds: int, temperatures: int) -> Built:
+    degrees = np.linspace(-10.0, 40.0, temperatures)
+    settings = {
+        "loss_map.torque_count": torques + 1,
+        "loss_map.speed_count": speeds + 1,
+        "loss_map.temperatures": [f"{each:.6g} degC" for each in degrees],
+    }
+    return load_case("csd25", settings=settings)
+
+
+def groove(built: Built, repeats: int) -> None:
+    mesh = built.design.mesh
+    sweep = eqx.filter_jit(lambda: swept(mesh.tooth_motion, mesh.tip_height, mesh.tip_rounding))
+    first, _ = timed(sweep)
+    print(f"groove of 200 teeth: first run with compilation {first:.2f} s, then", end=" ")
+    print(f"{median(sweep, repeats):.3f} s (asked 1 s)")
+
+
+def given(built: Built) -> rival.Drive:
+    """Arrays for the rival."""
+    mesh, drag = built.design.mesh, built.design.drag[0]
+    along = np.linspace(0.0, float(mesh.flank.length), OUTLINE)
+    return rival.Drive(
+        teeth=tuple(int(z) for z in mesh.teeth),
+        neutral=float(mesh.line.radius),
+        wave=float(mesh.line.deflection),
+        window=strain_wave.WINDOW,
+        along=along,
+        outline=np.asarray(mesh.flank.place(along)),
+        lean=np.asarray(mesh.flank.angle(along)),
+        heights=np.asarray(mesh.groove.heights),
+        half_width=np.asarray(mesh.groove.half_width),
+        slope=np.asarray(mesh.groove.slope),
+        preference=strain_wave._PREFERENCE,
+        friction=built.case.models.friction[0].parameters["coefficient"],
+        mean_diameter=float(drag.mean_diameter),
+        f0=float(drag.factors["f0"]),
+        f1=float(drag.factors["f1"]),
+    )
+
+
+@eqx.filter_jit
+def _compliance(built_in: Any, contacts: Any, terms: Any, torque: Any) -> Any:
+    mesh, solids = built_in
+    return yielding(mesh, contacts, solids, terms, torque).compliance(contacts)
+
+
+def package_geometry(built: Built, known: Engagement) -> rival.Geometry:
+    """The package's contacts in the rival's form, to compare what follows from them."""
+    contacts = known.contacts
+    return rival.Geometry(
+        active=np.asarray(contacts.active[:, 0]),
+        gap=np.asarray(contacts.gap[:, 0]),
+        normal=np.asarray(contacts.normal[:, :, 0]),
+        slip=np.asarray(contacts.slip_arm[:, :, 0]),
+        radial=np.asarray(built.design.mesh.support(contacts)[0, :, 0]),
+    )
+
+
+@eqx.filter_jit
+def _balance(design: Any, points: Operation, models: Any, known: Engagement) -> Any:
+    found = cycle(design, points, models, engaged=known)
+    return found.mean_loss, found.mean_efficiency, found.locked
+
+
+def whole_map(built: Built) -> list[xr.Dataset]:
+    return [compute(lambda done: None) for compute in pieces(built)]
+
+
+def parts_of_one(built: Built, repeats: int) -> None:
+    """Where the time of one torque goes."""
+    models, chosen = laws_of(built)
+    models = replace(models, choice=jnp.asarray(chosen[0]))
+    bare = replace(models, friction=(), parameters={})
+    alone = replace(models, friction=(models.friction[chosen[0]],), choice=jnp.asarray(0))
+    design, load = built.design, built.operation.load
+    known = engagement(design, load, models)
+    _, speeds, degrees = map_axes(built)
+    speed, degree = (jnp.asarray(x) for x in np.meshgrid(speeds[1:], degrees, indexing="ij"))
+    points = Operation(jnp.full(speed.shape, load), speed, degree)
+    work = {
+        "contacts": lambda: quasi_static._contacts(design.mesh, known.phase),
+        "load on the pairs": lambda: quasi_static._shares(design, known.contacts, load, bare),
+        "balance": lambda: _balance(design, points, models, known),
+        "balance, one law": lambda: _balance(design, points, alone, known),
+        "one torque in all": lambda: list(pieces(built))[-1](lambda done: None)["mean_loss"].values,
+    }
+    for name, part in work.items():
+        part()  # compiled now if it was not
+        print(f"  {name:20s} {1e3 * median(part, repeats):8.1f} ms")
+
+
+def theirs(
+    built: Built, known: Engagement, torques: np.ndarray, loop: Callable[..., Any]
+) -> tuple[float, float, list[np.ndarray], list[np.ndarray]]:
+    """Seconds for the geometry and for each torque; efficiencies there, also from the package's contacts."""
+    drive = given(built)
+    _, speeds, degrees = map_axes(built)
+    nu = np.asarray(built.design.lubricant.kinematic_viscosity(degrees))
+    models, _ = laws_of(built)
+    tree = built.design.mesh, built.design.solids
+    weight = np.asarray(known.weight)
+    once, found = timed(lambda: rival.geometry(drive, np.asarray(known.phase)))
+    same = package_geometry(built, known)
+    seconds, own, shared = [], [], []
+    for torque in torques:
+        compliance = np.asarray(
+            _compliance(tree, known.contacts, models.compliance, jnp.asarray(torque))
+        )
+        inputs = (drive, found, compliance, weight, float(torque), speeds[1:], nu)
+        took, figure = timed(lambda inputs=inputs: loop(*inputs))
+        seconds.append(took)
+        own.append(figure[0])
+        shared.append(rival.by_point(drive, same, *inputs[2:])[0])
+    return once, statistics.mean(seconds), own, shared
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--torques", type=int, default=50)
+    parser.add_argument("--speeds", type=int, default=20)
+    parser.add_argument("--temperatures", type=int, default=10)
+    parser.add_argument(
+        "--subset", type=int, default=3, help="torques for which the rival is timed"
+    )
+    parser.add_argument("--repeats", type=int, default=5)
+    asked = parser.parse_args()
+    built = the_case(asked.torques, asked.speeds, asked.temperatures)
+    groove(built, asked.repeats)
+    first, _ = timed(lambda: next(pieces(built))(lambda done: None)["mean_loss"].values)
+    print(f"map: first torque with compilation {first:.2f} s")
+    start = time.process_time()
+    ours = whole_map(built)[1:]  # without the torque of zero
+    own = (time.process_time() - start) * asked.torques / (asked.torques + 1)
+    points = asked.torques * asked.speeds * asked.temperatures
+    print(f"map of {points} points: {own:.2f} s, {own / points * 1e6:.0f} us a point")
+    parts_of_one(built, asked.repeats)
+    models, _ = laws_of(built)
+    known = engagement(built.design, built.operation.load, models)
+    chosen = np.unique(np.linspace(0, asked.torques - 1, asked.subset).round().astype(int))
+    torques = map_axes(built)[0][1:][chosen]
+    for name, loop in (("by point", rival.by_point), ("by state", rival.by_state)):
+        once, each, *figures = theirs(built, known, torques, loop)
+        whole = once + each * asked.torques
+        print(
+            f"NumPy {name}: geometry {once:.2f} s, a torque {1e3 * each:.1f} ms, map {whole:.1f} s; "
+            f"ratio {whole / own:.2f} (goal 20)"
+        )
+        for words, found in zip(("its", "the package's"), figures, strict=True):
+            away = [
+                np.abs(ours[k]["mean_efficiency"].values[0, 0, 1:] / each - 1.0).max()
+                for k, each in zip(chosen, found, strict=True)
+            ]
+            told = ", ".join(f"{one:.1e}" for one in away)
+            print(f"  efficiencies from {words} contacts differ by {told} at the torques timed")
+
+
+if __name__ == "__main__":
+    main()
