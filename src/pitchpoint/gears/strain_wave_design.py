@@ -30,6 +30,9 @@ LEAST_LAND = 0.3
 INTERFERENCE = 1e-4
 """Overlap of rigid flanks that counts as interference, in modules."""
 
+SWEPT_ACCURACY = 1e-3
+"""Overlap in a groove that the flexspline itself sweeps, which is an error of the table, in modules."""
+
 _FARTHEST = 0.1  # clearance in modules beyond which no load closes a gap
 _FEWEST = 30
 _SLACK = 1e-6
@@ -428,7 +431,8 @@ def _check_contact(drive: StrainWave, found: Survey) -> None:
     clearance, module = np.nan_to_num(np.asarray(found.clearance), nan=np.inf), float(drive.module)
     where = "form" if drive.conjugate else "groove"
     least = int(np.argmin(clearance))
-    if clearance[least] < -INTERFERENCE * module:
+    allowed = SWEPT_ACCURACY if drive.conjugate else INTERFERENCE
+    if clearance[least] < -allowed * module:
         raise InputError(
             f"flexspline and circular spline interfere: {-1e6 * clearance[least]:.3g} um of overlap "
             f"{np.degrees(found.angle[least]):.3g} degrees from the long axis",
