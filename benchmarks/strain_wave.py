@@ -132,15 +132,19 @@ def parts_of_one(built: Built, repeats: int) -> None:
     alone = replace(models, friction=(models.friction[chosen[0]],), choice=jnp.asarray(0))
     design, load = built.design, built.operation.load
     known = engagement(design, load, models)
+    last = list(pieces(built))[-1]
     _, speeds, degrees = map_axes(built)
     speed, degree = (jnp.asarray(x) for x in np.meshgrid(speeds[1:], degrees, indexing="ij"))
     points = Operation(jnp.full(speed.shape, load), speed, degree)
     work = {
         "contacts": lambda: quasi_static._contacts(design.mesh, known.phase),
-        "load on the pairs": lambda: quasi_static._shares(design, known.contacts, load, bare),
+        "ring": lambda: quasi_static._body(design, known.contacts),
+        "load on the pairs": lambda: quasi_static._shares(
+            design, known.contacts, load, bare, known.body
+        ),
         "balance": lambda: _balance(design, points, models, known),
         "balance, one law": lambda: _balance(design, points, alone, known),
-        "one torque in all": lambda: list(pieces(built))[-1](lambda done: None)["mean_loss"].values,
+        "one torque in all": lambda: last(lambda done: None)["mean_loss"].values,
     }
     for name, part in work.items():
         part()  # compiled now if it was not

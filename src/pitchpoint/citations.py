@@ -18,7 +18,7 @@ class Reference:
 
     Args:
         key: name of the entry, author and year.
-        kind: "article", "proceedings", "thesis", "book", "standard" or "software".
+        kind: "article", "proceedings", "thesis", "book", "standard", "catalogue" or "software".
         authors: names as "Family, Given"; a last "others" stands for names left out.
         title: title.
         year: year of publication.
@@ -51,8 +51,10 @@ _BIBTEX_KINDS = {
     "thesis": "phdthesis",
     "book": "book",
     "standard": "misc",
+    "catalogue": "misc",
     "software": "misc",
 }
+_ISSUED = ("standard", "catalogue")
 _PUBLISHERS = {"misc": "howpublished", "phdthesis": "school"}
 _ESCAPES = {"&": r"\&", "%": r"\%", "_": r"\_", "#": r"\#"}
 
@@ -132,7 +134,7 @@ def _escaped(text: str) -> str:
 
 def _bib_name(entry: Reference, name: str) -> str:
     """Brace the name of an organisation, which BibTeX would split into first and last names."""
-    return f"{{{_escaped(name)}}}" if entry.kind == "standard" else _escaped(name)
+    return f"{{{_escaped(name)}}}" if entry.kind in _ISSUED else _escaped(name)
 
 
 def _names(entry: Reference) -> str:

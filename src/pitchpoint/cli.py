@@ -84,11 +84,13 @@ def cases(json_: AsJson = False) -> None:
 
 
 @app.command()
-def show(case: CaseName, variant: Variants = None, json_: AsJson = False) -> None:
+def show(
+    case: CaseName, variant: Variants = None, set_: Settings = None, json_: AsJson = False
+) -> None:
     """Show the inputs of a case as resolved, with their status, and its issues."""
     from pitchpoint.cases.run import describe
 
-    manifests = describe(case, only=variant or [])
+    manifests = describe(case, only=variant or [], settings=_settings(set_ or []))
     if json_:
         _emit(manifests)
         return
@@ -132,7 +134,9 @@ def run(
         return
     for name, outcome in outcomes.items():
         _summary(name, outcome)
-    _verdicts([row for outcome in outcomes.values() for row in outcome.rows])
+    measured = {name: outcome.rows for name, outcome in outcomes.items() if outcome.rows}
+    for name, rows in measured.items():
+        _verdicts(rows, f"{name}, " if len(measured) > 1 else "")
     _console().print(f"Report: {_plain(str(folder / 'report.html'))}")
 
 
@@ -283,6 +287,7 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 def _summary(name: str, outcome: "Outcome") -> None:
     from pitchpoint.cases.catalogue import (
+        kinematic_error_table,
         summary_table,
         sweep_tables,
         vibration_table,
@@ -295,7 +300,8 @@ def _summary(name: str, outcome: "Outcome") -> None:
     rows, columns, note = summary_table(outcome)
     _table(rows, columns)
     _console().print(_plain(note))
-    for rows, columns in (vibration_table(outcome), wind_up_table(outcome)):
+    for table in (vibration_table, wind_up_table, kinematic_error_table):
+        rows, columns = table(outcome)
         if rows:
             _table(rows, columns)
     for title, points in sweep_tables(outcome):
@@ -327,12 +333,12 @@ def _rows(rows: "list[Row]") -> None:
             _console().print(_plain(f"{row.verdict}: {row.quantity}: {row.reason}"))
 
 
-def _verdicts(rows: "list[Row]") -> None:
+def _verdicts(rows: "list[Row]", of: str = "") -> None:
     from pitchpoint.cases.comparison import counts
 
     for kind, verdicts in counts(rows).items():
         told = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
-        _console().print(f"{kind}: {told}")
+        _console().print(_plain(f"{of}{kind}: {told}"))
 
 
 def _show(rows: list[dict[str, str]], as_json: bool, columns: tuple[str, ...]) -> None:

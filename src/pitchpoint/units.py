@@ -28,7 +28,17 @@ if TYPE_CHECKING:
     import pint
     from numpy.typing import NDArray
 
-__all__ = ["UnitError", "convert", "example", "kind_of", "kinds", "parse", "si_unit", "units_of"]
+__all__ = [
+    "UnitError",
+    "convert",
+    "example",
+    "is_quotient",
+    "kind_of",
+    "kinds",
+    "parse",
+    "si_unit",
+    "units_of",
+]
 
 MAX_LENGTH = 64
 """Longest text that is read as a quantity [characters]."""
@@ -312,6 +322,22 @@ def kind_of(unit: str) -> str:
     if found is None:
         raise UnitError(f"{_quoted(unit)} is not a known unit", value=unit)
     return found
+
+
+def is_quotient(kind: str, above: str, below: str) -> bool:
+    """True if a quantity of one kind over one of another has the dimension of a third.
+
+    Args:
+        kind, above, below: of `kinds()`.
+
+    Example:
+        >>> is_quotient("stiffness", "force", "length")
+        True
+    """
+    one, over, under = (
+        _registry().Quantity(1, _kind(each).units[si_unit(each)]) for each in (kind, above, below)
+    )
+    return bool(one.check((over / under).dimensionality))
 
 
 def parse(text: str | float, kind: str) -> float:

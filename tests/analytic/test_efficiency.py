@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
+from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, state
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.gears.discs import TwinDisc
+from pitchpoint.gears.period import nodes
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw, xu_2007
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE, wu_cheng_1991
@@ -131,6 +132,15 @@ def test_loss_factor_as_friction_vanishes(design, sharing, expected):
     assert factor == pytest.approx(expected, abs=5.1e-6)
     if sharing == "equal":
         assert factor == pytest.approx(loss_factor(design), rel=1e-6)
+
+
+def test_extremes_do_not_run_beyond_kinks():
+    phase, weight = (each.ravel() for each in nodes(jnp.zeros(1), 8))
+    values = jnp.maximum(phase - 0.55, 0.0)
+    assert Cycle(phase, weight, None, 8).extremes(values)[0] < -1e-3
+    low, high = Cycle(phase, weight, None, 8, smooth=False).extremes(jnp.stack([values, -values]))
+    np.testing.assert_array_equal(low, [0.0, -values.max()])
+    np.testing.assert_array_equal(high, [values.max(), 0.0])
 
 
 def test_loss_is_linear_in_friction_to_first_order(design):

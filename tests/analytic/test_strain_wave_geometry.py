@@ -453,6 +453,18 @@ def test_pairs_that_count_as_touching_touch_and_none_lies_inside(loaded):
     assert np.min(loaded.clearance) > -1e-9
 
 
+def test_all_teeth_that_touch_are_held(pair, loaded):
+    """Deep involute teeth touch on their way out too, up to 78 degrees from the long axis."""
+    mesh, angle = pair.mesh, np.deg2rad(np.arange(-90.0, 90.0, 0.25))
+    near = pair.by.clearance(angle, pair.heights, pair.widths) < 1e-3 * float(mesh.module)
+    assert (np.degrees(angle[near].max()) > 70.0) == (pair.name == "involute")
+    assert loaded.angle.min() < angle[near].min()
+    assert angle[near].max() < loaded.angle.max()
+    expected = 2.0 * np.pi * near.mean() / float(mesh.tooth_angle)
+    assert float(mesh.pairs) == pytest.approx(expected, abs=0.5)
+    assert mesh.groove.unsolved == 0
+
+
 def test_load_closes_the_gap_of_every_pair_that_carries(loaded):
     """Tooth and ring yield by what the rigid motion moves a pair beyond its clearance."""
     carries = loaded.force > 0.0
@@ -460,8 +472,9 @@ def test_load_closes_the_gap_of_every_pair_that_carries(loaded):
     assert np.all(loaded.force >= 0.0)
     assert np.all(carries.sum(axis=0) >= 6)
     assert np.any(loaded.clearance[carries] > 1e-8)
-    assert np.max(np.abs(left[carries])) < 1e-8
-    assert np.min(left[loaded.active & ~carries]) > -1e-8
+    tolerance = 3e-8 if loaded.name == "involute" else 1e-8  # as of the gaps
+    assert np.max(np.abs(left[carries])) < tolerance
+    assert np.min(left[loaded.active & ~carries]) > -tolerance
 
 
 def test_tooth_sections_are_the_outlines(pair):
@@ -510,7 +523,7 @@ BAD = {
     "interference": (
         {"form": INVOLUTE, "groove": InvoluteForm(3.0)},
         "groove",
-        "interfere: 33.6 um of overlap",
+        "interfere: 136 um of overlap 79.3 degrees from the long axis",
     ),
     "zero engaged teeth": (
         {"form": INVOLUTE, "groove": InvoluteForm(5.0)},
@@ -539,7 +552,7 @@ BAD = {
         "the wave generator is fixed and cannot drive",
     ),
     "no member": ({"driver": "sun"}, "driver", "'sun' is no member; use one of wave generator"),
-    "no wave": ({"shape": (1.0, -1.0)}, "shape", "must have a positive sum"),
+    "no wave": ({"shape": (1.0, -1.0)}, "shape", "must have their sum as its largest value"),
 }
 
 

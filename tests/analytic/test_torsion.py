@@ -14,7 +14,7 @@ from pitchpoint.gears.flexible_ring import RingLoads
 from pitchpoint.gears.strain_wave_design import build_strain_wave
 from pitchpoint.loading import torsion as module
 from pitchpoint.loading.balance import balance
-from pitchpoint.loading.deviations import Deviations, added_gap, kinematic_error, places
+from pitchpoint.loading.deviations import Deviations, added_gap, kinematic_error, leaning, places
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.torsion import hysteresis, torsion
 from pitchpoint.loading.yielding import Yielding
@@ -192,6 +192,8 @@ def test_only_a_ring_winds_up():
     )
     with pytest.raises(InputError, match="asks for a strain-wave gear"):
         torsion(pair, (STEEL, STEEL), TERMS, jnp.ones(1), jnp.zeros(1))
+    with pytest.raises(InputError, match="ask for a strain-wave gear"):
+        leaning(pair, pair.contacts(jnp.zeros(1)))
 
 
 # ------------------------------------------------------------------ kinematic error
@@ -202,21 +204,26 @@ TURNS = 10  # of the wave generator: after ten all teeth meet as at first
 SAMPLES = TURNS * 22 * 4
 PHASE = np.arange(SAMPLES) / SAMPLES * TURNS * 22
 NONE = Deviations(*jnp.zeros((3, 1)))
+CLEARANCES = np.array([4e-7, 0.0, 1e-6, 3e-6] * 2).reshape(PAIRS, 1, 1)
 
 
-def two_zones():
-    """Four pairs at each end of the axis, equal springs without clearances."""
+def two_zones(gap=0.0):
+    """Four pairs at each end of the axis, equal springs, without clearances by default."""
     number = np.arange(PAIRS).reshape(-1, 1, 1) % (PAIRS // 2) - 2.0
-    return contacts((number + np.mod(PHASE, 1.0)) / 20.0)
+    return contacts((number + np.mod(PHASE, 1.0)) / 20.0, gap)
 
 
 def one(order, amplitude=1e-8, phase=0.4):
     return Deviations(*(jnp.asarray([float(value)]) for value in (order, amplitude, phase)))
 
 
+def errors(deviations, load, gap=0.0):
+    return _errors(deviations, load, np.broadcast_to(gap, (PAIRS, 1, 1)))
+
+
 @jax.jit
-def errors(deviations, load):
-    at = two_zones()
+def _errors(deviations, load, gap):
+    at = two_zones(gap)
     added = added_gap(deviations, places(at, PHASE, TEETH))
     yields = Yielding(jnp.full(at.path.shape, 1e9), None, jnp.full(SAMPLES, load))
     return kinematic_error(at, yields, LOADED, added)
@@ -253,6 +260,10 @@ def test_under_load_small_deviations_add_up_to_their_elastic_mean():
     size = np.abs(found.elastic_mean).max()
     np.testing.assert_allclose(found.under_load, found.elastic_mean, atol=1e-9 * size)
     np.testing.assert_allclose(found.wind_up, 50.0 / (PAIRS * SPRING * ARM**2), rtol=1e-12)
+    # With clearances the springs share more load as before, not the load itself.
+    clear = errors((one(2), one(4)), 50.0, CLEARANCES)
+    np.testing.assert_allclose(clear.elastic_mean, found.elastic_mean, atol=1e-9 * size)
+    np.testing.assert_allclose(clear.under_load, clear.elastic_mean, atol=1e-9 * size)
 
 
 def test_without_load_the_pair_that_stands_out_leads():
@@ -261,9 +272,36 @@ def test_without_load_the_pair_that_stands_out_leads():
     place = places(two_zones(), PHASE, TEETH)
     added = np.asarray(added_gap(both, place))
     found = errors(both, 0.0)
-    np.testing.assert_allclose(
-        found.under_load, added.min(axis=(0, 1)) / ARM, rtol=1e-9, atol=1e-12
-    )
+    leads = added.min(axis=(0, 1)) / ARM
+    np.testing.assert_allclose(found.under_load, leads, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(found.geometric, leads, rtol=1e-9, atol=1e-15)
+    np.testing.assert_array_equal(errors(both, 50.0).geometric, found.geometric)
+
+
+def test_pairs_with_a_clearance_lead_only_if_they_stand_out_further():
+    """Rigid teeth: the least of clearance and deviation together, less the least clearance, over the arm."""
+    both = one(2, 1e-6), one(3, 1e-6)
+    gap = CLEARANCES
+    added = np.asarray(added_gap(both, places(two_zones(), PHASE, TEETH)))
+    leads = (gap + added).min(axis=(0, 1)) / ARM
+    found = errors(both, 0.0, gap)
+    np.testing.assert_allclose(found.geometric, leads, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(found.under_load, leads, rtol=1e-9, atol=1e-12)
+    assert np.abs(leads - errors(both, 0.0).geometric).max() > 0.1 * np.ptp(leads)
+
+
+def test_roundings_lean_to_the_radius(drive, at):
+    """There the displacement of a tooth along the circumference moves the flanks apart by less."""
+    part = np.asarray(leaning(drive, at))
+    across = np.abs(np.asarray(drive.ring_loads(at).tangential))
+    active = np.asarray(at.active)
+    assert part[active].max() == 1.0
+    np.testing.assert_array_equal(part[~active], 0.0)
+    np.testing.assert_allclose(part[active] / across[active], 1.0 / across[active].max())
+    # The arm of the flexspline says the same, but for the place of the contact along the radius.
+    arm = np.abs(along(at.normal, jnp.asarray([0.0, 1.0, 0.0])))
+    touching = active & (np.asarray(at.gap) < 2e-6)
+    np.testing.assert_allclose(part[touching], arm[touching] / arm[touching].max(), atol=0.03)
 
 
 def test_teeth_keep_their_places_while_the_wave_passes():

@@ -14,7 +14,7 @@ from strain_wave_positions import drive
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
-from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
@@ -58,6 +58,9 @@ def passing(request):
     before, after = slice(0, 3), slice(6, 9)
     active = zone(found.active, before) & zone(found.active) & zone(found.active, after)
     by = drive(form)
+    # The rounding of the mate's tips begins between two heights of the table.
+    edge = float(mesh.tip_height + 1.1 * mesh.tip_rounding)
+    height = by.place(found.flank[0], 2.0 * np.pi * found.path).real
     return SimpleNamespace(
         mesh=mesh,
         found=found,
@@ -65,6 +68,8 @@ def passing(request):
         by=by,
         curvatures=by.curvatures(zone(found.flank[0]), 2.0 * np.pi * zone(found.path)),
         active=active,
+        above=height > edge,
+        inside=zone(height) > edge,
         angle=2.0 * np.pi * zone(found.path),
         along=zone(found.flank[0]),
         normal=zone(raw.normal),
@@ -91,9 +96,7 @@ def test_arms_are_velocities_of_the_material_by_positions(passing):
 def test_curvatures_are_second_derivatives_of_positions(passing):
     by, at = passing.by, passing
     own, mate, one = at.curvatures
-    edge = float(at.mesh.tip_height + at.mesh.tip_rounding)
-    height = by.place(at.along, at.angle).real
-    smooth = at.active & one & by.smooth(at.along, 2e-6) & (height > edge)
+    smooth = at.active & one & by.smooth(at.along, 2e-6) & at.inside
     assert smooth.sum() >= 5, "hardly any tooth touches a smooth part of its mate"
     total = own[smooth] + mate[smooth]
     np.testing.assert_allclose(at.curvature[0, smooth], own[smooth], rtol=1e-6, atol=1e-2)
@@ -114,16 +117,16 @@ def test_teeth_that_touch_an_edge_of_the_mate_have_its_curvature(passing):
 def test_contact_of_touching_teeth_moves_along_both_flanks_as_it_rolls(passing):
     at, by = passing, passing.by
     one = at.curvatures[2]
-    touching = at.active & (at.gap < 1e-9)
+    touching = at.active & at.inside & (at.gap < 1e-9)
     smooth = touching & one & by.smooth(at.along, np.abs(at.moved[0]) + 1e-6)
     assert smooth.sum() >= 4
     speeds = np.tensordot(at.motion, at.surface, axes=(0, 1))
     ratio = at.moved[:, smooth] / speeds[:, smooth] / (2.0 * MOVE * float(at.mesh.period))
-    for along_one, tolerance in zip(ratio, (3e-5, 1e-3), strict=True):
+    for along_one, most, middle in zip(ratio, (9e-3, 0.3), (5e-5, 2e-3), strict=True):
         # Lengths on the groove are those of chords between its nodes.
         error = np.abs(along_one - np.sign(along_one[0]))
-        assert error.max() < 300.0 * tolerance  # beside a joint of the flank
-        assert np.median(error) < tolerance
+        assert error.max() < most  # beside a joint of the flank
+        assert np.median(error) < middle
 
 
 def test_turning_everything_together_moves_no_contact(passing):
@@ -139,7 +142,7 @@ def test_teeth_that_touch_close_by_themselves_and_the_others_after_projection(pa
     touches = passing.found.gap[active] < 1e-12
     assert 0.02 < touches.mean() < 0.9, "both kinds of teeth are needed"
     # Flanks whose curvature jumps where they touch have no one normal to the accuracy of a table.
-    smooth = passing.by.smooth(passing.found.flank[0])[active]
+    smooth = (passing.by.smooth(passing.found.flank[0]) & passing.above)[active]
     assert rigid[touches & smooth].max() < 1e-5
     assert np.median(rigid[touches & smooth]) < 1e-7
     assert rigid[~touches].max() > 1e-3
@@ -182,6 +185,8 @@ def through_the_chain(design, operation, models):
         "torque": at.balance.torque,
         "load": at.balance.load,
         "loss": at.loss,
+        "input_torque": at.input_torque,
+        "extremes": jnp.stack(found.extremes(at.input_torque)),
         "efficiency": at.efficiency,
         "mean_efficiency": found.mean_efficiency,
         "residual": found.residual,
@@ -250,6 +255,12 @@ def test_tooth_friction_alone_does_not_lock_the_drive(running):
     """Either way round: it takes a coefficient of more than a half."""
     assert not running.rough.locked
     assert running.rough.mean_efficiency > 0.5
+
+
+def test_extremes_are_those_of_the_nodes(running):
+    """Pairs come and go between the events: a polynomial would run beyond what was computed."""
+    torque = running.rough.input_torque
+    np.testing.assert_array_equal(running.rough.extremes, [torque.min(), torque.max()])
 
 
 def test_many_pairs_carry_and_only_push(running):

@@ -131,6 +131,10 @@ rim_thickness = "0.6 mm"
 [gears.circular_spline]
 form = "conjugate"
 
+[gears.deviations]
+flexspline = [{ order = 1, amplitude = "5 um", phase = "30 deg" }]
+circular_spline = [{ order = 2, amplitude = "3 um" }]
+
 [operation]
 torque = "50 N m"
 speed = "1500 rpm"
@@ -498,6 +502,22 @@ def bad_drives() -> Iterator[Bad]:
     yield Bad(
         "churning", ("losses",), {"oil": churned}, ("is missing",), "losses.oil.churning_speed"
     )
+    for key, value, words in [
+        ("slices", 24, ("not divided into slices", "leave it at 12")),
+        ("averaging", "path", ("path of one pair", '"base_pitch"')),
+    ]:
+        yield Bad(key, ("models",), {key: value}, words, f"models.{key}", "strain wave")
+    between = {"between": ["gear 1", "housing"]}
+    for given, of in [
+        ({"seal_torque": "1 N m", "preload": "10 N"}, "a bearing"),
+        ({"seal_torque": "1 N m", "churning_speed": "100 rpm"}, "churning_torque"),
+        ({"seal_torque": "1 N m", "churning_exponent": 2}, "churning_torque"),
+    ]:
+        words, key = (f"without {of}", "belongs"), f"losses.oil.{[*given][1]}"
+        yield Bad(f"{[*given][1]} alone", ("losses",), {"oil": between | given}, words, key)
+    zero = {"bearing": "palmgren_1959", "mean_diameter": "45 mm", "f0": 0, "f1": 0}
+    for name, given in [("nothing", {}), ("zero", zero | {"preload": "10 N"})]:
+        yield Bad(f"loss {name}", ("losses",), {"oil": between | given}, ("zero",), "losses.oil")
     bearing = {"between": ["gear 1", "housing"], "bearing": "palmgren_1959", "f1": 0.001}
     words = ("is missing", "mean_diameter, f0, f1")
     yield Bad("bearing", ("losses",), {"oil": bearing}, words, "losses.oil.mean_diameter")

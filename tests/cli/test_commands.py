@@ -97,6 +97,7 @@ def test_cases(pitchpoint: Callable[..., Told]) -> None:
     assert [row["case"] for row in told] == [
         "atanasiu2011",
         "csd25",
+        "hfuc32",
         "tian2024",
         "xu2021",
         "zhao2022",
@@ -118,6 +119,16 @@ def test_show(pitchpoint: Callable[..., Told], tiny: Path) -> None:
     assert all(issue["where"] in told.out for issue in shown[0]["issues"])
 
 
+def test_show_takes_settings(pitchpoint: Callable[..., Told], tiny: Path) -> None:
+    told = pitchpoint("show", tiny, "--set", "operation.torque=77 N m", "--json")
+    (manifest,) = json.loads(told.out)
+    row = next(row for row in manifest["inputs"] if row["key"] == "torque")
+    assert (row["value"], row["status"]) == ("77 N m", "set")
+    wrong = pitchpoint("show", tiny, "--set", "operation.torqe=7 N m")
+    assert (wrong.status, wrong.out) == (2, "")
+    assert "operation.torqe: is not a known key" in wrong.err
+
+
 def test_text_of_the_user_is_shown_as_typed(pitchpoint: Callable[..., Told], tiny: Path) -> None:
     assert "A [bold]pair[/bold] of <b>gears</b>" in pitchpoint("show", tiny).out
 
@@ -126,6 +137,7 @@ def test_models(pitchpoint: Callable[..., Told]) -> None:
     rows = pitchpoint("models", "--json").json
     kinds = {row["kind"] for row in rows}
     assert kinds >= {"friction", "load_sharing", "rolling_resistance", "lubricant", "material"}
+    assert {row["name"] for row in rows if row["kind"] == "bearing"} == {"none", "palmgren_1959"}
     sharing = next(row for row in rows if row["name"] == "sanchez_2017")
     assert sharing["range"] == "1 < contact ratio < 2"
     assert all(row["name"] in pitchpoint("models").out for row in rows[:3])
@@ -268,6 +280,7 @@ def test_targets_that_name_what_is_not_there(
         "law = []": ("targets.0.law", "[]"),
         'reduce = "max_difference"': ("targets.0.law", "takes 2"),
         'unit = "N m"': ("targets.0.unit", "N m"),
+        'at = "1 N m"': ("targets.0.at", "no axis of numbers"),
     }.items():
         known = "" if "variable" in change else 'variable = "mean_efficiency"\n'
         path.write_text(f"{TINY}{target}{known}{change}\n")

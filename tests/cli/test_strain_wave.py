@@ -10,9 +10,17 @@ import pytest
 import xarray as xr
 
 from pitchpoint.cases import run as running
-from pitchpoint.cases.catalogue import figures, summary_table, wind_up_table
+from pitchpoint.cases.catalogue import (
+    figures,
+    kinematic_error_table,
+    summary_table,
+    wind_up_table,
+)
 from pitchpoint.cases.run import Outcome, Progress, open_result
 from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.views import show
+from pitchpoint.views.kinematic_error import kinematic_error_answer
+from pitchpoint.views.running import starting_answer
 
 DRIVE = """
 [gears]
@@ -20,6 +28,9 @@ family = "strain_wave"
 teeth = [200, 202]
 module = "0.3 mm"
 face_width = "10 mm"
+[gears.deviations]
+flexspline = [{ order = 1, amplitude = "0.2 um" }, { order = 2, amplitude = "0.1 um", phase = "50 deg" }]
+circular_spline = [{ order = 3, amplitude = "0.2 um" }, { order = 4, amplitude = "0.1 um" }]
 [lubricant]
 name = "pao-vg-100"
 [roughness]
@@ -44,9 +55,10 @@ breakaway_torque = "5 mN m"
 [loss_map]
 torque_count = 3
 speed_count = 2
-temperatures = ["20 degC", "40 degC"]
+temperatures = ["20 degC", "60 degC"]
 """
-PARTS = ["teeth", "cycle", "operation", "laws", "torsion", "running", "loss_map", "back_driving"]
+PARTS = ["teeth", "cycle", "operation", "laws", "torsion", "kinematic_error", "running", "loss_map"]
+PARTS += ["back_driving"]
 
 PAIR = """
 [gears]
@@ -96,7 +108,14 @@ def test_the_tables_on_screen(drive: Outcome) -> None:
     assert "xu_2007" in note
     rows, _ = wind_up_table(drive)
     assert [row["T_out [N m]"] for row in rows] == ["33.5", "67", "100.5", "134"]
-    json.dumps(figures(drive), allow_nan=False)
+    rows, columns = kinematic_error_table(drive)
+    assert columns[1:] == ("flexspline", "circular spline", "both")
+    assert [row[columns[0]] for row in rows] == ["geometry", "elastic mean", "under load"]
+    told = figures(drive)
+    size = float(rows[2]["both"])  # in seconds of arc
+    given = told["kinematic_error_range"]["under load"]["both"]
+    assert np.degrees(given) * 3600.0 == pytest.approx(size, rel=1e-4)
+    json.dumps(told, allow_nan=False)
 
 
 def test_the_loads_carry_the_torque(drive: Outcome) -> None:
@@ -108,6 +127,8 @@ def test_the_loads_carry_the_torque(drive: Outcome) -> None:
     assert "loss_factor" not in data
     assert float(data["mean_drag_loss"].values[0, 0]) > 0.0
     cycle = drive.parts["cycle"]
+    assert (cycle["drag_loss"] > 0.0).all()
+    assert (cycle["drag_loss"] < cycle["loss"]).all()
     share = cycle["load_share"].sum(["pair", "slice"]).values
     np.testing.assert_allclose(share, 1.0, rtol=1e-12)
 
@@ -121,12 +142,54 @@ def test_wind_up_grows_with_the_torque(drive: Outcome) -> None:
     assert data["tooth_force"].shape == (25, 8, data.sizes["pair"])
 
 
+def test_orders_of_the_kinematic_error(drive: Outcome) -> None:
+    """Odd orders cancel over both ends of the long axis, even ones stand at their place."""
+    data = drive.parts["kinematic_error"]
+    spectrum = data["kinematic_error_spectrum"]
+    mean, loaded = (spectrum.sel(curve=name).values for name in ("elastic mean", "under load"))
+    rigid = 0.1e-6 / 0.030  # of upright teeth, all of which lie behind, at the pitch radius
+    for spline, order in ((0, 2), (1, 4)):
+        few = mean[spline, :100]
+        assert np.argmax(few) == order
+        assert 0.8 * rigid < few[order] < 1.1 * rigid  # the wave turns by little along a zone
+        assert np.delete(few, order).max() < 1e-9 * few[order]
+        # Small deviations under load are their elastic mean to first order, odd ones cancel too.
+        assert loaded[spline, order] == pytest.approx(few[order], rel=3e-3)
+        assert loaded[spline, 1:100:2].max() < 1e-6 * few[order]
+    error = data["kinematic_error"]
+    both = error.sel(curve="elastic mean").values
+    np.testing.assert_allclose(error.sel(curve="under load"), both, atol=0.02 * np.ptp(both))
+    assert data["wave_angle"].values[-1] == pytest.approx(2.0 * np.pi * (1.0 - 1.0 / both.size))
+    assert kinematic_error_answer(drive).endswith("if they were rigid and without load")
+
+
+def test_waves_stay_on_their_teeth(drive: Outcome) -> None:
+    """Once the wave has passed all teeth of the circular spline, those of the other have moved on by two."""
+    data = drive.parts["kinematic_error"].sel(curve="elastic mean")
+    angle, error = data["wave_angle"].values, data["kinematic_error"].values
+    ratio = 202.0 / 200.0
+    columns = [np.ones(angle.size)]
+    columns += [f(k * angle) for k in (2.0 * ratio, 4.0) for f in (np.cos, np.sin)]
+    fitted, *_ = np.linalg.lstsq(np.stack(columns, axis=-1), error, rcond=None)
+    sizes = np.hypot(fitted[1::2], fitted[2::2])
+    lines = data["kinematic_error_spectrum"].values
+    np.testing.assert_allclose(sizes, [lines[0, 2], lines[1, 4]], rtol=1e-3)
+    # A wave of the flexspline stands at its phase when the turn begins.
+    assert np.arctan2(-fitted[2], fitted[1]) == pytest.approx(np.radians(50.0), abs=0.3)
+
+
 def test_running_without_load(drive: Outcome) -> None:
     data = drive.parts["running"]
     assert (data["no_load_torque"].values > 0.010).all()  # more than the seal
     assert (np.diff(data["no_load_torque"].values, axis=1) > 0.0).all()  # with speed
     assert (data["starting_torque"].values > 0.015).all()
     assert (data["back_driving_torque"].values > 100.0 * 0.015).all()
+    words = dict(starting_answer(drive, "constant"))
+    there = data.sel(law="constant", temperature=313.15)
+    told = float(there["starting_torque"])
+    assert words["starting torque"] == show.quantity("starting_torque", told)
+    told = float(there["no_load_torque"].sel(speed=2000.0 * np.pi / 30.0, method="nearest"))
+    assert words["torque without load"] == show.quantity("no_load_torque", told)
 
 
 def test_the_map_agrees_with_the_operating_point(drive: Outcome) -> None:

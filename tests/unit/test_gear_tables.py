@@ -2,18 +2,20 @@
 
 import copy
 import tomllib
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from pitchpoint._jax import jax
 from pitchpoint.cases.build import laws_of
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.schema import Case, quantity_at, validate
 from pitchpoint.cases.studies import Variant, jobs
 from pitchpoint.errors import InputError
-from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS
+from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, check_strain_wave
 
 DRIVE = tomllib.loads("""
 [gears]
@@ -163,6 +165,148 @@ def test_backwards_the_loaded_member_carries_the_same_power() -> None:
     assert (back.case.operation.driver, back.loaded) == ("flexspline", "wave generator")
     assert back.case.operation.torque == pytest.approx(0.67)
     assert back.case.operation.speed == pytest.approx(built.case.operation.speed / 100.0)
+
+
+def test_running_without_load_is_told_at_the_operating_point() -> None:
+    from pitchpoint.cases.running import running_axes
+
+    for settings, sizes in [
+        ({}, (9, 3)),  # the middle of the map's own axes
+        ({"loss_map.temperatures": ["20 degC", "60 degC"], "loss_map.speed": "2100 rpm"}, (10, 3)),
+        ({"loss_map.speed": "1000 rpm"}, (10, 3)),
+    ]:
+        built = Variant(PAIR, "pair.toml", "default", settings).built({})
+        point, axes = built.case.operation, running_axes(built)
+        assert tuple(axis.size for axis in axes) == sizes
+        assert all((np.diff(axis) > 1e-6).all() for axis in axes)
+        assert point.speed in axes[0]
+        assert point.temperature in axes[1]
+
+
+def test_what_a_loop_of_torque_cannot_show_is_said() -> None:
+    from pitchpoint.cases.torsion import _loopless, _lost
+
+    built = Variant(PAIR, "pair.toml", "default", {"operation.torque": "0 N m"}).built({})
+    (told,) = _loopless(built, np.zeros(1))
+    assert "nothing is carried at the operating point" in told
+    built = Variant(PAIR, "pair.toml", "default").built({})
+    (told,) = _loopless(built, np.array([np.nan]))
+    assert "friction locks the drive at the operating point" in told
+    assert _loopless(built, np.array([0.05])) == []
+    (told,) = _lost(np.array([0.0, np.nan, 1.0, np.nan]), np.array([0.0, 1.0, 2.0, 3.0]))
+    assert "at 2 of 4 torques (1 N m to 3 N m)" in told
+    assert _lost(np.zeros(2), np.ones(2)) == []
+
+
+def test_conformal_contacts_that_carry_are_told() -> None:
+    from types import SimpleNamespace
+
+    from pitchpoint.cases.studies import _conformal_warning
+
+    run = {"load": np.array([0.0, 1.0, 2.0]), "radius": np.array([1.0, 1.0, 0.5])}
+    (told,) = _conformal_warning(SimpleNamespace(largest_radius=1.0), run)
+    assert told.startswith("1 of 2 loaded contacts of the mesh cycle are conformal")
+    assert _conformal_warning(SimpleNamespace(largest_radius=np.inf), run) == []
+    assert drive().built({}).design.mesh.largest_radius == 1.0
+    assert Variant(PAIR, "pair.toml", "default").built({}).design.mesh.largest_radius == np.inf
+
+
+def test_a_groove_that_was_not_found_whole_is_told() -> None:
+    mesh = drive().built({}).design.mesh
+    assert check_strain_wave(mesh) == ()
+    lost = replace(mesh, groove=replace(mesh.groove, unsolved=np.asarray(3.0)))
+    (told,) = check_strain_wave(lost)
+    assert "could not be found at 3 of 640 heights" in told
+
+
+WAVES = [{"order": 1, "amplitude": "5 um", "phase": "30 deg"}, {"order": 100, "amplitude": "3 um"}]
+
+
+def test_deviations_are_read_and_shown() -> None:
+    one = drive(gears__deviations__flexspline=WAVES)
+    built = one.built({})
+    rows = {row["key"]: row for row in resolved(built, one.document())}
+    told = "order 1 amplitude 5 um phase 30 deg, order 100 amplitude 3 um phase 0 deg"
+    assert rows["deviations.flexspline"]["value"] == told
+    assert rows["deviations.flexspline"]["status"] == "set"
+    assert rows["deviations.circular_spline"]["value"] == "none"
+    given = built.family.deviations(built.case.gears)
+    assert given is not None
+    first, second = given
+    np.testing.assert_allclose(first.amplitude, [5e-6, 3e-6])
+    np.testing.assert_allclose(first.phase, [np.pi / 6.0, 0.0])
+    assert second.order.size == 0
+    assert built.family.deviations(drive().built({}).case.gears) is None
+    order = quantity_at("gears.deviations.flexspline.order")
+    assert order is not None
+    assert order.whole
+
+
+def test_deviations_leave_the_mesh_and_ask_for_one_part_more() -> None:
+    one, plain = drive(gears__deviations__circular_spline=WAVES), drive()
+    with_waves, without = (jax.tree.flatten(each.built({}).design) for each in (one, plain))
+    assert with_waves[1] == without[1]
+    for here, there in zip(with_waves[0], without[0], strict=True):
+        np.testing.assert_array_equal(here, there)
+    names, usual = ([job.name for job in jobs(each, {})] for each in (one, plain))
+    usual.insert(usual.index("torsion") + 1, "kinematic_error")
+    assert names == usual
+    assert one.document().tree != plain.document().tree  # so the fingerprint is another
+
+
+def test_states_without_equilibrium_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    from pitchpoint.cases import kinematic_error as part
+
+    def over(period: Any, deviations: Any, count: int, teeth: Any) -> np.ndarray:
+        found = np.zeros((3, count * part.PHASES))
+        found[2, [10, 12]] = np.nan
+        return found
+
+    monkeypatch.setattr(part, "_period", lambda *given: None)
+    monkeypatch.setattr(part, "_over", over)
+    built = drive(gears__deviations__flexspline=WAVES).built({})
+    deviations = built.family.deviations(built.case.gears)
+    assert deviations is not None
+    data = part.kinematic_error_part(built, deviations)
+    told = "Kinematic error: no equilibrium was found in 4 of 1208 states."
+    assert told in data.attrs["warnings"]
+    assert np.isnan(data["kinematic_error_range"].values[2]).tolist() == [True, False, True]
+
+
+@pytest.mark.parametrize(
+    ("key", "waves", "words"),
+    [
+        (
+            "flexspline",
+            [{"order": 101}],
+            "0.order: 101 waves around the flexspline look like fewer",
+        ),
+        ("circular_spline", [{"order": 2}, {"order": 102}], "1.order: 102 waves around the circ"),
+        ("flexspline", [{"order": 0}], "0.order: 0 is out of range; allowed is 1 to 1000"),
+        ("flexspline", [{"order": 1.5}], "0.order: 1.5 is not a whole number"),
+        ("flexspline", [{"amplitude": "1 um"}], "0.order: is missing; write 2; allowed is 1 to"),
+        ("flexspline", [{"order": 2, "waves": 3}], "0.waves: is not a known key"),
+        ("circular_spline", [{"order": 2, "amplitude": "3 deg"}], "0.amplitude: "),
+        ("circular_spline", {"order": 2}, "the table { order = 2 } was given where a list belongs"),
+        (
+            "flexspline",
+            [{"order": 1, "amplitude": "0.1 mm"}, {"order": 2, "amplitude": "0.1 mm"}],
+            "the deviations of the flexspline add up to 200 um; allowed is half a module, 150 um",
+        ),
+        ("wave_generator", [{"order": 2}], "is not a known key"),
+    ],
+    ids=lambda given: str(given)[:30],
+)
+def test_deviations_that_cannot_be(key: str, waves: Any, words: str) -> None:
+    if isinstance(waves, list) and "is missing" not in words:
+        waves = [{"amplitude": "1 um", **wave} for wave in waves]
+    tree = {**DRIVE, "gears": {**DRIVE["gears"], "deviations": {key: waves}}}
+    with pytest.raises(InputError) as caught:
+        case(tree)
+    told = str(caught.value)
+    assert told.startswith(f"x.toml: gears.deviations.{key}")
+    assert words in told
+    assert "\n" not in told
 
 
 def test_the_parts_of_a_drive() -> None:

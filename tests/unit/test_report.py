@@ -283,6 +283,7 @@ def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:
     assert compared.index("number out of reach") < compared.index("number left out")
     assert "predicted 1 miss" in compared
     assert "excluded 1 excluded" in compared
+    assert "physical has no targets of its own and is not compared" in compared
 
 
 def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:

@@ -12,11 +12,14 @@ import pytest
 import xarray as xr
 
 from pitchpoint.cases.run import Outcome
+from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.results.store import dataset
+from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel
 from pitchpoint.views.drive import loaded_arcs, picture, simplified, wave_dimensions
-from pitchpoint.views.facts import MEMBERS, wave
+from pitchpoint.views.facts import wave
 from pitchpoint.views.figures import Figure, Panel, curves
+from pitchpoint.views.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.maps import efficiency_panel
 from pitchpoint.views.report import render
 from pitchpoint.views.running import drag_panel, starting_answer
@@ -156,6 +159,36 @@ def torsion() -> xr.Dataset:
     )
 
 
+def kinematic_error(*, flexspline: bool = True) -> xr.Dataset:
+    """Order 2 of the flexspline and 4 of the circular spline; 3 stays where teeth do not yield."""
+    angle = np.arange(2 * Z2) * pi / Z2
+    parts = np.array([[3e-5], [2e-5], [1.9e-5]])
+    ripple = np.array([[1e-5], [0.0], [1e-9]]) * np.cos(3.0 * angle)
+    first = parts * np.cos(2.0 * Z2 / Z1 * angle) * flexspline
+    second = 0.5 * parts * np.cos(4.0 * angle) + ripple
+    lines = np.zeros((3, 2, Z1))
+    lines[:, 0, 2], lines[:, 1, 4] = parts[:, 0] * flexspline, 0.5 * parts[:, 0]
+    lines[:, 1, 3] = [1e-5, 0.0, 1e-9]
+    lines[:, :, Z1 - 1] = 1e-4 * np.array([flexspline, 1.0])  # of the mesh
+    size = [np.ptp(one, axis=1) for one in (first, second, first + second)]
+    return dataset(
+        {
+            "wave_angle": (("state",), angle),
+            "kinematic_error": (("curve", "state"), first + second),
+            "kinematic_error_spectrum": (("curve", "spline", "order"), lines),
+            "kinematic_error_range": (("curve", "cause"), np.stack(size, axis=1)),
+        },
+        {
+            "curve": ["geometry", "elastic mean", "under load"],
+            "spline": ["flexspline", "circular spline"],
+            "cause": ["flexspline", "circular spline", "both"],
+            "order": ("order", np.arange(Z1)),
+        },
+        title="kinematic error",
+        warnings=[],
+    )
+
+
 DEGREES = np.array([293.15, 313.15, 333.15])
 
 
@@ -241,6 +274,7 @@ def whole() -> Outcome:
             "cycle": cycle(),
             "operation": operation(),
             "torsion": torsion(),
+            "kinematic_error": kinematic_error(),
             "running": running(),
             "loss_map": loss_map(),
         }
@@ -276,11 +310,14 @@ def test_every_figure_has_a_place_and_data(page: str) -> None:
     figures = drawn(page)
     assert sorted(figures) == sorted(re.findall(r'class="plot" id="([^"]*)"', page))
     assert 'class="empty"' not in page
-    assert len(figures) == 2 + 9 + 6 + 5 + 5 + 2 + 3
+    assert len(figures) == 2 + 9 + 6 + 5 + 3 + 5 + 2 + 3
 
 
 def test_page_speaks_of_the_drive(page: str) -> None:
     text = words(page)
+    error = show.quantity(
+        "kinematic_error_range", float(kinematic_error()["kinematic_error_range"][2, 2])
+    )
     for told in (
         "wave generator drives at 1000 rpm, flexspline carries 20 N m",
         "Averages run over one tooth pitch",
@@ -288,6 +325,7 @@ def test_page_speaks_of_the_drive(page: str) -> None:
         "2.000 W in the teeth, 3.000 W beside them",
         "speed ratio, wave generator to flexspline −20",
         "pairs carry in the mean",
+        f"Kinematic error {error} peak to peak under the operating torque",
     ):
         assert told in text
     for told in ("base pitch", "gear 1", "gear 2", "Plane of action", "pitch point"):
@@ -315,6 +353,7 @@ def test_sections_appear_with_their_parts(whole: Outcome, kept: tuple[str, ...])
         "Drive and path of the teeth": "teeth" in kept,
         "Along the wave": "cycle" in kept,
         "Torsion": False,
+        "Kinematic error": False,
         "Loss map": False,
         "Losses beside the teeth": "operation" in kept,
     }
@@ -473,6 +512,52 @@ def test_both_ends_are_one_line_only_if_they_are_alike(whole: Outcome) -> None:
     one = replace(whole, parts={**whole.parts, "torsion": uneven})
     assert len(figure(torsion_panels({"default": one}, known)[0], "_bearing").data) == 2
     assert torsion_answer(outcome({})) == ""
+
+
+def test_no_stiffness_is_told_where_nothing_is_carried(whole: Outcome) -> None:
+    rows = [
+        {**row, "value": "0 N m"} if row["key"] == "torque" else row
+        for row in whole.manifest["inputs"]
+    ]
+    idle = replace(whole, manifest={**whole.manifest, "inputs": rows})
+    assert torsion_answer(idle) == "nothing is carried at the operating point"
+    data = whole.parts["torsion"].copy(deep=True)
+    data["wind_up"].values[:] = np.nan
+    lost = replace(whole, parts={**whole.parts, "torsion": data})
+    assert torsion_answer(lost) == "no equilibrium was found at the operating point"
+
+
+def test_orders_stand_over_the_spline_that_makes_them(whole: Outcome) -> None:
+    (panel,) = kinematic_error_panels({"default": whole})
+    turn, first, second = panel.figures
+    assert [len(one.data) for one in panel.figures] == [3, 3, 3]
+    assert turn.data[0]["x"][-1] == pytest.approx(360.0 * (1.0 - 0.5 / Z2), abs=1e-3)
+    assert first.data[2]["x"] == [1, 2, 3, 4, 5, 6]  # not as far as the mesh
+    arcsec = np.degrees(1.0) * 3600.0
+    assert first.data[2]["y"] == pytest.approx([0.0, 1.9e-5 * arcsec, 0, 0, 0, 0], rel=1e-4)
+    assert second.data[0]["y"][2:4] == pytest.approx([1e-5 * arcsec, 1.5e-5 * arcsec], rel=1e-4)
+    assert "circular spline" in second.title
+
+
+def test_a_spline_without_deviations_has_no_orders(whole: Outcome) -> None:
+    one = replace(whole, parts={"kinematic_error": kinematic_error(flexspline=False)})
+    (panel,) = kinematic_error_panels({"default": one})
+    assert [shown.title for shown in panel.figures[1:]] == ["Orders by the circular spline"]
+    assert kinematic_error_panels({"default": outcome({})}) == []
+    assert kinematic_error_answer(outcome({})) == ""
+
+
+def test_a_state_without_equilibrium_leaves_a_gap(whole: Outcome) -> None:
+    lost = kinematic_error()
+    lost["kinematic_error"].values[2, 7] = np.nan
+    lost["kinematic_error_spectrum"].values[2] = np.nan
+    lost["kinematic_error_range"].values[2] = np.nan
+    one = replace(whole, parts={"kinematic_error": lost})
+    (panel,) = kinematic_error_panels({"default": one})
+    assert panel.figures[0].data[2]["y"][7] is None
+    assert set(panel.figures[1].data[2]["y"]) == {None}
+    assert panel.figures[1].data[1]["y"][1] is not None
+    assert kinematic_error_answer(one).startswith("undefined")
 
 
 def test_losses_are_split_only_where_there_are_others(whole: Outcome) -> None:

@@ -1,5 +1,6 @@
 """Tables for people and machines: what can be chosen by name, and the main figures of a result."""
 
+from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
@@ -26,6 +27,7 @@ from pitchpoint.results.variables import VARIABLES
 __all__ = [
     "entries",
     "figures",
+    "kinematic_error_table",
     "summary_table",
     "sweep_tables",
     "vibration_table",
@@ -99,11 +101,16 @@ def figures(outcome: Outcome) -> dict[str, Any]:
     return {
         "title": manifest["title"],
         "units": {
-            name: VARIABLES[name].unit for name in (*MAIN, *VIBRATION, *TEMPERATURES, *WIND_UP)
+            name: VARIABLES[name].unit
+            for name in (*MAIN, *VIBRATION, *TEMPERATURES, *WIND_UP, "kinematic_error_range")
         },
         "operation": _by_law(outcome.parts["operation"], MAIN),
         "vibration": _by_torque(outcome, "vibration", VIBRATION),
         "torsion": _by_torque(outcome, "torsion", WIND_UP),
+        "kinematic_error_range": {
+            curve: dict(zip(causes, _numbers(values), strict=True))
+            for curve, causes, values in _ranges(outcome)
+        },
         "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
         "back_driving": _by_law(outcome.parts["back_driving"], ("mean_efficiency", "locked")),
         "studies": studies,
@@ -196,6 +203,29 @@ def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
         for k in range(torques.size // 4, torques.size, torques.size // 4)
     ]
     return rows, tuple(rows[0])
+
+
+def kinematic_error_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
+    """Rows and columns: kinematic error, peak to peak, by the deviations of each spline and of both."""
+    name = "kinematic_error_range"
+    rows = [
+        {f"kinematic error {_head(name)}": curve}
+        | {cause: _shown(name, float(v)) for cause, v in zip(causes, values, strict=True)}
+        for curve, causes, values in _ranges(outcome)
+    ]
+    return rows, tuple(rows[0]) if rows else ()
+
+
+def _ranges(outcome: Outcome) -> Iterator[tuple[str, list[str], Any]]:
+    """Name of each curve of the kinematic error, and its peak to peak by what causes it."""
+    data = outcome.parts.get("kinematic_error")
+    if data is None:
+        return
+    causes = [str(cause) for cause in data["cause"].values]
+    for curve, values in zip(
+        data["curve"].values, data["kinematic_error_range"].values, strict=True
+    ):
+        yield str(curve), causes, values
 
 
 def sweep_tables(outcome: Outcome) -> list[tuple[str, list[dict[str, str]]]]:

@@ -1,21 +1,22 @@
 """Printed numbers against computed ones."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.cases.quantities import shown
-from pitchpoint.cases.reductions import PLAIN, REDUCTIONS
+from pitchpoint.cases.quantities import Quantity, shown
+from pitchpoint.cases.reductions import INVERSE_SLOPE, PLAIN, REDUCTIONS, SLOPE, SPANS
 from pitchpoint.cases.schema import Target
 from pitchpoint.errors import InputError
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["Row", "compare", "counts"]
+__all__ = ["Row", "compare", "counts", "demand_parts"]
 
 
 OF_VIBRATION = ("mean_transmission_error", "transmission_error_range", "largest_dynamic_factor")
@@ -61,7 +62,7 @@ def compare(
         name: of the file, for messages.
 
     Raises:
-        InputError: a target that names no study, variable or law of the results.
+        InputError: a target that names no part, variable, law or place on the axis of the results.
     """
     rows = []
     for position, target in enumerate(targets):
@@ -107,32 +108,153 @@ def _verdict(target: Target, computed: float | None) -> str:
 
 
 def _computed(target: Target, results: Mapping[str, xr.Dataset]) -> float:
-    part = f"study_{target.study}"
-    if part not in results:
-        raise InputError(f"there is no study '{target.study}'", key="study")
-    data = results[part]
+    data = _part(target, results)
+    variable = VARIABLES[target.variable]
+    values, axis = _read(target, data)
+    wanted = _laws(target, len(values))
+    if target.variable in OF_VIBRATION and _unsteady(data, wanted):
+        return float(
+            "nan"
+        )  # a balance that is not reached, or that pulls on teeth, meets no target
+    with np.errstate(divide="ignore", invalid="ignore"):
+        number = REDUCTIONS[target.reduce](values[wanted], axis.places)
+    if target.unit == "1":
+        return number
+    if target.reduce in (SLOPE, INVERSE_SLOPE):
+        return _of_slope(number, target, variable.kind, axis.kind)
+    kind = "dimensionless" if target.reduce in PLAIN else variable.kind
+    return float(units.convert(number, target.unit, kind))
+
+
+def demand_parts(targets: Sequence[Target], parts: Sequence[str], name: str) -> None:
+    """InputError if a target reads a part that the case will not have."""
+    for position, target in enumerate(targets):
+        if target.kind != "excluded" and target.reads not in parts:
+            error = _absent(target, parts)
+            raise error.at(file=name, key=f"targets.{position}.{error.key}")
+
+
+def _absent(target: Target, parts: Iterable[str]) -> InputError:
+    if not target.part:
+        return InputError(f"there is no study '{target.study}'", key="study")
+    known = dict.fromkeys(part for part in parts if not part.startswith("study_"))
+    told = f"this case computes no part {shown(target.part)}{nearest(target.part, known)}"
+    return InputError(told, key="part")
+
+
+def _part(target: Target, results: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """Part that a target reads; it holds the variable."""
+    if target.reads not in results:
+        raise _absent(target, results)
+    data = results[target.reads]
     if target.variable not in data:
         raise InputError(
             f"there is no quantity '{target.variable}'{nearest(target.variable, _names(data))}",
             key="variable",
         )
-    values = data[target.variable].transpose("law", "point").values
+    return data
+
+
+@dataclass(frozen=True)
+class _Axis:
+    """What a variable runs over: its name, places in SI, their kind and the unit to show them in."""
+
+    name: str
+    places: np.ndarray
+    kind: str = ""
+    unit: str = "1"
+
+    def at(self, given: Sequence[Any]) -> np.ndarray:
+        """Places in SI; InputError if one lies outside."""
+        if not self.kind or not np.isfinite(self.places).all():
+            raise InputError("has no axis of numbers to be read at", key="at")
+        return np.array([self._one(place) for place in given])
+
+    def _one(self, given: Any) -> float:
+        try:
+            place = units.parse(given, self.kind)
+        except InputError as error:
+            raise InputError(error.message, key="at") from None
+        low, high = self.places.min(), self.places.max()
+        if not low - (margin := 1e-9 * (high - low)) <= place <= high + margin:
+            show = Quantity(self.kind, low, high, self.unit).show
+            told = f"{self.name} runs from {show(low)} to {show(high)}"
+            raise InputError(f"{shown(given)} lies outside; {told}", key="at")
+        return place
+
+
+def _read(target: Target, data: xr.Dataset) -> tuple[np.ndarray, _Axis]:
+    """Values [law, place] of a target's variable, and the axis."""
+    array = data[target.variable]
+    over = [str(dim) for dim in array.dims if dim != "law"]
+    several = [dim for dim in over if array.sizes[dim] > 1]
+    if len(several) > 1 or array.dtype.kind not in "biuf":
+        told = f"runs over {' and '.join(several)}" if several[1:] else "is no number"
+        raise InputError(f"{target.variable} {told}; it must be one over one axis", key="variable")
+    dim = (several or over or ["place"])[0]
+    array = array.squeeze([other for other in over if other != dim])
+    missing = {"law": data.sizes.get("law", 1)} if "law" not in array.dims else {}
+    array = array.expand_dims({**missing, **({} if over else {dim: 1})})
+    values, axis = array.transpose("law", dim).values.astype(float), _axis(data, dim)
+    _demand_places(target, axis)
+    if not target.at:
+        return values, axis
+    places, order = axis.at(target.at), np.argsort(axis.places)
+    values = np.stack([np.interp(places, axis.places[order], row[order]) for row in values])
+    return values, replace(axis, places=places)
+
+
+def _axis(data: xr.Dataset, dim: str) -> _Axis:
+    """Axis of a study, or that of another part by the name of its dimension."""
+    if dim == "point" and "axis" in data:
+        told = data.attrs
+        places = data["axis"].values
+        return _Axis(told["sweep_key"], places, told["axis_kind"], told["axis_unit"])
+    if dim not in data.coords or dim not in VARIABLES:
+        return _Axis(dim, np.full(data.sizes.get(dim, 1), np.nan))
+    variable = VARIABLES[dim]
+    return _Axis(dim, data[dim].values, variable.kind, variable.display)
+
+
+def _demand_places(target: Target, axis: _Axis) -> None:
+    """InputError if a reduction has not the places that it needs."""
+    given = len(set(target.at))
+    spans = target.reduce in SPANS
+    if given == 1 and spans:
+        raise InputError(f"{target.reduce} takes two places of the axis", key="at")
+    if given > 1 and target.reduce == "value":
+        raise InputError("value takes one place of the axis", key="at")
+    if target.reduce in (SLOPE, INVERSE_SLOPE) and not abs(axis.places[-1] - axis.places[0]) > 0.0:
+        raise InputError(f"{target.reduce} needs an axis; this part has none", key="reduce")
+
+
+def _unsteady(data: xr.Dataset, laws: list[int]) -> bool:
+    told = data.get("vibration_status")
+    return told is not None and bool(told.values[laws].any())
+
+
+def _laws(target: Target, count: int) -> list[int]:
+    """Positions of the laws that a target reads."""
     wanted = [int(position) for position in target.law]
     needed = 2 if target.reduce == "max_difference" else 1
-    if max(wanted, default=-1) >= len(values) or len(wanted) < needed:
+    if max(wanted, default=-1) >= count or len(wanted) < needed:
         raise InputError(
-            f"{shown(wanted)} does not fit; this study has {len(values)} friction laws, counted "
-            f"from 0, and {target.reduce} takes {needed}",
+            f"{shown(wanted)} does not fit; this {'part' if target.part else 'study'} has {count} "
+            f"friction laws, counted from 0, and {target.reduce} takes {needed}",
             key="law",
         )
-    if target.variable in OF_VIBRATION and data["vibration_status"].values[wanted].any():
-        return float(
-            "nan"
-        )  # a balance that is not reached, or that pulls on teeth, meets no target
-    number = REDUCTIONS[target.reduce](values[wanted])
-    variable = VARIABLES[target.variable]
-    kind = "dimensionless" if target.reduce in PLAIN else variable.kind
-    return float(units.convert(number, target.unit, kind)) if target.unit != "1" else number
+    return wanted
+
+
+def _of_slope(number: float, target: Target, variable: str, axis: str) -> float:
+    """A change over a change in the unit of the target, which must have their dimension."""
+    above, below = (variable, axis) if target.reduce == SLOPE else (axis, variable)
+    kind = units.kind_of(target.unit)
+    if not units.is_quotient(kind, above, below):
+        raise InputError(
+            f"{shown(target.unit)} is no unit of {target.reduce}, {above} over {below}", key="unit"
+        )
+    return float(units.convert(number, target.unit, kind))
 
 
 def _names(data: xr.Dataset) -> dict[str, None]:

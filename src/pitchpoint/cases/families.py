@@ -9,6 +9,7 @@ from typing import Any
 from pitchpoint._jax import jnp
 from pitchpoint.cases.gear_tables import (
     CylindricalGears,
+    Deviation,
     DoubleArcTooth,
     InvoluteGroove,
     InvoluteTooth,
@@ -26,6 +27,7 @@ from pitchpoint.gears.strain_wave_design import (
     build_strain_wave,
     check_strain_wave,
 )
+from pitchpoint.loading.deviations import Deviations
 
 __all__ = ["FAMILIES", "Family", "built_gears"]
 
@@ -43,6 +45,7 @@ class Family:
         build: mesh and warnings from the table, the name of the driver and the number of slices.
         following: values that the table leaves open, as the mesh has them, by key inside the table.
         bearings: row of `Mesh.support` of the bearing between two bodies.
+        deviations: of the teeth of both members, from the table; None where it gives none.
         drawing: dimensions of the arrays of a drawing.
         coordinates: labels along those dimensions.
     """
@@ -50,6 +53,7 @@ class Family:
     build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
     following: Callable[[Any, Any], dict[str, Any]]
     bearings: Mapping[frozenset[str], int] = field(default_factory=dict)
+    deviations: Callable[[Any], tuple[Deviations, Deviations] | None] = lambda gears: None
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
 
@@ -218,6 +222,22 @@ def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
     }
 
 
+def _deviations(gears: StrainWaveGears) -> tuple[Deviations, Deviations] | None:
+    if not any(gears.deviations.each.values()):
+        return None
+    given = gears.deviations
+    return _waves(given.flexspline), _waves(given.circular_spline)
+
+
+def _waves(given: tuple[Deviation, ...]) -> Deviations:
+    return Deviations(
+        **{
+            one.name: jnp.asarray([getattr(wave, one.name) for wave in given], dtype=float)
+            for one in fields(Deviations)
+        }
+    )
+
+
 FAMILIES: dict[type, Family] = {
     CylindricalGears: Family(
         _cylindrical,
@@ -229,6 +249,7 @@ FAMILIES: dict[type, Family] = {
         _strain_wave,
         _of_drive,
         bearings={frozenset(("wave generator", "flexspline")): 0},
+        deviations=_deviations,
         drawing={
             "tooth": ("corner", "xy"),
             "space": ("space_corner", "xy"),

@@ -1,5 +1,6 @@
 """The table [gears] of a case file, one class for each family of gears."""
 
+from collections.abc import Mapping
 from math import pi
 from typing import Annotated, ClassVar, Literal
 
@@ -8,8 +9,9 @@ from pydantic import AfterValidator, BeforeValidator, Field, Tag, model_validato
 from pitchpoint.cases.quantities import Pair, Quantity, named
 from pitchpoint.cases.tables import Table, by
 from pitchpoint.errors import InputError
+from pitchpoint.gears.members import CYLINDRICAL, STRAIN_WAVE
 
-__all__ = ["MEMBERS", "CylindricalGears", "Gears", "StrainWaveGears"]
+__all__ = ["CylindricalGears", "Gears", "StrainWaveGears"]
 
 TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
 MODULE = Quantity("length", 1e-5, 0.1, "mm")
@@ -36,9 +38,9 @@ ROUNDING = Quantity("dimensionless", 0.01, 0.5)
 PLAY = Quantity("length", 0.0, 1e-3, "um")
 THICKNESS = Quantity("length", 1e-5, 0.1, "mm")
 SUPPORT = Quantity("pressure", 1e6, 1e16, "N/mm2")
-
-MEMBERS = ("gear 1", "gear 2", "wave generator", "flexspline", "circular spline")
-"""Bodies of all families."""
+WAVES = Quantity("dimensionless", 1, 1_000, whole=True)
+DEVIATION = Quantity("length", 0.0, 1e-2, "um")
+PHASE = Quantity("angle", -4 * pi, 4 * pi, "deg")
 
 FEWEST_TEETH = 2
 FEWEST_RING_TEETH = 10
@@ -62,9 +64,10 @@ def _teeth(value: tuple[float, float]) -> tuple[float, float]:
 class CylindricalGears(Table):
     """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring."""
 
-    members: ClassVar[tuple[str, ...]] = ("gear 1", "gear 2")
+    members: ClassVar[tuple[str, ...]] = CYLINDRICAL
     friction: ClassVar[str] = "iso_tr_14179_2"
     load_sharing: ClassVar[str] = "equal"
+    meaningless: ClassVar[Mapping[str, str]] = {}
 
     family: Literal["cylindrical"] = "cylindrical"
     teeth: Annotated[tuple[float, float], Pair(TEETH), AfterValidator(_teeth)]
@@ -206,6 +209,29 @@ class Flexspline(Table):
     support_stiffness: Annotated[float, SUPPORT] | None = None
 
 
+class Deviation(Table):
+    """A wave of a deviation along the normal of the flanks, so many times around the member."""
+
+    order: Annotated[float, WAVES]
+    amplitude: Annotated[float, DEVIATION]
+    phase: Annotated[float, PHASE] = 0.0
+
+
+class SplineDeviations(Table):
+    """How far the flanks of both splines lie behind their places, as waves around them.
+
+    They make the kinematic error; loads, losses and stiffness are those of teeth without deviations.
+    """
+
+    flexspline: tuple[Deviation, ...] = ()
+    circular_spline: tuple[Deviation, ...] = ()
+
+    @property
+    def each(self) -> dict[str, tuple[Deviation, ...]]:
+        """Waves by key of the spline."""
+        return {"flexspline": self.flexspline, "circular_spline": self.circular_spline}
+
+
 Tooth = Annotated[
     Annotated[DoubleArcTooth, Tag("double arc")] | Annotated[InvoluteTooth, Tag("involute")],
     Field(discriminator=by("form", DoubleArcTooth, InvoluteTooth)),
@@ -223,9 +249,14 @@ class StrainWaveGears(Table):
     spline, in this table and in that of the materials.
     """
 
-    members: ClassVar[tuple[str, ...]] = ("wave generator", "flexspline", "circular spline")
+    members: ClassVar[tuple[str, ...]] = STRAIN_WAVE
     friction: ClassVar[str] = "constant"
     load_sharing: ClassVar[str] = "from_stiffness"
+    meaningless: ClassVar[Mapping[str, str]] = {
+        "slices": "contacts of strain-wave teeth are not divided into slices",
+        "averaging": "the path of one pair does not stand for strain-wave teeth, many of which touch at "
+        "once",
+    }
 
     family: Literal["strain_wave"] = "strain_wave"
     teeth: Annotated[tuple[float, float], Pair(SPLINE_TEETH)]
@@ -239,11 +270,37 @@ class StrainWaveGears(Table):
     wave_generator: WaveGenerator = WaveGenerator()
     flexspline: Flexspline = Flexspline()
     circular_spline: CircularSpline = ConjugateGroove()
+    deviations: SplineDeviations = SplineDeviations()
 
     @property
     def drivers(self) -> tuple[str, ...]:
         """Members that may drive, the usual one first."""
         return tuple(name for name in self.members if name != self.fixed)
+
+    @model_validator(mode="after")
+    def _small_and_few(self) -> "StrainWaveGears":
+        for (key, waves), teeth in zip(self.deviations.each.items(), self.teeth, strict=True):
+            _check_waves(waves, key, teeth, self.module)
+        return self
+
+
+def _check_waves(waves: tuple[Deviation, ...], key: str, teeth: float, module: float) -> None:
+    """InputError for waves that the teeth are too few to tell, or as high as the teeth."""
+    spline = key.replace("_", " ")
+    for position, wave in enumerate(waves):
+        if wave.order > teeth / 2.0:
+            raise InputError(
+                f"{wave.order:.0f} waves around the {spline} look like fewer of them at its {teeth:.0f} "
+                f"teeth; allowed are 1 to {teeth // 2.0:.0f}",
+                key=f"deviations.{key}.{position}.order",
+            )
+    most = sum(wave.amplitude for wave in waves)
+    if most > module / 2.0:
+        raise InputError(
+            f"the deviations of the {spline} add up to {DEVIATION.show(most)}; allowed is half a "
+            f"module, {DEVIATION.show(module / 2.0)}",
+            key=f"deviations.{key}",
+        )
 
 
 Gears = Annotated[

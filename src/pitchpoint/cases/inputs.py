@@ -184,7 +184,7 @@ def _value(value: Any, key: str) -> str | None:
     if isinstance(value, BaseModel):
         return ", ".join(_part(key, *item) for item in value.model_dump().items())
     if isinstance(value, tuple):
-        return ", ".join(_choice(item) for item in value) or "none"
+        return ", ".join(_choice(item, key) for item in value) or "none"
     return str(value)
 
 
@@ -193,11 +193,11 @@ def _part(table: str, name: str, item: Any) -> str:
     return f"{name} {quantity.show(item) if quantity else item}"
 
 
-def _choice(item: Any) -> str:
+def _choice(item: Any, table: str) -> str:
     if isinstance(item, str):
         return item
     if not isinstance(item, FrictionChoice):
-        return " ".join(f"{key} {number:g}" for key, number in item.model_dump().items())
+        return " ".join(_part(table, *each) for each in item.model_dump().items())
     own = ", ".join(f"{key} {value:g}" for key, value in item.parameters.items())
     return f"{item.name} ({own})" if own else str(item.name)
 

@@ -33,9 +33,15 @@ Piece = Callable[[Callable[[int], None]], xr.Dataset]
 def pieces(built: Built) -> Iterator[Piece]:
     """One computation for each torque; its share of the load serves all speeds and temperatures."""
     torques, *axes = map_axes(built)
-    lanes = cache(lambda: _lanes(built.design, laws_of(built)[0]))  # traces the contacts: once
+    start = cache(lambda: _start(built))
     for torque in torques:
-        yield _piece(built, float(torque), axes[0], axes[1], lanes)
+        yield _piece(built, float(torque), axes[0], axes[1], start)
+
+
+def _start(built: Built) -> tuple[Engagement | None, int]:
+    """What all torques have in common: contacts, where they are known beforehand, and their number."""
+    models, _ = laws_of(built)
+    return engaged(built.design, built.operation, models, _NODES), _lanes(built.design, models)
 
 
 def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -85,16 +91,19 @@ def _piece(
     torque: float,
     speeds: np.ndarray,
     degrees: np.ndarray,
-    lanes: Callable[[], int],
+    start: Callable[[], tuple[Engagement | None, int]],
 ) -> Piece:
     def compute(progress: Callable[[int], None]) -> xr.Dataset:
         models, chosen = laws_of(built)
         point = replace(built.operation, load=jnp.asarray(torque))
-        known = engaged(built.design, point, models, _NODES)
-        together = max(1, min(speeds.size, STATES // (lanes() * degrees.size)))
+        like, lanes = start()
+        known = engaged(built.design, point, models, _NODES, like)
+        together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
+        laws = tuple(models.friction[law] for law in chosen)
         runs = []
-        for count, law in enumerate(chosen, 1):
-            own = replace(models, choice=jnp.asarray(law))
+        for count in range(1, len(laws) + 1):
+            # A choice between laws keeps the compiler from fusing one with what surrounds it.
+            own = replace(models, friction=laws, choice=jnp.asarray(count - 1))
             runs.append(_map(built.design, torque, speeds, degrees, own, known, together))
             progress(count * speeds.size * degrees.size)
         found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]

@@ -72,7 +72,7 @@ class Quantity:
     @property
     def example(self) -> str:
         """How a value is written."""
-        return units.example(self.kind)
+        return self.show(max(self.low, 2.0)) if self.whole else units.example(self.kind)
 
     def show(self, number: float) -> str:
         """Number in the unit in which it is shown."""

@@ -13,10 +13,10 @@ import xarray as xr
 
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built, laws_of
-from pitchpoint.cases.comparison import Row, compare
+from pitchpoint.cases.comparison import Row, compare, demand_parts
 from pitchpoint.cases.document import Tree, variants
 from pitchpoint.cases.library import find
-from pitchpoint.cases.schema import Study
+from pitchpoint.cases.schema import Study, validate
 from pitchpoint.cases.studies import Job, Variant, jobs
 from pitchpoint.citations import cite
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
@@ -108,7 +108,7 @@ def run(
     chosen = list(only) or variants(tree)
     own = None if friction is None else _own(friction)
     made = [Variant(tree, name, variant, dict(settings or {}), own) for variant in chosen]
-    work = {variant.variant: (variant, list(jobs(variant, studies or {}))) for variant in made}
+    work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
     where = None if folder is None else Path(folder)
     if where is not None:
         make_folder(where)  # only now: a wrong input leaves nothing behind
@@ -209,7 +209,7 @@ def describe(
     named = list(only) or variants(tree)
     made = [Variant(tree, name, variant, dict(settings or {})) for variant in named]
     for variant in made:
-        list(jobs(variant, studies or {}))  # made, not computed: a wrong study shows now
+        _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
     return [_manifest(variant, variant.built({})) for variant in made]
 
 
@@ -230,10 +230,12 @@ def compare_case(
     built = made.built({})
     if not built.case.targets:
         raise InputError("has no targets to compare with", file=name)
-    needed = {f"study_{target.study}" for target in built.case.targets}
+    needed = {target.reads for target in built.case.targets}
+    work = _jobs(made, {})
+    demand_parts(built.case.targets, [job.name for job in work], name)
     parts = {}
     with (watch or _unwatched)(None) as progress:
-        for job in jobs(made, {}):
+        for job in work:
             if job.name in needed:
                 progress.part(chosen, job.title, False)
                 parts[job.name] = _part(job, made, None, {}, progress)
@@ -333,11 +335,23 @@ def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
         )
 
 
+def _jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
+    """Parts of a variant; InputError if a target reads one that is not among them."""
+    made = list(jobs(variant, studies))
+    if _measured(variant):
+        targets = validate(variant.document()).targets
+        demand_parts(targets, [job.name for job in made], variant.name)
+    return made
+
+
+def _measured(variant: Variant) -> bool:
+    """True for the reading of the paper, and for a variant that brings targets of its own."""
+    own = variant.tree.get("variants", {}).get(variant.variant, {})
+    return variant.variant in ("as_published", "default") or "targets" in own
+
+
 def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
-    """Targets belong to the reading of the paper; another variant is not measured by them."""
-    if variant.variant not in ("as_published", "default"):
-        return []
-    return compare(built.case.targets, parts, variant.name)
+    return compare(built.case.targets, parts, variant.name) if _measured(variant) else []
 
 
 def _manifest(variant: Variant, built: Built) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.results.store import dataset
 
-__all__ = ["running_part"]
+__all__ = ["running_axes", "running_part"]
 
 SPEEDS = 9
 CREEPING = 2.0 * np.pi / 60.0
@@ -28,12 +28,13 @@ _AT_REST = ("law", "temperature")
 def running_part(built: Built, backwards: Built) -> xr.Dataset:
     """Torque without load over speed and temperature, and torques that start the drive either way.
 
+    Speed and temperature of the operating point are among them.
+
     Args:
         built: the case.
         backwards: the same drive with its loaded member driving.
     """
-    speeds, degrees = map_axes(built)[1:]
-    speeds = np.linspace(0.0, speeds[-1], SPEEDS + 1)[1:]
+    speeds, degrees = running_axes(built)
     models, chosen = laws_of(built)
     each = [replace(models, choice=jnp.asarray(law)) for law in chosen]
     idle = replace(built.operation, load=jnp.asarray(0.0))
@@ -60,3 +61,17 @@ def running_part(built: Built, backwards: Built) -> xr.Dataset:
         title="running without load",
         note="NaN where friction holds the drive whatever the torque",
     )
+
+
+def running_axes(built: Built) -> tuple[np.ndarray, np.ndarray]:
+    """Speeds [rad/s] and temperatures [K]: those of the loss map, and the operating point's own."""
+    point = built.case.operation
+    speeds, degrees = map_axes(built)[1:]
+    speeds = np.linspace(0.0, speeds[-1], SPEEDS + 1)[1:]
+    return _with(speeds, point.speed), _with(degrees, point.temperature)
+
+
+def _with(values: np.ndarray, one: float) -> np.ndarray:
+    """Values in order with one more, in place of an equal one up to rounding."""
+    others = values[~np.isclose(values, one, rtol=1e-9, atol=0.0)]
+    return np.unique(np.append(others, one))

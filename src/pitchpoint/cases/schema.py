@@ -1,7 +1,7 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
 from collections.abc import Iterator, Mapping
-from math import inf, pi
+from math import inf
 from typing import Annotated, Any, Literal, get_origin
 
 from pydantic import (
@@ -17,7 +17,7 @@ from pydantic.fields import FieldInfo
 
 from pitchpoint import units
 from pitchpoint.cases.document import Document, check_name
-from pitchpoint.cases.gear_tables import BORE, Gears
+from pitchpoint.cases.gear_tables import BORE, DEVIATION, Deviation, Gears
 from pitchpoint.cases.quantities import Pair, Quantity, named, shorten, shown
 from pitchpoint.cases.tables import DECIDING, Table, alternatives, forms
 from pitchpoint.errors import InputError
@@ -29,8 +29,6 @@ _ZERO_CELSIUS = 273.15
 
 INERTIA = Quantity("moment of inertia", 0.0, 1e9, "kg m2", open_low=True)
 RATIO = Quantity("dimensionless", 0.0, 1.0, open_low=True)
-DEVIATION = Quantity("length", 0.0, 1e-2, "um")
-PHASE = Quantity("angle", -4 * pi, 4 * pi, "deg")
 ORDER = Quantity("dimensionless", 0, 40, whole=True)
 SLICES = Quantity("dimensionless", 1, 400, whole=True)
 THERMAL_RESISTANCE = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
@@ -73,6 +71,16 @@ def _unit(value: Any) -> str:
     if _text(value) != "1":
         units.kind_of(value)
     return str(value)
+
+
+def _places(value: Any) -> tuple[Any, ...]:
+    several = value if isinstance(value, list | tuple) else [value]
+    for one in several:
+        if isinstance(one, bool) or not isinstance(one, str | int | float):
+            raise InputError(f"{shown(one)} was given where a place of the axis belongs")
+    if not 1 <= len(several) <= 12:
+        raise InputError(f"{len(several)} places were given; allowed are 1 to 12")
+    return tuple(several)
 
 
 def _reductions() -> list[str]:
@@ -367,15 +375,23 @@ class Loss(Table):
             raise InputError(
                 "is missing; churning_torque is that at this speed", key="churning_speed"
             )
+        alone = {"preload": "a bearing"} if self.bearing == "none" else {}
+        if not _given(self, "churning_torque"):
+            alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
+        for name in self.model_fields_set & alone.keys():
+            raise InputError(f"was given without {alone[name]}, to which it belongs", key=name)
+        beside = (self.seal_torque, self.churning_torque, self.breakaway_torque)
+        if not any((*self.factors.values(), *beside)):
+            raise InputError(
+                "all torques and factors are zero: nothing is lost; leave the table out"
+            )
         return self
 
 
-class Deviation(Table):
+class ProfileError(Deviation):
     """One order of the composite profile error, repeated with every mesh period; order 0 is constant."""
 
     order: Annotated[float, ORDER]
-    amplitude: Annotated[float, DEVIATION]
-    phase: Annotated[float, PHASE] = 0.0
 
 
 class Speeds(Table):
@@ -400,7 +416,7 @@ class Dynamics(Table):
 
     damping_ratio: Annotated[float, RATIO] = 0.1
     inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
-    profile_error: tuple[Deviation, ...] = ()
+    profile_error: tuple[ProfileError, ...] = ()
     backlash: Annotated[float, DEVIATION] | None = None
     torques: tuple[Annotated[float, LOADED], ...] = ()
     speeds: Speeds | None = None
@@ -447,7 +463,13 @@ class LossMap(Table):
 
 
 class Target(Table):
-    """A printed number and how it is computed from a study."""
+    """A printed number and how it is computed from a study, or from another part of the result.
+
+    `at` names one place of the axis of that part or several; values there are interpolated between
+    those that were computed, and `reduce` makes one number of them. `slope` is the change of the
+    variable over that of the axis from the first place to the last, `inverse_slope` its inverse:
+    with the wind-up of the part `torsion`, which runs over torque, the stiffness between two torques.
+    """
 
     quantity: Text
     where: Text
@@ -457,10 +479,25 @@ class Target(Table):
     tolerance: Annotated[float, NOT_NEGATIVE] = 0.0
     expect: Literal["within", "above", "below"] = "within"
     study: Text = ""
+    part: Text = ""
     variable: Annotated[str, BeforeValidator(named(_variables, "quantity"))] = ""
+    at: Annotated[tuple[Any, ...], BeforeValidator(_places)] = ()
     reduce: Annotated[str, BeforeValidator(named(_reductions, "reduction"))] = "value"
     law: tuple[Annotated[float, POSITION], ...] = (0.0,)
     reason: Text = ""
+
+    @property
+    def reads(self) -> str:
+        """Name of the part that it reads."""
+        return self.part or f"study_{self.study}"
+
+    @model_validator(mode="after")
+    def _one(self) -> "Target":
+        if self.study and self.part:
+            raise InputError(
+                "study and part were both given; a target reads one of them", key="part"
+            )
+        return self
 
 
 class Issue(Table):
@@ -500,17 +537,24 @@ class Case(Table):
     @model_validator(mode="after")
     def _aimed(self) -> "Case":
         for position, target in enumerate(self.targets):
-            if target.kind != "excluded" and target.study not in self.studies:
+            if target.kind == "excluded" or target.part:
+                continue
+            if target.study not in self.studies:
                 raise InputError(
                     f"there is no study {shown(target.study)}{nearest(target.study, self.studies)}",
                     key=f"targets.{position}.study",
                 )
+            try:
+                _check_places(target, self.studies[target.study].sweep)
+            except InputError as error:
+                raise InputError(error.message, key=f"targets.{position}.at") from None
         return self
 
     @model_validator(mode="after")
     def _of_family(self) -> "Case":
         """What is not given stands as is usual for the family; bodies are those that it has."""
         _check_bodies(self)
+        _check_meant(self)
         operation, models = self.operation, self.models
         driver = operation.driver if _given(operation, "driver") else self.gears.drivers[0]
         if driver not in self.gears.drivers:
@@ -535,8 +579,31 @@ class Case(Table):
         )
 
 
+def _check_places(target: Target, sweep: Sweep | None) -> None:
+    """InputError if places are no values of the key that is swept."""
+    if not target.at:
+        return
+    try:
+        quantity = quantity_at(sweep.key) if sweep is not None else None
+    except InputError:
+        return  # told with the study
+    if quantity is None:
+        raise InputError(f"{shown(target.study)} has no axis of numbers to be read at")
+    for place in target.at:
+        quantity.read(place)
+
+
 def _given(table: Table, key: str) -> bool:
     return key in table.model_fields_set
+
+
+def _check_meant(case: Case) -> None:
+    """InputError if a model is chosen that means nothing for the gears."""
+    for key, why in case.gears.meaningless.items():
+        usual = Choices.model_fields[key].default
+        if getattr(case.models, key) != usual:
+            told = f"{usual:g}" if isinstance(usual, float) else shown(usual)
+            raise InputError(f"{why}; leave it at {told}", key=f"models.{key}")
 
 
 def _check_bodies(case: Case) -> None:

@@ -162,10 +162,19 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
 
 
 def _wind_up(built: Built) -> Iterator[Job]:
-    """Part on the wind-up of teeth with clearances, which come to mesh under load."""
+    """Parts on teeth with clearances, which come to mesh under load."""
     from pitchpoint.cases import torsion
 
     yield Job("torsion", "torsion", (lambda _: torsion.torsion_part(built),))
+    deviations = built.family.deviations(built.case.gears)
+    if deviations is None:
+        return
+    from pitchpoint.cases import kinematic_error
+
+    def compute(told: Progress) -> xr.Dataset:
+        return kinematic_error.kinematic_error_part(built, deviations)
+
+    yield Job("kinematic_error", "kinematic error", (compute,))
 
 
 def _running(variant: Variant, built: Built) -> Iterator[Job]:
@@ -246,6 +255,7 @@ def _cycle(built: Built) -> xr.Dataset:
         for law, run in zip(laws, runs, strict=True)
         for text in _film_warnings(built, law, run)
     ]
+    warnings += _conformal_warning(built.design.mesh, runs[0])
     data = dataset(
         {**common, **each},
         {"law": names},
@@ -464,7 +474,7 @@ def _summaries(
     out["efficiency_fluctuation"] = out["max_efficiency"] - out["min_efficiency"]
     out["torque_ripple"] = out["max_input_torque"] - out["min_input_torque"]
     if points[0].design.mesh.clearances:
-        del out["loss_factor"]  # of equal shares, which such teeth never have
+        del out["loss_factor"]  # of the shares of one load: no figure of the gears alone
     else:
         out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
     told = dict.fromkeys(text for point in points for text in point.warnings)
@@ -580,6 +590,18 @@ def _where(built: Built) -> str:
             ("temperature", TEMPERATURE, point.temperature),
         )
     )
+
+
+def _conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
+    """Contacts whose flanks have the same curvature nearly, where the formulas of contact do not hold."""
+    loaded = np.asarray(run["load"]) > 0.0
+    flat = loaded & (np.asarray(run["radius"]) > mesh.largest_radius * (1.0 - 1e-9))
+    if not flat.any():
+        return []
+    return [
+        f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
+        f"radius is cut at {mesh.largest_radius:g} m, and pressure and film there say little."
+    ]
 
 
 def _film_warnings(built: Built, law: FrictionLaw, run: Mapping[str, Any]) -> list[str]:

@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.schema import TORQUE
 from pitchpoint.efficiency.quasi_static import Engagement, Models, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
@@ -48,8 +49,6 @@ def torsion_part(built: Built) -> xr.Dataset:
         "unloading_torque": ("law", "torque"),
     }
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
-    lost = np.isnan(found["wind_up"]).sum()
-    told = [f"Wind-up: no equilibrium was found at {lost} of {TORQUES} torques."] if lost else []
     return dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
@@ -58,9 +57,37 @@ def torsion_part(built: Built) -> xr.Dataset:
             "phase": ("phase", np.asarray(known.phase[::SHOWN])),
         },
         title="torsion",
-        warnings=told,
+        warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
         note="teeth, ring and cup of the flexspline yield; shafts, bearings and joints are not in it",
     )
+
+
+def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
+    """Torques at which teeth, ring and cup found no equilibrium."""
+    lost = torques[np.isnan(wind_up)]
+    if not lost.size:
+        return []
+    between = " to ".join(dict.fromkeys(TORQUE.show(torque) for torque in (lost[0], lost[-1])))
+    return [
+        f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they are "
+        "left out."
+    ]
+
+
+def _loopless(built: Built, friction: np.ndarray) -> list[str]:
+    """Why a loop of torque over wind-up has no width, or is not there."""
+    models, chosen = laws_of(built)
+    if built.case.operation.torque == 0.0:
+        return [
+            "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
+            "as zero and the torque loop has no width."
+        ]
+    return [
+        f"Wind-up: {models.friction[law].title}: friction locks the drive at the operating point; there is "
+        "no torque loop."
+        for law, value in zip(chosen, friction, strict=True)
+        if np.isnan(value)
+    ]
 
 
 def _mean_friction(built: Built, models: Models, laws: tuple[int, ...]) -> np.ndarray:

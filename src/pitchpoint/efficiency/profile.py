@@ -33,7 +33,7 @@ def profile(
 
     Returns:
         Quantities by name, [node] for the mesh and [node, pair, slice] for each contact; zero where
-        a pair is not in contact.
+        a pair is not in contact. Losses beside the teeth are among them where the design has some.
     """
     result = cycle(design, operation, models, nodes, engaged)
     state = result.state
@@ -65,6 +65,8 @@ def profile(
         "rolling_loss": state.rolling_loss,
         "radius": contacts.radius,
     }
+    if design.drag:
+        mesh["drag_loss"] = state.drag_loss
     mesh = {name: jnp.broadcast_to(v, result.phase.shape) for name, v in mesh.items()}
     outside = {
         f"outside {law.name} {name}": _outside(getattr(at, name), limits, contacts.active)

@@ -15,7 +15,7 @@ from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance, tooth_load
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
-from pitchpoint.loading.yielding import yielding
+from pitchpoint.loading.yielding import body_compliance, yielding
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import RollingResistance
@@ -38,6 +38,7 @@ __all__ = [
 
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
+Coupling = Float[Array, "lane lane *b"]
 
 ROUNDING = 1e-13
 """Output over input power up to which no power is transmitted: an idle drive has rounding alone."""
@@ -116,17 +117,20 @@ class Models(eqx.Module):
         )
         return chosen
 
-    def share(self, design: Design, contacts: Contacts, load: Each) -> Lanes:
+    def share(
+        self, design: Design, contacts: Contacts, load: Each, body: Coupling | None = None
+    ) -> Lanes:
         """Share of the load on each slice.
 
         Args:
             design: mesh and materials.
             contacts: of the mesh.
             load: that the driven coordinate carries [N m or N].
+            body: compliance of what is under the teeth, where it is known already.
         """
         mesh, yields = design.mesh, None
         if self.sharing.by_stiffness:
-            yields = yielding(mesh, contacts, design.solids, self.compliance, load)
+            yields = yielding(mesh, contacts, design.solids, self.compliance, load, body)
         return self.sharing.function(contacts, mesh, yields)
 
 
@@ -137,6 +141,8 @@ class Engagement(eqx.Module):
         phase, weight: nodes of the cycle and their weights [node].
         contacts: at the nodes, batch axis `node`.
         share: of the load on each slice.
+        body: compliance of what is under the teeth, whatever the load [m/N]; None where it does not
+            couple them or the sharing does not ask for it.
         nodes: static, nodes in each segment between events.
     """
 
@@ -144,6 +150,7 @@ class Engagement(eqx.Module):
     weight: Float[Array, " node"]
     contacts: Contacts
     share: Float[Array, "pair slice node"]
+    body: Float[Array, "lane lane node"] | None
     nodes: int = eqx.field(static=True)
 
     def of_rank(self, rank: int) -> tuple[Contacts, Lanes]:
@@ -157,9 +164,13 @@ class Engagement(eqx.Module):
 
 
 def engagement(
-    design: Design, load: Float[Array, ""], models: Models, nodes: int = 24
+    design: Design,
+    load: Float[Array, ""],
+    models: Models,
+    nodes: int = 24,
+    like: Engagement | None = None,
 ) -> Engagement:
-    """Contacts and shares for one load, in two programs that serve all later ones.
+    """Contacts and shares for one load, in programs that serve all later ones.
 
     Worth it for meshes with many pairs and clearances, whose contacts and shares take most of the
     work; a cycle without it computes them itself.
@@ -169,11 +180,17 @@ def engagement(
         load: that the driven coordinate carries [N m or N].
         models: sharing and compliance.
         nodes: in each segment between events.
+        like: of the same mesh, solids and nodes under another load: what does not depend on it is
+            taken from there.
     """
-    phase, weight = _nodes(design.mesh, models.sharing, nodes)
-    contacts = _contacts(design.mesh, phase)
-    share = _shares(design, contacts, load, replace(models, friction=(), parameters={}))
-    return Engagement(phase, weight, contacts, share, nodes)
+    if like is None:
+        phase, weight = _nodes(design.mesh, models.sharing, nodes)
+        contacts = _contacts(design.mesh, phase)
+        body = _body(design, contacts) if models.sharing.by_stiffness else None
+    else:
+        phase, weight, contacts, body = like.phase, like.weight, like.contacts, like.body
+    share = _shares(design, contacts, load, replace(models, friction=(), parameters={}), body)
+    return Engagement(phase, weight, contacts, share, body, nodes)
 
 
 @eqx.filter_jit
@@ -187,8 +204,15 @@ def _contacts(mesh: Mesh, phase: Each) -> Contacts:
 
 
 @eqx.filter_jit
-def _shares(design: Design, contacts: Contacts, load: Each, models: Models) -> Lanes:
-    return models.share(design, contacts, load)
+def _body(design: Design, contacts: Contacts) -> Coupling | None:
+    return body_compliance(design.mesh, contacts, design.solids)
+
+
+@eqx.filter_jit
+def _shares(
+    design: Design, contacts: Contacts, load: Each, models: Models, body: Coupling | None
+) -> Lanes:
+    return models.share(design, contacts, load, body)
 
 
 class State(eqx.Module):
@@ -344,12 +368,14 @@ class Cycle(eqx.Module):
         weight: of each node; they sum to one.
         state: at the nodes, batch axes `*b node`.
         nodes: static, nodes in each segment between events.
+        smooth: static, True if states are smooth between events: no pair comes to carry or ceases to.
     """
 
     phase: Float[Array, " node"]
     weight: Float[Array, " node"]
     state: State
     nodes: int = eqx.field(static=True)
+    smooth: bool = eqx.field(static=True, default=True)
 
     def mean(self, values: Float[Array, "*b node"]) -> Each:
         """Mean over one period."""
@@ -365,9 +391,12 @@ class Cycle(eqx.Module):
 
         A polynomial through the nodes of each segment is read at points between them, and at its
         vertex beside a point where it is level: jumps lie at the ends of segments, where there are
-        nodes.
+        nodes. Where pairs with clearances come and go between the events, values have kinks that no
+        polynomial follows, and the nodes alone are read.
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
+        if not self.smooth:
+            return jnp.min(segments, axis=-1), jnp.max(segments, axis=-1)
         segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
         at, *derivatives, spacing = between(self.nodes)
         dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
@@ -439,7 +468,7 @@ def cycle(
         temperature=operation.temperature[..., None],
     )
     found = state(design, points, phase, models, engaged=engaged)
-    return Cycle(phase, weight, found, nodes)
+    return Cycle(phase, weight, found, nodes, smooth=not design.mesh.clearances)
 
 
 def cycle_nodes(

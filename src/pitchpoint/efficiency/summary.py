@@ -1,6 +1,7 @@
 """Figures of whole mesh cycles for many designs and operating points at once, in chunks of one size."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import equinox as eqx
@@ -123,22 +124,40 @@ def summarise(
         models: laws.
         progress: told the number of finished points after each chunk.
     """
-    prepared = [(*point, engaged(*point, models)) for point in points]
+    prepared = list(_prepared(points, models))
     return in_chunks(lambda chunk: _summaries(chunk, models), prepared, progress=progress)
 
 
+def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
+    """Points with their contacts and shares; neighbours of one drive have its contacts in common."""
+    before: Design | None = None
+    known: Engagement | None = None
+    for design, operation in points:
+        alike = before is not None and before.mesh is design.mesh
+        alike = alike and bool(eqx.tree_equal(before and before.solids, design.solids))
+        known = engaged(design, operation, models, like=known if alike else None)
+        before = design
+        # The compliance of the bodies has done its work, and of many points it would be large.
+        yield design, operation, known and replace(known, body=None)
+
+
 def engaged(
-    design: Design, operation: Operation, models: Models, nodes: int = 24
+    design: Design,
+    operation: Operation,
+    models: Models,
+    nodes: int = 24,
+    like: Engagement | None = None,
 ) -> Engagement | None:
     """Contacts and shares of a mesh with clearances at one load; None for others, which are quick.
 
     Args:
         design, operation, models: of one point.
         nodes: in each segment between events.
+        like: of the same mesh, solids and nodes under another load.
     """
     if not design.mesh.clearances:
         return None
-    return engagement(design, operation.load, models, nodes)
+    return engagement(design, operation.load, models, nodes, like)
 
 
 def in_chunks(

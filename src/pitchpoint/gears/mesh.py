@@ -1,6 +1,7 @@
 """What every gear family answers."""
 
 import abc
+from math import inf
 from typing import Self
 
 import equinox as eqx
@@ -104,6 +105,11 @@ class Mesh(eqx.Module):
         as others yield.
         """
         return False
+
+    @property
+    def largest_radius(self) -> float:
+        """Relative radius of curvature at which conformal contacts are cut [m]; infinite where none is."""
+        return inf
 
     @property
     def ring(self) -> FlexibleRing | None:

@@ -18,13 +18,14 @@ from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
 from pitchpoint.roots import root
 
-__all__ = ["MEMBERS", "WINDOW", "StrainWave", "Survey", "Touching", "nearest_points"]
-
-MEMBERS = ("wave generator", "flexspline", "circular spline")
-"""Coordinates, in their order."""
+__all__ = ["WINDOW", "StrainWave", "Survey", "Touching", "nearest_points"]
 
 WINDOW = (np.deg2rad(-40.0), np.deg2rad(50.0))
-"""Angles from the long axis between which pairs are held; others are far from touching."""
+"""Angles from the long axis between which pairs are held; others are far from touching.
+
+Where teeth are as near as that beyond, as deep ones with little deflection are, they are held up to
+the short axis.
+"""
 
 TRIES = (29, 14)
 """Places on a flank and on its rounding at which the clearance is looked at before its least is found."""
@@ -32,8 +33,10 @@ TRIES = (29, 14)
 _FLATTEST = 1.0  # 1/m: with less, a contact under load would be wider than the flank is high
 _PREFERENCE = 1e-5  # clearance that a place nearer to the tip must gain on the way there
 _SLACK = 1e-9
-_AROUND = np.deg2rad(2.0)
-_ALONG = np.unique(np.concatenate([np.linspace(*WINDOW, 541), np.linspace(-_AROUND, _AROUND, 321)]))
+_AROUND = np.deg2rad(6.0)
+_BEYOND = np.linspace(WINDOW[1], np.pi / 2.0, 161)
+_ALONG = np.concatenate([np.linspace(*WINDOW, 541), np.linspace(-_AROUND, _AROUND, 961), _BEYOND])
+_ALONG = np.unique(np.round(_ALONG, 12))  # no two that differ by rounding alone
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
@@ -76,7 +79,7 @@ class Survey(eqx.Module):
 
 
 class StrainWave(Mesh):
-    """A flexspline in a circular spline. Coordinates: rotations in the order of `MEMBERS`.
+    """A flexspline in a circular spline. Coordinates: rotations in the order of `members.STRAIN_WAVE`.
 
     The wave generator has two lobes. The flanks that face in the sense of positive rotation carry,
     so torques on flexspline and wave generator are positive. Any member may be fixed, any other one
@@ -124,7 +127,11 @@ class StrainWave(Mesh):
     lanes: int = eqx.field(static=True)
 
     def completed(self) -> Self:
-        """The drive with its groove as it follows from flank and motion, and what follows from both."""
+        """The drive with its groove as it follows from flank and motion, and what follows from both.
+
+        The tips of the circular spline stay where they are: a change of the deflection changes the
+        clearance of the tips, which `build_strain_wave` would keep.
+        """
         drive = self
         if self.conjugate:
             groove = swept(self.tooth_motion, self.tip_height, self.tip_rounding)
@@ -137,20 +144,12 @@ class StrainWave(Mesh):
         angle = jnp.asarray(_ALONG)
         found, overlaps = self.touching(angle), self.overlaps(angle)
         touches = overlaps & (found.clearance < _LIGHT * self.module)
-        slides = found.at.sliding
-        # Teeth stop their inward motion near the long axis; sliding changes its sense there.
-        near = (jnp.abs(angle) < _AROUND) & (slides < 0.0)
-        after = jnp.maximum(jnp.argmax(near), 1)
-        part = slides[after] / (slides[after] - slides[after - 1])
         return Survey(
             angle=angle,
             clearance=jnp.where(overlaps, found.clearance, jnp.nan),
             rolls=~found.held & (found.at.curvature + found.mate > 0.0),
             pairs=2.0 * jnp.trapezoid(touches * 1.0, angle) / self.tooth_angle,
-            # Without a change of sense the long axis stands for it.
-            reversal=jnp.where(
-                jnp.any(near), angle[after] - part * (angle[after] - angle[after - 1]), 0.0
-            ),
+            reversal=_reversal(angle, found.at.sliding, overlaps),
         )
 
     @property
@@ -193,6 +192,11 @@ class StrainWave(Mesh):
     def clearances(self) -> bool:
         """Most teeth of a zone have a clearance that load must close."""
         return True
+
+    @property
+    def largest_radius(self) -> float:
+        """Flatter contacts would be wider under load than the flank is high."""
+        return 1.0 / _FLATTEST
 
     @property
     def ring(self) -> FlexibleRing:
@@ -380,10 +384,11 @@ def nearest_points(
         angle: of the teeth from the long axis [rad].
         backlash: play on the circumference beyond the groove [m].
     """
-    flank = motion.flank
-    frozen, space, where = jax.lax.stop_gradient((motion, groove, jnp.asarray(angle)))
-    station = frozen.flank.stations(*TRIES)
-    last = station.shape[0] - 1
+    flank, angle = motion.flank, jnp.asarray(angle)
+    frozen, space, where = jax.lax.stop_gradient((motion, groove, angle))
+    stations = flank.stations(*TRIES)
+    last = stations.shape[0] - 1
+    station = jax.lax.stop_gradient(stations)
     local = frozen.flank.place(station).reshape(-1, *(1 for _ in where.shape))
     stand, lean = frozen.foot(where)
     place = stand + jnp.exp(1j * lean) * local
@@ -393,14 +398,15 @@ def nearest_points(
     bias = (_PREFERENCE * station).reshape(-1, *(1 for _ in where.shape))
     apart = jnp.where(height < space.low, jnp.inf, width - jnp.imag(place) + bias)
     nearest = jnp.argmin(apart, axis=0)
-    before = jnp.maximum(nearest - 1, 0)
-    # What lies below the tip of the mate meets nothing.
-    below, above = (jnp.take_along_axis(height, k[None], 0)[0] for k in (before, nearest))
-    out = jnp.clip((space.low - below) / jnp.where(above > below, above - below, jnp.inf), 0.0, 1.0)
-    first = station[before] + out * (station[nearest] - station[before])
-    most = station[jnp.minimum(nearest + 1, last)] - first
+    # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
     turned = jnp.exp(1j * axis)
+    before, after = (stations[k] for k in (jnp.maximum(nearest - 1, 0), nearest))
+    # What lies below the tip of the mate meets nothing.
+    below, above = (jnp.real(foot + turned * flank.place(along)) for along in (before, after))
+    out = (groove.low - below) / jnp.where(above > below, above - below, jnp.inf)
+    first = before + jnp.clip(out, 0.0, 1.0) * (after - before)
+    most = stations[jnp.minimum(nearest + 1, last)] - first
 
     def growth(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Growth of the play along the flank."""
@@ -417,9 +423,9 @@ def nearest_points(
     def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
         return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
 
-    beyond, _ = root(widening, most / 2.0, most * (1.0 + _SLACK))
+    beyond, _ = root(widening, most / 2.0, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
     found = first + jnp.clip(beyond, 0.0, most)
-    at = motion.at(found, jnp.asarray(angle))
+    at = motion.at(found, angle)
     width, _ = groove.width_and_slope(jnp.real(at.place))
     play = width + backlash / 2.0 - jnp.imag(at.place)
     return Touching(
@@ -429,6 +435,21 @@ def nearest_points(
         mate=groove.curvature_at(jnp.real(at.place)),
         held=(found <= 0.0) | (found >= frozen.flank.length * (1.0 - 1e-12)),
     )
+
+
+def _reversal(
+    angle: Float[Array, " angle"], sliding: Float[Array, " angle"], overlaps: Bool[Array, " angle"]
+) -> Float[Array, ""]:
+    """Angle at which teeth stop their inward motion, so that sliding turns negative [rad].
+
+    Of several the one nearest to the long axis; that axis itself where there is none.
+    """
+    turns = overlaps[:-1] & overlaps[1:] & (sliding[:-1] >= 0.0) & (sliding[1:] < 0.0)
+    before = jnp.argmin(jnp.where(turns, jnp.abs(angle[:-1]), jnp.inf))
+    first, second = sliding[before], sliding[before + 1]
+    part = first / jnp.where(turns[before], first - second, 1.0)
+    at = angle[before] + part * (angle[before + 1] - angle[before])
+    return jnp.where(jnp.any(turns), at, 0.0)
 
 
 def _points(places: Array) -> Float[Array, "... 2"]:

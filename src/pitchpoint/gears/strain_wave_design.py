@@ -10,8 +10,9 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.flexible_ring import FlexibleRing
 from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
-from pitchpoint.gears.groove import Groove, given, swept
-from pitchpoint.gears.strain_wave import MEMBERS, WINDOW, StrainWave, Survey
+from pitchpoint.gears.groove import NODES, Groove, given, swept, tip_with_land
+from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.gears.strain_wave import WINDOW, StrainWave, Survey
 from pitchpoint.gears.tooth_motion import ToothMotion
 from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 
@@ -34,6 +35,7 @@ SWEPT_ACCURACY = 1e-3
 """Overlap in a groove that the flexspline itself sweeps, which is an error of the table, in modules."""
 
 _FARTHEST = 0.1  # clearance in modules beyond which no load closes a gap
+_NEAR = 1e-2  # clearance in modules that a moderate load closes
 _FEWEST = 30
 _SLACK = 1e-6
 
@@ -164,7 +166,8 @@ def build_strain_wave(
     )
     found = _surveyed(drive)
     _check_contact(drive, found)
-    return replace(drive, pairs=found.pairs, reversal=found.reversal)
+    lanes = _lanes(z1, _last(found, module))
+    return replace(drive, pairs=found.pairs, reversal=found.reversal, lanes=lanes)
 
 
 def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
@@ -177,6 +180,11 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             f"The tips of the circular spline are cut back to {cut:.2g} modules above the flexspline's root "
             "on the long axis: the flexspline's tips pass there and would leave less than "
             f"{LEAST_LAND:g} modules of tip land."
+        )
+    if lost := int(mesh.groove.unsolved):
+        told.append(
+            f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
+            "pressure and film there say nothing."
         )
     if float(jnp.max(jnp.abs(mesh.line.radial(jnp.asarray(pi / 2))))) > 0.1 * float(
         mesh.line.radius
@@ -371,9 +379,16 @@ def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> n
     return np.asarray(weights / weights.sum())
 
 
-def _lanes(z1: int) -> int:
+def _lanes(z1: int, last: float = WINDOW[1]) -> int:
+    """Pairs held at each end of the long axis, up to an angle."""
     pitch = 2.0 * pi / z1
-    return int(floor(WINDOW[1] / pitch) - ceil(WINDOW[0] / pitch))
+    return int(floor(last / pitch) - ceil(WINDOW[0] / pitch))
+
+
+def _last(found: Survey, module: float) -> float:
+    """Angle up to which pairs are held: the short axis where teeth are near each other that far."""
+    near = np.asarray(found.clearance) < _NEAR * module
+    return pi / 2.0 if near[np.asarray(found.angle) > WINDOW[1]].any() else WINDOW[1]
 
 
 @eqx.filter_jit
@@ -382,6 +397,7 @@ def _prepared(flank: Flank) -> Flank:
 
 
 _sweep = eqx.filter_jit(swept)
+_tip = eqx.filter_jit(tip_with_land)
 _given_groove = eqx.filter_jit(given)
 
 
@@ -390,20 +406,16 @@ def _swept(
 ) -> tuple[float, Groove]:
     """Groove whose teeth between keep a tip land, and the height of their tips."""
     space = _sweep(travel, jnp.asarray(low), jnp.asarray(edge))
-    heights, widths = np.asarray(space.heights), np.asarray(space.half_width)
-    land = 2.0 * (pi / z2 * heights - widths)
-    wide = np.flatnonzero(land < LEAST_LAND * module)
-    rounded = heights < low + edge  # the relief of the edge itself is no cut
-    wide = wide[~rounded[wide] | (land[wide] + 2.0 * edge < LEAST_LAND * module)]
-    if wide.size == 0:
+    numbers = map(jnp.asarray, (2.0 * pi / z2, LEAST_LAND * module, edge))
+    raised = float(_tip(space, *numbers))
+    if raised == low:
         return low, space
-    if wide[-1] + 2 >= heights.size:
+    if not np.isfinite(raised):
         raise InputError(
             "the flexspline's teeth leave nothing of the circular spline's: they are too thick or come "
             "free too late",
             key="form",
         )
-    raised = float(heights[wide[-1] + 1])
     return raised, _sweep(travel, jnp.asarray(raised), jnp.asarray(edge))
 
 
@@ -451,7 +463,7 @@ def _check_contact(drive: StrainWave, found: Survey) -> None:
             "the module is the most that load can close",
             key=where,
         )
-    near = clearance < clearance[least] + 1e-2 * module
+    near = clearance < clearance[least] + _NEAR * module
     if not (near & np.asarray(found.rolls)).any():
         raise InputError(
             "the relative curvature is nowhere positive where the flanks touch: the teeth meet at "

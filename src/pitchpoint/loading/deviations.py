@@ -3,12 +3,14 @@
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.clearances import Shared, shared_load
 from pitchpoint.loading.yielding import Yielding
 
-__all__ = ["Deviations", "KinematicError", "added_gap", "kinematic_error", "places"]
+__all__ = ["Deviations", "KinematicError", "added_gap", "kinematic_error", "leaning", "places"]
 
 Each = Float[Array, "*b"]
 Lanes = Float[Array, "pair slice *b"]
@@ -41,13 +43,16 @@ class KinematicError(eqx.Module):
     """Rotation of the loaded member at phases `*b` by deviations of the teeth.
 
     Attributes:
-        elastic_mean: mean of the deviations over the pairs that share the load [rad].
+        geometric: of rigid teeth without load: rotation to first touch with deviations, less that
+            without them [rad].
+        elastic_mean: mean of the deviations over the pairs that carry [rad].
         under_load: what deviations add to the rotation under load, with the pairs that then carry
             [rad].
         wind_up: rotation under load without deviations; its changes with the phase are the part of
             the transmission error that the mesh itself has [rad].
     """
 
+    geometric: Each
     elastic_mean: Each
     under_load: Each
     wind_up: Each
@@ -86,17 +91,39 @@ def added_gap(
     return deviations[0].at(place[0]) + deviations[1].at(place[1])
 
 
+def leaning(mesh: Mesh, contacts: Contacts) -> Lanes:
+    """Part of a tooth's displacement that counts along the normal of its contact.
+
+    It is one where the flank stands upright most, and less on roundings of root and tip: a tooth
+    that lies behind its place moves along the circumference, and their normals lean to the radius.
+
+    Args:
+        mesh: a family whose member 0 is a thin ring.
+        contacts: of the mesh.
+
+    Raises:
+        InputError: the mesh has no ring.
+    """
+    loads = mesh.ring_loads(contacts)
+    if loads is None:
+        raise InputError("deviations around both members ask for a strain-wave gear")
+    across = jnp.where(contacts.active, jnp.abs(loads.tangential), 0.0)
+    return across / jnp.max(across)
+
+
 def kinematic_error(
     contacts: Contacts, yields: Yielding, loaded: Float[Array, " dof"], added: Lanes
 ) -> KinematicError:
-    """Rotation of the loaded member by deviations: their elastic mean, and under load.
+    """Rotation of the loaded member by deviations: of rigid teeth, their elastic mean, and under load.
 
-    The elastic mean sum q e/a, with shares q of the load, added gaps e and arms a, holds while the
-    deviations are small against what the teeth yield. Under load the equilibrium with the added
-    gaps is compared with that without them: pairs may leave it or join it.
+    It is positive in the sense of the load, so where material is missing the loaded member lies back.
+    The elastic mean is the sum of (dF/dT) e over the slices, with added gaps e and the forces F that
+    a small change of the load T adds: without clearances they share it like the load itself. It is
+    the limit for deviations that are small against what the teeth yield. Under load the equilibrium
+    with the added gaps is compared with that without them: pairs may leave it or join it.
 
     Args:
-        contacts: of the mesh.
+        contacts: of the mesh; those of one period serve all teeth, with an axis of length one for them.
         yields: how the pairs yield, and the load of the loaded member.
         loaded: one for that member.
         added: separation of the flanks by deviations [m].
@@ -107,13 +134,24 @@ def kinematic_error(
     compliance = yields.compliance(contacts)
     arm = jnp.abs(along(contacts.normal, loaded))
 
-    def under(gap: Lanes) -> Shared:
+    def under(gap: Lanes, load: Each) -> Shared:
         given = {"gap": gap, "arm": arm, "active": contacts.active}
-        return shared_load(compliance, **given, load=yields.load)
+        return shared_load(compliance, **given, load=load)
 
-    plain, deviating = under(contacts.gap), under(contacts.gap + added)
+    def plainly(load: Each) -> tuple[Lanes, Shared]:
+        found = under(contacts.gap, load)
+        return found.force, found
+
+    def touch(gap: Lanes) -> Each:
+        touches = contacts.active & (arm > 0.0)
+        return jnp.min(jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf), axis=(0, 1))
+
+    load = yields.load
+    _, more, plain = jax.jvp(plainly, (load,), (jnp.ones_like(load),), has_aux=True)
+    deviating = under(contacts.gap + added, load)
     return KinematicError(
-        elastic_mean=total(plain.share * added) / total(plain.share * arm),
+        geometric=touch(contacts.gap + added) - touch(contacts.gap),
+        elastic_mean=total(more * added),
         under_load=deviating.approach - plain.approach,
         wind_up=plain.approach,
     )

@@ -11,7 +11,7 @@ from pitchpoint.loading.ring_compliance import ring_compliance
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["Yielding", "yielding"]
+__all__ = ["Yielding", "body_compliance", "yielding"]
 
 
 class Yielding(eqx.Module):
@@ -48,6 +48,7 @@ def yielding(
     solids: tuple[Solid, Solid],
     terms: Terms,
     load: Float[Array, "*b"],
+    body: Float[Array, "lane lane *b"] | None = None,
 ) -> Yielding:
     """How the pairs of a mesh yield under a load.
 
@@ -57,10 +58,28 @@ def yielding(
         solids: material of each member.
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
+        body: see `body_compliance`, where it is known already.
     """
-    ring, loads, body = mesh.ring, mesh.ring_loads(contacts), None
-    if ring is not None and loads is not None:
-        body = ring_compliance(ring, solids[0], loads)
+    if body is None:
+        body = body_compliance(mesh, contacts, solids)
     return Yielding(
         stiffness=slice_stiffness(mesh, contacts, solids, terms, load), body=body, load=load
     )
+
+
+def body_compliance(
+    mesh: Mesh, contacts: Contacts, solids: tuple[Solid, Solid]
+) -> Float[Array, "lane lane *b"] | None:
+    """How far a unit force on one lane moves another through the body under the teeth [m/N].
+
+    It does not depend on the load. None for bodies that do not couple their teeth.
+
+    Args:
+        mesh: any family.
+        contacts: of the mesh.
+        solids: material of each member.
+    """
+    ring, loads = mesh.ring, mesh.ring_loads(contacts)
+    if ring is None or loads is None:
+        return None
+    return ring_compliance(ring, solids[0], loads)

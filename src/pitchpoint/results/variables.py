@@ -219,6 +219,14 @@ VARIABLES: dict[str, Variable] = {
     "wind_up_range": Variable(
         "change of the wind-up with the phase", "Δθ range", "rad", "arcmin", "angle"
     ),
+    "wave_angle": _angle("angle of the wave generator against the circular spline", "θ"),
+    "kinematic_error": Variable("kinematic error", "Δφ", "rad", "arcsec", "angle"),
+    "kinematic_error_spectrum": Variable(
+        "amplitude of the kinematic error", "|Δφ_n|", "rad", "arcsec", "angle"
+    ),
+    "kinematic_error_range": Variable(
+        "kinematic error, peak to peak", "Δφ range", "rad", "arcsec", "angle"
+    ),
     "torsional_stiffness": Variable(
         "torsional stiffness", "K", "N m/rad", "kN m/rad", "torsional stiffness"
     ),
@@ -232,7 +240,7 @@ VARIABLES: dict[str, Variable] = {
     "deflection": _length("deflection of the flexspline on the long axis", "w_0"),
     "neutral_radius": _length("radius of the flexspline's neutral line", "r_m"),
     "engagement_depth": _length("depth by which the teeth reach into each other", "h_e"),
-    "loss_factor": Variable("loss factor with equal sharing", "H_V", "1"),
+    "loss_factor": Variable("loss factor, equal sharing where all flanks touch", "H_V", "1"),
     "mean_loss": _power("mean power loss", "P_loss"),
     "mean_drag_loss": _power("mean power loss beside the teeth", "P_drag mean"),
     "mean_efficiency": _percent("mean efficiency", "η mean"),

@@ -13,8 +13,9 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.cases.run import Outcome
+from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.views import show
-from pitchpoint.views.facts import MEMBERS, given, wave
+from pitchpoint.views.facts import given, wave
 
 __all__ = ["loaded_arcs", "picture", "simplified", "wave_dimensions"]
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from pitchpoint import units
 from pitchpoint.cases.run import Outcome
+from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 
 __all__ = [
-    "MEMBERS",
     "Facts",
     "OperatingPoint",
     "Wave",
@@ -22,9 +22,6 @@ __all__ = [
     "timed",
     "wave",
 ]
-
-MEMBERS = ("wave generator", "flexspline", "circular spline")
-"""Bodies of a drive whose teeth are carried by a wave, in the order of their coordinates."""
 
 
 @dataclass(frozen=True)

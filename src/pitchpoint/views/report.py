@@ -19,6 +19,7 @@ from pitchpoint.views.drive import picture, wave_dimensions
 from pitchpoint.views.facts import Facts, facts, given, has_path, has_wave, same_geometry, timed
 from pitchpoint.views.figures import Curve, Curves, Panel, curves, law_title, laws
 from pitchpoint.views.geometry import dimensions, drawing
+from pitchpoint.views.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.maps import efficiency_panel, map_panel
 from pitchpoint.views.plane_of_action import plane_of_action
 from pitchpoint.views.running import drag_answer, drag_panel, starting_answer
@@ -128,6 +129,7 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
         "vibration": vibration_panels(outcomes),
         "resonance": resonance_panels(outcomes),
         "torsion": torsion_panels(outcomes, known),
+        "kinematic_error": kinematic_error_panels(outcomes),
     }
     first = next(iter(outcomes.values())).manifest
     return (
@@ -251,6 +253,7 @@ def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
         "spread": _spread(outcome),
         "stiffness": stiffness_answer(outcome),
         "torsion": torsion_answer(outcome),
+        "kinematic_error": kinematic_error_answer(outcome),
         "vibration": vibration_answer(outcome),
         "answers": [
             _answer(outcome, law, position, known[name, law])
@@ -570,16 +573,23 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
 
 def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any] | None:
     """Printed against computed, misses first; None without targets."""
-    rows = [row for outcome in outcomes.values() for row in outcome.rows]
-    if not rows:
+    by_variant = {name: outcome.rows for name, outcome in outcomes.items() if outcome.rows}
+    every = [(name, row) for name, rows in by_variant.items() for row in rows]
+    if not every:
         return None
-    ordered = sorted(rows, key=lambda row: _ORDER.get(row.verdict, 0))
+    ordered = sorted(every, key=lambda pair: _ORDER.get(pair[1].verdict, 0))
+    table = [{**_row(row), "variant": name} for name, row in ordered]
     return {
-        "table": [_row(row) for row in ordered],
-        "counts": {kind: dict(verdicts) for kind, verdicts in counts(rows).items()},
-        "missed": [_row(row) for row in rows if row.verdict == "miss"],
-        "excluded": [_row(row) for row in rows if row.verdict == "excluded"],
-        "variant": next(name for name, outcome in outcomes.items() if outcome.rows),
+        "table": table,
+        "counts": [
+            {"kind": kind, "verdicts": dict(verdicts), "variant": name}
+            for name, rows in by_variant.items()
+            for kind, verdicts in counts(rows).items()
+        ],
+        "missed": [row for row in table if row["verdict"] == "miss"],
+        "excluded": [row for row in table if row["verdict"] == "excluded"],
+        "variants": [*by_variant],
+        "others": [name for name in outcomes if name not in by_variant],
     }
 
 

@@ -1,6 +1,7 @@
 """Losses beside the teeth: how the loss is split, and the torque that a drive takes without load."""
 
 from collections.abc import Iterator, Mapping
+from functools import reduce
 
 import numpy as np
 import xarray as xr
@@ -63,12 +64,16 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     if data is None or law not in laws(data):
         return []
     at = operating_point(outcome)
-    near = data.isel(law=laws(data).index(law)).sel(temperature=at.temperature, method="nearest")
-    running = float(np.interp(at.speed, near["speed"].values, near["no_load_torque"].values))
+    own = data.isel(law=laws(data).index(law))
+    # The operating point is on both axes; where it is read from words it is so up to rounding.
+    there = own.sel(speed=at.speed, temperature=at.temperature, method="nearest")
     return [
-        ("torque without load", show.quantity("no_load_torque", running)),
-        ("starting torque", _held("starting_torque", float(near["starting_torque"]))),
-        ("back-driving torque", _held("back_driving_torque", float(near["back_driving_torque"]))),
+        (words, _held(name, float(there[name])))
+        for words, name in (
+            ("torque without load", "no_load_torque"),
+            ("starting torque", "starting_torque"),
+            ("back-driving torque", "back_driving_torque"),
+        )
     ]
 
 
@@ -201,6 +206,8 @@ def _dashed(curve: Curve, x: xr.DataArray, y: xr.DataArray, dash: str, unit: str
 
 
 def _chosen(axes: list[np.ndarray]) -> list[float]:
-    every = np.unique(np.concatenate(axes))
+    """Some values, of those that all have where there are any."""
+    common = reduce(np.intersect1d, axes)
+    every = common if common.size else np.unique(np.concatenate(axes))
     count = min(every.size, len(DASHES))
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]

@@ -53,10 +53,15 @@ def torsion_answer(outcome: Outcome) -> str:
     if data is None:
         return ""
     at = operating_point(outcome).torque
-    told = {
-        name: level(name, float(np.interp(at, data["torque"], data[name])))
+    if not at > 0.0:
+        return "nothing is carried at the operating point"
+    values = {
+        name: float(np.interp(at, data["torque"], data[name]))
         for name in ("torsional_stiffness", "wind_up", "loaded_pairs")
     }
+    if not np.isfinite([*values.values()]).all():
+        return "no equilibrium was found at the operating point"
+    told = {name: level(name, value) for name, value in values.items()}
     return (
         f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
         f"{told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in the mean"

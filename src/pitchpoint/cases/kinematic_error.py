@@ -1,0 +1,160 @@
+"""Kinematic error of a drive by deviations of its teeth, as a dataset of a case."""
+
+from collections.abc import Iterator
+
+import equinox as eqx
+import numpy as np
+import xarray as xr
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.deviations import (
+    Deviations,
+    KinematicError,
+    added_gap,
+    kinematic_error,
+    leaning,
+    places,
+)
+from pitchpoint.loading.tooth_compliance import Terms
+from pitchpoint.loading.yielding import Yielding, yielding
+from pitchpoint.materials.solids import Solid
+from pitchpoint.results.store import dataset
+
+__all__ = ["kinematic_error_part"]
+
+PHASES = 2
+"""States in each tooth period: four for every wave where a member has as many as it can have."""
+
+TEETH = 32
+"""Tooth periods solved together; one compiled program serves any number of them."""
+
+CURVES = ("geometry", "elastic mean", "under load")
+SPLINES = ("flexspline", "circular spline")
+
+Both = tuple[Deviations, Deviations]
+
+
+class _Period(eqx.Module):
+    """One tooth period, which every tooth repeats: its contacts and how they yield at the load."""
+
+    contacts: Contacts
+    leaning: Float[Array, "pair slice 1 phase"]
+    yields: Yielding
+    loaded: Float[Array, " dof"]
+
+
+def kinematic_error_part(built: Built, deviations: Both) -> xr.Dataset:
+    """Rotation of the loaded member by deviations over one turn of the wave, at the operating torque.
+
+    The turn is that of the wave generator against the circular spline. Orders are those of one
+    spline alone, over one turn against it.
+    """
+    models, _ = laws_of(built)
+    design = built.design
+    load = jnp.full((1, 1), built.case.operation.torque)
+    period = _period(design.mesh, design.solids, models.compliance, load)
+    teeth = np.asarray(built.case.gears.teeth)
+    alone = [_alone(period, deviations, spline, teeth) for spline in (0, 1)]
+    together = _together(period, deviations, alone, teeth)
+    order = np.arange(PHASES * int(teeth.min()) // 2)
+    under_load = np.concatenate([one[-1] for one in (*alone, together)])
+    lost = int(np.isnan(under_load).sum())
+    told = [f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states."]
+    return dataset(
+        {
+            "wave_angle": (("state",), np.arange(together.shape[1]) * _step(teeth)),
+            "kinematic_error": (("curve", "state"), together),
+            "kinematic_error_spectrum": (
+                ("curve", "spline", "order"),
+                np.stack([_amplitudes(one, order.size) for one in alone], axis=1),
+            ),
+            "kinematic_error_range": (
+                ("curve", "cause"),
+                np.stack([np.ptp(one, axis=1) for one in (*alone, together)], axis=1),
+            ),
+        },
+        {
+            "curve": [*CURVES],
+            "spline": [*SPLINES],
+            "cause": [*SPLINES, "both"],
+            "order": ("order", order),
+        },
+        title="kinematic error",
+        warnings=told if lost else [],
+    )
+
+
+def _step(teeth: np.ndarray) -> float:
+    """Turn of the wave generator against the circular spline between two states [rad]."""
+    return float(2.0 * np.pi / (teeth[1] * PHASES))
+
+
+def _alone(period: _Period, deviations: Both, spline: int, teeth: np.ndarray) -> np.ndarray:
+    """Errors [curve, state] with deviations of one spline alone over one turn against it."""
+    count = int(teeth[spline])
+    if not deviations[spline].order.size:
+        return np.zeros((len(CURVES), count * PHASES))
+    none = Deviations(*jnp.zeros((3, 0)))
+    own = (deviations[0], none) if spline == 0 else (none, deviations[1])
+    return _over(period, own, count, teeth)
+
+
+def _together(
+    period: _Period, deviations: Both, alone: list[np.ndarray], teeth: np.ndarray
+) -> np.ndarray:
+    """Errors [curve, state] with both over one turn against the circular spline."""
+    count = int(teeth[1])
+    given = [bool(one.order.size) for one in deviations]
+    if all(given):
+        return _over(period, deviations, count, teeth)
+    own = alone[given.index(True)]
+    return np.take(own, np.arange(count * PHASES), axis=1, mode="wrap")
+
+
+def _over(period: _Period, deviations: Both, count: int, teeth: np.ndarray) -> np.ndarray:
+    """Errors [curve, state] over so many tooth periods."""
+    pieces = _pieces(period, deviations, count, jnp.asarray(teeth))
+    return np.concatenate([*pieces], axis=1)[:, : count * PHASES]
+
+
+def _pieces(
+    period: _Period, deviations: Both, count: int, teeth: Float[Array, "2"]
+) -> Iterator[np.ndarray]:
+    for start in range(0, count, TEETH):
+        # A wave generator that turns on meets teeth of growing angle, and phases fall.
+        phase = -(start + np.arange(TEETH)[:, None] + np.arange(PHASES) / PHASES)
+        added = _added(period, deviations, jnp.asarray(phase), teeth)
+        found = jax.device_get(_errors(period, added))
+        each = (found.geometric, found.elastic_mean, found.under_load)
+        yield np.stack([values.ravel() for values in each])
+
+
+def _amplitudes(errors: np.ndarray, orders: int) -> np.ndarray:
+    """Amplitudes [curve, order] of errors over one turn; that of order zero is the mean."""
+    lines = 2.0 * np.abs(np.fft.rfft(errors, axis=1)) / errors.shape[1]
+    lines[:, 0] /= 2.0
+    return np.asarray(lines[:, :orders])
+
+
+@eqx.filter_jit
+def _period(mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Array) -> _Period:
+    contacts = mesh.contacts(-jnp.arange(PHASES)[None] / PHASES)
+    yields = yielding(mesh, contacts, solids, terms, load)
+    return _Period(contacts, leaning(mesh, contacts), yields, mesh.loaded)
+
+
+@eqx.filter_jit
+def _added(
+    period: _Period, deviations: Both, phase: Float[Array, "tooth phase"], teeth: Array
+) -> Float[Array, "pair slice tooth phase"]:
+    behind = added_gap(deviations, places(period.contacts, phase, teeth))
+    return behind * period.leaning
+
+
+@eqx.filter_jit
+def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> KinematicError:
+    return kinematic_error(period.contacts, period.yields, period.loaded, added)

@@ -1,0 +1,143 @@
+"""Kinematic error by deviations of the teeth: over a turn of the wave generator, and by order."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.cases.run import Outcome
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    continued,
+    display,
+    layout,
+    plain,
+    rounded,
+    short_axis,
+    text,
+)
+
+__all__ = ["kinematic_error_answer", "kinematic_error_panels"]
+
+_KEYS = {
+    "geometry": Key("rigid teeth without load", GREY),
+    "elastic mean": Key("elastic mean over the pairs that carry", PALETTE[0], "dash"),
+    "under load": Key("under the operating torque", PALETTE[1]),
+}
+_LEAST = 0.05
+"""Part of the largest amplitude below which the orders end in the figure."""
+
+_FEWEST = 6
+"""Orders that are always in it."""
+
+
+def kinematic_error_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
+    """Figures for each variant whose teeth have deviations."""
+    return [
+        _panel(f"kinematic{position}", name if len(outcomes) > 1 else "", one)
+        for position, (name, one) in enumerate(outcomes.items())
+        if "kinematic_error" in one.parts
+    ]
+
+
+def kinematic_error_answer(outcome: Outcome) -> str:
+    """Peak to peak in words; empty if there are no deviations."""
+    data = outcome.parts.get("kinematic_error")
+    if data is None:
+        return ""
+    loaded, rigid = (
+        show.quantity("kinematic_error_range", float(data["kinematic_error_range"].values[k, -1]))
+        for k in (-1, 0)
+    )
+    return (
+        f"{loaded} peak to peak under the operating torque over one turn of the wave generator, by "
+        f"deviations of the teeth; {rigid} if they were rigid and without load"
+    )
+
+
+def _panel(name: str, title: str, outcome: Outcome) -> Panel:
+    data = outcome.parts["kinematic_error"]
+    splines = [str(spline) for spline in data["spline"].values]
+    deviate = np.any(data["kinematic_error_range"].values[:, : len(splines)] != 0.0, axis=0)
+    bars = [
+        _spectrum(f"{name}_{position}", data, position, spline)
+        for position, spline in enumerate(splines)
+        if deviate[position]
+    ]
+    return Panel(title, [_turn(f"{name}_turn", data), *bars])
+
+
+def _turn(name: str, data: xr.Dataset) -> Figure:
+    """Error over one turn of the wave generator."""
+    angle = display("wave_angle", data["wave_angle"])
+    unit = show.unit(VARIABLES["kinematic_error"].display)
+    traces = [
+        plain(key, *continued(angle, display("kinematic_error", data["kinematic_error"][k])), unit)
+        for k, key in enumerate(_KEYS.values())
+    ]
+    return Figure(
+        name,
+        "Kinematic error over one turn of the wave generator",
+        traces,
+        layout(
+            "wave generator against circular spline θ [°]",
+            short_axis("kinematic_error"),
+            xaxis={"range": [0, 360], "dtick": 90},
+        ),
+        "Rotation of the loaded member in the sense of its torque, less that of teeth without "
+        "deviations. At 0° the angles of both splines are zero at the long axis.",
+        tuple(_KEYS.values()),
+        missing="No equilibrium was found.",
+    )
+
+
+def _spectrum(name: str, data: xr.Dataset, position: int, spline: str) -> Figure:
+    """Amplitudes of the orders that the deviations of one spline make."""
+    lines = display("kinematic_error_spectrum", data["kinematic_error_spectrum"][:, position])
+    alone = float(data["kinematic_error_range"].values[-1, position])
+    shown = _orders(lines)
+    return Figure(
+        name,
+        f"Orders by the {spline}",
+        [_bars(key, lines[k], shown) for k, key in enumerate(_KEYS.values())],
+        layout(
+            f"order, per turn against the {spline}",
+            short_axis("kinematic_error_spectrum"),
+            xaxis={"range": [0.4, shown[-1] + 0.6], "dtick": 1 if shown.size < 25 else None},
+            yaxis={"rangemode": "tozero"},
+            barmode="group",
+        ),
+        f"With deviations of the {spline} alone, over one turn of the wave generator against it: "
+        f"{show.quantity('kinematic_error_range', alone)} peak to peak under the operating torque. "
+        "Orders of the mesh, about the number of teeth, are not drawn.",
+        tuple(replace(key, dash="") for key in _KEYS.values()),
+        missing="No equilibrium was found.",
+    )
+
+
+def _orders(lines: np.ndarray) -> np.ndarray:
+    """Orders from 1 to the last that can be seen, below half the number of teeth."""
+    half = lines[:, : lines.shape[1] // 2]
+    seen = np.flatnonzero(np.nanmax(half[:, 1:], axis=0) > _LEAST * np.nanmax(half[:, 1:])) + 1
+    return np.arange(1, max(int(seen[-1]) if seen.size else 0, _FEWEST) + 1)
+
+
+def _bars(key: Key, amplitudes: np.ndarray, shown: np.ndarray) -> Trace:
+    unit = show.unit(VARIABLES["kinematic_error_spectrum"].display)
+    return {
+        "type": "bar",
+        "name": text(key.label),
+        "meta": "",
+        "x": shown.tolist(),
+        "y": rounded(amplitudes[shown]),
+        "marker": {"color": key.colour},
+        "hovertemplate": f"%{{y:.4~g}} {unit}<br>order %{{x}}",
+    }

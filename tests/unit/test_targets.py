@@ -1,0 +1,179 @@
+"""How a target reads one number out of a part: places of the axis, slopes, and what is refused."""
+
+import numpy as np
+import pytest
+
+from pitchpoint.cases.comparison import compare, demand_parts
+from pitchpoint.cases.document import Document
+from pitchpoint.cases.run import describe
+from pitchpoint.cases.schema import Target, validate
+from pitchpoint.errors import InputError
+from pitchpoint.results.store import dataset
+
+TORQUE = np.array([0.0, 10.0, 20.0, 40.0])
+WIND_UP = np.array([0.0, 2e-4, 3e-4, 4e-4])
+DEGREES = np.array([313.15, 293.15, 273.15])
+EFFICIENCY = np.array([[0.8, 0.7, 0.5], [1.0, 1.0, 1.0]])
+LAWS = {"law": ["constant", "frictionless"]}
+
+
+def results():
+    """Wind-up over torque, a study over temperatures given from the highest down, and a plain point."""
+    torsion = {"wind_up": (("torque",), WIND_UP), "mean_friction": (("law",), [0.1, 0.0])}
+    axes = {"speed": np.ones(2), "temperature": np.ones(2)}
+    warm = {"mean_efficiency": (("law", "point"), EFFICIENCY), "axis": (("point",), DEGREES)}
+    told = {"sweep_key": "operation.temperature", "axis_kind": "temperature", "axis_unit": "degC"}
+    return {
+        "torsion": dataset(torsion, {**LAWS, "torque": TORQUE}),
+        "running": dataset({"no_load_torque": (tuple(axes), np.ones((2, 2)))}, axes),
+        "study_warm": dataset(warm, LAWS, **told),
+        "study_point": dataset({"mean_efficiency": (("law", "point"), EFFICIENCY[:, :1])}, LAWS),
+    }
+
+
+def target(**changes):
+    plain = {"quantity": "q", "where": "w", "kind": "predicted", "printed": 1.0}
+    return Target(**{**plain, **changes})
+
+
+def read(**changes):
+    return compare([target(**changes)], results())[0].computed
+
+
+WOUND = {"part": "torsion", "variable": "wind_up"}
+WARM = {"study": "warm", "variable": "mean_efficiency"}
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({**WOUND, "at": "15 N m", "unit": "mrad"}, 0.25),
+        ({**WOUND, "at": "40 N m"}, 4e-4),
+        ({**WOUND, "reduce": "last", "unit": "arcmin"}, np.degrees(4e-4) * 60.0),
+        ({**WOUND, "at": ["5 N m", "15000 N mm"], "reduce": "gain"}, 1.5e-4),
+        ({**WOUND, "at": ["0 N m", "20 N m"], "reduce": "inverse_slope"}, 20.0 / 3e-4),
+        (
+            {**WOUND, "at": ["20 N m", "40 N m"], "reduce": "inverse_slope", "unit": "kN m/rad"},
+            200.0,
+        ),
+        ({**WOUND, "at": ["40 N m", "20 N m"], "reduce": "slope"}, 5e-6),
+        ({**WOUND, "reduce": "slope"}, 1e-5),
+        ({**WOUND, "law": [1], "at": "10 N m"}, 2e-4),
+        ({**WARM, "at": "30 degC", "unit": "%"}, 75.0),
+        ({**WARM, "at": ["283.15 K", "0 degC"], "reduce": "relative_drop"}, 1.0 - 0.5 / 0.6),
+        ({**WARM, "at": "10 degC", "law": [1]}, 1.0),
+        ({**WARM, "at": ["0 degC", "20 degC"], "law": [0, 1], "reduce": "max_difference"}, 0.5),
+        ({"study": "point", "variable": "mean_efficiency"}, 0.8),
+    ],
+)
+def test_values_and_slopes(given, expected):
+    assert read(**given) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "key", "words"),
+    [
+        ({**WOUND, "at": "41 N m"}, "at", ('"41 N m" lies outside', "torque", "0 N m to 40 N m")),
+        ({**WARM, "at": "-1 degC"}, "at", ("operation.temperature", "0 degC to 40 degC")),
+        ({**WOUND, "at": "3 mm"}, "at", ("length", "torque")),
+        ({**WOUND, "at": 3}, "at", ("no unit",)),
+        ({**WOUND, "at": "1 N m", "reduce": "slope"}, "at", ("slope takes two places",)),
+        ({**WOUND, "at": ["1 N m", "2 N m"]}, "at", ("value takes one place",)),
+        ({**WOUND, "reduce": "slope", "unit": "N m/rad"}, "unit", ("N m/rad", "angle over torque")),
+        ({**WOUND, "law": [2]}, "law", ("[2]", "this part has 2 friction laws")),
+        ({**WOUND, "variable": "loss"}, "variable", ("no quantity 'loss'",)),
+        ({**WOUND, "part": "torsions"}, "part", ('no part "torsions"', "did you mean torsion?")),
+        (
+            {"part": "running", "variable": "no_load_torque"},
+            "variable",
+            ("over speed and temperature", "one axis"),
+        ),
+        (
+            {"study": "point", "variable": "mean_efficiency", "reduce": "slope"},
+            "reduce",
+            ("needs an axis",),
+        ),
+        (
+            {"study": "point", "variable": "mean_efficiency", "at": "1 N m"},
+            "at",
+            ("no axis of numbers",),
+        ),
+        ({"study": "warmer", "variable": "loss"}, "study", ("no study 'warmer'",)),
+    ],
+)
+def test_what_cannot_be_read_is_one_sentence(given, key, words):
+    with pytest.raises(InputError) as caught:
+        compare([target(**given)], results(), "case.toml")
+    told = str(caught.value)
+    assert told.startswith(f"case.toml: targets.0.{key}: ")
+    assert "\n" not in told
+    for word in words:
+        assert word in told
+
+
+def test_a_part_that_the_case_does_not_compute_is_told_before_it_runs():
+    targets = [target(kind="excluded"), target(**WOUND)]
+    demand_parts(targets, ["teeth", "torsion"], "case.toml")
+    with pytest.raises(InputError, match=r'targets\.1\.part: .*no part "torsion"; known are teeth'):
+        demand_parts(targets, ["teeth", "study_warm"], "case.toml")
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"part": "torsion", "study": "warm"}, ("part: ", "reads one of them")),
+        ({"at": True}, ("at: ", "true", "place of the axis")),
+        ({"at": []}, ("at: ", "0 places")),
+        ({"study": "plain", "at": "1 N m"}, ("at: ", '"plain" has no axis of numbers')),
+        ({"study": "loaded", "at": "1 rpm"}, ("at: ", "rotational speed", "torque")),
+        ({"reduce": "slop"}, ("reduce: ", "slope")),
+    ],
+)
+def test_a_target_of_a_wrong_form(given, words):
+    plain = {"quantity": "q", "where": "w", "kind": "predicted", "printed": 1.0}
+    with pytest.raises(InputError) as caught:
+        validate(Document("case.toml", {"targets": [{**plain, **given}], **REST}))
+    for word in ("case.toml: targets.0", *words):
+        assert word in str(caught.value)
+
+
+def test_a_variant_is_measured_by_targets_of_its_own(tmp_path):
+    """And only then, unless it is the reading of the paper."""
+    path = tmp_path / "two.toml"
+    path.write_text(f"{PAIR}[variants.own]\n[variants.plain]\n{WINDING.format('variants.own.')}")
+    assert describe(str(path), ["plain"])
+    with pytest.raises(InputError, match=r'two\.toml: targets\.0\.part: .*no part "torsion"'):
+        describe(str(path), ["own"])
+    path.write_text(f"{PAIR}[variants.as_published]\n[variants.plain]\n{WINDING.format('')}")
+    assert describe(str(path), ["plain"])
+    with pytest.raises(InputError, match="no part"):
+        describe(str(path))
+
+
+PAIR = """
+gears = { teeth = [23, 61], module = "2 mm", face_width = "20 mm" }
+lubricant = { name = "75W90-A" }
+roughness = { ra = "0.4 um" }
+operation = { torque = "50 N m", speed = "1500 rpm", temperature = "60 degC" }
+"""
+
+WINDING = """
+[[{}targets]]
+quantity = "wind-up"
+where = "Table 1"
+kind = "predicted"
+printed = 1
+part = "torsion"
+variable = "wind_up"
+"""
+
+REST = {
+    "studies": {
+        "plain": {},
+        "loaded": {"sweep": {"key": "operation.torque", "values": ["1 N m", "2 N m"]}},
+    },
+    "gears": {"teeth": [23, 61], "module": "2 mm", "face_width": "20 mm"},
+    "lubricant": {"name": "75W90-A"},
+    "roughness": {"ra": "0.4 um"},
+    "operation": {"torque": "50 N m", "speed": "1500 rpm", "temperature": "60 degC"},
+}
