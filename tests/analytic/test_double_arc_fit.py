@@ -110,9 +110,7 @@ def test_a_tooth_that_makes_no_drive_is_passed_over(found, monkeypatch):
     assert second.form != found.form
     assert found.merit.objective < second.merit.objective < 100.0
     refused.clear()
-    with pytest.raises(
-        ConvergenceError, match="no tooth that was found makes a drive; .*interfere"
-    ):
+    with pytest.raises(ConvergenceError, match="no tooth that was found makes a drive"):
         fit_double_arc(**SHORT)
 
 

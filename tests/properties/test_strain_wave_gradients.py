@@ -71,10 +71,20 @@ def figures_and_rates(values, direction, mesh, choice):
     return jax.jvp(figures, (values,), (direction,))
 
 
+@eqx.filter_jit
+def nearest_and_rates(deflection, mesh, angle):
+    """Nearest points in the groove as it is, with their derivatives by the deflection."""
+
+    def nearest(deflection):
+        line = dataclasses.replace(mesh.line, deflection=deflection)
+        return dataclasses.replace(mesh, line=line).touching(angle)
+
+    return jax.jvp(nearest, (deflection,), (jnp.ones(()),))
+
+
 @pytest.fixture(scope="module")
-def look():
-    """Figures and their derivatives by the logarithm of one input, at a change of that logarithm."""
-    mesh = build_strain_wave(
+def mesh():
+    return build_strain_wave(
         teeth=(100, 102),
         module=0.5e-3,
         face_width=0.01,
@@ -82,6 +92,11 @@ def look():
         deflection=1.01,
         clearance=0.35,
     )
+
+
+@pytest.fixture(scope="module")
+def look(mesh):
+    """Figures and their derivatives by the logarithm of one input, at a change of that logarithm."""
     flank = mesh.flank
     middle = (mesh.line.deflection, flank.convex_radius, flank.concave_offset, 1.0)
     middle = np.array(list(map(float, middle)))
@@ -126,3 +141,19 @@ def test_viscosity_does_not_matter_to_dry_friction(look):
     )
     assert np.all(rates == 0.0)
     np.testing.assert_array_equal(figures, others)
+
+
+def test_a_point_held_where_the_mate_ends_moves_with_the_deflection(mesh):
+    w0, angle = mesh.line.deflection, jnp.deg2rad(jnp.asarray([42.2, 42.3, 42.4, 42.5]))
+    found, rates = nearest_and_rates(w0, mesh, angle)
+    held = jnp.abs(jnp.real(found.at.place) - mesh.groove.low) < 1e-4 * mesh.module
+    assert np.all(held), "the point would be past the tip of the mate"
+    low, high = (nearest_and_rates(w0 * factor, mesh, angle)[0] for factor in (1 - 1e-6, 1 + 1e-6))
+    np.testing.assert_allclose((high.along - low.along) / (2e-6 * w0), rates.along, rtol=1e-6)
+
+
+def test_sliding_reverses_at_the_event(mesh):
+    angle = mesh.reversal + jnp.deg2rad(jnp.asarray([-0.01, 0.0, 0.01, 0.02]))
+    before, at, after, _ = nearest_and_rates(mesh.line.deflection, mesh, angle)[0].at.sliding
+    assert before > 0.0 > after
+    assert abs(at) < 1e-3 * before

@@ -135,7 +135,7 @@ def fit_double_arc(
 
     Validity: wave of the shape `cosine`.
 
-    Example: a short search; the default one tries 1700 teeth, in minutes.
+    Example: a short search; the default one tries 1700 teeth, in about a minute.
 
         >>> from pitchpoint.gears.double_arc_fit import fit_double_arc
         >>> from pitchpoint.gears.strain_wave_design import build_strain_wave
