@@ -73,14 +73,14 @@ def test_values_and_slopes(given, expected):
 @pytest.mark.parametrize(
     ("given", "key", "words"),
     [
-        ({**WOUND, "at": "41 N m"}, "at", ('"41 N m" lies outside', "torque", "0 N m to 40 N m")),
-        ({**WARM, "at": "-1 degC"}, "at", ("operation.temperature", "0 degC to 40 degC")),
+        ({**WOUND}, "at", ("value takes one place",)),
+        ({**WOUND, "at": ["9 N m", "9000 N mm"], "reduce": "slope"}, "at", ("two places",)),
         ({**WOUND, "at": "3 mm"}, "at", ("length", "torque")),
         ({**WOUND, "at": 3}, "at", ("no unit",)),
         ({**WOUND, "at": "1 N m", "reduce": "slope"}, "at", ("slope takes two places",)),
         ({**WOUND, "at": ["1 N m", "2 N m"]}, "at", ("value takes one place",)),
         ({**WOUND, "reduce": "slope", "unit": "N m/rad"}, "unit", ("N m/rad", "angle over torque")),
-        ({**WOUND, "law": [2]}, "law", ("[2]", "this part has 2 friction laws")),
+        ({**WOUND, "at": "1 N m", "law": [2]}, "law", ("[2]", "this part has 2 friction laws")),
         ({**WOUND, "variable": "loss"}, "variable", ("no quantity 'loss'",)),
         ({**WOUND, "part": "torsions"}, "part", ('no part "torsions"', "did you mean torsion?")),
         (
@@ -109,6 +109,23 @@ def test_what_cannot_be_read_is_one_sentence(given, key, words):
     assert "\n" not in told
     for word in words:
         assert word in told
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({**WOUND, "at": "41 N m"}, ('"41 N m" lies outside', "torque", "0 N m to 40 N m")),
+        ({**WARM, "at": "-1 degC"}, ("operation.temperature", "0 degC to 40 degC")),
+    ],
+)
+def test_a_place_beyond_what_was_computed_makes_a_row_that_misses(given, words):
+    """With a smaller torque by `--set` the part ends before it; what was computed is kept."""
+    (row,) = compare([target(**given, reason="asked")], results(), "case.toml")
+    assert np.isnan(row.computed)
+    assert row.verdict == "miss"
+    assert row.reason.startswith("not computed: ")
+    for word in (*words, "asked"):
+        assert word in row.reason
 
 
 def test_a_part_that_the_case_does_not_compute_is_told_before_it_runs():

@@ -62,7 +62,8 @@ def compare(
         name: of the file, for messages.
 
     Raises:
-        InputError: a target that names no part, variable, law or place on the axis of the results.
+        InputError: a target that names no part, variable or law of the results, or no place on an axis.
+            A place beyond the axis makes a row that misses.
     """
     rows = []
     for position, target in enumerate(targets):
@@ -82,8 +83,17 @@ def counts(rows: Sequence[Row]) -> dict[str, Counter[str]]:
     return kinds
 
 
+class _OutsideError(InputError):
+    """A place beyond what was computed: with a smaller torque, say, the part ends before it."""
+
+
 def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
-    computed = None if target.kind == "excluded" else _computed(target, results)
+    reason = target.reason
+    try:
+        computed = None if target.kind == "excluded" else _computed(target, results)
+    except _OutsideError as error:
+        # Nothing that was computed is lost for it: the row misses and says why.
+        computed, reason = float("nan"), f"not computed: {error.message}. {reason}"
     return Row(
         quantity=target.quantity,
         where=target.where,
@@ -93,7 +103,7 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         tolerance=target.tolerance,
         kind=target.kind,
         verdict=_verdict(target, computed),
-        reason=target.reason,
+        reason=reason,
         bound={"above": "> ", "below": "< "}.get(target.expect, ""),
     )
 
@@ -179,7 +189,7 @@ class _Axis:
         if not low - (margin := 1e-9 * (high - low)) <= place <= high + margin:
             show = Quantity(self.kind, low, high, self.unit).show
             told = f"{self.name} runs from {show(low)} to {show(high)}"
-            raise InputError(f"{shown(given)} lies outside; {told}", key="at")
+            raise _OutsideError(f"{shown(given)} lies outside; {told}", key="at")
         return place
 
 
@@ -218,11 +228,11 @@ def _axis(data: xr.Dataset, dim: str) -> _Axis:
 
 def _demand_places(target: Target, axis: _Axis) -> None:
     """InputError if a reduction has not the places that it needs."""
-    given = len(set(target.at))
-    spans = target.reduce in SPANS
-    if given == 1 and spans:
+    given, spans = len(target.at), target.reduce in SPANS
+    if given and spans and np.ptp(axis.at(target.at)) == 0.0:
         raise InputError(f"{target.reduce} takes two places of the axis", key="at")
-    if given > 1 and target.reduce == "value":
+    several = given > 1 or (target.part and not given and axis.places.size > 1)
+    if several and target.reduce == "value":
         raise InputError("value takes one place of the axis", key="at")
     if target.reduce in (SLOPE, INVERSE_SLOPE) and not abs(axis.places[-1] - axis.places[0]) > 0.0:
         raise InputError(f"{target.reduce} needs an axis; this part has none", key="reduce")

@@ -1,6 +1,6 @@
 """Kinematic error of a drive by deviations of its teeth, as a dataset of a case."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import equinox as eqx
 import numpy as np
@@ -36,6 +36,8 @@ CURVES = ("geometry", "elastic mean", "under load")
 SPLINES = ("flexspline", "circular spline")
 
 Both = tuple[Deviations, Deviations]
+Over = Callable[[Both, int], np.ndarray]
+"""Errors [curve, state] by deviations of both over so many tooth periods."""
 
 
 class _Period(eqx.Module):
@@ -47,21 +49,37 @@ class _Period(eqx.Module):
     loaded: Float[Array, " dof"]
 
 
-def kinematic_error_part(built: Built, deviations: Both) -> xr.Dataset:
+def kinematic_error_part(
+    built: Built, deviations: Both, progress: Callable[[int], None]
+) -> xr.Dataset:
     """Rotation of the loaded member by deviations over one turn of the wave, at the operating torque.
 
     The turn is that of the wave generator against the circular spline. Orders are those of one
     spline alone, over one turn against it.
+
+    Args:
+        built: the case.
+        deviations: of flexspline and circular spline.
+        progress: told the number of states that are done, after each group of teeth.
     """
     models, _ = laws_of(built)
     design = built.design
     load = jnp.full((1, 1), built.case.operation.torque)
     period = _period(design.mesh, design.solids, models.compliance, load)
     teeth = np.asarray(built.case.gears.teeth)
-    alone = [_alone(period, deviations, spline, teeth) for spline in (0, 1)]
-    together = _together(period, deviations, alone, teeth)
-    order = np.arange(PHASES * int(teeth.min()) // 2)
-    under_load = np.concatenate([one[-1] for one in (*alone, together)])
+    solved: list[np.ndarray] = []
+
+    def over(own: Both, count: int) -> np.ndarray:
+        before = len(solved)
+        for piece in _pieces(period, own, count, jnp.asarray(teeth)):
+            solved.append(piece)
+            progress(len(solved) * TEETH * PHASES)
+        return np.concatenate(solved[before:], axis=1)[:, : count * PHASES]
+
+    alone = [_alone(over, deviations, spline, teeth) for spline in (0, 1)]
+    together = _together(over, deviations, alone, teeth)
+    order = np.arange(PHASES * int(teeth.min()) // 2 + 1)
+    under_load = np.concatenate([one[-1] for one in solved])
     lost = int(np.isnan(under_load).sum())
     told = [f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states."]
     return dataset(
@@ -93,32 +111,26 @@ def _step(teeth: np.ndarray) -> float:
     return float(2.0 * np.pi / (teeth[1] * PHASES))
 
 
-def _alone(period: _Period, deviations: Both, spline: int, teeth: np.ndarray) -> np.ndarray:
+def _alone(over: Over, deviations: Both, spline: int, teeth: np.ndarray) -> np.ndarray:
     """Errors [curve, state] with deviations of one spline alone over one turn against it."""
     count = int(teeth[spline])
     if not deviations[spline].order.size:
         return np.zeros((len(CURVES), count * PHASES))
     none = Deviations(*jnp.zeros((3, 0)))
     own = (deviations[0], none) if spline == 0 else (none, deviations[1])
-    return _over(period, own, count, teeth)
+    return over(own, count)
 
 
 def _together(
-    period: _Period, deviations: Both, alone: list[np.ndarray], teeth: np.ndarray
+    over: Over, deviations: Both, alone: list[np.ndarray], teeth: np.ndarray
 ) -> np.ndarray:
     """Errors [curve, state] with both over one turn against the circular spline."""
     count = int(teeth[1])
     given = [bool(one.order.size) for one in deviations]
     if all(given):
-        return _over(period, deviations, count, teeth)
+        return over(deviations, count)
     own = alone[given.index(True)]
     return np.take(own, np.arange(count * PHASES), axis=1, mode="wrap")
-
-
-def _over(period: _Period, deviations: Both, count: int, teeth: np.ndarray) -> np.ndarray:
-    """Errors [curve, state] over so many tooth periods."""
-    pieces = _pieces(period, deviations, count, jnp.asarray(teeth))
-    return np.concatenate([*pieces], axis=1)[:, : count * PHASES]
 
 
 def _pieces(

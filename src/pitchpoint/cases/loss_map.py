@@ -98,11 +98,12 @@ def _piece(
         point = replace(built.operation, load=jnp.asarray(torque))
         like, lanes = start()
         known = engaged(built.design, point, models, _NODES, like)
+        known = known and replace(known, body=None)
         together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
         laws = tuple(models.friction[law] for law in chosen)
         runs = []
         for count in range(1, len(laws) + 1):
-            # A choice between laws keeps the compiler from fusing one with what surrounds it.
+            # With the laws of the library beside it, one law could not be fused with what surrounds it.
             own = replace(models, friction=laws, choice=jnp.asarray(count - 1))
             runs.append(_map(built.design, torque, speeds, degrees, own, known, together))
             progress(count * speeds.size * degrees.size)

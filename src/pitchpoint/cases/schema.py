@@ -378,7 +378,7 @@ class Loss(Table):
         alone = {"preload": "a bearing"} if self.bearing == "none" else {}
         if not _given(self, "churning_torque"):
             alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
-        for name in self.model_fields_set & alone.keys():
+        for name in (key for key in alone if _given(self, key)):
             raise InputError(f"was given without {alone[name]}, to which it belongs", key=name)
         beside = (self.seal_torque, self.churning_torque, self.breakaway_torque)
         if not any((*self.factors.values(), *beside)):

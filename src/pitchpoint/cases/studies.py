@@ -172,7 +172,7 @@ def _wind_up(built: Built) -> Iterator[Job]:
     from pitchpoint.cases import kinematic_error
 
     def compute(told: Progress) -> xr.Dataset:
-        return kinematic_error.kinematic_error_part(built, deviations)
+        return kinematic_error.kinematic_error_part(built, deviations, told)
 
     yield Job("kinematic_error", "kinematic error", (compute,))
 
@@ -595,12 +595,13 @@ def _where(built: Built) -> str:
 def _conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     """Contacts whose flanks have the same curvature nearly, where the formulas of contact do not hold."""
     loaded = np.asarray(run["load"]) > 0.0
-    flat = loaded & (np.asarray(run["radius"]) > mesh.largest_radius * (1.0 - 1e-9))
+    largest = float(mesh.largest_radius)
+    flat = loaded & (np.asarray(run["radius"]) > largest * (1.0 - 1e-9))
     if not flat.any():
         return []
     return [
         f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
-        f"radius is cut at {mesh.largest_radius:g} m, and pressure and film there say little."
+        f"radius is cut at {largest:.3g} m, and pressure and film there say little."
     ]
 
 

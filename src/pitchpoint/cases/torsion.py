@@ -58,7 +58,19 @@ def torsion_part(built: Built) -> xr.Dataset:
         },
         title="torsion",
         warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
-        note="teeth, ring and cup of the flexspline yield; shafts, bearings and joints are not in it",
+        note=_yielding(built.design.mesh),
+    )
+
+
+def _yielding(mesh: Mesh) -> str:
+    """What yields and what is left out, in words."""
+    if mesh.ring is None or np.isinf(mesh.ring.support_stiffness):
+        return (
+            "teeth, ring and cup of the flexspline yield; shafts, bearings and joints are not in it"
+        )
+    return (
+        "teeth, ring and cup of the flexspline and the bearing inside it yield; its clearance, shafts and "
+        "joints are not in it"
     )
 
 

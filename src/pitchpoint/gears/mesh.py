@@ -107,9 +107,9 @@ class Mesh(eqx.Module):
         return False
 
     @property
-    def largest_radius(self) -> float:
+    def largest_radius(self) -> Float[Array, ""]:
         """Relative radius of curvature at which conformal contacts are cut [m]; infinite where none is."""
-        return inf
+        return jnp.asarray(inf)
 
     @property
     def ring(self) -> FlexibleRing | None:

@@ -30,14 +30,16 @@ the short axis.
 TRIES = (29, 14)
 """Places on a flank and on its rounding at which the clearance is looked at before its least is found."""
 
-_FLATTEST = 1.0  # 1/m: with less, a contact under load would be wider than the flank is high
+_FLATTEST = (
+    2000.0  # modules: with a larger radius a contact under load is wider than the flank high
+)
 _PREFERENCE = 1e-5  # clearance that a place nearer to the tip must gain on the way there
 _SLACK = 1e-9
 _AROUND = np.deg2rad(6.0)
 _BEYOND = np.linspace(WINDOW[1], np.pi / 2.0, 161)
 _ALONG = np.concatenate([np.linspace(*WINDOW, 541), np.linspace(-_AROUND, _AROUND, 961), _BEYOND])
 _ALONG = np.unique(np.round(_ALONG, 12))  # no two that differ by rounding alone
-_LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
+_LIGHT = 1e-3  # clearance beyond the least one, in modules, below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
 
@@ -129,8 +131,9 @@ class StrainWave(Mesh):
     def completed(self) -> Self:
         """The drive with its groove as it follows from flank and motion, and what follows from both.
 
-        The tips of the circular spline stay where they are: a change of the deflection changes the
-        clearance of the tips, which `build_strain_wave` would keep.
+        The tips of the circular spline stay where they are, and so does the number of pairs that are
+        held: a change of the deflection changes the clearance of the tips, which `build_strain_wave`
+        would keep.
         """
         drive = self
         if self.conjugate:
@@ -143,7 +146,9 @@ class StrainWave(Mesh):
         """Clearances along the wave, and what follows from them for the whole drive."""
         angle = jnp.asarray(_ALONG)
         found, overlaps = self.touching(angle), self.overlaps(angle)
-        touches = overlaps & (found.clearance < _LIGHT * self.module)
+        # Play is taken up before a tooth touches, so clearances count from the least one.
+        least = jnp.min(jnp.where(overlaps, found.clearance, jnp.inf))
+        touches = overlaps & (found.clearance < least + _LIGHT * self.module)
         return Survey(
             angle=angle,
             clearance=jnp.where(overlaps, found.clearance, jnp.nan),
@@ -194,9 +199,9 @@ class StrainWave(Mesh):
         return True
 
     @property
-    def largest_radius(self) -> float:
+    def largest_radius(self) -> Float[Array, ""]:
         """Flatter contacts would be wider under load than the flank is high."""
-        return 1.0 / _FLATTEST
+        return _FLATTEST * self.module
 
     @property
     def ring(self) -> FlexibleRing:
@@ -259,7 +264,7 @@ class StrainWave(Mesh):
         angle = jnp.where(active, given, 0.0)
         found = self.touching(angle)
         at, none = found.at, jnp.zeros_like(angle)
-        sum_curvature = jnp.maximum(at.curvature + found.mate, _FLATTEST)
+        sum_curvature = jnp.maximum(at.curvature + found.mate, 1.0 / self.largest_radius)
         roll = (at.turning - found.mate * at.sliding) / sum_curvature
         roll = jnp.where(found.held, 0.0, roll)
         velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])

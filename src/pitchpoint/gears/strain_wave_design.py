@@ -181,6 +181,12 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             "on the long axis: the flexspline's tips pass there and would leave less than "
             f"{LEAST_LAND:g} modules of tip land."
         )
+    overlap = -float(np.nanmin(np.asarray(_surveyed(mesh).clearance)))
+    if overlap > INTERFERENCE * float(mesh.module):
+        told.append(
+            f"Flexspline and circular spline overlap by {1e6 * overlap:.2g} um where the swept flank is "
+            "known no better; the clearance there counts as zero."
+        )
     if lost := int(mesh.groove.unsolved):
         told.append(
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
@@ -387,7 +393,8 @@ def _lanes(z1: int, last: float = WINDOW[1]) -> int:
 
 def _last(found: Survey, module: float) -> float:
     """Angle up to which pairs are held: the short axis where teeth are near each other that far."""
-    near = np.asarray(found.clearance) < _NEAR * module
+    clearance = np.nan_to_num(np.asarray(found.clearance), nan=np.inf)
+    near = clearance < clearance.min() + _NEAR * module
     return pi / 2.0 if near[np.asarray(found.angle) > WINDOW[1]].any() else WINDOW[1]
 
 
@@ -456,10 +463,11 @@ def _check_contact(drive: StrainWave, found: Survey) -> None:
             "circular spline",
             key=where,
         )
-    if not clearance[least] - float(drive.backlash) < _FARTHEST * module:
+    beyond = clearance[least] - float(drive.backlash) / 2.0  # each flank has half of the play
+    if not beyond < _FARTHEST * module:
         raise InputError(
             "no tooth of the flexspline engages: the least clearance is "
-            f"{1e6 * (clearance[least] - float(drive.backlash)):.3g} um beyond the backlash, and a tenth of "
+            f"{1e6 * beyond:.3g} um beyond the backlash, and a tenth of "
             "the module is the most that load can close",
             key=where,
         )

@@ -79,8 +79,8 @@ def torsion(
         contacts: at these phases, where they are known already.
 
     Returns:
-        NaN where no equilibrium was found. Teeth, ring and cup yield; shafts, bearings and their
-        clearance, joints and the flange are not in it.
+        NaN where no equilibrium was found. Teeth, ring and cup yield, and the bearing inside the ring
+        by its support stiffness; its clearance, shafts, joints and the flange are not in it.
 
     Raises:
         InputError: the mesh has no ring.

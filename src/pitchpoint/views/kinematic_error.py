@@ -53,6 +53,8 @@ def kinematic_error_answer(outcome: Outcome) -> str:
     data = outcome.parts.get("kinematic_error")
     if data is None:
         return ""
+    if not np.isfinite(data["kinematic_error_range"].values).all():
+        return "no equilibrium was found at some places of the turn"
     loaded, rigid = (
         show.quantity("kinematic_error_range", float(data["kinematic_error_range"].values[k, -1]))
         for k in (-1, 0)
@@ -125,7 +127,7 @@ def _spectrum(name: str, data: xr.Dataset, position: int, spline: str) -> Figure
 
 def _orders(lines: np.ndarray) -> np.ndarray:
     """Orders from 1 to the last that can be seen, below half the number of teeth."""
-    half = lines[:, : lines.shape[1] // 2]
+    half = lines[:, : lines.shape[1] // 2 + 2]
     seen = np.flatnonzero(np.nanmax(half[:, 1:], axis=0) > _LEAST * np.nanmax(half[:, 1:])) + 1
     return np.arange(1, max(int(seen[-1]) if seen.size else 0, _FEWEST) + 1)
 
