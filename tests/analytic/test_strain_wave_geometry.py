@@ -465,6 +465,15 @@ def test_all_teeth_that_touch_are_held(pair, loaded):
     assert mesh.groove.unsolved == 0
 
 
+@pytest.mark.parametrize("form", FORMS)
+def test_play_takes_no_pairs_away(drives, form):
+    """It lies between all flanks alike and is taken up before the first of them touches."""
+    without, found = drives[form], build(form=FORMS[form], backlash=20e-6)
+    assert found.lanes == without.lanes
+    # The play counts along the normal, so upright flanks have more of it than rounded tips.
+    assert float(found.pairs) > 0.2 * float(without.pairs)
+
+
 def test_load_closes_the_gap_of_every_pair_that_carries(loaded):
     """Tooth and ring yield by what the rigid motion moves a pair beyond its clearance."""
     carries = loaded.force > 0.0

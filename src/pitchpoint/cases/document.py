@@ -78,6 +78,8 @@ def read(path: Path) -> Tree:
         raise InputError("is not UTF-8 text, so it is no TOML file", file=path.name) from None
     except RecursionError:
         raise _too_deep(path.name) from None
+    except InputError:
+        raise
     except ValueError as error:
         raise InputError(f"is not a TOML file: {error}", file=path.name) from None
     except OSError as error:

@@ -59,8 +59,20 @@ def running_part(built: Built, backwards: Built) -> xr.Dataset:
             "temperature": ("temperature", degrees),
         },
         title="running without load",
+        warnings=_unloaded(built),
         note="NaN where friction holds the drive whatever the torque",
     )
+
+
+def _unloaded(built: Built) -> list[str]:
+    """Starting torques without what mostly makes them."""
+    drags = built.design.drag
+    if any(float(drag.preload) or float(drag.breakaway_torque) for drag in drags):
+        return []
+    return [
+        "No preload of a bearing and no breakaway_torque are given: measured drives take many times these "
+        "torques to start, either way."
+    ]
 
 
 def running_axes(built: Built) -> tuple[np.ndarray, np.ndarray]:

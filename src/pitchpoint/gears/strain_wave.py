@@ -39,7 +39,7 @@ _AROUND = np.deg2rad(6.0)
 _BEYOND = np.linspace(WINDOW[1], np.pi / 2.0, 161)
 _ALONG = np.concatenate([np.linspace(*WINDOW, 541), np.linspace(-_AROUND, _AROUND, 961), _BEYOND])
 _ALONG = np.unique(np.round(_ALONG, 12))  # no two that differ by rounding alone
-_LIGHT = 1e-3  # clearance beyond the least one, in modules, below which a pair counts as touching
+_LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
 
@@ -68,6 +68,8 @@ class Survey(eqx.Module):
     Attributes:
         angle: from the long axis [rad].
         clearance: along the normal; NaN where teeth do not reach into each other [m].
+        left: clearance once the splines are turned up to the first touch; infinite where teeth do not
+            reach into each other [m].
         rolls: True where flanks touch with a positive relative curvature, no end of a flank.
         pairs: that touch, mean number.
         reversal: angle at which sliding changes its sense [rad].
@@ -75,6 +77,7 @@ class Survey(eqx.Module):
 
     angle: Float[Array, " angle"]
     clearance: Float[Array, " angle"]
+    left: Float[Array, " angle"]
     rolls: Bool[Array, " angle"]
     pairs: Float[Array, ""]
     reversal: Float[Array, ""]
@@ -146,14 +149,19 @@ class StrainWave(Mesh):
         """Clearances along the wave, and what follows from them for the whole drive."""
         angle = jnp.asarray(_ALONG)
         found, overlaps = self.touching(angle), self.overlaps(angle)
-        # Play is taken up before a tooth touches, so clearances count from the least one.
-        least = jnp.min(jnp.where(overlaps, found.clearance, jnp.inf))
-        touches = overlaps & (found.clearance < least + _LIGHT * self.module)
+        upright = jnp.abs(jnp.imag(jnp.exp(-1j * found.at.direction) * found.at.whole))
+        part = upright / jnp.abs(found.at.whole)
+        reaches = overlaps & (part > 0.0)
+        play = jnp.min(jnp.where(reaches, found.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
+        left = jnp.where(reaches, found.clearance - part * play, jnp.inf)
         return Survey(
             angle=angle,
             clearance=jnp.where(overlaps, found.clearance, jnp.nan),
+            left=left,
             rolls=~found.held & (found.at.curvature + found.mate > 0.0),
-            pairs=2.0 * jnp.trapezoid(touches * 1.0, angle) / self.tooth_angle,
+            pairs=2.0
+            * jnp.trapezoid((left < _LIGHT * self.module) * 1.0, angle)
+            / self.tooth_angle,
             reversal=_reversal(angle, found.at.sliding, overlaps),
         )
 

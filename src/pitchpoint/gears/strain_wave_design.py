@@ -136,6 +136,7 @@ def build_strain_wave(
         low, space = _swept(travel, low, edge, module, z2)
     else:
         space = _given(groove, z2, module, low, travel)
+    _check_play(backlash, space, edge, z2)
     array = jnp.asarray
     drive = StrainWave(
         teeth=array([z1, z2], dtype=float),
@@ -393,8 +394,7 @@ def _lanes(z1: int, last: float = WINDOW[1]) -> int:
 
 def _last(found: Survey, module: float) -> float:
     """Angle up to which pairs are held: the short axis where teeth are near each other that far."""
-    clearance = np.nan_to_num(np.asarray(found.clearance), nan=np.inf)
-    near = clearance < clearance.min() + _NEAR * module
+    near = np.asarray(found.left) < _NEAR * module
     return pi / 2.0 if near[np.asarray(found.angle) > WINDOW[1]].any() else WINDOW[1]
 
 
@@ -443,6 +443,17 @@ def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: Tooth
 @eqx.filter_jit
 def _surveyed(drive: StrainWave) -> Survey:
     return drive.survey()
+
+
+def _check_play(backlash: float, space: Groove, edge: float, z2: int) -> None:
+    """Play is taken off the circular spline's teeth; something must be left of their tips."""
+    land = 2.0 * pi / z2 * float(space.low) - 2.0 * float(space.half_width[0]) + 2.0 * edge
+    if backlash >= land:
+        raise InputError(
+            f"a play of {1e6 * backlash:.6g} um leaves nothing of the circular spline's tips, which are "
+            f"{1e6 * land:.3g} um wide without it",
+            key="backlash",
+        )
 
 
 def _check_contact(drive: StrainWave, found: Survey) -> None:

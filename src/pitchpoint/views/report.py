@@ -346,6 +346,7 @@ def _spread(outcome: Outcome) -> dict[str, Any] | None:
     locked = data["locked"].values[:, 0].astype(bool)
     values = data["mean_efficiency"].values[:, 0]
     known = values[np.isfinite(values) & ~locked]
+    known = np.append(known, _chosen(outcome)) if known.size else known
     rows = [
         (law_title(outcome, law), *(_cell(data, name, k) for name in _SPREAD_SHOWN))
         for k, law in enumerate(laws(data))
@@ -360,6 +361,13 @@ def _spread(outcome: Outcome) -> dict[str, Any] | None:
     if outcome.manifest.get("plastic"):
         text += ", by laws for steel on steel; none was fitted to plastic teeth"
     return {"text": text, "rows": rows, "points": f"{100 * np.ptp(known):.2f}"}
+
+
+def _chosen(outcome: Outcome) -> np.ndarray:
+    """Efficiencies by the laws of the case, those under which the mesh moves."""
+    data = outcome.parts["operation"]
+    values = data["mean_efficiency"].values[:, 0]
+    return np.asarray(values[np.isfinite(values) & ~data["locked"].values[:, 0].astype(bool)])
 
 
 _SPREAD_SHOWN = ("mean_efficiency", "mean_loss", "mean_friction")
