@@ -70,11 +70,12 @@ def kinematic_error_part(
     solved: list[np.ndarray] = []
 
     def over(own: Both, count: int) -> np.ndarray:
-        before = len(solved)
+        done, found = sum(one.shape[1] for one in solved), []
         for piece in _pieces(period, own, count, jnp.asarray(teeth)):
-            solved.append(piece)
-            progress(len(solved) * TEETH * PHASES)
-        return np.concatenate(solved[before:], axis=1)[:, : count * PHASES]
+            found.append(piece)
+            progress(done + min(len(found) * TEETH, count) * PHASES)
+        solved.append(np.concatenate(found, axis=1)[:, : count * PHASES])
+        return solved[-1]
 
     alone = [_alone(over, deviations, spline, teeth) for spline in (0, 1)]
     together = _together(over, deviations, alone, teeth)

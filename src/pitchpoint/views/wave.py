@@ -38,8 +38,9 @@ __all__ = ["ANGLE", "arc_panel", "gap_panel", "told_arcs", "wave_losses", "wave_
 
 ANGLE = "angle from the long axis p [°]"
 _ARC = {
-    "load": "",
-    "pressure": "By Hertz, for the load on the tooth and the radius of its contact.",
+    "load": "It leaps where the contact passes from the root of a tooth to its tip.",
+    "pressure": "By Hertz, for the load on the tooth and the radius of its contact; elastic steel, high on "
+    "the roundings of root and tip, which wear.",
     "radius": "Where an edge touches it is small, where flanks fit into each other it is large.",
     "entrainment": "Mean speed of both flanks against their contact; it draws the oil in.",
     "sliding_velocity": "Flexspline over circular spline; teeth slide most far from the long axis.",
@@ -162,7 +163,9 @@ def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int, Wave]]) -> F
         ANGLE, short_axis(name), xaxis={"range": _range(seen)}, shapes=[_axis()], annotations=[]
     )
     cut = ""
-    if name in _POSITIVE and _scale(look, shown):
+    if name not in _POSITIVE and name != "sliding_velocity":
+        look["yaxis"]["rangemode"] = "tozero"
+    elif name in _POSITIVE and _scale(look, shown):
         cut = "The outermost values are outside the figure."
     if name == "lambda_ratio":
         regimes(look, shown)
