@@ -2,8 +2,8 @@
 
 import copy
 import tomllib
-from dataclasses import replace
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
