@@ -94,6 +94,18 @@ def test_all_44_efficiencies_of_the_catalogue():
     assert np.abs(away.mean(axis=0)).max() < 1.0
 
 
+def test_pairs_that_carry_make_all_the_losses():
+    """The loss map leaves the others out."""
+    built, models = case()
+    whole = engagement(built.design, jnp.asarray(RATED), models, 8)
+    few = whole.loaded()
+    assert few.share.shape[0] < whole.share.shape[0] / 2
+    np.testing.assert_allclose(few.share.sum(axis=0), 1.0, rtol=1e-14)
+    points = Operation(*(jnp.full((2, 1), value) for value in (RATED, 200.0, 300.0)))
+    found, fewer = (jax.device_get(_cycle(built.design, points, models, x)) for x in (whole, few))
+    np.testing.assert_allclose(fewer[0], found[0], rtol=1e-14)
+
+
 def test_two_constants_are_fitted_and_they_are_named():
     document = resolve(dict(find("csd25")[1]), name="csd25", variant="default")
     fitted = {key for key, mark in document.provenance.items() if mark.status == "fitted"}

@@ -98,7 +98,7 @@ def _piece(
         point = replace(built.operation, load=jnp.asarray(torque))
         like, lanes = start()
         known = engaged(built.design, point, models, _NODES, like)
-        known = known and replace(known, body=None)
+        known = known and known.loaded()
         together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
         laws = tuple(models.friction[law] for law in chosen)
         runs = []

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
@@ -39,6 +40,9 @@ __all__ = [
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 Coupling = Float[Array, "lane lane *b"]
+
+TOGETHER = 16
+"""Step in the number of pairs that are kept of many."""
 
 ROUNDING = 1e-13
 """Output over input power up to which no power is transmitted: an idle drive has rounding alone."""
@@ -152,6 +156,24 @@ class Engagement(eqx.Module):
     share: Float[Array, "pair slice node"]
     body: Float[Array, "lane lane node"] | None
     nodes: int = eqx.field(static=True)
+
+    def loaded(self) -> "Engagement":
+        """Only the pairs that carry at some node, the same at both ends of the long axis.
+
+        Losses and torques come from these alone. Their number goes up in steps, so that few programs
+        serve all loads; the compliance of the bodies is left out.
+        """
+        half = self.share.shape[0] // 2
+        carries = np.any(np.asarray(self.share) > 0.0, axis=(1, 2)).reshape(2, half).any(axis=0)
+        count = min(-(-int(carries.sum()) // TOGETHER) * TOGETHER, half)
+        kept = np.sort(np.argsort(~carries, kind="stable")[: max(count, 1)])
+        pairs = np.concatenate([kept, kept + half])
+
+        def of_them(leaf: Array) -> np.ndarray:
+            return np.asarray(leaf)[..., pairs, :, :]
+
+        contacts, share = jax.tree.map(of_them, (self.contacts, self.share))
+        return replace(self, contacts=contacts, share=share, body=None)
 
     def of_rank(self, rank: int) -> tuple[Contacts, Lanes]:
         """Contacts and shares with so many batch axes, the last one that of the nodes."""

@@ -294,10 +294,11 @@ class StrainWave(Mesh):
 
     def ring_loads(self, contacts: Contacts) -> RingLoads:
         """How unit forces at the contacts act on the flexspline's rim."""
-        lane = jnp.arange(2 * self.lanes).reshape(-1, *(1 for _ in contacts.path.shape[1:]))
+        pairs = contacts.path.shape[0]
+        second = jnp.arange(pairs).reshape(-1, *(1 for _ in contacts.path.shape[1:])) >= pairs // 2
         slope = self.flank.angle(contacts.flank[0])
         return RingLoads(
-            angle=2.0 * jnp.pi * contacts.path + jnp.pi * (lane // self.lanes),
+            angle=2.0 * jnp.pi * contacts.path + jnp.pi * second,
             tangential=-jnp.cos(slope),
             radial=-jnp.sin(slope),
             height=jnp.real(self.flank.place(contacts.flank[0])),
