@@ -11,10 +11,11 @@ from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.gears.flexible_ring import RingLoads
+from pitchpoint.gears.strain_wave import places
 from pitchpoint.gears.strain_wave_design import build_strain_wave
 from pitchpoint.loading import torsion as module
 from pitchpoint.loading.balance import balance
-from pitchpoint.loading.deviations import Deviations, added_gap, kinematic_error, leaning, places
+from pitchpoint.loading.deviations import Deviations, added_gap, kinematic_error, leaning
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.torsion import hysteresis, torsion
 from pitchpoint.loading.yielding import Yielding

@@ -258,7 +258,7 @@ def test_deviations_leave_the_mesh_and_ask_for_one_part_more() -> None:
 def test_states_without_equilibrium_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     from pitchpoint.cases import kinematic_error as part
 
-    def pieces(period: Any, deviations: Any, count: int, teeth: Any) -> Iterator[np.ndarray]:
+    def pieces(mesh: Any, period: Any, deviations: Any, count: int) -> Iterator[np.ndarray]:
         for start in range(0, count, part.TEETH):
             found = np.zeros((3, part.TEETH * part.PHASES))
             found[2, 10 if start == 0 else -1] = np.nan  # the last one lies beyond the turn

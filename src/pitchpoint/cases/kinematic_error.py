@@ -17,7 +17,6 @@ from pitchpoint.loading.deviations import (
     added_gap,
     kinematic_error,
     leaning,
-    places,
 )
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.loading.yielding import Yielding, yielding
@@ -71,7 +70,7 @@ def kinematic_error_part(
 
     def over(own: Both, count: int) -> np.ndarray:
         done, found = sum(one.shape[1] for one in solved), []
-        for piece in _pieces(period, own, count, jnp.asarray(teeth)):
+        for piece in _pieces(design.mesh, period, own, count):
             found.append(piece)
             progress(done + min(len(found) * TEETH, count) * PHASES)
         solved.append(np.concatenate(found, axis=1)[:, : count * PHASES])
@@ -134,13 +133,11 @@ def _together(
     return np.take(own, np.arange(count * PHASES), axis=1, mode="wrap")
 
 
-def _pieces(
-    period: _Period, deviations: Both, count: int, teeth: Float[Array, "2"]
-) -> Iterator[np.ndarray]:
+def _pieces(mesh: Mesh, period: _Period, deviations: Both, count: int) -> Iterator[np.ndarray]:
     for start in range(0, count, TEETH):
         # A wave generator that turns on meets teeth of growing angle, and phases fall.
         phase = -(start + np.arange(TEETH)[:, None] + np.arange(PHASES) / PHASES)
-        added = _added(period, deviations, jnp.asarray(phase), teeth)
+        added = _added(mesh, period, deviations, jnp.asarray(phase))
         found = jax.device_get(_errors(period, added))
         each = (found.geometric, found.elastic_mean, found.under_load)
         yield np.stack([values.ravel() for values in each])
@@ -162,10 +159,11 @@ def _period(mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Array) 
 
 @eqx.filter_jit
 def _added(
-    period: _Period, deviations: Both, phase: Float[Array, "tooth phase"], teeth: Array
+    mesh: Mesh, period: _Period, deviations: Both, phase: Float[Array, "tooth phase"]
 ) -> Float[Array, "pair slice tooth phase"]:
-    behind = added_gap(deviations, places(period.contacts, phase, teeth))
-    return behind * period.leaning
+    place = mesh.places(period.contacts, phase)
+    assert place is not None  # or there would be no deviations
+    return added_gap(deviations, place) * period.leaning
 
 
 @eqx.filter_jit

@@ -120,6 +120,17 @@ class Mesh(eqx.Module):
         """How a unit normal force at each contact acts on the ring, or None without one."""
         return None
 
+    def places(
+        self, contacts: Contacts, phase: Float[Array, "*b"]
+    ) -> Float[Array, "member pair slice *b"] | None:
+        """Angles around each member at which its teeth touch [rad]; None where nothing asks for them.
+
+        Args:
+            contacts: of the mesh.
+            phase: at which they were taken, counted on beyond one period [periods].
+        """
+        return None
+
     def support(self, contacts: Contacts) -> Float[Array, "bearing pair slice *b"] | None:
         """Radial load on each bearing of the mesh for a unit normal force at each contact, or None.
 

@@ -18,7 +18,7 @@ from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
 from pitchpoint.roots import root
 
-__all__ = ["WINDOW", "StrainWave", "Survey", "Touching", "nearest_points"]
+__all__ = ["WINDOW", "StrainWave", "Survey", "Touching", "nearest_points", "places"]
 
 WINDOW = (np.deg2rad(-40.0), np.deg2rad(50.0))
 """Angles from the long axis between which pairs are held; others are far from touching.
@@ -304,6 +304,12 @@ class StrainWave(Mesh):
             height=jnp.real(self.flank.place(contacts.flank[0])),
         )
 
+    def places(
+        self, contacts: Contacts, phase: Float[Array, "*b"]
+    ) -> Float[Array, "member pair slice *b"]:
+        """Angles around flexspline and circular spline at which their teeth touch [rad]."""
+        return places(contacts, phase, self.teeth)
+
     def support(self, contacts: Contacts) -> Float[Array, "1 pair slice *b"]:
         """Radial load on the wave generator's bearing by a unit force at each contact."""
         return -self.ring_loads(contacts).radial[None]
@@ -379,6 +385,27 @@ class StrainWave(Mesh):
         """Flexspline tooth from root to root over its tip."""
         flank = self.flank.place(jnp.linspace(0.0, 1.0, 81) * self.flank.length)
         return jnp.concatenate([jnp.conj(flank), flank[::-1]])
+
+
+def places(
+    contacts: Contacts, phase: Float[Array, "*b"], teeth: Float[Array, "2"]
+) -> Float[Array, "member pair slice *b"]:
+    """Angles around flexspline and circular spline at which their teeth touch [rad].
+
+    Over one turn of the wave generator against the circular spline the phase moves by as many
+    periods as that has teeth.
+
+    Args:
+        contacts: of a strain-wave gear, `path` the angle from the long axis [turns]; the first half
+            of the pairs lies at one end of it, the second at the other.
+        phase: at which they were taken, counted on beyond one period [periods].
+        teeth: of flexspline and circular spline.
+    """
+    pairs = contacts.path.shape[0]
+    second = (jnp.arange(pairs) >= pairs // 2).reshape(-1, *(1 for _ in contacts.path.shape[1:]))
+    since_start = 2.0 * jnp.pi * (contacts.path - phase / teeth[0])
+    zone = jnp.pi * second
+    return jnp.stack([since_start + zone, since_start * (teeth[0] / teeth[1]) + zone])
 
 
 def nearest_points(

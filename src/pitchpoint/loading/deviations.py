@@ -10,7 +10,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.clearances import Shared, shared_load
 from pitchpoint.loading.yielding import Yielding
 
-__all__ = ["Deviations", "KinematicError", "added_gap", "kinematic_error", "leaning", "places"]
+__all__ = ["Deviations", "KinematicError", "added_gap", "kinematic_error", "leaning"]
 
 Each = Float[Array, "*b"]
 Lanes = Float[Array, "pair slice *b"]
@@ -58,27 +58,6 @@ class KinematicError(eqx.Module):
     wind_up: Each
 
 
-def places(
-    contacts: Contacts, phase: Each, teeth: Float[Array, "2"]
-) -> Float[Array, "member pair slice *b"]:
-    """Angles around flexspline and circular spline at which their teeth touch [rad].
-
-    Over one turn of the wave generator against the circular spline the phase moves by as many
-    periods as that has teeth.
-
-    Args:
-        contacts: of a strain-wave gear, `path` the angle from the long axis [turns]; the first half
-            of the pairs lies at one end of it, the second at the other.
-        phase: at which they were taken, counted on beyond one period [periods].
-        teeth: of flexspline and circular spline.
-    """
-    pairs = contacts.path.shape[0]
-    second = (jnp.arange(pairs) >= pairs // 2).reshape(-1, *(1 for _ in contacts.path.shape[1:]))
-    since_start = 2.0 * jnp.pi * (contacts.path - phase / teeth[0])
-    zone = jnp.pi * second
-    return jnp.stack([since_start + zone, since_start * (teeth[0] / teeth[1]) + zone])
-
-
 def added_gap(
     deviations: tuple[Deviations, Deviations], place: Float[Array, "member pair slice *b"]
 ) -> Lanes:
@@ -86,7 +65,7 @@ def added_gap(
 
     Args:
         deviations: of flexspline and circular spline.
-        place: angles around them, see `places` [rad].
+        place: angles around them, see `Mesh.places` [rad].
     """
     return deviations[0].at(place[0]) + deviations[1].at(place[1])
 
