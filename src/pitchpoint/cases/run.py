@@ -231,7 +231,7 @@ def compare_case(
     if not built.case.targets:
         raise InputError("has no targets to compare with", file=name)
     needed = {target.reads for target in built.case.targets}
-    work = _jobs(made, {})
+    work = list(jobs(made, {}))
     demand_parts(built.case.targets, [job.name for job in work], name)
     parts = {}
     with (watch or _unwatched)(None) as progress:

@@ -133,12 +133,16 @@ def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
     before: Design | None = None
     known: Engagement | None = None
     for design, operation in points:
-        alike = before is not None and before.mesh is design.mesh
-        alike = alike and bool(eqx.tree_equal(before and before.solids, design.solids))
-        known = engaged(design, operation, models, like=known if alike else None)
+        like = known if before is not None and _alike(before, design) else None
+        known = engaged(design, operation, models, like=like)
         before = design
         # The compliance of the bodies has done its work, and of many points it would be large.
         yield design, operation, known and replace(known, body=None)
+
+
+def _alike(one: Design, other: Design) -> bool:
+    """True if both have the same drive in hand and equal solids."""
+    return one.mesh is other.mesh and bool(eqx.tree_equal(one.solids, other.solids))
 
 
 def engaged(

@@ -63,6 +63,10 @@ class Groove(eqx.Module):
         """Heights of the nodes [m]."""
         return _heights(self.low, self.high)
 
+    def land(self, tooth_angle: Float[Array, ""]) -> Float[Array, " node"]:
+        """Thickness of the teeth between such spaces at the nodes [m], for the angle of one pitch [rad]."""
+        return tooth_angle * self.heights - 2.0 * self.half_width
+
     def _cell(self, height: Each) -> tuple[Array, Each, Each]:
         """Node below a height, the step to the next one [m], and the place between them, from 0 to 1."""
         low, high = jax.lax.stop_gradient((self.low, self.high))
@@ -194,7 +198,7 @@ def tip_with_land(
         The tips as they are where they are thick enough; infinity where nothing is left.
     """
     heights = groove.heights
-    land = tooth_angle * heights - 2.0 * groove.half_width
+    land = groove.land(tooth_angle)
     relief = jnp.where(heights < groove.low + edge, 2.0 * edge, 0.0)  # that of the edge is no cut
     narrow = jnp.where(land + relief < least, jnp.arange(NODES), -1)
     last = jnp.max(narrow)

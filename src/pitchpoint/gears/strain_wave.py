@@ -294,11 +294,9 @@ class StrainWave(Mesh):
 
     def ring_loads(self, contacts: Contacts) -> RingLoads:
         """How unit forces at the contacts act on the flexspline's rim."""
-        pairs = contacts.path.shape[0]
-        second = jnp.arange(pairs).reshape(-1, *(1 for _ in contacts.path.shape[1:])) >= pairs // 2
         slope = self.flank.angle(contacts.flank[0])
         return RingLoads(
-            angle=2.0 * jnp.pi * contacts.path + jnp.pi * second,
+            angle=2.0 * jnp.pi * contacts.path + _end(contacts),
             tangential=-jnp.cos(slope),
             radial=-jnp.sin(slope),
             height=jnp.real(self.flank.place(contacts.flank[0])),
@@ -401,11 +399,15 @@ def places(
         phase: at which they were taken, counted on beyond one period [periods].
         teeth: of flexspline and circular spline.
     """
+    since_start, end = 2.0 * jnp.pi * (contacts.path - phase / teeth[0]), _end(contacts)
+    return jnp.stack([since_start + end, since_start * (teeth[0] / teeth[1]) + end])
+
+
+def _end(contacts: Contacts) -> Float[Array, "pair 1 *b"]:
+    """Angle of the end of the long axis at which each pair lies: half of them at one, half at the other."""
     pairs = contacts.path.shape[0]
-    second = (jnp.arange(pairs) >= pairs // 2).reshape(-1, *(1 for _ in contacts.path.shape[1:]))
-    since_start = 2.0 * jnp.pi * (contacts.path - phase / teeth[0])
-    zone = jnp.pi * second
-    return jnp.stack([since_start + zone, since_start * (teeth[0] / teeth[1]) + zone])
+    second = jnp.arange(pairs).reshape(-1, *(1 for _ in contacts.path.shape[1:])) >= pairs // 2
+    return jnp.pi * second
 
 
 def nearest_points(

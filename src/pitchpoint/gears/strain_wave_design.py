@@ -447,7 +447,7 @@ def _surveyed(drive: StrainWave) -> Survey:
 
 def _check_play(backlash: float, space: Groove, edge: float, z2: int) -> None:
     """Play is taken off the circular spline's teeth; something must be left of their tips."""
-    land = 2.0 * pi / z2 * float(space.low) - 2.0 * float(space.half_width[0]) + 2.0 * edge
+    land = float(space.land(jnp.asarray(2.0 * pi / z2))[0]) + 2.0 * edge
     if backlash >= land:
         raise InputError(
             f"a play of {1e6 * backlash:.6g} um leaves nothing of the circular spline's tips, which are "
