@@ -2,6 +2,7 @@
 
 import os
 import platform
+from collections.abc import Sequence
 from pathlib import Path
 
 FEW_CORES = 4
@@ -16,14 +17,21 @@ if len(_ALLOWED) <= FEW_CORES:
 
 import jax  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from jax.typing import ArrayLike, DTypeLike  # noqa: E402
 
-__all__ = ["cache_folder", "jax", "jnp"]
+__all__ = ["array", "cache_folder", "jax", "jnp"]
 
 
 def cache_folder() -> Path:
     """Folder of compiled programs: under the user's cache, one for each kind of machine."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return base / "pitchpoint" / f"xla-{platform.machine()}-{jax.__version__}"
+
+
+def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) -> jax.Array:
+    """Value as an array; unlike `jnp.asarray` it compiles no program for a plain number."""
+    return jnp.asarray(value if isinstance(value, jax.Array) else np.asarray(value, dtype), dtype)
 
 
 def _enable_cache() -> None:

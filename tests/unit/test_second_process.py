@@ -65,26 +65,38 @@ def run_once(case: Path, home: Path) -> tuple[int, int, int]:
 
 def programs(home: Path) -> set[str]:
     """Compiled programs on disk; the files beside them hold the time of last use."""
-    return {path.name for path in home.rglob("*") if path.is_file() and "-atime" not in path.name}
+    kept = {path.name for path in home.rglob("*") if path.is_file() and "-atime" not in path.name}
+    return kept - traced(home).keys()
+
+
+def traced(home: Path) -> dict[str, int]:
+    """Programs as they are after tracing, on disk, with the time at which each was written."""
+    return {path.name: path.stat().st_mtime_ns for path in home.rglob("programs/*")}
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[tuple[int, int, int], set[str]]]:
+def runs(tmp_path_factory: pytest.TempPathFactory) -> list[tuple]:
     folder = tmp_path_factory.mktemp("second_process")
     case, home = folder / "case.toml", folder / "cache"
     case.write_text(CASE, encoding="utf-8")
-    return [(run_once(case, home), programs(home)) for _ in range(2)]
+    return [(run_once(case, home), programs(home), traced(home)) for _ in range(2)]
 
 
 def test_the_first_process_keeps_what_it_compiles(runs):
-    (_, _, missed), kept = runs[0]
+    (_, _, missed), kept, _ = runs[0]
     assert missed > 0
     assert len(kept) == missed
 
 
 def test_the_second_process_compiles_nothing(runs):
-    (first, kept), (second, kept_after) = runs
+    (first, kept, _), (second, kept_after, _) = runs
     asked, found, missed = second
     assert missed == 0
     assert found == asked == first[0] > 0
     assert kept_after == kept
+
+
+def test_the_second_process_traces_nothing_that_was_kept(runs):
+    (_, _, before), (_, _, after) = runs
+    assert len(before) > 5
+    assert after == before

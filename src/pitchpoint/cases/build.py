@@ -1,13 +1,13 @@
 """From a validated case to the design, the operating point and the laws that compute it."""
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import isfinite
 from typing import Any
 
-import equinox as eqx
+import numpy as np
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.families import FAMILIES, Family, built_gears
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
@@ -27,6 +27,7 @@ from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
+from pitchpoint.programs import program
 
 __all__ = ["Built", "build", "laws_of"]
 
@@ -52,10 +53,16 @@ class Built:
     warnings: tuple[str, ...]
     own: FrictionLaw | None = None
 
-    @property
+    @cached_property
     def dimensions(self) -> dict[str, Any]:
         """Main dimensions of the mesh as plain numbers."""
         found: dict[str, Any] = jax.device_get(_dimensions(self.design.mesh))
+        return found
+
+    @cached_property
+    def nominal(self) -> dict[str, Any]:
+        """Nominal motion of the mesh, who drives, who is loaded, and its events, as plain numbers."""
+        found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
         return found
 
     @property
@@ -77,7 +84,7 @@ class Built:
     @property
     def loaded(self) -> str:
         """Name of the member that carries the load."""
-        return self.case.gears.members[int(self.design.mesh.loaded.argmax())]
+        return self.case.gears.members[int(self.nominal["loaded"].argmax())]
 
 
 def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Built:
@@ -108,9 +115,9 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         drag=tuple(_drag(loss, case, mesh) for loss in case.losses.values()),
     )
     operation = Operation(
-        load=jnp.asarray(case.operation.torque),
-        speed=jnp.asarray(case.operation.speed),
-        temperature=jnp.asarray(case.operation.temperature),
+        load=array(case.operation.torque),
+        speed=array(case.operation.speed),
+        temperature=array(case.operation.temperature),
     )
     told = (*warnings, *_yielding(case, mesh), *filter(None, [record.note]))
     built = Built(case, design, operation, record, used, told, own)
@@ -153,7 +160,7 @@ def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
     indices = tuple(laws.index(law) for law in chosen)
     models = Models(
         friction=laws,
-        choice=jnp.asarray(indices[0]),
+        choice=array(indices[0]),
         parameters=_parameters(case, laws),
         sharing=LOAD_SHARING[case.models.load_sharing],
         rolling=ROLLING_RESISTANCE[case.models.rolling_resistance],
@@ -175,7 +182,7 @@ _OF_PITCH_POINT = {
 def _applies(law: FrictionLaw, mesh: Mesh) -> bool:
     from pitchpoint.lubrication.conditions import arguments
 
-    return mesh.reference is not None or _OF_PITCH_POINT.isdisjoint(arguments(law.function)[0])
+    return mesh.pitch_point or _OF_PITCH_POINT.isdisjoint(arguments(law.function)[0])
 
 
 def _check_models(case: Case, mesh: Mesh) -> None:
@@ -193,7 +200,7 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         LOAD_SHARING[models.load_sharing].check(mesh)
     except InputError as error:
         raise error.at(key="models.load_sharing") from None
-    if models.tooth_temperature != "isothermal" and mesh.reference is None:
+    if models.tooth_temperature != "isothermal" and not mesh.pitch_point:
         raise InputError(
             f"'{models.tooth_temperature}' asks for a pitch point, which these gears do not have; use "
             "isothermal",
@@ -210,24 +217,24 @@ def _check_models(case: Case, mesh: Mesh) -> None:
 def _drag(loss: Loss, case: Case, mesh: Mesh) -> Drag:
     """Place beside the teeth where power is lost."""
     members = case.gears.members
-    between = jnp.zeros(len(members))
+    between = np.zeros(len(members))
     for body, side in zip(loss.between, (1.0, -1.0), strict=True):
         if body in members:
-            between = between.at[members.index(body)].set(side)
+            between[members.index(body)] = side
     bearing = BEARING_LOSS[loss.bearing]
     bearings = FAMILIES[type(case.gears)].bearings
     return Drag(
-        between=between,
+        between=array(between),
         bearing=bearing,
-        mean_diameter=jnp.asarray(loss.mean_diameter or 0.0),
-        factors={name: jnp.asarray(value) for name, value in loss.factors.items()},
-        preload=jnp.asarray(loss.preload),
+        mean_diameter=array(loss.mean_diameter or 0.0),
+        factors={name: array(value) for name, value in loss.factors.items()},
+        preload=array(loss.preload),
         support=bearings.get(frozenset(loss.between)) if bearing.name != "none" else None,
-        seal_torque=jnp.asarray(loss.seal_torque),
-        churning_torque=jnp.asarray(loss.churning_torque),
-        churning_speed=jnp.asarray(loss.churning_speed or 1.0),
-        churning_exponent=jnp.asarray(loss.churning_exponent),
-        breakaway_torque=jnp.asarray(loss.breakaway_torque),
+        seal_torque=array(loss.seal_torque),
+        churning_torque=array(loss.churning_torque),
+        churning_speed=array(loss.churning_speed or 1.0),
+        churning_exponent=array(loss.churning_exponent),
+        breakaway_torque=array(loss.breakaway_torque),
     )
 
 
@@ -237,7 +244,7 @@ def _parameters(case: Case, laws: tuple[FrictionLaw, ...]) -> dict[str, dict[str
     given = {choice.name: choice.parameters for choice in case.models.friction}
     return {
         law.name: {
-            key: jnp.asarray(given.get(law.name, {}).get(key, default), dtype=float)
+            key: array(given.get(law.name, {}).get(key, default), jnp.float64)
             for key, default in arguments(law.function)[1].items()
         }
         for law in laws
@@ -259,12 +266,22 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections)
 
 
-@eqx.filter_jit
+@program
 def _dimensions(mesh: Mesh) -> dict[str, Any]:
     return mesh.dimensions()
 
 
-@eqx.filter_jit
+@program
+def _nominal(mesh: Mesh) -> dict[str, Any]:
+    return {
+        "motion": mesh.motion,
+        "driver": mesh.driver,
+        "loaded": mesh.loaded,
+        "events": mesh.events(),
+    }
+
+
+@program
 def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection] | None:
     return mesh.sections
 

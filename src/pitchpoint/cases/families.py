@@ -86,7 +86,7 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
     """What was taken off tips that nobody asked to shorten."""
     if gears.least_tip_thickness is not None:
         return []
-    kept = float(pair.clearance_keeping_tip_alteration)
+    kept = float(pair.clearance_keeping_tip_alteration) if any(pair.shortened) else 0.0
     return [
         f"The tip of gear {number} would be thinner than {USUAL_TIP:g} modules and is shortened by "
         f"{kept - float(pair.tip_alteration[number - 1]):.3g} modules; least_tip_thickness sets the limit."

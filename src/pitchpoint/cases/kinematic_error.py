@@ -21,6 +21,7 @@ from pitchpoint.loading.deviations import (
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.loading.yielding import Yielding, yielding
 from pitchpoint.materials.solids import Solid
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 
 __all__ = ["kinematic_error_part"]
@@ -150,14 +151,14 @@ def _amplitudes(errors: np.ndarray, orders: int) -> np.ndarray:
     return np.asarray(lines[:, :orders])
 
 
-@eqx.filter_jit
+@program
 def _period(mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Array) -> _Period:
     contacts = mesh.contacts(-jnp.arange(PHASES)[None] / PHASES)
     yields = yielding(mesh, contacts, solids, terms, load)
     return _Period(contacts, leaning(mesh, contacts), yields, mesh.loaded)
 
 
-@eqx.filter_jit
+@program
 def _added(
     mesh: Mesh, period: _Period, deviations: Both, phase: Float[Array, "tooth phase"]
 ) -> Float[Array, "pair slice tooth phase"]:
@@ -166,6 +167,6 @@ def _added(
     return added_gap(deviations, place) * period.leaning
 
 
-@eqx.filter_jit
+@program
 def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> KinematicError:
     return kinematic_error(period.contacts, period.yields, period.loaded, added)

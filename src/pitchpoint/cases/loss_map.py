@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.efficiency.quasi_static import (
     Design,
@@ -20,6 +20,7 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_nodes,
 )
 from pitchpoint.efficiency.summary import engaged
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 
 __all__ = ["joined", "map_axes", "pieces"]
@@ -95,7 +96,7 @@ def _piece(
 ) -> Piece:
     def compute(progress: Callable[[int], None]) -> xr.Dataset:
         models, chosen = laws_of(built)
-        point = replace(built.operation, load=jnp.asarray(torque))
+        point = replace(built.operation, load=array(torque))
         like, lanes = start()
         known = engaged(built.design, point, models, _NODES, like)
         known = known and known.loaded()
@@ -104,7 +105,7 @@ def _piece(
         runs = []
         for count in range(1, len(laws) + 1):
             # With the laws of the library beside it, one law could not be fused with what surrounds it.
-            own = replace(models, friction=laws, choice=jnp.asarray(count - 1))
+            own = replace(models, friction=laws, choice=array(count - 1))
             runs.append(_map(built.design, torque, speeds, degrees, own, known, together))
             progress(count * speeds.size * degrees.size)
         found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
@@ -141,9 +142,7 @@ def _map(
     for start in range(0, speeds.size, together):
         part = moving[start : start + together]
         filled = np.concatenate([part, np.full(together - part.size, part[-1])])
-        found = _figures(
-            design, jnp.asarray(torque), jnp.asarray(filled), jnp.asarray(degrees), models, known
-        )
+        found = _figures(design, array(torque), array(filled), array(degrees), models, known)
         parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
     loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
     turns = (speeds > 0.0)[:, None]
@@ -164,7 +163,7 @@ def _contacts(design: Design, models: Models) -> Array:
 _NODES = 24
 
 
-@eqx.filter_jit
+@program
 def _figures(
     design: Design,
     torque: Float[Array, ""],

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -14,6 +13,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.xu2021 import printed as xu2021
 from pitchpoint.cases.zhao2022 import printed as zhao2022
 from pitchpoint.gears.strain_wave import StrainWave, Survey
+from pitchpoint.programs import program
 
 __all__ = ["READINGS", "conjugate_readings", "readings_of"]
 
@@ -97,12 +97,12 @@ def _conjugate(mesh: StrainWave) -> dict[str, Any]:
     return {**{name: found[name] for name in names}, "clearance": own["clearance"]}
 
 
-@eqx.filter_jit
+@program
 def _surveyed(mesh: StrainWave) -> Survey:
     return mesh.survey()
 
 
-@eqx.filter_jit
+@program
 def _branches(mesh: StrainWave) -> dict[str, Array]:
     """Where a drive's flank moves along its tangent, and what it does there [branch, place]."""
     motion = mesh.tooth_motion

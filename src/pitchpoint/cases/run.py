@@ -29,11 +29,11 @@ from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.programs import package_state
 from pitchpoint.results.store import (
     fingerprint,
     load,
     make_folder,
-    package_state,
     save,
     without_nan,
     write_text,

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.loss_map import map_axes
 from pitchpoint.efficiency.quasi_static import Operation
@@ -36,8 +36,8 @@ def running_part(built: Built, backwards: Built) -> xr.Dataset:
     """
     speeds, degrees = running_axes(built)
     models, chosen = laws_of(built)
-    each = [replace(models, choice=jnp.asarray(law)) for law in chosen]
-    idle = replace(built.operation, load=jnp.asarray(0.0))
+    each = [replace(models, choice=array(law)) for law in chosen]
+    idle = replace(built.operation, load=array(0.0))
 
     def over(torque: Callable[..., Array], rates: np.ndarray, one: Built) -> np.ndarray:
         speed, degree = np.meshgrid(rates, degrees, indexing="ij")

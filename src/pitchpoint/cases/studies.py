@@ -6,12 +6,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
-import equinox as eqx
 import numpy as np
 import xarray as xr
 from jaxtyping import Array
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax
 from pitchpoint.cases import loss_map
 from pitchpoint.cases.build import Built, build, laws_of
 from pitchpoint.cases.document import Document, leaves, resolve
@@ -35,6 +34,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.units import si_unit
 
@@ -221,7 +221,7 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
     return tuple(f"{name}_{axis}" for axis in range(np.ndim(values)))
 
 
-@eqx.filter_jit
+@program
 def _drawing(mesh: Mesh) -> dict[str, Array]:
     return mesh.drawing()
 
@@ -235,7 +235,9 @@ def _cycle(built: Built) -> xr.Dataset:
         for index in chosen
     ]
     names = _names(models, chosen)
-    _demand_motion(np.stack([run["locked"].any(keepdims=True) for run in runs]), [built], names)
+    _demand_motion(
+        np.stack([np.asarray(run["locked"]).any(keepdims=True) for run in runs]), [built], names
+    )
     _demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)
     lanes = ("law", "node", "pair", "slice")
     common = {
@@ -262,7 +264,7 @@ def _cycle(built: Built) -> xr.Dataset:
         title="mesh cycle",
         warnings=warnings,
         film_law=film.name,
-        events=[float(phase) for phase in built.design.mesh.events()],
+        events=built.nominal["events"].tolist(),
     )
     if built.design.mesh.clearances:
         data["path"].attrs.update(long_name="angle from the long axis, in turns", symbol="p/2π")
@@ -412,8 +414,9 @@ def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
 
 
 def _backwards(variant: Variant, built: Built) -> Built:
-    point, mesh = built.case.operation, built.design.mesh
-    step = abs(float((mesh.driver @ mesh.motion) / (mesh.loaded @ mesh.motion)))
+    point, nominal = built.case.operation, built.nominal
+    driver, loaded = (nominal[name] @ nominal["motion"] for name in ("driver", "loaded"))
+    step = abs(float(driver / loaded))
     return variant.built(
         {
             "operation.driver": built.loaded,
@@ -541,7 +544,7 @@ def _in_groups(
 
 
 def _choose(models: Models, index: int) -> Models:
-    return replace(models, choice=jnp.asarray(index))
+    return replace(models, choice=array(index))
 
 
 def _names(models: Models, laws: tuple[int, ...] | list[int]) -> list[str]:

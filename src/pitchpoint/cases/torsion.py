@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import equinox as eqx
 import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
@@ -16,6 +15,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.loading.torsion import hysteresis, torsion
 from pitchpoint.materials.solids import Solid
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 
 __all__ = ["torsion_part"]
@@ -109,7 +109,7 @@ def _mean_friction(built: Built, models: Models, laws: tuple[int, ...]) -> np.nd
     return np.array([run["mean_friction"][0] for run in runs])
 
 
-@eqx.filter_jit
+@program
 def _torsion(
     mesh: Mesh,
     solids: tuple[Solid, Solid],

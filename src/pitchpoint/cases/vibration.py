@@ -31,6 +31,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 
 __all__ = [
@@ -101,7 +102,7 @@ def stiffness_part(built: Built) -> xr.Dataset:
     )
 
 
-@eqx.filter_jit
+@program
 def _stiffness(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
     mesh, load = design.mesh, operation.load
     found = mesh_stiffness(mesh, design.solids, models.compliance, load)
@@ -189,7 +190,7 @@ def _by_speed(runs: Sequence[Sequence[dict[str, np.ndarray]]], name: str) -> np.
     return np.stack([rising, falling[:, ::-1]])
 
 
-@eqx.filter_jit
+@program
 def _sweep(
     stiffness: MeshStiffness,
     moved: System,
@@ -240,7 +241,7 @@ def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str
     return in_chunks(lambda chunk: _read(chunk, grid, parting, reading), parts, size=TOGETHER)
 
 
-@eqx.filter_jit
+@program
 def _read(parts: Excited, grid: Grid, parting: bool, reading: Reading) -> dict[str, Array]:
     def one(
         stiffness: MeshStiffness, moved: System, driven: Excitation, backlash: Array
@@ -252,8 +253,8 @@ def _read(parts: Excited, grid: Grid, parting: bool, reading: Reading) -> dict[s
     return found
 
 
-_excited = eqx.filter_jit(excited)
-_ratio = eqx.filter_jit(frequency_ratio)
+_excited = program(excited)
+_ratio = program(frequency_ratio)
 
 
 def _loads(built: Built) -> list[Operation]:

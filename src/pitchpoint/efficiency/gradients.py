@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import ConvergenceError
+from pitchpoint.programs import program
 
 __all__ = ["input_torque_gradient", "mean_loss_gradient", "ripple_gradient"]
 
@@ -66,7 +67,7 @@ def _completed(inputs: Inputs) -> Inputs:
     return dataclasses.replace(design, mesh=design.mesh.completed()), operation
 
 
-@eqx.filter_jit
+@program
 def _gradient(inputs: Inputs, figure: str, models: Models) -> tuple[Array, Inputs]:
     def value(inputs: Inputs) -> Array:
         result: Array = getattr(cycle(*_completed(inputs), models), figure)
@@ -76,7 +77,7 @@ def _gradient(inputs: Inputs, figure: str, models: Models) -> tuple[Array, Input
     return found
 
 
-@eqx.filter_jit
+@program
 def _at_phase(inputs: Inputs, models: Models, phase: Float[Array, ""]) -> tuple[Array, Inputs]:
     def torque(inputs: Inputs) -> Array:
         return state(*_completed(inputs), phase, models).input_torque

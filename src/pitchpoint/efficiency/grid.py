@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.programs import program
 
 __all__ = ["Block", "state_grid"]
 
@@ -105,7 +106,7 @@ def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
     )
 
 
-@eqx.filter_jit
+@program
 def _block(inputs: Inputs, phase: Array, models: Models, steps: int) -> Columns:
     rows = inputs[1].load.shape[0]
     together = min(rows, 1 << max(0, (_CACHED // phase.shape[0]).bit_length() - 1))

@@ -1,6 +1,5 @@
 """Everything along one mesh cycle, for figures and tables: torques, and the state of every contact."""
 
-import equinox as eqx
 from jaxtyping import Array
 
 from pitchpoint._jax import jnp
@@ -8,11 +7,12 @@ from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
+from pitchpoint.programs import program
 
 __all__ = ["profile"]
 
 
-@eqx.filter_jit
+@program
 def profile(
     design: Design,
     operation: Operation,

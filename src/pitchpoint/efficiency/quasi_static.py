@@ -23,6 +23,7 @@ from pitchpoint.lubrication.rolling_resistance import RollingResistance
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
+from pitchpoint.programs import program
 
 __all__ = [
     "Cycle",
@@ -215,22 +216,22 @@ def engagement(
     return Engagement(phase, weight, contacts, share, body, nodes)
 
 
-@eqx.filter_jit
+@program
 def _nodes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
     return cycle_nodes(mesh, sharing, nodes)
 
 
-@eqx.filter_jit
+@program
 def _contacts(mesh: Mesh, phase: Each) -> Contacts:
     return mesh.contacts(phase)
 
 
-@eqx.filter_jit
+@program
 def _body(design: Design, contacts: Contacts) -> Coupling | None:
     return body_compliance(design.mesh, contacts, design.solids)
 
 
-@eqx.filter_jit
+@program
 def _shares(
     design: Design, contacts: Contacts, load: Each, models: Models, body: Coupling | None
 ) -> Lanes:
@@ -327,23 +328,24 @@ def state(
     if share is None:
         share = models.share(design, contacts, operation.load)
     arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
+    unloaded = Conditions(
+        contacts=contacts,
+        load=jnp.zeros_like(share),
+        nominal_load=carried / arm,
+        motion=mesh.motion,
+        speed=operation.speed,
+        modulus=design.modulus,
+        viscosity=oil.viscosity(temperature),
+        kinematic_viscosity=oil.kinematic_viscosity(temperature),
+        pressure_viscosity=oil.pressure_viscosity(temperature),
+        lubricant_factor=oil.lubricant_factor,
+        roughness_ra=design.roughness.mean_ra,
+        roughness_rq=design.roughness.composite_rq,
+        reference=mesh.reference,
+    )
 
     def conditions(load: Lanes) -> Conditions:
-        return Conditions(
-            contacts=contacts,
-            load=load,
-            nominal_load=carried / arm,
-            motion=mesh.motion,
-            speed=operation.speed,
-            modulus=design.modulus,
-            viscosity=oil.viscosity(temperature),
-            kinematic_viscosity=oil.kinematic_viscosity(temperature),
-            pressure_viscosity=oil.pressure_viscosity(temperature),
-            lubricant_factor=oil.lubricant_factor,
-            roughness_ra=design.roughness.mean_ra,
-            roughness_rq=design.roughness.composite_rq,
-            reference=mesh.reference,
-        )
+        return replace(unloaded, load=load)
 
     def friction(load: Lanes) -> Lanes:
         return models.coefficient(conditions(load))

@@ -2,19 +2,19 @@
 
 from dataclasses import replace
 
-import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.efficiency.drag import at_rest
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
+from pitchpoint.programs import program
 
 __all__ = ["no_load_torque", "starting_torque"]
 
 Each = Float[Array, "*b"]
 
 
-@eqx.filter_jit
+@program
 def no_load_torque(
     design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
 ) -> Each:
@@ -35,7 +35,7 @@ def no_load_torque(
     return cycle(design, idle, models, engaged=engaged).mean_input_torque
 
 
-@eqx.filter_jit
+@program
 def starting_torque(
     design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
 ) -> Each:

@@ -21,6 +21,7 @@ from pitchpoint.efficiency.quasi_static import (
     engagement,
 )
 from pitchpoint.loading.sharing import equal
+from pitchpoint.programs import program
 
 __all__ = ["CHUNK", "engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
 
@@ -105,7 +106,7 @@ def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:
     return {name: value for name, value in values.items() if jnp.ndim(value) == 0} | each
 
 
-@eqx.filter_jit
+@program
 def heat(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
     """Mean friction coefficient and loss factor at one operating point: what heats the teeth."""
     found = cycle(design, operation, models, nodes=6)
@@ -142,7 +143,8 @@ def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
 
 def _alike(one: Design, other: Design) -> bool:
     """True if both have the same drive in hand and equal solids."""
-    return one.mesh is other.mesh and bool(eqx.tree_equal(one.solids, other.solids))
+    solids = zip(jax.tree.leaves(one.solids), jax.tree.leaves(other.solids), strict=True)
+    return one.mesh is other.mesh and all(float(a) == float(b) for a, b in solids)
 
 
 def engaged(
@@ -190,7 +192,7 @@ def in_chunks(
     return {name: np.concatenate([part[name] for part in chunks]) for name in chunks[0]}
 
 
-@eqx.filter_jit
+@program
 def _summaries(points: Prepared, models: Models) -> dict[str, Array]:
     result: dict[str, Array] = eqx.filter_vmap(
         lambda design, operation, known: summary(design, operation, models, known)

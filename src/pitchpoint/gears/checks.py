@@ -6,12 +6,12 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, NoReturn
 
-import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
+from pitchpoint.programs import program
 from pitchpoint.roots import root
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def _measure(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
     ]
 
 
-@eqx.filter_jit
+@program
 def _measures(pair: CylindricalPair) -> list[dict[str, Float[Array, ""]]]:
     """Measures of the pair and of each gear, under the names of their plain classes."""
     first, second = pair.gears

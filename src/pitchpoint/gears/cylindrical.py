@@ -1,12 +1,14 @@
 """Pair of involute gears on parallel axes, external or internal, spur or helical, and its contacts."""
 
 import dataclasses
-from typing import Self
+from functools import cached_property
+from typing import ClassVar, Self
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
@@ -19,6 +21,7 @@ from pitchpoint.gears.involute import (
 )
 from pitchpoint.gears.mesh import Mesh, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.programs import program
 from pitchpoint.roots import root
 
 __all__ = ["CylindricalPair", "zero_backlash_centre_distance"]
@@ -71,6 +74,109 @@ def zero_backlash_centre_distance(
     return jnp.where((value > 0.0) & (value < 1.0), distance, jnp.nan)
 
 
+class LineOfAction:
+    """Lengths on the line of action of a pair, and what they follow from, each computed when first asked for.
+
+    One program asks for the same angles and radii in many places; this record answers one question of it
+    and is then thrown away, so that no traced value outlives its trace.
+
+    Args:
+        pair: whose dimensions count.
+    """
+
+    def __init__(self, pair: "CylindricalPair") -> None:
+        self.pair = pair
+
+    @cached_property
+    def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
+        """Both gears for themselves."""
+        return self.pair.gears
+
+    @cached_property
+    def transverse_pressure_angle(self) -> Float[Array, ""]:
+        """Pressure angle in the transverse section alpha_t [rad]."""
+        return transverse_angle(self.pair.pressure_angle, self.pair.helix_angle)
+
+    @cached_property
+    def slope(self) -> Float[Array, ""]:
+        """Cosine of the helix angle on the base cylinders."""
+        return jnp.cos(self.pair.base_helix_angle)
+
+    @cached_property
+    def base_radii(self) -> Float[Array, "2"]:
+        """Base radii r_b1, r_b2 [m]."""
+        reference = self.pair.teeth * self.pair.module / (2.0 * jnp.cos(self.pair.helix_angle))
+        return reference * jnp.cos(self.transverse_pressure_angle)
+
+    @cached_property
+    def distance(self) -> Float[Array, ""]:
+        """Centre distance with the sign that the sum of the radii has [m]."""
+        return -self.pair.centre_distance if self.pair.internal else self.pair.centre_distance
+
+    @cached_property
+    def working_radii(self) -> Float[Array, "2"]:
+        """Radii of the pitch circles in operation r_w1, r_w2 [m]."""
+        return self.distance * self.pair.teeth / jnp.sum(self.pair.teeth)
+
+    @cached_property
+    def cosine(self) -> Float[Array, ""]:
+        """Cosine of the working pressure angle: cos(alpha_wt) = (r_b1 + r_b2)/a."""
+        return jnp.sum(self.base_radii) / self.distance
+
+    @cached_property
+    def sine(self) -> Float[Array, ""]:
+        """Sine of the working pressure angle."""
+        return jnp.sin(jnp.arccos(self.cosine))
+
+    @cached_property
+    def base_pitch(self) -> Float[Array, ""]:
+        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
+        return 2.0 * jnp.pi * self.base_radii[0] / self.pair.teeth[0]
+
+    @cached_property
+    def tangent_length(self) -> Float[Array, ""]:
+        """Length N1 N2 between the base circles [m]; negative if gear 2 is a ring."""
+        return self.distance * self.sine
+
+    @cached_property
+    def limits(self) -> Float[Array, "2"]:
+        """Positions of A and E from N1 [m]: tip circle or form circle of an undercut, the nearer one."""
+        first, second = self.gears
+        start = self.tangent_length - second.side * second.tip_roll_length
+        end = first.tip_roll_length
+        if first.undercut:
+            start = jnp.maximum(start, first.form_roll_length)
+        if second.undercut:
+            end = jnp.minimum(end, self.tangent_length - second.form_roll_length)
+        return jnp.stack([start, end])
+
+    @cached_property
+    def pitch_position(self) -> Float[Array, ""]:
+        """Position of the pitch point C from N1 [m]."""
+        return self.working_radii[0] * self.sine
+
+    @cached_property
+    def pitch_path(self) -> Float[Array, ""]:
+        """Position of the pitch point from A [base pitches]."""
+        return (self.pitch_position - self.limits[0]) / self.base_pitch
+
+    @cached_property
+    def transverse_contact_ratio(self) -> Float[Array, ""]:
+        """Transverse contact ratio eps_alpha."""
+        return jnp.asarray((self.limits[1] - self.limits[0]) / self.base_pitch)
+
+    @cached_property
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+        pair = self.pair
+        return pair.face_width * jnp.sin(pair.helix_angle) / (jnp.pi * pair.module)
+
+    @cached_property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
+        return self.transverse_contact_ratio + self.overlap_ratio
+
+
 class CylindricalPair(Mesh):
     """Two gears on fixed parallel axes. Coordinates: rotation of gear 1 and of gear 2.
 
@@ -105,6 +211,8 @@ class CylindricalPair(Mesh):
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
     """
+
+    pitch_point: ClassVar[bool] = True
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
@@ -158,9 +266,14 @@ class CylindricalPair(Mesh):
         return first.section(self.rim_ratio[0]), second.section(self.rim_ratio[1])
 
     @property
+    def line(self) -> LineOfAction:
+        """Lengths on the line of action, for one question."""
+        return LineOfAction(self)
+
+    @property
     def transverse_pressure_angle(self) -> Float[Array, ""]:
         """Pressure angle in the transverse section alpha_t [rad]."""
-        return transverse_angle(self.pressure_angle, self.helix_angle)
+        return self.line.transverse_pressure_angle
 
     @property
     def base_helix_angle(self) -> Float[Array, ""]:
@@ -170,8 +283,7 @@ class CylindricalPair(Mesh):
     @property
     def base_radii(self) -> Float[Array, "2"]:
         """Base radii r_b1, r_b2 [m]."""
-        reference = self.teeth * self.module / (2.0 * jnp.cos(self.helix_angle))
-        return reference * jnp.cos(self.transverse_pressure_angle)
+        return self.line.base_radii
 
     @property
     def tip_radii(self) -> Float[Array, "2"]:
@@ -193,69 +305,60 @@ class CylindricalPair(Mesh):
     def clearance_keeping_tip_alteration(self) -> Float[Array, ""]:
         """Tip alteration coefficient k that keeps the rack's tip clearance; never lengthens (ISO 21771)."""
         reference = jnp.sum(self.teeth) * self.module / (2.0 * jnp.cos(self.helix_angle))
-        change = (self._distance - reference) / self.module - jnp.sum(self.profile_shift)
+        change = (self.line.distance - reference) / self.module - jnp.sum(self.profile_shift)
         return jnp.minimum(change, 0.0)
 
     @property
     def working_radii(self) -> Float[Array, "2"]:
         """Radii of the pitch circles in operation r_w1, r_w2 [m]."""
-        return self._distance * self.teeth / jnp.sum(self.teeth)
+        return self.line.working_radii
 
     @property
     def working_pressure_angle(self) -> Float[Array, ""]:
         """Transverse pressure angle in operation [rad]: cos(alpha_wt) = (r_b1 + r_b2)/a."""
-        return jnp.arccos(jnp.sum(self.base_radii) / self._distance)
+        return jnp.arccos(self.line.cosine)
 
     @property
     def base_pitch(self) -> Float[Array, ""]:
         """Transverse base pitch p_bt, the pitch on the line of action [m]."""
-        return 2.0 * jnp.pi * self.base_radii[0] / self.teeth[0]
+        return self.line.base_pitch
 
     @property
     def tangent_length(self) -> Float[Array, ""]:
         """Length N1 N2 between the base circles [m]; negative if gear 2 is a ring."""
-        return self._distance * jnp.sin(self.working_pressure_angle)
+        return self.line.tangent_length
 
     @property
     def limits(self) -> Float[Array, "2"]:
         """Positions of A and E from N1 [m]: tip circle or form circle of an undercut, the nearer one."""
-        first, second = self.gears
-        start = self.tangent_length - second.side * second.tip_roll_length
-        end = first.tip_roll_length
-        if first.undercut:
-            start = jnp.maximum(start, first.form_roll_length)
-        if second.undercut:
-            end = jnp.minimum(end, self.tangent_length - second.form_roll_length)
-        return jnp.stack([start, end])
+        return self.line.limits
 
     @property
     def pitch_position(self) -> Float[Array, ""]:
         """Position of the pitch point C from N1 [m]."""
-        return self.working_radii[0] * jnp.sin(self.working_pressure_angle)
+        return self.line.pitch_position
 
     @property
     def points(self) -> Float[Array, "5"]:
         """Positions of A, B, C, D, E from N1 [m]; B and D one base pitch from the far end (1 < eps < 2)."""
-        start, end = self.limits
-        return jnp.stack(
-            [start, end - self.base_pitch, self.pitch_position, start + self.base_pitch, end]
-        )
+        line = self.line
+        (start, end), pitch = line.limits, line.base_pitch
+        return jnp.stack([start, end - pitch, line.pitch_position, start + pitch, end])
 
     @property
     def transverse_contact_ratio(self) -> Float[Array, ""]:
         """Transverse contact ratio eps_alpha."""
-        start, end = self.limits
-        return jnp.asarray((end - start) / self.base_pitch)
+        return self.line.transverse_contact_ratio
 
     @property
     def overlap_ratio(self) -> Float[Array, ""]:
         """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
-        return self.face_width * jnp.sin(self.helix_angle) / (jnp.pi * self.module)
+        return self.line.overlap_ratio
 
     @property
     def contact_ratio(self) -> Float[Array, ""]:
         """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
-        return self.transverse_contact_ratio + self.overlap_ratio
+        return self.line.contact_ratio
 
     def specific_sliding(self, position: Float[Array, "*b"]) -> Float[Array, "*b 2"]:
         """Sliding speed over own rolling speed of each gear at positions from N1 [m] (ISO 21771).
@@ -301,14 +404,14 @@ class CylindricalPair(Mesh):
     @property
     def reference(self) -> Reference:
         """Values at the pitch point C."""
-        angle, slope = self.working_pressure_angle, jnp.cos(self.base_helix_angle)
-        speed = jnp.sum(self.driver * jnp.abs(self.working_radii))
-        first, second = self.pitch_position, self.tangent_length - self.pitch_position
+        line = self.line
+        speed = jnp.sum(self.driver * jnp.abs(line.working_radii))
+        first, second = line.pitch_position, line.tangent_length - line.pitch_position
         return Reference(
             width=self.face_width,
-            line_length=self.face_width / slope,
-            radius=first * second / self.tangent_length / slope,
-            sum_speed=2.0 * speed * jnp.sin(angle),
+            line_length=self.face_width / line.slope,
+            radius=first * second / line.tangent_length / line.slope,
+            sum_speed=2.0 * speed * line.sine,
             pitch_line_speed=speed,
         )
 
@@ -318,26 +421,27 @@ class CylindricalPair(Mesh):
         Of helical teeth also those at which a contact line stops growing and begins to shrink, and
         at which the pitch line enters and leaves it.
         """
-        pitch = self._pitch_path
-        found = [jnp.zeros_like(pitch), self.contact_ratio, pitch]
+        line = self.line
+        found = [jnp.zeros_like(line.pitch_path), line.contact_ratio, line.pitch_path]
         if self.helical:
-            overlap = self.overlap_ratio
-            found += [self.transverse_contact_ratio, overlap, pitch + overlap]
+            overlap = line.overlap_ratio
+            found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
-        across, share = self._lines(entered)
-        path = entered - self.overlap_ratio * across if self.helical else entered
-        active = jnp.broadcast_to(entered <= self.contact_ratio, jnp.shape(path))
-        position = jnp.where(active, self.limits[0] + path * self.base_pitch, self.pitch_position)
-        rolling = jnp.stack([position, self.tangent_length - position])
+        line, side = self.line, self._side
+        across, share = self._lines(entered, line)
+        path = entered - line.overlap_ratio * across if self.helical else entered
+        active = jnp.broadcast_to(entered <= line.contact_ratio, jnp.shape(path))
+        position = jnp.where(active, line.limits[0] + path * line.base_pitch, line.pitch_position)
+        rolling = jnp.stack([position, line.tangent_length - position])
         none, lanes = jnp.zeros_like(position), jnp.shape(position)
-        first, second = self._side * rolling[0], -self._side * rolling[1]
-        slope, base = jnp.cos(self.base_helix_angle), self.base_radii
-        arms = self._side * base * slope
+        first, second = side * rolling[0], -side * rolling[1]
+        slope, base = line.slope, line.base_radii
+        arms = side * base * slope
         return Contacts(
             active=active,
             path=path,
@@ -429,7 +533,7 @@ class CylindricalPair(Mesh):
         return jnp.stack([start, self.tangent_length - end])
 
     def _lines(
-        self, entered: Float[Array, "pair 1 *b"]
+        self, entered: Float[Array, "pair 1 *b"], line: LineOfAction
     ) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
         """Middles of the slices of each contact line, and the share of the face that each slice takes.
 
@@ -438,15 +542,16 @@ class CylindricalPair(Mesh):
 
         Args:
             entered: base pitches since the pair entered.
+            line: of the pair.
         """
         if not self.helical:
             return jnp.full_like(entered, 0.5), jnp.ones_like(entered)
-        overlap = self.overlap_ratio
-        low = jnp.clip((entered - self.transverse_contact_ratio) / overlap, 0.0, 1.0)
+        overlap = line.overlap_ratio
+        low = jnp.clip((entered - line.transverse_contact_ratio) / overlap, 0.0, 1.0)
         high = jnp.clip(entered / overlap, 0.0, 1.0)
         if self.slices == 1:
             return (low + high) / 2.0, jnp.maximum(high - low, _SHORTEST)
-        pitch_line = jnp.clip((entered - self._pitch_path) / overlap, low, high)
+        pitch_line = jnp.clip((entered - line.pitch_path) / overlap, low, high)
         parts = [
             _sliced(*ends, self.slices // 2) for ends in ((low, pitch_line), (pitch_line, high))
         ]
@@ -454,18 +559,8 @@ class CylindricalPair(Mesh):
         return jnp.concatenate(middles, axis=1), jnp.concatenate(shares, axis=1)
 
     @property
-    def _pitch_path(self) -> Float[Array, ""]:
-        """Position of the pitch point from A [base pitches]."""
-        return (self.pitch_position - self.limits[0]) / self.base_pitch
-
-    @property
     def _side(self) -> Float[Array, ""]:
         return jnp.where(self.right_flank, -1.0, 1.0)
-
-    @property
-    def _distance(self) -> Float[Array, ""]:
-        """Centre distance with the sign that the sum of the radii has [m]."""
-        return -self.centre_distance if self.internal else self.centre_distance
 
     def _shortened_tips(self) -> Float[Array, "2"]:
         """Tip alterations at which the tips that are to be shortened are as thick as asked."""
@@ -563,68 +658,60 @@ def build_cylindrical_pair(
     """
     helical = bool(helix_angle != 0.0)
     pair = CylindricalPair(
-        teeth=_array(teeth),
-        module=_array(module),
-        pressure_angle=_array(pressure_angle),
-        helix_angle=_array(helix_angle),
-        profile_shift=_array(profile_shift),
-        tip_alteration=_array(tip_alteration or (0.0, 0.0)),
-        addendum=_array(addendum),
-        dedendum=_array(dedendum or (addendum[0] + 0.25, addendum[1] + 0.25)),
-        fillet_radius=_array(fillet_radius),
-        least_tip=_array(least_tip),
-        face_width=_array(face_width),
-        centre_distance=_array(centre_distance or 0.0),
-        rim_ratio=_array(rim_ratio or (RIM_RATIO, RING_RIM_RATIO if teeth[1] < 0 else RIM_RATIO)),
-        wheel_drives=jnp.asarray(driver == 2),
-        right_flank=jnp.asarray(right_flank),
+        teeth=array(teeth, jnp.float64),
+        module=array(module, jnp.float64),
+        pressure_angle=array(pressure_angle, jnp.float64),
+        helix_angle=array(helix_angle, jnp.float64),
+        profile_shift=array(profile_shift, jnp.float64),
+        tip_alteration=array(tip_alteration or (0.0, 0.0), jnp.float64),
+        addendum=array(addendum, jnp.float64),
+        dedendum=array(dedendum or (addendum[0] + 0.25, addendum[1] + 0.25), jnp.float64),
+        fillet_radius=array(fillet_radius, jnp.float64),
+        least_tip=array(least_tip, jnp.float64),
+        face_width=array(face_width, jnp.float64),
+        centre_distance=array(centre_distance or 0.0, jnp.float64),
+        rim_ratio=array(rim_ratio or (RIM_RATIO, RING_RIM_RATIO if teeth[1] < 0 else RIM_RATIO)),
+        wheel_drives=array(driver == 2),
+        right_flank=array(right_flank),
         follows=(centre_distance is None, tip_alteration is None),
         shortened=(False, False),
         undercut=(False, False),
-        crossing=jnp.full(2, jnp.asarray(pressure_angle, dtype=jnp.float64)),
+        crossing=array((pressure_angle, pressure_angle), jnp.float64),
         helical=helical,
         internal=bool(teeth[1] < 0),
         lanes=2,
         slices=slices if helical else 1,
     )
-    pair, limit, thickness = _complete(pair)
-    first, second = (bool(one) for one in pair.profile_shift < limit)
+    pair, ratio, limit, thickness = _complete(pair)
+    first, second = (bool(one) for one in np.asarray(profile_shift) < np.asarray(limit))
     if first or (second and not pair.internal):
         undercut = (first, second and not pair.internal)
-        pair = _with_crossings(dataclasses.replace(pair, undercut=undercut))
+        pair, ratio = _with_crossings(dataclasses.replace(pair, undercut=undercut))
     asked = least_tip > 0.0 and tip_alteration is None
-    short = tuple(asked and bool(one < least_tip) for one in thickness)
+    short = tuple(asked and bool(one < least_tip) for one in np.asarray(thickness))
     if any(short):
-        pair, _, _ = _complete(dataclasses.replace(pair, shortened=(short[0], short[1])))
-    ratio = float(_contact_ratio(pair))
-    if not 0.0 < ratio < _LANES_FOR_RATIO_BELOW[-1]:
+        pair, ratio, _, _ = _complete(dataclasses.replace(pair, shortened=(short[0], short[1])))
+    if not 0.0 < float(ratio) < _LANES_FOR_RATIO_BELOW[-1]:
         check_cylindrical(pair)  # says why, in gear words
-    return dataclasses.replace(pair, lanes=lanes_for(ratio, helical=helical))
+    return dataclasses.replace(pair, lanes=lanes_for(float(ratio), helical=helical))
 
 
-@eqx.filter_jit
-def _contact_ratio(pair: CylindricalPair) -> Float[Array, ""]:
-    return pair.contact_ratio
-
-
-@eqx.filter_jit
+@program
 def _complete(
     pair: CylindricalPair,
-) -> tuple[CylindricalPair, Float[Array, "2"], Float[Array, "2"]]:
-    """Pair with the dimensions that follow from the others, undercut limits, tip thicknesses in modules."""
+) -> tuple[CylindricalPair, Float[Array, ""], Float[Array, "2"], Float[Array, "2"]]:
+    """Pair with the dimensions that follow, contact ratio, undercut limits, tip thicknesses in modules."""
     pair = pair.completed()
     return (
         pair,
+        pair.contact_ratio,
         jnp.stack([gear.undercut_limit for gear in pair.gears]),
         jnp.stack([gear.tip_thickness for gear in pair.gears]) / pair.module,
     )
 
 
-@eqx.filter_jit
-def _with_crossings(pair: CylindricalPair) -> CylindricalPair:
+@program
+def _with_crossings(pair: CylindricalPair) -> tuple[CylindricalPair, Float[Array, ""]]:
     found = [gear.crossing_angle() if gear.undercut else gear.crossing for gear in pair.gears]
-    return dataclasses.replace(pair, crossing=jnp.stack(found))
-
-
-def _array(value: object) -> jax.Array:
-    return jnp.asarray(value, dtype=jnp.float64)
+    pair = dataclasses.replace(pair, crossing=jnp.stack(found))
+    return pair, pair.contact_ratio

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import pi, radians
 
-import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
@@ -22,6 +21,7 @@ from pitchpoint.gears.strain_wave_design import (
 )
 from pitchpoint.gears.tooth_motion import ToothMotion
 from pitchpoint.gears.wave_generator import TERMS, NeutralLine
+from pitchpoint.programs import program
 
 __all__ = ["DoubleArcFit", "Merit", "fit_double_arc", "merit_of"]
 
@@ -300,7 +300,7 @@ def _first_drive(
     raise ConvergenceError(f"no tooth that was found makes a drive; of the last one, {refusal}")
 
 
-@eqx.filter_jit
+@program
 def _objectives(
     values: Float[Array, "7"], *, teeth: Float[Array, "2"], fixed: Float[Array, "6"]
 ) -> Four:

@@ -2,7 +2,7 @@
 
 import abc
 from math import inf
-from typing import Self
+from typing import ClassVar, Self
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -65,7 +65,12 @@ class Mesh(eqx.Module):
 
     One period of `phase` is one engagement: the state of the mesh repeats with it. Coordinates are
     rotations counter-clockwise [rad], or translations [m] where a family has them.
+
+    Attributes:
+        pitch_point: of the class; True if `reference` is not None.
     """
+
+    pitch_point: ClassVar[bool] = False
 
     def completed(self) -> Self:
         """The same mesh with dimensions that follow from others computed from them again.

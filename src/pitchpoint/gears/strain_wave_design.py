@@ -3,7 +3,6 @@
 from dataclasses import dataclass, fields, replace
 from math import ceil, floor, inf, pi, radians
 
-import equinox as eqx
 import numpy as np
 
 from pitchpoint._jax import jax, jnp
@@ -15,6 +14,7 @@ from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.gears.strain_wave import WINDOW, StrainWave, Survey
 from pitchpoint.gears.tooth_motion import ToothMotion
 from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
+from pitchpoint.programs import program
 
 __all__ = [
     "DOUBLE_ARCS",
@@ -243,7 +243,7 @@ def double_arc_flank(
     return flank
 
 
-@eqx.filter_jit
+@program
 def _arcs(flank: DoubleArcFlank) -> dict[str, jnp.ndarray]:
     return {
         "tangent": flank.tangent_length,
@@ -398,14 +398,14 @@ def _last(found: Survey, module: float) -> float:
     return pi / 2.0 if near[np.asarray(found.angle) > WINDOW[1]].any() else WINDOW[1]
 
 
-@eqx.filter_jit
+@program
 def _prepared(flank: Flank) -> Flank:
     return flank.prepared()
 
 
-_sweep = eqx.filter_jit(swept)
-_tip = eqx.filter_jit(tip_with_land)
-_given_groove = eqx.filter_jit(given)
+_sweep = program(swept)
+_tip = program(tip_with_land)
+_given_groove = program(given)
 
 
 def _swept(
@@ -440,7 +440,7 @@ def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: Tooth
     return _given_groove(flank, jnp.asarray(tip), high)
 
 
-@eqx.filter_jit
+@program
 def _surveyed(drive: StrainWave) -> Survey:
     return drive.survey()
 

@@ -3,12 +3,12 @@
 import math
 from dataclasses import replace
 
-import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.mesh import Mesh, StandardPair
 from pitchpoint.materials.solids import Solid
+from pitchpoint.programs import program
 
 __all__ = [
     "STEEL_MODULUS",
@@ -169,7 +169,7 @@ def estimate(
     }, warnings
 
 
-@eqx.filter_jit
+@program
 def _estimate(
     mesh: Mesh, solids: tuple[Solid, Solid], load: Float[Array, ""]
 ) -> tuple[StandardPair, Float[Array, ""], Float[Array, ""]]:

@@ -12,6 +12,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.clearances import shared_load
 from pitchpoint.loading.yielding import Yielding
+from pitchpoint.programs import program
 from pitchpoint.registry import Registry
 
 __all__ = [
@@ -76,7 +77,6 @@ class LoadSharing:
     def _limit(self, mesh: Mesh) -> str | None:
         """What keeps the model from holding for this mesh, as the end of a sentence."""
         low, high = self.ratio_range
-        anywhere = (low, high) == (0.0, float("inf"))
         if self.by_stiffness and not mesh.toothed:
             return "needs teeth that yield, and this mesh has none"
         if self.flanks == "touching" and mesh.clearances:
@@ -85,14 +85,19 @@ class LoadSharing:
             )
         if self.flanks == "apart" and not mesh.clearances:
             return "holds for strain-wave gears, and these are not"
-        if self.straight and float(mesh.overlap_ratio) > 0.0:
+        whole, overlap = map(float, _ratios(mesh))
+        if self.straight and overlap > 0.0:
             return "holds for spur gears, and these are helical"
-        if not anywhere and not low < float(mesh.contact_ratio) < high:
+        if not low < whole < high:
             return (
-                f"holds for contact ratios between {low:g} and {high:g}, this pair has "
-                f"{float(mesh.contact_ratio):.4g}"
+                f"holds for contact ratios between {low:g} and {high:g}, this pair has {whole:.4g}"
             )
         return None
+
+
+@program
+def _ratios(mesh: Mesh) -> tuple[Float[Array, ""], Float[Array, ""]]:
+    return mesh.contact_ratio, mesh.overlap_ratio
 
 
 def equal(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:

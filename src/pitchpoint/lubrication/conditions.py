@@ -2,12 +2,13 @@
 
 import inspect
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.errors import InputError
@@ -208,4 +209,11 @@ def evaluate(
     """
     wanted, _ = arguments(law)
     values = {name: getattr(conditions, name) for name in wanted}
-    return jnp.broadcast_to(law(**values, **(parameters or {})), conditions.load.shape)
+    found = _once(law)(**values, **(parameters or {}))
+    return jnp.broadcast_to(found, conditions.load.shape)
+
+
+@lru_cache(maxsize=64)
+def _once(law: Callable[..., Array]) -> Callable[..., Array]:
+    """The law as a function that is traced once for all places of a program that ask it."""
+    return jax.jit(law)

@@ -12,7 +12,7 @@ from typing import Any, Literal, get_args
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.errors import InputError
 
 __all__ = ["Datum", "Status", "as_array", "check_positive", "read_data", "read_datum"]
@@ -32,7 +32,7 @@ class Datum:
 
 def as_array(value: ArrayLike) -> Float[Array, "..."]:
     """Return a float64 array: a leaf that is a Python float would retrace for each value."""
-    return jnp.asarray(value, dtype=jnp.float64)
+    return array(value, jnp.float64)
 
 
 def read_data(name: str) -> dict[str, Any]:

@@ -6,7 +6,6 @@ import math
 import os
 import tempfile
 from collections.abc import Callable, Mapping
-from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,6 @@ __all__ = [
     "fingerprint",
     "load",
     "make_folder",
-    "package_state",
     "save",
     "without_nan",
     "write_text",
@@ -62,14 +60,6 @@ def fingerprint(*parts: Any) -> str:
     """Short digest of inputs: equal inputs of one version of the package, equal digest."""
     text = json.dumps([version("pitchpoint"), *parts], sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-@cache
-def package_state() -> list[tuple[str, int, int]]:
-    """Size and time of every file of the package: changed code or data computes again."""
-    root = Path(__file__).parents[1]
-    kept = sorted(path for path in root.rglob("*") if path.suffix in (".py", ".toml"))
-    return [(path.name, path.stat().st_size, path.stat().st_mtime_ns) for path in kept]
 
 
 def without_nan(value: Any) -> Any:

@@ -1,0 +1,278 @@
+"""Programs that are traced and compiled once, and kept for later processes.
+
+JAX keeps compiled code between processes, but traces and lowers Python anew in each of them, which takes
+longer than the numbers themselves. A program of this module is kept as the portable form that tracing
+gives it (`jax.export`), under a digest of all that decides it: the package's own files, the version of
+JAX, the structure of the arguments. What has no such name (a law of the user's own) is traced as ever.
+"""
+
+import hashlib
+import json
+import logging
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from functools import cache, partial, update_wrapper
+from importlib import import_module
+from pathlib import Path
+from types import FunctionType
+from typing import Any, Generic, ParamSpec, TypeVar
+from weakref import WeakSet
+
+import equinox as eqx
+import numpy as np
+from jax import export
+
+from pitchpoint._jax import cache_folder, jax
+
+__all__ = ["Program", "fast_program", "forget", "package_state", "program"]
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_LOG = logging.getLogger(__name__)
+
+QUICK: Mapping[str, bool | int] = {
+    "xla_backend_optimization_level": 0,
+    "xla_llvm_disable_expensive_passes": True,
+    "xla_cpu_use_fusion_emitters": False,
+}
+"""Options for programs whose numbers take milliseconds: they compile in a third of the time."""
+
+
+_CUSTOM = [
+    export.DisabledSafetyCheck.custom_call(f"lapack_d{name}_ffi")
+    for name in ("potrf", "getrf", "trsm", "geev", "syevd", "gesdd", "geqrf", "orgqr")
+]
+"""Calls whose form may change with the next version of JAX: programs are kept for one version alone."""
+
+
+class _NamelessError(Exception):
+    """A value that has no name of its own outside this process."""
+
+
+@cache
+def package_state() -> list[tuple[str, int, int]]:
+    """Size and time of every file of the package: changed code or data computes again."""
+    root = Path(__file__).parent
+    kept = sorted(path for path in root.rglob("*") if path.suffix in (".py", ".toml"))
+    return [(str(path.relative_to(root)), *_size_and_time(path)) for path in kept]
+
+
+def _size_and_time(path: Path) -> tuple[int, int]:
+    found = path.stat()
+    return found.st_size, found.st_mtime_ns
+
+
+class Program(Generic[P, R]):
+    """A compiled function: arrays among its arguments are traced, all else is static.
+
+    Inside another program, or where derivatives are taken, it is traced as part of what surrounds it.
+
+    Args:
+        function: of arrays and modules; pure.
+        options: of the compiler.
+    """
+
+    def __init__(self, function: Callable[P, R], options: Mapping[str, Any]) -> None:
+        self.function = function
+        self.options = dict(options)
+        self.traced = eqx.filter_jit(function)
+        self.ready: dict[Any, Callable[..., Any] | None] = {}
+        update_wrapper(self, function)
+        _MADE.add(self)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Results of the function; NumPy and JAX arrays count alike as arguments."""
+        leaves, structure = jax.tree.flatten((args, kwargs))
+        arrays = [leaf for leaf in leaves if _is_array(leaf)]
+        if any(isinstance(leaf, jax.core.Tracer) for leaf in arrays):
+            return self.traced(*args, **kwargs)
+        static = tuple(None if _is_array(leaf) else (leaf,) for leaf in leaves)
+        key = structure, static, tuple((leaf.shape, leaf.dtype) for leaf in arrays)
+        if key not in self.ready:
+            self.ready[key] = self._made(structure, static, arrays, (args, kwargs))
+        compute = self.ready[key]
+        found: R = self.traced(*args, **kwargs) if compute is None else compute(*arrays)
+        return found
+
+    def _made(
+        self, structure: Any, static: tuple[Any, ...], arrays: list[Any], given: Any
+    ) -> Callable[..., Any] | None:
+        """What computes for arguments of this structure, kept before or traced now; None without a name."""
+        try:
+            path = self._path(given)
+            kept = _read(path)
+            if kept is None:
+                kept = self._exported(_Flat(self.function, structure, static), arrays)
+                _write(path, *kept)
+        except _NamelessError:
+            return None
+        outline, blob = kept
+        call = jax.jit(export.deserialize(bytearray(blob)).call, compiler_options=self.options)
+        return lambda *leaves: _rebuilt(outline, iter(call(*leaves)))
+
+    def _path(self, given: Any) -> Path:
+        """File of the program for such arguments."""
+        folder = cache_folder()
+        if folder is None:
+            raise _NamelessError
+        told = [_surroundings(), _name(self.function), sorted(self.options.items()), _text(given)]
+        digest = hashlib.sha256(json.dumps(told).encode()).hexdigest()
+        return folder / "programs" / digest[:40]
+
+    def _exported(self, flat: "_Flat", arrays: list[Any]) -> tuple[Any, bytes]:
+        """Outline of the results and the portable form of what computes their arrays."""
+        shapes = [jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) for leaf in arrays]
+        made = export.export(jax.jit(flat), disabled_checks=_CUSTOM)(*shapes)
+        return flat.outline, bytes(made.serialize())
+
+
+_MADE: "WeakSet[Program[..., Any]]" = WeakSet()
+
+
+def forget() -> None:
+    """Give back what programs hold in memory; what is on disk stays."""
+    for one in _MADE:
+        one.ready.clear()
+    jax.clear_caches()
+
+
+def program(function: Callable[P, R]) -> Program[P, R]:
+    """A program that compiles quickly, for figures that take milliseconds; a decorator."""
+    return Program(function, QUICK)
+
+
+def fast_program(function: Callable[P, R]) -> Program[P, R]:
+    """A program that the compiler works hard on, for many states at once; a decorator."""
+    return Program(function, {})
+
+
+class _Flat:
+    """The function of the arrays alone; remembers how its results are put together."""
+
+    def __init__(
+        self, function: Callable[..., Any], structure: Any, static: tuple[Any, ...]
+    ) -> None:
+        self.function, self.structure, self.static = function, structure, static
+        self.outline: Any = None
+        self.__name__ = self.__qualname__ = getattr(function, "__name__", "program")
+
+    def __call__(self, *arrays: Any) -> list[Any]:
+        given = iter(arrays)
+        leaves = [next(given) if held is None else held[0] for held in self.static]
+        args, kwargs = jax.tree.unflatten(self.structure, leaves)
+        found: list[Any] = []
+        self.outline = _outline(self.function(*args, **kwargs), found)
+        return found
+
+
+def _is_array(leaf: Any) -> bool:
+    return isinstance(leaf, jax.Array | np.ndarray | np.generic)
+
+
+def _outline(value: Any, leaves: list[Any]) -> Any:
+    """How a result is put together, as JSON; its arrays are added to `leaves`."""
+    if _is_array(value):
+        leaves.append(value)
+        return "array"
+    if value is None or isinstance(value, bool | int | float | str):
+        return {"value": value}
+    if isinstance(value, dict):
+        return {"dict": {key: _outline(item, leaves) for key, item in value.items()}}
+    if isinstance(value, eqx.Module):
+        parts = {one.name: _outline(getattr(value, one.name), leaves) for one in fields(value)}
+        return {"module": _name(type(value)), "parts": parts}
+    if type(value) in (list, tuple):
+        return {type(value).__name__: [_outline(item, leaves) for item in value]}
+    raise _NamelessError
+
+
+def _rebuilt(outline: Any, leaves: Iterator[Any]) -> Any:
+    """A result from its outline and its arrays."""
+    if outline == "array":
+        return next(leaves)
+    if "value" in outline:
+        return outline["value"]
+    if "dict" in outline:
+        return {key: _rebuilt(item, leaves) for key, item in outline["dict"].items()}
+    if "module" in outline:
+        return _module(outline, leaves)
+    kind, items = next(iter(outline.items()))
+    found = [_rebuilt(item, leaves) for item in items]
+    return tuple(found) if kind == "tuple" else found
+
+
+def _module(outline: Any, leaves: Iterator[Any]) -> Any:
+    module, _, name = outline["module"].partition(":")
+    made = object.__new__(getattr(import_module(module), name))
+    for key, part in outline["parts"].items():
+        object.__setattr__(made, key, _rebuilt(part, leaves))
+    return made
+
+
+def _surroundings() -> list[Any]:
+    """What decides about every program beside its own arguments."""
+    flags = os.environ.get("XLA_FLAGS", "")
+    device = jax.devices()[0]
+    return [package_state(), jax.__version__, device.platform, device.device_kind, flags]
+
+
+def _text(value: Any) -> Any:
+    """The structure of arguments as JSON: what tracing sees of them, without the numbers in arrays.
+
+    Raises:
+        _NamelessError: there is something that a later process could not recognise.
+    """
+    if _is_array(value):
+        return [str(value.dtype), list(value.shape)]
+    if value is None or isinstance(value, bool | int | float | str):
+        return [type(value).__name__, repr(value)]
+    if isinstance(value, Mapping):
+        return [type(value).__name__, [[_text(key), _text(item)] for key, item in value.items()]]
+    if isinstance(value, list | tuple):
+        return [type(value).__name__, [_text(item) for item in value]]
+    if isinstance(value, type | FunctionType):
+        return _name(value)
+    if isinstance(value, partial):
+        return [_name(value.func), _text(value.args), _text(value.keywords)]
+    if is_dataclass(value):
+        return [_name(type(value)), [_text(getattr(value, one.name)) for one in fields(value)]]
+    raise _NamelessError
+
+
+def _name(thing: Any) -> str:
+    """Name by which a later process finds a function or a class of the package."""
+    module, name = thing.__module__, thing.__qualname__
+    if not module.startswith("pitchpoint.") or "<locals>" in name:
+        raise _NamelessError
+    if "<lambda>" in name:
+        return f"{module}:{thing.__code__.co_firstlineno}"
+    return f"{module}:{name}"
+
+
+def _read(path: Path) -> tuple[Any, bytes] | None:
+    """Outline and portable form of a program that was kept; None if there is none, or it is damaged."""
+    try:
+        data = path.read_bytes()
+    except OSError:
+        return None
+    digest, body = data[:32], data[32:]
+    if hashlib.sha256(body).digest() != digest:
+        return None
+    outline, _, blob = body.partition(b"\n")
+    return json.loads(outline), blob
+
+
+def _write(path: Path, outline: Any, blob: bytes) -> None:
+    """Keep a program, whole or not at all; a folder that cannot be written to costs time, nothing else."""
+    body = json.dumps(outline).encode() + b"\n" + blob
+    try:
+        path.parent.mkdir(mode=0o700, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent)
+        with os.fdopen(handle, "wb") as part:
+            part.write(hashlib.sha256(body).digest() + body)
+        os.replace(name, path)
+    except OSError as error:
+        _LOG.info("a compiled program is not kept: %s", error)

@@ -1,0 +1,98 @@
+"""Programs are traced once: kept on disk under all that decides them, and found again."""
+
+from functools import partial
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from pitchpoint import programs
+from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.programs import Program, program
+
+
+class Bodies(eqx.Module):
+    mass: jax.Array
+    label: str = eqx.field(static=True)
+
+
+Bodies.__module__ = "pitchpoint.programs"  # as a class of the package, which a later process finds
+programs.Bodies = Bodies
+
+TRACED: list[str] = []
+
+
+def moved(bodies: Bodies, *, by: float, twice: bool = False) -> dict:
+    TRACED.append(bodies.label)
+    force = bodies.mass * by * (2.0 if twice else 1.0)
+    return {"force": force, "of": (Bodies(force, bodies.label), None, [bodies.label])}
+
+
+moved.__module__ = "pitchpoint.programs"
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch):
+    """A folder of its own for programs, and a program whose memory is empty each time it is asked."""
+    monkeypatch.setattr(programs, "cache_folder", lambda: tmp_path)
+    TRACED.clear()
+    return lambda **how: Program(moved, programs.QUICK)(Bodies(jnp.arange(3.0), "a"), **how)
+
+
+def test_results_are_those_of_the_function_put_together_again(kept):
+    for _ in range(2):
+        found = kept(by=2.0)
+        np.testing.assert_array_equal(found["force"], [0.0, 2.0, 4.0])
+        inner, nothing, labels = found["of"]
+        assert isinstance(inner, Bodies)
+        assert (inner.label, nothing, labels) == ("a", None, ["a"])
+    assert TRACED == ["a"]
+
+
+def test_what_is_static_decides(kept, tmp_path):
+    kept(by=2.0)
+    assert kept(by=2.0, twice=True)["force"][1] == 4.0
+    assert kept(by=3.0)["force"][1] == 3.0
+    assert len(list((tmp_path / "programs").iterdir())) == len(TRACED) == 3
+
+
+@pytest.mark.parametrize("damage", [b"", b"\0" * 4096, None], ids=["empty", "zeros", "cut"])
+def test_a_damaged_program_is_traced_again(kept, tmp_path, damage):
+    kept(by=2.0)
+    (path,) = (tmp_path / "programs").iterdir()
+    path.write_bytes(path.read_bytes()[:-7] if damage is None else damage)
+    assert kept(by=2.0)["force"][2] == 4.0
+    assert kept(by=2.0)["force"][2] == 4.0
+    assert TRACED == ["a", "a"]
+
+
+def test_without_a_folder_nothing_is_kept(kept, monkeypatch):
+    monkeypatch.setattr(programs, "cache_folder", lambda: None)
+    assert kept(by=2.0)["force"][2] == 4.0
+    assert TRACED == ["a"]
+
+
+def test_a_law_of_ones_own_has_no_name():
+    def own(*, pressure):
+        return pressure
+
+    for nameless in (own, partial(own), lambda: None, object()):
+        with pytest.raises(programs._NamelessError):
+            programs._text(nameless)
+    assert len({str(programs._text(law)) for law in LAWS}) == len(LAWS)
+
+
+def test_derivatives_go_through_a_program():
+    squared = program(lambda x: x**2)
+    assert jax.grad(squared)(3.0) == 6.0
+    np.testing.assert_array_equal(jax.vmap(squared)(jnp.arange(3.0)), [0.0, 1.0, 4.0])
+
+
+def test_forgetting_gives_memory_back(kept):
+    one = Program(moved, programs.QUICK)
+    one(Bodies(jnp.arange(3.0), "b"), by=1.0)
+    assert one.ready
+    programs.forget()
+    assert not one.ready
