@@ -12,7 +12,7 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.families import FAMILIES, Family, built_gears
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Surface
-from pitchpoint.cases.solids import SolidInUse, datum, heated, solids_in_use
+from pitchpoint.cases.solids import SolidInUse, datum, failures, heated, solids_in_use
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
@@ -29,6 +29,11 @@ from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 
 __all__ = ["Built", "build", "laws_of"]
+
+TEETH_ALONE = (
+    "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
+    "churning take their part."
+)
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,12 @@ class Built:
         return self.family.following(self.case.gears, self.design.mesh)
 
     @property
+    def covers(self) -> dict[str, str]:
+        """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
+        alone = self.design.mesh.clearances and not self.case.losses
+        return {"covers": "teeth alone"} if alone else {}
+
+    @property
     def loaded(self) -> str:
         """Name of the member that carries the load."""
         return self.case.gears.members[int(self.design.mesh.loaded.argmax())]
@@ -114,7 +125,10 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     )
     told = (*warnings, *_yielding(case, mesh), *filter(None, [record.note]))
     built = Built(case, design, operation, record, used, told, own)
-    return built if case.models.tooth_temperature == "isothermal" else warmed(built, document)
+    if built.covers:
+        built = replace(built, warnings=(*told, TEETH_ALONE))
+    hot = built if case.models.tooth_temperature == "isothermal" else warmed(built, document)
+    return replace(hot, warnings=(*failures(hot.solids), *hot.warnings))
 
 
 def warmed(built: Built, document: Document) -> Built:
@@ -338,6 +352,9 @@ def _check_temperature(
 
 
 def _roughness(surface: Surface) -> Roughness:
+    if surface.ra is not None and surface.rq is not None:
+        (ra_1, ra_2), (rq_1, rq_2) = surface.ra, surface.rq
+        return Roughness(ra_1=ra_1, ra_2=ra_2, rq_1=rq_1, rq_2=rq_2)
     if surface.ra is not None:
         return Roughness.from_ra(*surface.ra)
     if surface.rq is not None:

@@ -414,9 +414,14 @@ class Cycle(eqx.Module):
         A polynomial through the nodes of each segment is read at points between them, and at its
         vertex beside a point where it is level: jumps lie at the ends of segments, where there are
         nodes. Where pairs with clearances come and go between the events, values have kinks that no
-        polynomial follows, and the nodes alone are read.
+        polynomial follows, and the nodes alone are read. Values that are undefined at a node have none.
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
+        known = ~jnp.any(jnp.isnan(segments), axis=-1)
+        low, high = self._ends(segments)
+        return jnp.where(known, low, jnp.nan), jnp.where(known, high, jnp.nan)
+
+    def _ends(self, segments: Float[Array, "*b node"]) -> tuple[Each, Each]:
         if not self.smooth:
             return jnp.min(segments, axis=-1), jnp.max(segments, axis=-1)
         segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
@@ -462,6 +467,16 @@ class Cycle(eqx.Module):
     def locked(self) -> Bool[Array, "*b"]:
         """True where friction locks the mesh at some phase."""
         return jnp.any(self.state.balance.locked, axis=-1)
+
+    @property
+    def jamming(self) -> tuple[Each, Each]:
+        """Coefficient from which on friction locks the mesh, and the one that acts where it would first."""
+        found = self.state.balance
+        first = jnp.argmin(found.jamming, axis=-1)[..., None]
+        acting = jnp.broadcast_to(found.acting, found.jamming.shape)
+        there = (jnp.take_along_axis(v, first, axis=-1) for v in (found.jamming, acting))
+        limit, coefficient = (values[..., 0] for values in there)
+        return limit, coefficient
 
 
 def cycle(

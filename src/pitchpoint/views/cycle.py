@@ -49,6 +49,10 @@ _ALONG = {
     "friction": "",
     "loss": "Loss of the one pair that is at this place.",
 }
+_MISSING = {
+    "film_thickness": "There is no film to compute: nothing is carried.",
+    "lambda_ratio": "Without limit: the flanks are smooth, or nothing is carried.",
+}
 _WHOLE = ("load_share", "contact_force_ratio", "loss")
 _LINES = {
     "load_share": "Of the whole contact line.",
@@ -228,7 +232,8 @@ def _along_figure(
     if name == "lambda_ratio":
         regimes(look, shown)
     note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
-    return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (note, same))))
+    told = {"missing": _MISSING[name]} if name in _MISSING else {}
+    return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (note, same))), **told)
 
 
 def _title(name: str) -> str:
