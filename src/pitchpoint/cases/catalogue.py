@@ -106,6 +106,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
             for name in (*MAIN, *VIBRATION, *TEMPERATURES, *WIND_UP, "kinematic_error_range")
         },
         "operation": _by_law(outcome.parts["operation"], MAIN),
+        "efficiency_of": _covers(outcome),
         "vibration": _by_torque(outcome, "vibration", VIBRATION),
         "torsion": _by_torque(outcome, "torsion", WIND_UP),
         "kinematic_error_range": {
@@ -123,6 +124,9 @@ def figures(outcome: Outcome) -> dict[str, Any]:
     }
 
 
+_LOCKS = "locks from μ"
+
+
 def summary_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...], str]:
     """Rows, columns and a note: the operating point by law, and how far the laws disagree."""
     data = outcome.parts["operation"]
@@ -131,13 +135,18 @@ def summary_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
     for position, law in enumerate(data["law"].values):
         row = {"friction law": str(law)}
         row.update({_head(name): _cell(data, name, position) for name in MAIN})
-        if covers := data["mean_efficiency"].attrs.get("covers"):
-            row["of"] = str(covers)
+        row["η of"] = _covers(outcome)
+        row[_LOCKS] = _cell(data, "jamming_coefficient", position)
         locked = bool(back["locked"].values[position, 0])
         row["back-driving"] = "locked" if locked else _cell(back, "mean_efficiency", position)
-        row["locks from μ"] = _cell(back, "jamming_coefficient", position)
+        row[f"back-driving {_LOCKS}"] = _cell(back, "jamming_coefficient", position)
         rows.append(row)
     return rows, tuple(rows[0]), spread_sentence(outcome)
+
+
+def _covers(outcome: Outcome) -> str:
+    """What the efficiency is of, where that is less than the whole drive."""
+    return str(outcome.parts["operation"]["mean_efficiency"].attrs.get("covers", ""))
 
 
 def spread_sentence(outcome: Outcome) -> str:
@@ -229,6 +238,7 @@ def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
     rows = [
         {_head("torque"): f"{torques[k]:.5g}"}
         | {_head(name): _shown(name, float(data[name].values[k])) for name in WIND_UP}
+        | {"K is that of": str(data["torsional_stiffness"].attrs.get("covers", ""))}
         for k in range(torques.size // 4, torques.size, torques.size // 4)
     ]
     return rows, tuple(rows[0])

@@ -33,7 +33,7 @@ def limits_words(name: str, limits: tuple[float, float]) -> str:
     return f"at most {high}" if limits[0] == -inf else f"{low} to {high}"
 
 
-_SHOWN = {"viscosity": ("mPa s", "dynamic viscosity")}
+_SHOWN = {"viscosity": ("mPa s", "dynamic viscosity"), "roughness_ra": ("um", "length")}
 
 
 def _shown(name: str, value: float) -> str:

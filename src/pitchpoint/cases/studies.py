@@ -285,15 +285,17 @@ def _profiles(built: Built, models: Models, laws: Sequence[int]) -> list[dict[st
     ]
 
 
-def _jammed(runs: Sequence[Mapping[str, np.ndarray]]) -> tuple[np.ndarray, ...]:
-    """Whether friction locks the mesh, from which coefficient on it does, and the one that acts [law, 1]."""
-    firsts = [int(np.argmin(run["jamming_coefficient"])) for run in runs]
-    names = ("jamming_coefficient", "friction_at_jamming")
-    limits, acting = (
-        np.array([[run[name][first]] for run, first in zip(runs, firsts, strict=True)])
+def _jammed(
+    runs: Sequence[Mapping[str, np.ndarray]],
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Whether friction locks the mesh, and where it is nearest to that its coefficients [law, 1]."""
+    names = ("largest_friction", "jamming_coefficient")
+    nearest = [int(np.argmax(run[names[0]] / run[names[1]])) for run in runs]
+    acting, limit = (
+        np.array([[run[name][node]] for run, node in zip(runs, nearest, strict=True)])
         for name in names
     )
-    return np.stack([run["locked"].any(keepdims=True) for run in runs]), limits, acting
+    return np.stack([run["locked"].any(keepdims=True) for run in runs]), acting, limit
 
 
 def _operation(built: Built) -> xr.Dataset:
@@ -507,8 +509,8 @@ def _summaries(
     runs = [_grouped(points, _choose(models, law), progress) for law in laws]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
     if not may_lock and len(points) == 1:
-        limits = (out["jamming_coefficient"], out["friction_at_jamming"])
-        _demand_motion(out["locked"], *limits, points, _names(models, laws))
+        ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
+        _demand_motion(out["locked"], *ends, points, _names(models, laws))
     for name, values in out.items():
         if values.dtype.kind == "f" and name in _WITH_FRICTION:
             values[out["locked"]] = np.nan
@@ -621,8 +623,8 @@ def _demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Seq
 
 def _demand_motion(
     locked: np.ndarray,
-    limit: np.ndarray,
     acting: np.ndarray,
+    limit: np.ndarray,
     points: Sequence[Built],
     laws: Sequence[str],
 ) -> None:
@@ -727,8 +729,8 @@ def _outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> l
     if law.whole and rolling.sources:
         reasons.append(
             "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
-            f"'{rolling.name}' beside it rolling counts twice, here with {_rolling_share(run):.0f} % of the "
-            "loss"
+            f"'{rolling.name}' beside it rolling counts twice, here with {_rolling_share(run):.2g} % of "
+            "the loss"
         )
     return reasons
 

@@ -54,7 +54,7 @@ def profile(
         "residual": state.balance.residual,
         "locked": state.balance.locked,
         "jamming_coefficient": state.balance.jamming,
-        "friction_at_jamming": state.balance.acting,
+        "largest_friction": state.balance.largest_friction,
         "contact_line_length": total(jnp.where(contacts.active, contacts.weight, 0.0)),
     }
     each = {

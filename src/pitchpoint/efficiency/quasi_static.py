@@ -469,14 +469,18 @@ class Cycle(eqx.Module):
         return jnp.any(self.state.balance.locked, axis=-1)
 
     @property
-    def jamming(self) -> tuple[Each, Each]:
-        """Coefficient from which on friction locks the mesh, and the one that acts where it would first."""
+    def jamming(self) -> Each:
+        """Smallest coefficient of friction, the same at all contacts, from which on the mesh is locked."""
+        return jnp.min(self.state.balance.jamming, axis=-1)
+
+    @property
+    def nearest_to_jamming(self) -> tuple[Each, Each]:
+        """Friction coefficient where the mesh is nearest to locking, and the one at which it locks there."""
         found = self.state.balance
-        first = jnp.argmin(found.jamming, axis=-1)[..., None]
-        acting = jnp.broadcast_to(found.acting, found.jamming.shape)
-        there = (jnp.take_along_axis(v, first, axis=-1) for v in (found.jamming, acting))
-        limit, coefficient = (values[..., 0] for values in there)
-        return limit, coefficient
+        each = jnp.broadcast_arrays(found.largest_friction, found.jamming)
+        nearest = jnp.argmax(each[0] / each[1], axis=-1)[..., None]
+        acting, limit = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in each)
+        return acting, limit
 
 
 def cycle(

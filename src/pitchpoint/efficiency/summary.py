@@ -72,7 +72,7 @@ def summary(
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
     high = jnp.minimum(high, jnp.maximum(1.0, jnp.max(state.efficiency, axis=-1)))
     torque_low, torque_high = result.extremes(state.input_torque)
-    jamming, acting = result.jamming
+    acting, limit = result.nearest_to_jamming
     return {
         **_by_gear(design.mesh.dimensions()),
         "contact_ratio": design.mesh.contact_ratio,
@@ -92,8 +92,9 @@ def summary(
         "residual": result.residual,
         "iterations": state.balance.iterations,
         "locked": result.locked,
-        "jamming_coefficient": jamming,
-        "friction_at_jamming": acting,
+        "jamming_coefficient": result.jamming,
+        "nearest_friction": acting,
+        "nearest_jamming_coefficient": limit,
         "largest_contact_force_ratio": jnp.max(state.contact_force_ratio, axis=-1),
         **_at_pitch_point(result),
     }

@@ -47,7 +47,6 @@ class Balance(eqx.Module):
         jamming: coefficient of friction, the same at all contacts, from which on the mesh is locked:
             normal arm over -sum(share times sliding arm), at which the leverage of the contact force
             vanishes; infinite where friction pushes on.
-        acting: the coefficients of the contacts, weighted as they hold the load: to compare with it.
     """
 
     force: Float[Array, "*b"]
@@ -61,7 +60,11 @@ class Balance(eqx.Module):
     iterations: Int[Array, ""]
     locked: Bool[Array, "*b"]
     jamming: Float[Array, "*b"]
-    acting: Float[Array, "*b"]
+
+    @property
+    def largest_friction(self) -> Float[Array, "*b"]:
+        """Largest friction coefficient of the contacts."""
+        return jnp.max(self.friction, axis=(0, 1))
 
 
 def balance(
@@ -159,9 +162,7 @@ def balance(
     residual = jnp.where(carried < 0.0, jnp.inf, residual)
     locked = lost | (grip <= 0.0)
     hold = -total(share * slip) / arm
-    holds = jnp.where(hold > 0.0, hold, 1.0)
-    jamming = jnp.where(hold > 0.0, 1.0 / holds, jnp.inf)
-    acting = jnp.where(hold > 0.0, (1.0 - leverage(coefficient)) / holds, 0.0)
+    jamming = jnp.where(hold > 0.0, 1.0 / jnp.where(hold > 0.0, hold, 1.0), jnp.inf)
     solved = (residual <= UNSOLVED) & (ratio > 0.0) & (carried >= 0.0) & ~locked
     return Balance(
         force=_where(solved, ratio * frictionless),
@@ -175,7 +176,6 @@ def balance(
         iterations=iterations,
         locked=locked,
         jamming=jnp.broadcast_to(jamming, residual.shape),
-        acting=acting,
     )
 
 

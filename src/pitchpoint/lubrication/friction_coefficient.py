@@ -257,8 +257,10 @@ LAWS: Final[tuple[FrictionLaw, ...]] = (
         note=(
             "Mean coefficient fitted to losses of gear test rigs, those of rolling among them; use it"
             " with the load of the whole mesh and without a rolling resistance. X_L differs between"
-            " oils, about 0.6 to 1. No range of the fit was found; beyond 0.2 steel is not lubricated."
+            " oils, about 0.6 to 1. No range of the fit was found: the limits are those of its form,"
+            " by which flanks without roughness have no friction, and of steel in oil."
         ),
+        ranges={"roughness_ra": (1e-8, math.inf)},
         largest=BOUNDARY,
         whole=True,
     ),

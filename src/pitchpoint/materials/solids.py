@@ -23,6 +23,7 @@ __all__ = [
     "catalogue",
     "celsius",
     "find",
+    "heat_failure",
     "reduced_modulus",
 ]
 

@@ -67,8 +67,12 @@ VARIABLES: dict[str, Variable] = {
         "largest contact force over that without friction", "β max", "1"
     ),
     "jamming_coefficient": Variable("friction coefficient at which the mesh locks", "μ lock", "1"),
-    "friction_at_jamming": Variable(
-        "friction coefficient that acts where the mesh would lock first", "μ", "1"
+    "largest_friction": Variable("largest friction coefficient of the contacts", "μ max", "1"),
+    "nearest_friction": Variable(
+        "friction coefficient where the mesh is nearest to locking", "μ", "1"
+    ),
+    "nearest_jamming_coefficient": Variable(
+        "friction coefficient at which the mesh locks there", "μ lock", "1"
     ),
     "contact_line_length": _length("length of all contact lines together", "l"),
     "pitch_line_load": Variable(

@@ -12,6 +12,7 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 from pitchpoint.views.facts import Facts, Wave, facts, has_wave, timed
 from pitchpoint.views.figures import (
+    NO_POWER,
     Curve,
     Curves,
     Figure,
@@ -232,8 +233,8 @@ def _along_figure(
     if name == "lambda_ratio":
         regimes(look, shown)
     note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
-    told = {"missing": _MISSING[name]} if name in _MISSING else {}
-    return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (note, same))), **told)
+    note, missing = " ".join(filter(None, (note, same))), _MISSING.get(name, NO_POWER)
+    return Figure(f"along_{name}", title, shown, look, note, missing=missing)
 
 
 def _title(name: str) -> str:

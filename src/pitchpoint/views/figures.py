@@ -24,6 +24,7 @@ __all__ = [
     "DASHES",
     "GREY",
     "INK",
+    "NO_POWER",
     "PALETTE",
     "Choice",
     "Curve",
@@ -55,6 +56,7 @@ PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#B07C00", "#56B4E9", "#5
 DASHES = ("solid", "dash", "dot", "dashdot")
 INK, GREY = "#24303a", "#7b8791"
 GRID = "#e6eaed"
+NO_POWER = "Undefined here: no power is transmitted."
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ class Figure:
     layout: dict[str, Any]
     note: str = ""
     keys: tuple[Key, ...] = ()
-    missing: str = "Undefined here: no power is transmitted."
+    missing: str = NO_POWER
 
     def __post_init__(self) -> None:
         """Gives an axis of constant values a range that says so, where plotly's would be of length two."""

@@ -334,7 +334,7 @@ def _back_driving(outcome: Outcome, law: str) -> str:
         return "not computed"
     position = laws(data).index(law)
     if bool(data["locked"].values[position, 0]):
-        ends = ("friction_at_jamming", "jamming_coefficient")
+        ends = ("nearest_friction", "nearest_jamming_coefficient")
         acting, limit = (float(data[name].values[position, 0]) for name in ends)
         return f"self-locking: friction locks the mesh; {jamming_words(acting, limit)}"
     value = float(data["mean_efficiency"].values[position, 0])
@@ -347,6 +347,8 @@ def _back_driving(outcome: Outcome, law: str) -> str:
 
 def _jamming(data: Any, position: int) -> str:
     """Friction coefficient at which the mesh locks, in words; empty where none does."""
+    if "jamming_coefficient" not in data:
+        return ""
     limit = float(data["jamming_coefficient"].values[position, 0])
     return f"a friction coefficient of {show.number(limit, 3)}" if np.isfinite(limit) else ""
 
