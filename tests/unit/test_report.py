@@ -40,7 +40,7 @@ base = "mineral"
 viscosity_40 = "220 mm2/s"
 viscosity_100 = "19 mm2/s"
 [roughness]
-rq = "0.4 um"
+rq = "0.1 um"
 [operation]
 torque = "60 N m"
 speed = "900 rpm"
@@ -365,7 +365,7 @@ def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes
     data = wheel["default"].parts["operation"]
     limit = float(data["jamming_coefficient"].values[0, 0])
     assert limit > float(data["nearest_friction"].values[0, 0]) == pytest.approx(0.05)
-    assert f"locks at a friction coefficient of {limit:.3g}" in Words(render(wheel)).text
+    assert f"locks from μ {limit:.3g}" in Words(render(wheel)).text
     assert summary_table(wheel["default"])[0][0]["locks from μ"] == f"{limit:.4f}"
 
 

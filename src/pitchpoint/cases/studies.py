@@ -307,17 +307,19 @@ def _operation(built: Built) -> xr.Dataset:
 def _laws(built: Built) -> xr.Dataset:
     """Every law of the library in its range at the operating point: how far they themselves disagree.
 
-    The attribute `outside` lists the others, each with its efficiency there and the reasons.
+    The attribute `outside` lists the others and the laws of the case that are out of theirs, each with
+    its efficiency there and the reasons.
     """
-    models, _ = laws_of(built)
+    models, chosen = laws_of(built)
     every = [
         index for index, law in enumerate(models.friction) if law not in CASE_LAWS and law.sources
     ]
+    considered = list(dict.fromkeys([*every, *chosen]))
     title = "friction laws that apply"
-    data = _summaries([built], models, every, {}, title=title, may_lock=True)
+    data = _summaries([built], models, considered, {}, title=title, may_lock=True)
     reasons = [
         _outside(built, models.friction[law], run)
-        for law, run in zip(every, _profiles(built, models, every), strict=True)
+        for law, run in zip(considered, _profiles(built, models, considered), strict=True)
     ]
     outside = [
         {
@@ -328,8 +330,8 @@ def _laws(built: Built) -> xr.Dataset:
         for k, told in enumerate(reasons)
         if told
     ]
-    inside = data.isel(law=[k for k, told in enumerate(reasons) if not told])
-    return inside.assign_attrs(outside=json.dumps(without_nan(outside)))
+    kept = [k for k, law in enumerate(considered) if law in every and not reasons[k]]
+    return data.isel(law=kept).assign_attrs(outside=json.dumps(without_nan(outside)))
 
 
 def _study(variant: Variant, name: str, study: Study, where: str) -> Job:

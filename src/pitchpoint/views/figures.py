@@ -202,7 +202,7 @@ def line(curve: Curve, x: Any, y: Any, unit: str, **more: Any) -> Trace:
         "x": rounded(x, 6),
         "y": rounded(y),
         "line": {"color": curve.colour, "dash": curve.dash, "width": 2},
-        "hovertemplate": f"%{{y:.5~g}} {unit}<br>at %{{x:.4~g}}",
+        "hovertemplate": f"%{{y:.12~g}} {unit}<br>at %{{x:.4~g}}",
         **more,
     }
 

@@ -341,16 +341,16 @@ def _back_driving(outcome: Outcome, law: str) -> str:
     if not np.isfinite(value):
         return "undefined, no power"
     told = f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
-    limit_words = _jamming(data, position)
-    return f"{told}; it would at {limit_words}" if limit_words else told
+    limit = _jamming(data, position)
+    return f"{told} (it would from μ = {limit} on)" if limit else told
 
 
 def _jamming(data: Any, position: int) -> str:
-    """Friction coefficient at which the mesh locks, in words; empty where none does."""
+    """Friction coefficient at which the mesh locks; empty where none does."""
     if "jamming_coefficient" not in data:
         return ""
     limit = float(data["jamming_coefficient"].values[position, 0])
-    return f"a friction coefficient of {show.number(limit, 3)}" if np.isfinite(limit) else ""
+    return show.number(limit, 3) if np.isfinite(limit) else ""
 
 
 def _spread(outcome: Outcome) -> dict[str, Any] | None:
@@ -376,13 +376,14 @@ def _spread(outcome: Outcome) -> dict[str, Any] | None:
     if not known.size:
         text = "all lock the mesh" if locked.all() else "undefined, no power"
         return {"text": text, "rows": rows, "points": "", "outside": outside}
-    text = f"{100 * known.min():.2f} to {100 * known.max():.2f} %"
+    ends = [f"{100 * end:.2f}" for end in (known.min(), known.max())]
+    text = f"{' to '.join(dict.fromkeys(ends))} %"
     if locked.any():
         names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
         text += f"; locked by {', '.join(names)}"
     if outcome.manifest.get("plastic"):
         text += ", by laws for steel on steel; none was fitted to plastic teeth"
-    points = f"{100 * np.ptp(known):.2f}"
+    points = f"{100 * np.ptp(known):.2f}" if known.size > 1 else ""
     return {"text": text, "rows": rows, "points": points, "outside": outside}
 
 
