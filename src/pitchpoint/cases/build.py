@@ -1,7 +1,7 @@
 """From a validated case to the design, the operating point and the laws that compute it."""
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import isfinite
 from typing import Any
 
@@ -15,8 +15,8 @@ from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Surface
 from pitchpoint.cases.solids import SolidInUse, datum, failures, heated, solids_in_use
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.efficiency.summary import heat
+from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint.efficiency.summary import engaged, heat
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import CylindricalPair
 from pitchpoint.gears.mesh import Mesh
@@ -78,6 +78,11 @@ class Built:
     def following(self) -> dict[str, Any]:
         """Values that the table of the gears leaves open, by key inside it."""
         return self.family.following(self.case.gears, self.design.mesh)
+
+    @cached_property
+    def engaged(self) -> Engagement | None:
+        """Contacts and shares at the operating point of a mesh whose own take long, for all that ask."""
+        return engaged(self.design, self.operation, laws_of(self)[0])
 
     @property
     def covers(self) -> dict[str, str]:

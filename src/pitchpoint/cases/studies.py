@@ -30,7 +30,7 @@ from pitchpoint.cases.schema import (
 )
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
-from pitchpoint.efficiency.summary import engaged, summarise
+from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -276,13 +276,9 @@ def _cycle(built: Built) -> xr.Dataset:
 def _profiles(built: Built, models: Models, laws: Sequence[int]) -> list[dict[str, np.ndarray]]:
     """The mesh cycle under each law."""
     film = FILM_THICKNESS[built.case.models.film_thickness]
-    known = engaged(built.design, built.operation, models)
-    return [
-        jax.device_get(
-            profile(built.design, built.operation, _choose(models, law), film, engaged=known)
-        )
-        for law in laws
-    ]
+    point = built.design, built.operation
+    runs = (profile(*point, _choose(models, law), film, engaged=built.engaged) for law in laws)
+    return [jax.device_get(run) for run in runs]
 
 
 def _jammed(

@@ -341,8 +341,8 @@ def _back_driving(outcome: Outcome, law: str) -> str:
     if not np.isfinite(value):
         return "undefined, no power"
     told = f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
-    limit = _jamming(data, position)
-    return f"{told} (it would from μ = {limit} on)" if limit else told
+    locks = _jamming(data, position)
+    return f"{told} (it would from μ = {locks} on)" if locks else told
 
 
 def _jamming(data: Any, position: int) -> str:
