@@ -40,6 +40,7 @@ def _figures(mesh):
         *("centre_distance", "tip_alteration", "tip_radii", "base_radii", "base_pitch", "limits"),
         *("points", "tangent_length", "pitch_position", "transverse_contact_ratio"),
         *("overlap_ratio", "contact_ratio", "module", "teeth", "working_radii", "motion"),
+        *("backlash", "normal_backlash", "zero_backlash_centre_distance"),
     )
     of_gears = (
         *("reference_radius", "root_radius", "form_roll_length", "tip_thickness", "undercut_limit"),
@@ -446,6 +447,41 @@ def test_a_swept_rack_leaves_the_fillet_of_a_helical_tooth(name):
     radii = np.linspace(tooth.root, tooth.fillet[0][-1], 20)
     for low, high in itertools.pairwise(radii):
         assert free[(radius > low) & (radius < high)].min() < 1e-5
+
+
+APART = {
+    "spur": pair((18, 36), module=3e-3, centre_distance=81.2e-3),
+    "shifted": pair((23, 61), profile_shift=(0.4, -0.2), centre_distance=84.55e-3),
+    "helical": pair((19, 33), 15.0, profile_shift=(0.2, 0.1), centre_distance=54.6e-3),
+    "ring": pair((20, -60), addendum=(1.0, 0.8), centre_distance=39.9e-3),
+}
+
+
+def inv(angle):
+    return np.tan(angle) - angle
+
+
+@pytest.mark.parametrize("name", APART)
+def test_backlash_of_a_centre_distance(name):
+    """On the base circles j_wt cos(alpha_wt) = sum(z) m_t cos(alpha_t) (inv alpha_wt - inv alpha_w0)."""
+    mesh = APART[name]
+    found = figures(mesh)
+    beta, total = float(mesh.helix_angle), float(found["teeth"].sum())
+    transverse, working = found["transverse_pressure_angle"], found["working_pressure_angle"]
+    base = total * float(mesh.module) / np.cos(beta) * np.cos(transverse)
+    close = np.arccos(abs(base) / 2.0 / found["zero_backlash_centre_distance"])
+    expected = base * (inv(working) - inv(close)) / np.cos(working)
+    assert expected > 1e-5
+    assert found["backlash"] == pytest.approx(expected, rel=1e-9)
+    # ISO 21771: along the normal, by the normal pressure angle and the helix angle in operation.
+    helix = np.arctan(np.tan(found["base_helix_angle"]) / np.cos(working))
+    normal = np.arcsin(np.sin(working) * np.cos(found["base_helix_angle"]))
+    by_normal = expected * np.cos(normal) * np.cos(helix)
+    assert found["normal_backlash"] == pytest.approx(by_normal, rel=1e-9)
+
+
+def test_without_a_centre_distance_there_is_no_backlash():
+    assert abs(figures(pair((23, 61), profile_shift=(0.4, -0.2)))["backlash"]) < 1e-15
 
 
 def test_virtual_spur_gear_has_the_teeth_of_the_normal_section():

@@ -499,6 +499,18 @@ def test_back_flanks_meet_within_the_backlash():
     assert abs(end[0] - start[0]) < 1e-6 * np.max(np.abs(response.displacement))
 
 
+def test_share_of_the_period_without_any_contact_is_the_length_of_its_elements():
+    response = solve(system(2.5, 0.1), SPUR, UNIT)
+    assert float(response.separated_share) == 0.0
+    force = jnp.asarray(response.force).at[:, 1:3].set(0.0)
+    apart = eqx.tree_at(lambda r: r.force, response, force)
+    expected = float(jnp.sum(response.course.length[1:3]))
+    assert 0.0 < expected < 1.0
+    assert float(apart.separated_share) == pytest.approx(expected, rel=1e-12)
+    lost = eqx.tree_at(lambda r: r.displacement, response, response.displacement * jnp.nan)
+    assert np.isnan(lost.separated_share)
+
+
 def test_names_of_contact_laws():
     assert list(CONTACT_LAWS) == ["linear", "separating"]
     with pytest.raises(InputError, match="did you mean separating"):

@@ -92,6 +92,8 @@ def over_cycle(design, operation, models):
         "low": low,
         "high": high,
         "residual": found.residual,
+        "jamming": found.jamming,
+        "efficiency_ends": found.extremes(found.state.efficiency),
     }
 
 
@@ -108,6 +110,8 @@ def at_phase(design, operation, phase, models):
         "friction": found.balance.friction,
         "conditions": found.conditions,
         "ratio": found.contact_force_ratio,
+        "jamming": found.balance.jamming,
+        "locked": found.balance.locked,
     }
 
 
@@ -218,12 +222,49 @@ def test_input_torque_of_one_pair_with_constant_friction(design):
         assert float(found["input_torque"]) > 159.0 * r1 / r2
 
 
+def test_friction_locks_where_the_leverage_of_the_force_vanishes(design):
+    """Single contact before the pitch point: r_b2 - mu (N1N2 - s) is zero; after it friction pushes on."""
+    mesh = design.mesh
+    position = float(mesh.pitch_position - 0.05 * mesh.base_pitch)
+    phase = jnp.asarray((position - mesh.limits[0]) / mesh.base_pitch)
+    limit = float(mesh.base_radii[1]) / float(mesh.tangent_length - position)
+    for part in (0.5, 0.96, 0.999, 1.0 - 2e-4):
+        found = at_phase(design, operation(), phase, models(mu=part * limit))
+        assert float(found["jamming"]) == pytest.approx(limit, rel=1e-12)
+        assert not bool(found["locked"])
+        assert float(found["ratio"]) == pytest.approx(1.0 / (1.0 - part), rel=1e-8)
+    for part in (1.0 + 1e-6, 1.5):
+        found = at_phase(design, operation(), phase, models(mu=part * limit))
+        assert bool(found["locked"])
+        assert np.isnan(found["input_torque"])
+    behind = at_phase(design, operation(), 2.0 * pitch_phase(mesh) - phase, models(mu=0.05))
+    assert np.isposinf(behind["jamming"])
+
+
+def pitch_phase(mesh):
+    return (mesh.pitch_position - mesh.limits[0]) / mesh.base_pitch
+
+
+def test_the_coefficient_that_locks_a_period_is_the_smallest_of_its_phases(design):
+    """Equal shares of the pairs in contact, by hand: 1/mu = max of the mean of (N1N2 - s) sense over r_b2."""
+    mesh = design.mesh
+    phase = np.linspace(0.0, 1.0, 4001)[:-1]
+    start, end = np.asarray(mesh.limits)
+    lines = start + (phase + np.arange(2.0)[:, None]) * float(mesh.base_pitch)
+    active = lines <= end
+    arms = (float(mesh.tangent_length) - lines) * np.sign(float(mesh.pitch_position) - lines)
+    hold = (arms * active).sum(axis=0) / active.sum(axis=0) / float(mesh.base_radii[1])
+    found = over_cycle(design, operation(), models())
+    assert float(found["jamming"]) == pytest.approx(1.0 / hold.max(), rel=1e-3)
+    assert float(found["jamming"]) <= 1.0 / hold.max() * (1.0 + 1e-9)
+
+
 def test_no_load_loses_nothing(design):
     for law in ("constant", "iso_tr_14179_2", "xu_2007"):
         found = over_cycle(design, operation(load=0.0), models(law))
         assert float(found["mean_loss"]) == float(found["ripple"]) == 0.0
         assert float(found["mean_input_torque"]) == 0.0
-        assert np.isnan(found["mean_efficiency"])
+        assert np.isnan([found["mean_efficiency"], *found["efficiency_ends"]]).all()
         assert np.all(np.isnan(found["efficiency"]))
 
 

@@ -446,9 +446,11 @@ def bad_oils() -> Iterator[Bad]:
 
 
 def bad_surfaces() -> Iterator[Bad]:
-    two = {"ra": "0.4 um", "rq": "0.5 um"}
-    yield Bad("two", ("roughness",), two, ("2 roughness", "exactly one"), "roughness")
-    yield Bad("none", ("roughness",), {}, ("no roughness", "exactly one"), "roughness")
+    two = {"ra": "0.4 um", "composite_rq": "0.5 um"}
+    yield Bad("two", ("roughness",), two, ("ra and composite_rq", "alone"), "roughness")
+    yield Bad("none", ("roughness",), {}, ("no roughness", "ra, rq or both"), "roughness")
+    low = {"ra": "0.4 um", "rq": "0.3 um"}
+    yield Bad("low", ("roughness",), low, ("0.3 um", "below its Ra, 0.4 um"), "roughness.rq")
 
 
 def bad_marks() -> Iterator[Bad]:

@@ -1,6 +1,7 @@
 """The commands from the outside: what they print, what they leave on disk, how they end."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -220,6 +221,9 @@ def test_a_mesh_that_friction_locks(pitchpoint: Callable[..., Told], tiny: Path)
     assert told.out == ""
     assert told.err.count("\n") == 1
     assert "friction locks the mesh with constant" in told.err
+    found = re.search(r"friction 2 reaches the ([0-9.]+) at which this mesh locks", told.err)
+    assert found
+    assert 1.0 < float(found.group(1)) < 2.0
     assert "50 N m" in told.err
 
 

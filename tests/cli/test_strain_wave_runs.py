@@ -10,12 +10,14 @@ import pytest
 import xarray as xr
 
 from pitchpoint.cases import run as running
+from pitchpoint.cases.build import TEETH_ALONE
 from pitchpoint.cases.catalogue import (
     figures,
     kinematic_error_table,
     summary_table,
     wind_up_table,
 )
+from pitchpoint.cases.library import find
 from pitchpoint.cases.run import Outcome, Progress, open_result
 from pitchpoint.cases.studies import Variant, jobs
 from pitchpoint.views import show
@@ -99,6 +101,23 @@ def test_all_parts_are_there(drive: Outcome) -> None:
     told = {name: drive.manifest[name] for name in ("family", "driver", "loaded")}
     assert told == {"family": "strain_wave", "driver": "wave generator", "loaded": "flexspline"}
     assert "palmgren_1959" in [source["key"] for source in drive.manifest["sources"]]
+
+
+def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -> None:
+    name, tree = find(str(folder.parent / "drive.toml"))
+    with_losses = Variant(tree, name, "default").built({})
+    alone = Variant({**tree, "losses": {}}, name, "default").built({})
+    assert with_losses.covers == {}
+    assert TEETH_ALONE not in with_losses.warnings
+    assert alone.covers == {"covers": "teeth alone"}
+    assert alone.warnings.count(TEETH_ALONE) == 1
+
+
+def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:
+    covers = drive.parts["torsion"]["torsional_stiffness"].attrs["covers"]
+    assert covers.startswith("teeth, ring and cup of the flexspline")
+    assert "shafts, flange and joints are not in it" in drive.parts["torsion"].attrs["note"]
+    assert {row["K is that of"] for row in wind_up_table(drive)[0]} == {covers}
 
 
 def test_the_tables_on_screen(drive: Outcome) -> None:

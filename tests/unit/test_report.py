@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
+from pitchpoint.cases.catalogue import summary_table
 from pitchpoint.cases.run import Outcome, open_result, run
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.results.store import dataset
@@ -38,7 +40,7 @@ base = "mineral"
 viscosity_40 = "220 mm2/s"
 viscosity_100 = "19 mm2/s"
 [roughness]
-rq = "0.4 um"
+rq = "0.1 um"
 [operation]
 torque = "60 N m"
 speed = "900 rpm"
@@ -305,6 +307,14 @@ def test_without_power_the_efficiency_is_undefined(idle: Outcomes) -> None:
     assert "undefined, no power mean efficiency" in Words(page).text
     assert "There is no loss." in page
     assert "cycle_efficiency_phase" not in payload(page)["figures"]
+    assert "inf" not in summary_table(idle["default"])[0][0].values()
+    assert np.isnan(idle["default"].parts["operation"]["min_efficiency"].values).all()
+    cycle = idle["default"].parts["cycle"]
+    for name in ("film_thickness", "lambda_ratio"):
+        values = cycle[name].values[0][cycle["active"].values]
+        assert np.isnan(values).all()
+        assert f"along_{name}" not in payload(page)["figures"]
+    assert "There is no film to compute: nothing is carried." in Words(page).text
     for heading in ("Studies", "Printed against computed", "Issues"):
         assert f"<h2>{heading}" not in page
 
@@ -322,9 +332,41 @@ def test_a_locked_mesh_is_said(wheel: Outcomes) -> None:
 def test_a_law_that_locks_is_named_beside_the_others(wheel: Outcomes) -> None:
     outcome = wheel["default"]
     laws = outcome.parts["laws"].copy(deep=True)
-    laws["locked"].values[0, 0] = True
-    one = replace(outcome, parts={**outcome.parts, "laws": laws})
+    assert laws["law"].values.tolist() == ["iso_tr_14179_2"]
+    both = xr.concat([laws, laws.assign_coords(law=["xu_2007"])], "law")
+    both["locked"].values[0, 0] = True
+    one = replace(outcome, parts={**outcome.parts, "laws": both})
     assert "locked by ISO/TR 14179-2" in render({"default": one})
+
+
+def test_laws_out_of_their_range_stand_apart_with_the_reason(wheel: Outcomes) -> None:
+    (apart,) = json.loads(wheel["default"].parts["laws"].attrs["outside"])
+    assert apart["law"] == "xu_2007"
+    text = Words(render(wheel)).text
+    assert "Out of their range here, and not counted" in text
+    assert f"{100 * apart['mean_efficiency']:.2f} % it describes contacts with a full film" in text
+    told = summary_table(wheel["default"])[2]
+    assert told.startswith("One fitted friction law of the library applies, iso_tr_14179_2")
+    assert (
+        f"Out of its range is xu_2007 (it would give {100 * apart['mean_efficiency']:.2f} %)"
+        in told
+    )
+
+
+def test_no_law_in_its_range_is_said(wheel: Outcomes) -> None:
+    outcome = wheel["default"]
+    none = outcome.parts["laws"].isel(law=[])
+    one = replace(outcome, parts={**outcome.parts, "laws": none})
+    assert "none of the library is in its range" in render({"default": one})
+    assert "No fitted friction law of the library is in its range here" in summary_table(one)[2]
+
+
+def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes) -> None:
+    data = wheel["default"].parts["operation"]
+    limit = float(data["jamming_coefficient"].values[0, 0])
+    assert limit > float(data["nearest_friction"].values[0, 0]) == pytest.approx(0.05)
+    assert f"locks from μ {limit:.3g}" in Words(render(wheel)).text
+    assert summary_table(wheel["default"])[0][0]["locks from μ"] == f"{limit:.4f}"
 
 
 @pytest.mark.parametrize("kept", [(), ("teeth",), ("teeth", "cycle"), ("teeth", "operation")])

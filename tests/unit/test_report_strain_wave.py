@@ -333,6 +333,19 @@ def test_page_speaks_of_the_drive(page: str) -> None:
     assert not re.search(r"\b(nan|none|inf)\b", text, re.I)
 
 
+def test_an_efficiency_of_the_teeth_alone_says_so(whole: Outcome, page: str) -> None:
+    assert "teeth alone" not in words(page)
+    alone = operation(0.0)
+    alone["mean_efficiency"].attrs["covers"] = "teeth alone"
+    told = words(render({"default": outcome({"operation": alone})}))
+    assert "85.00 % mean efficiency, teeth alone" in told
+
+
+def test_the_torsional_stiffness_says_what_yields(whole: Outcome, page: str) -> None:
+    assert "pairs carry in the mean; teeth and ring yield" in words(page)
+    assert torsion_answer(whole).endswith("; teeth and ring yield")
+
+
 def test_what_a_user_typed_is_text(page: str) -> None:
     assert "<b>" not in page
     assert "&lt;/script&gt;&lt;b&gt;&amp;" in page

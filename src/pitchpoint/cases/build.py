@@ -12,11 +12,11 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.families import FAMILIES, Family, built_gears
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Surface
-from pitchpoint.cases.solids import SolidInUse, datum, heated, solids_in_use
+from pitchpoint.cases.solids import SolidInUse, datum, failures, heated, solids_in_use
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.efficiency.summary import heat
+from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint.efficiency.summary import engaged, heat
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import CylindricalPair
 from pitchpoint.gears.mesh import Mesh
@@ -30,6 +30,11 @@ from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program
 
 __all__ = ["Built", "build", "laws_of"]
+
+TEETH_ALONE = (
+    "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
+    "churning take their part."
+)
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,17 @@ class Built:
         """Values that the table of the gears leaves open, by key inside it."""
         return self.family.following(self.case.gears, self.design.mesh)
 
+    @cached_property
+    def engaged(self) -> Engagement | None:
+        """Contacts and shares at the operating point of a mesh whose own take long, for all that ask."""
+        return engaged(self.design, self.operation, laws_of(self)[0])
+
+    @property
+    def covers(self) -> dict[str, str]:
+        """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
+        alone = self.design.mesh.clearances and not self.case.losses
+        return {"covers": "teeth alone"} if alone else {}
+
     @property
     def loaded(self) -> str:
         """Name of the member that carries the load."""
@@ -121,7 +137,10 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     )
     told = (*warnings, *_yielding(case, mesh), *filter(None, [record.note]))
     built = Built(case, design, operation, record, used, told, own)
-    return built if case.models.tooth_temperature == "isothermal" else warmed(built, document)
+    if built.covers:
+        built = replace(built, warnings=(*told, TEETH_ALONE))
+    hot = built if case.models.tooth_temperature == "isothermal" else warmed(built, document)
+    return replace(hot, warnings=(*failures(hot.solids), *hot.warnings))
 
 
 def warmed(built: Built, document: Document) -> Built:
@@ -355,6 +374,9 @@ def _check_temperature(
 
 
 def _roughness(surface: Surface) -> Roughness:
+    if surface.ra is not None and surface.rq is not None:
+        (ra_1, ra_2), (rq_1, rq_2) = surface.ra, surface.rq
+        return Roughness(ra_1=ra_1, ra_2=ra_2, rq_1=rq_1, rq_2=rq_2)
     if surface.ra is not None:
         return Roughness.from_ra(*surface.ra)
     if surface.rq is not None:

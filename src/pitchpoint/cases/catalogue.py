@@ -1,13 +1,15 @@
 """Tables for people and machines: what can be chosen by name, and the main figures of a result."""
 
+import json
 from collections.abc import Iterator
 from dataclasses import fields
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from pitchpoint import units
-from pitchpoint.cases.laws import CASE_LAWS, FRICTION
+from pitchpoint.cases.laws import CASE_LAWS, FRICTION, limits_words
 from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
@@ -16,7 +18,6 @@ from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.gears.wave_generator import WAVE_SHAPES
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.lubrication.conditions import UNITS
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -105,6 +106,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
             for name in (*MAIN, *VIBRATION, *TEMPERATURES, *WIND_UP, "kinematic_error_range")
         },
         "operation": _by_law(outcome.parts["operation"], MAIN),
+        "efficiency_of": _covers(outcome),
         "vibration": _by_torque(outcome, "vibration", VIBRATION),
         "torsion": _by_torque(outcome, "torsion", WIND_UP),
         "kinematic_error_range": {
@@ -112,11 +114,17 @@ def figures(outcome: Outcome) -> dict[str, Any]:
             for curve, causes, values in _ranges(outcome)
         },
         "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
-        "back_driving": _by_law(outcome.parts["back_driving"], ("mean_efficiency", "locked")),
+        "friction_laws_out_of_range": out_of_range(outcome),
+        "back_driving": _by_law(
+            outcome.parts["back_driving"], ("mean_efficiency", "locked", "jamming_coefficient")
+        ),
         "studies": studies,
         "warnings": manifest["warnings"],
         "rows": manifest["rows"],
     }
+
+
+_LOCKS = "locks from μ"
 
 
 def summary_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...], str]:
@@ -127,18 +135,32 @@ def summary_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
     for position, law in enumerate(data["law"].values):
         row = {"friction law": str(law)}
         row.update({_head(name): _cell(data, name, position) for name in MAIN})
+        row["η of"] = _covers(outcome)
+        row[_LOCKS] = _cell(data, "jamming_coefficient", position)
         locked = bool(back["locked"].values[position, 0])
         row["back-driving"] = "locked" if locked else _cell(back, "mean_efficiency", position)
+        row[f"back-driving {_LOCKS}"] = _cell(back, "jamming_coefficient", position)
         rows.append(row)
     return rows, tuple(rows[0]), spread_sentence(outcome)
 
 
+def _covers(outcome: Outcome) -> str:
+    """What the efficiency is of, where that is less than the whole drive."""
+    return str(outcome.parts["operation"]["mean_efficiency"].attrs.get("covers", ""))
+
+
 def spread_sentence(outcome: Outcome) -> str:
-    """How far the friction laws that apply disagree about the mean efficiency."""
+    """How far the friction laws that apply disagree about the mean efficiency, and which do not apply."""
+    return " ".join([_within(outcome), *_apart(outcome)])
+
+
+def _within(outcome: Outcome) -> str:
     data = outcome.parts["laws"]
     values = data["mean_efficiency"].values[:, 0]
     if np.isnan(values).any():
         return "No power is transmitted: the efficiency is undefined."
+    if not len(values):
+        return "No fitted friction law of the library is in its range here."
     if len(values) == 1:
         only = str(data["law"].values[0])
         return f"One fitted friction law of the library applies, {only}; it gives {100 * values[0]:.2f} %."
@@ -156,6 +178,20 @@ def spread_sentence(outcome: Outcome) -> str:
     )
 
 
+def _apart(outcome: Outcome) -> Iterator[str]:
+    """A sentence for each law that is out of its range."""
+    for one in out_of_range(outcome):
+        value = one["mean_efficiency"]
+        gives = "" if value is None else f" (it would give {100 * value:.2f} %)"
+        yield f"Out of its range is {one['law']}{gives}: {'; '.join(one['reasons'])}."
+
+
+def out_of_range(outcome: Outcome) -> list[dict[str, Any]]:
+    """Laws of the library that do not hold at the operating point, with their efficiency and the reasons."""
+    found: list[dict[str, Any]] = json.loads(outcome.parts["laws"].attrs.get("outside", "[]"))
+    return found
+
+
 def _head(name: str) -> str:
     variable = VARIABLES[name]
     unit = f" [{variable.display}]" if variable.display != "1" else ""
@@ -170,6 +206,8 @@ def _shown(name: str, value: float) -> str:
     variable = VARIABLES[name]
     if np.isnan(value):
         return "undefined"
+    if np.isinf(value):
+        return "none"
     if variable.display == "1":
         return f"{value:.4f}"
     return f"{units.convert(value, variable.display, variable.kind):.5g}"
@@ -200,6 +238,7 @@ def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
     rows = [
         {_head("torque"): f"{torques[k]:.5g}"}
         | {_head(name): _shown(name, float(data[name].values[k])) for name in WIND_UP}
+        | {"K is that of": str(data["torsional_stiffness"].attrs.get("covers", ""))}
         for k in range(torques.size // 4, torques.size, torques.size // 4)
     ]
     return rows, tuple(rows[0])
@@ -302,8 +341,10 @@ def _sources(record: Any) -> str:
 
 def _friction_range(law: FrictionLaw) -> str:
     limits = [
-        f"{low:g} <= {name} <= {high:g} {UNITS[name]}" for name, (low, high) in law.ranges.items()
+        f"{name.replace('_', ' ')} {limits_words(name, ends)}" for name, ends in law.ranges.items()
     ]
+    limits += ["film at least Rq"] if law.full_film else []
+    limits += [f"coefficient at most {law.largest:g}"] if law.largest < inf else []
     place = "each contact" if law.local else "whole mesh"
     own = "; only for its case" if law in CASE_LAWS else ""
     return "; ".join([place + own, *limits])

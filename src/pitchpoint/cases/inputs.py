@@ -70,9 +70,12 @@ def resolved(built: Built, document: Document) -> list[dict[str, str]]:
     ]
 
 
+_ROUNDING = 1e-14  # lengths in metres, ratios: what differences of dimensions leave
 _GEOMETRY = (
     "transverse_contact_ratio",
     "overlap_ratio",
+    "circumferential_backlash",
+    "normal_backlash",
     "tip_thickness",
     "undercut_limit",
     "speed_ratio",
@@ -100,6 +103,7 @@ def _geometry(built: Built) -> list[dict[str, str]]:
 
 
 def _dimension(name: str, value: float) -> str:
+    value = 0.0 if abs(value) < _ROUNDING else value
     variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
     return _shown(value, variable.display, variable.kind)
 

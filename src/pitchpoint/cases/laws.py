@@ -1,12 +1,41 @@
 """Friction laws that a case file may name: those of the library, and those of published cases."""
 
+from math import inf
+
+from pitchpoint import units
 from pitchpoint.cases.tian2024 import friction as tian2024
+from pitchpoint.lubrication.conditions import UNITS
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.registry import Registry
 
-__all__ = ["CASE_LAWS", "FRICTION"]
+__all__ = ["CASE_LAWS", "FRICTION", "limits_words"]
 
 CASE_LAWS: tuple[FrictionLaw, ...] = tian2024.LAWS
 """Readings of a publication that are needed to reproduce its tables; no spread counts them."""
 
 FRICTION: Registry[FrictionLaw] = Registry("friction law", *LAWS, *CASE_LAWS)
+
+
+def limits_words(name: str, limits: tuple[float, float]) -> str:
+    """Range of a condition that a law asks for, in words.
+
+    Args:
+        name: of the condition.
+        limits: smallest and largest value [SI]; infinite where there is none.
+
+    Example:
+        >>> limits_words("viscosity", (1e-3, inf))
+        'at least 1 mPa s'
+    """
+    low, high = (_shown(name, value) for value in limits)
+    if limits[1] == inf:
+        return f"at least {low}"
+    return f"at most {high}" if limits[0] == -inf else f"{low} to {high}"
+
+
+_SHOWN = {"viscosity": ("mPa s", "dynamic viscosity"), "roughness_ra": ("um", "length")}
+
+
+def _shown(name: str, value: float) -> str:
+    unit, kind = _SHOWN.get(name, (UNITS[name], ""))
+    return f"{units.convert(value, unit, kind) if kind else value:g} {unit}".removesuffix(" 1")

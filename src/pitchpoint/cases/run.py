@@ -15,6 +15,7 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.comparison import Row, compare, demand_parts
 from pitchpoint.cases.document import Tree, variants
+from pitchpoint.cases.failures import worst_first
 from pitchpoint.cases.library import find
 from pitchpoint.cases.schema import Study, validate
 from pitchpoint.cases.studies import Job, Variant, jobs
@@ -139,7 +140,7 @@ def run_variant(
         outcome.parts[job.name] = part = _part(job, variant, folder, studies, progress)
         if not job.name.startswith("study_"):
             told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
-            outcome.manifest["warnings"] = list(dict.fromkeys(told))
+            outcome.manifest["warnings"] = worst_first(told)
         _note(outcome, folder, finished=False)
     outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
     _note(outcome, folder, finished=True)
@@ -374,7 +375,9 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
         "summary": case.summary,
         "settings": {key: str(value) for key, value in variant.settings.items()},
         "inputs": inputs.resolved(built, document),
-        "warnings": [*built.warnings, *(used.told for used in built.solids if used.told)],
+        "warnings": worst_first(
+            [*built.warnings, *(used.told for used in built.solids if used.told)]
+        ),
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
         "models": [
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}

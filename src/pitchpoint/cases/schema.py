@@ -213,20 +213,31 @@ class Oil(Table):
 
 
 class Surface(Table):
-    """Roughness: Ra or Rq of one flank (taken for both) or of each, or the composite Rq."""
+    """Roughness: Ra, Rq or both of one flank (taken for both) or of each, or the composite Rq.
+
+    With both, each law takes its own; with one, the other follows for Gaussian heights.
+    """
 
     ra: Annotated[tuple[float, float], Pair(ROUGHNESS)] | None = None
     rq: Annotated[tuple[float, float], Pair(ROUGHNESS)] | None = None
     composite_rq: Annotated[float, ROUGHNESS] | None = None
 
     @model_validator(mode="after")
-    def _one(self) -> "Surface":
+    def _enough(self) -> "Surface":
         given = [name for name in ("ra", "rq", "composite_rq") if getattr(self, name) is not None]
-        if len(given) != 1:
+        if not given or ("composite_rq" in given and len(given) > 1):
             raise InputError(
-                f"{len(given) or 'no'} roughness values were given; give exactly one of ra, rq "
-                "(one flank or a list of two) and composite_rq"
+                f"{' and '.join(given) or 'no roughness'} "
+                f"{'were' if len(given) > 1 else 'was'} given; give ra, rq or both (one flank or a list of "
+                "two), or composite_rq alone"
             )
+        for number, (ra, rq) in enumerate(zip(self.ra or (), self.rq or (), strict=False), 1):
+            if rq < ra:
+                raise InputError(
+                    f"Rq of gear {number}, {ROUGHNESS.show(rq)}, is below its Ra, {ROUGHNESS.show(ra)}; "
+                    "the root of the mean square is at least the mean",
+                    key="rq",
+                )
         return self
 
 

@@ -5,17 +5,20 @@ from dataclasses import dataclass, replace
 from typing import cast, get_args
 
 from pitchpoint.cases.document import Document
+from pitchpoint.cases.failures import fails
 from pitchpoint.cases.schema import Case, Materials, SolidValues
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE, modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
 from pitchpoint.materials._leaves import Datum, Status
-from pitchpoint.materials.solids import Solid, SolidRecord, celsius
+from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
 
-__all__ = ["SolidInUse", "datum", "heated", "solids_in_use"]
+__all__ = ["SolidInUse", "datum", "failures", "heated", "solids_in_use"]
 
+BY_VALUE = "by value"
 _PLASTIC_BELOW = 30e9  # Pa; no metal for gears is as soft, no plastic without fibres as stiff
+_STEEL_ABOVE = 150e9  # Pa; given by value, a stiffer material is taken to bear what steel bears
 _KEYS = ("gear_1", "gear_2")
 
 
@@ -42,8 +45,30 @@ class SolidInUse:
         """True for a material as soft as plastics are."""
         return float(self.solid.young) < _PLASTIC_BELOW
 
+    @property
+    def hottest(self) -> float:
+        """Highest temperature of the teeth [K]."""
+        return self.temperature if self.flank is None else max(self.flank, self.temperature)
+
+    @property
+    def bears(self) -> Datum | None:
+        """Largest Hertz pressure [Pa]; None where it is not known."""
+        if self.record.title == BY_VALUE and self.record.young.value > _STEEL_ABOVE:
+            return solids.find("steel").contact_limit
+        return self.record.contact_limit
+
 
 Used = tuple[SolidInUse, SolidInUse]
+
+
+def failures(used: Used) -> list[str]:
+    """Gears that are hotter than their material bears."""
+    told = (heat_failure(one.record, one.hottest) for one in used)
+    return [
+        fails(f"the teeth of gear {gear} are at {celsius(one.hottest)}; {text}.")
+        for gear, (one, text) in enumerate(zip(used, told, strict=True), 1)
+        if text
+    ]
 
 
 def solids_in_use(materials: Materials, document: Document, temperature: float) -> Used:
@@ -124,8 +149,11 @@ def _warm(
     warm = _in_use(record, _KEYS[gear], document, root)
     told = (
         f"The teeth of gear {gear + 1} reach {celsius(flank)} at the flank and {celsius(root)} at the "
-        f"root; modulus {float(warm.solid.young) / 1e9:.3g} GPa. {_upper(modulus_at(record, root).status)}."
+        f"root; modulus {float(warm.solid.young) / 1e9:.3g} GPa."
     )
+    if heat_failure(record, max(flank, root)):
+        return replace(warm, told=told, flank=flank)
+    told += f" {_upper(modulus_at(record, root).status)}."
     if record.young_at and flank > record.young_at[-1].temperature:
         told += f" No modulus is known at the temperature of the flank of gear {gear + 1}."
     return replace(warm, told=told, flank=flank)
@@ -150,4 +178,4 @@ def _record(given: SolidValues | str, key: str, document: Document) -> SolidReco
         for name in ("young", "poisson", "density")
     )
     name = f"material of gear {key[-1]}"
-    return SolidRecord(name=name, title="by value", young=young, poisson=poisson, density=density)
+    return SolidRecord(name=name, title=BY_VALUE, young=young, poisson=poisson, density=density)

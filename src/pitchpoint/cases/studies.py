@@ -14,7 +14,8 @@ from pitchpoint._jax import array, jax
 from pitchpoint.cases import loss_map
 from pitchpoint.cases.build import Built, build, laws_of
 from pitchpoint.cases.document import Document, leaves, resolve
-from pitchpoint.cases.laws import CASE_LAWS
+from pitchpoint.cases.failures import fails
+from pitchpoint.cases.laws import CASE_LAWS, limits_words
 from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shorten, shown
 from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import (
@@ -28,14 +29,16 @@ from pitchpoint.cases.schema import (
 )
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
-from pitchpoint.efficiency.summary import engaged, summarise
+from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.programs import program
-from pitchpoint.results.store import dataset
+from pitchpoint.results.rounding import difference
+from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.units import si_unit
 
 __all__ = ["Job", "Variant", "jobs"]
@@ -50,7 +53,7 @@ SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
 
 _SHOWN = 3
 
-_WITH_FRICTION = {
+_WITH_FRICTION = {"largest_contact_force_ratio"} | {
     f"{kind}_{name}{ending}"
     for kind in ("mean", "min", "max")
     for name in ("loss", "efficiency", "input_torque", "friction")
@@ -60,6 +63,11 @@ _WITH_FRICTION = {
 
 TOLERANCE = 1e-10
 """Largest relative residual of the torque balance that counts as converged."""
+
+NEARLY_JAMMED = 1e-3
+"""Distance from the coefficient that locks the mesh, relative, at which it is said to be reached."""
+
+PRESSURE = Quantity("pressure", 0.0, 1e15, "GPa")
 
 Progress = Callable[[int], None]
 
@@ -228,16 +236,9 @@ def _drawing(mesh: Mesh) -> dict[str, Array]:
 
 def _cycle(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
-    film = FILM_THICKNESS[built.case.models.film_thickness]
-    known = engaged(built.design, built.operation, models)
-    runs = [
-        profile(built.design, built.operation, _choose(models, index), film, engaged=known)
-        for index in chosen
-    ]
+    runs = _profiles(built, models, chosen)
     names = _names(models, chosen)
-    _demand_motion(
-        np.stack([np.asarray(run["locked"]).any(keepdims=True) for run in runs]), [built], names
-    )
+    _demand_motion(*_jammed(runs), [built], names)
     _demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)
     lanes = ("law", "node", "pair", "slice")
     common = {
@@ -255,20 +256,42 @@ def _cycle(built: Built) -> xr.Dataset:
     warnings = [
         text
         for law, run in zip(laws, runs, strict=True)
-        for text in _film_warnings(built, law, run)
+        for text in _told_of(law, _outside(built, law, run))
     ]
     warnings += _conformal_warning(built.design.mesh, runs[0])
+    warnings += _pressure_warning(built, runs)
     data = dataset(
         {**common, **each},
         {"law": names},
         title="mesh cycle",
         warnings=warnings,
-        film_law=film.name,
+        film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )
     if built.design.mesh.clearances:
         data["path"].attrs.update(long_name="angle from the long axis, in turns", symbol="p/2π")
     return data
+
+
+def _profiles(built: Built, models: Models, laws: Sequence[int]) -> list[dict[str, np.ndarray]]:
+    """The mesh cycle under each law."""
+    film = FILM_THICKNESS[built.case.models.film_thickness]
+    point = built.design, built.operation
+    runs = (profile(*point, _choose(models, law), film, engaged=built.engaged) for law in laws)
+    return [jax.device_get(run) for run in runs]
+
+
+def _jammed(
+    runs: Sequence[Mapping[str, np.ndarray]],
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Whether friction locks the mesh, and where it is nearest to that its coefficients [law, 1]."""
+    names = ("largest_friction", "jamming_coefficient")
+    nearest = [int(np.argmax(run[names[0]] / run[names[1]])) for run in runs]
+    acting, limit = (
+        np.array([[run[name][node]] for run, node in zip(runs, nearest, strict=True)])
+        for name in names
+    )
+    return np.stack([run["locked"].any(keepdims=True) for run in runs]), acting, limit
 
 
 def _operation(built: Built) -> xr.Dataset:
@@ -278,12 +301,33 @@ def _operation(built: Built) -> xr.Dataset:
 
 
 def _laws(built: Built) -> xr.Dataset:
-    """Every law of the library at the operating point: how far the models themselves disagree."""
-    models, _ = laws_of(built)
+    """Every law of the library in its range at the operating point: how far they themselves disagree.
+
+    The attribute `outside` lists the others and the laws of the case that are out of theirs, each with
+    its efficiency there and the reasons.
+    """
+    models, chosen = laws_of(built)
     every = [
         index for index, law in enumerate(models.friction) if law not in CASE_LAWS and law.sources
     ]
-    return _summaries([built], models, every, {}, title="friction laws that apply", may_lock=True)
+    considered = list(dict.fromkeys([*every, *chosen]))
+    title = "friction laws that apply"
+    data = _summaries([built], models, considered, {}, title=title, may_lock=True)
+    reasons = [
+        _outside(built, models.friction[law], run)
+        for law, run in zip(considered, _profiles(built, models, considered), strict=True)
+    ]
+    outside = [
+        {
+            "law": str(data["law"].values[k]),
+            "mean_efficiency": float(data["mean_efficiency"].values[k, 0]),
+            "reasons": told,
+        }
+        for k, told in enumerate(reasons)
+        if told
+    ]
+    kept = [k for k, law in enumerate(considered) if law in every and not reasons[k]]
+    return data.isel(law=kept).assign_attrs(outside=json.dumps(without_nan(outside)))
 
 
 def _study(variant: Variant, name: str, study: Study, where: str) -> Job:
@@ -464,7 +508,8 @@ def _summaries(
     runs = [_grouped(points, _choose(models, law), progress) for law in laws]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
     if not may_lock and len(points) == 1:
-        _demand_motion(out["locked"], points, _names(models, laws))
+        ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
+        _demand_motion(out["locked"], *ends, points, _names(models, laws))
     for name, values in out.items():
         if values.dtype.kind == "f" and name in _WITH_FRICTION:
             values[out["locked"]] = np.nan
@@ -474,8 +519,8 @@ def _summaries(
         for name in ("mean_loss", "mean_efficiency", "mean_input_torque"):
             out[name] = out[f"{name}_path"]
     out = {name: values for name, values in out.items() if not name.endswith("_path")}
-    out["efficiency_fluctuation"] = out["max_efficiency"] - out["min_efficiency"]
-    out["torque_ripple"] = out["max_input_torque"] - out["min_input_torque"]
+    out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
+    out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
     if points[0].design.mesh.clearances:
         del out["loss_factor"]  # of the shares of one load: no figure of the gears alone
     else:
@@ -489,12 +534,14 @@ def _summaries(
     if not may_lock:
         for law, locked in zip(laws, out["locked"], strict=True):
             warnings += _lock_warning(models.friction[law], locked)
-    return dataset(
+    data = dataset(
         {**{name: (("law", "point"), values) for name, values in out.items()}, **extra},
         {"law": _names(models, laws)},
         title=title,
         warnings=warnings,
     )
+    data["mean_efficiency"].attrs.update(points[0].covers)
+    return data
 
 
 def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -573,14 +620,38 @@ def _demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Seq
         )
 
 
-def _demand_motion(locked: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:
+def _demand_motion(
+    locked: np.ndarray,
+    acting: np.ndarray,
+    limit: np.ndarray,
+    points: Sequence[Built],
+    laws: Sequence[str],
+) -> None:
     """ConvergenceError if friction locks the mesh [law, point]: there is no balance to find."""
     if locked.any():
         law, point = divmod(int(np.argmax(locked)), locked.shape[1])
         raise ConvergenceError(
             f"friction locks the mesh with {laws[law]} {_where(points[min(point, len(points) - 1)])}: "
-            "no force carries the load; the friction coefficient is too high"
+            f"{jamming_words(float(acting[law, point]), float(limit[law, point]))}; no force carries the load"
         )
+
+
+def jamming_words(acting: float, limit: float) -> str:
+    """Why friction locks a mesh, in words.
+
+    Args:
+        acting: friction coefficient, under the force without friction.
+        limit: from which on the mesh locks.
+
+    Example:
+        >>> jamming_words(0.312, 0.29)
+        'friction 0.312 reaches the 0.29 at which this mesh locks'
+        >>> jamming_words(0.25, 0.29)
+        'friction 0.25 grows with the force, and at 0.29 this mesh locks'
+    """
+    if acting < limit * (1.0 - NEARLY_JAMMED):
+        return f"friction {acting:.3g} grows with the force, and at {limit:.3g} this mesh locks"
+    return f"friction {acting:.3g} reaches the {limit:.3g} at which this mesh locks"
 
 
 def _where(built: Built) -> str:
@@ -608,20 +679,70 @@ def _conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _film_warnings(built: Built, law: FrictionLaw, run: Mapping[str, Any]) -> list[str]:
-    """A full-film law where there is no full film, and conditions outside the fitted range."""
-    told = []
-    loaded = np.asarray(run["load"]) > 0.0
-    thinnest = float(np.asarray(run["lambda_ratio"]).min(where=loaded, initial=np.inf))
-    if law.full_film and built.case.operation.torque > 0.0 and thinnest < 1.0:
-        highest = float(np.asarray(run["friction"]).max())
-        told.append(
-            f"{law.title}: it describes contacts with a full film, but the film is down to {thinnest:.2g} "
-            f"of the composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an "
-            "extrapolation."
+def _pressure_warning(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:
+    """A Hertz pressure that a material does not bear even once."""
+    largest = max(float(np.max(run["pressure"])) for run in runs)
+    limits = [
+        (limit.value, gear) for gear, used in enumerate(built.solids, 1) if (limit := used.bears)
+    ]
+    weakest, gear = min(limits, default=(np.inf, 0))
+    if not largest > weakest:
+        return []
+    name = built.solids[gear - 1].record.name
+    return [
+        fails(
+            f"the Hertz pressure reaches {PRESSURE.show(largest)}; {name} bears about "
+            f"{PRESSURE.show(weakest)}, and that a few times only."
         )
-    for name in law.ranges:
-        share = float(np.mean(run[f"outside {law.name} {name}"]))
-        if share > 0.0:
-            told.append(f"{law.title}: {name} leaves the fitted range in part of the mesh cycle.")
-    return told
+    ]
+
+
+def _told_of(law: FrictionLaw, reasons: Sequence[str]) -> list[str]:
+    return [f"{law.title}: {reason}." for reason in reasons]
+
+
+def _outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
+    """Why a law does not hold at an operating point, in words; empty where it does."""
+    reasons = [
+        f"the {name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}, "
+        f"{_how_long(run[f'outside {law.name} {name}'], run['weight'])}"
+        for name, limits in law.ranges.items()
+        if np.any(run[f"outside {law.name} {name}"])
+    ]
+    loaded = run["load"] > 0.0
+    if not loaded.any():
+        return reasons
+    highest = float(run["friction"].max(where=loaded, initial=0.0))
+    thinnest = float(run["lambda_ratio"].min(where=loaded, initial=np.inf))
+    if law.full_film and thinnest < 1.0:
+        reasons.append(
+            f"it describes contacts with a full film, but the film is down to {thinnest:.2g} of the "
+            f"composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an extrapolation"
+        )
+    elif highest > law.largest:
+        reasons.append(
+            f"its friction coefficient reaches {highest:.2g}; steel in oil has at most about "
+            f"{law.largest:g}, so that this is an extrapolation"
+        )
+    rolling = ROLLING_RESISTANCE[built.case.models.rolling_resistance]
+    if law.whole and rolling.sources:
+        reasons.append(
+            "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
+            f"'{rolling.name}' beside it rolling counts twice, here with {_rolling_share(run):.2g} % of "
+            "the loss"
+        )
+    return reasons
+
+
+def _how_long(outside: np.ndarray, weight: np.ndarray) -> str:
+    share = float(np.sum(outside * weight))
+    return "throughout" if share > 1.0 - 1e-9 else f"in {100.0 * share:.2g} % of the mesh cycle"
+
+
+def _rolling_share(run: Mapping[str, np.ndarray]) -> float:
+    """Part of the loss in the teeth that rolling takes [%]."""
+    rolling, sliding = (
+        float(np.sum(np.sum(run[name], axis=(1, 2)) * run["weight"]))
+        for name in ("rolling_loss", "sliding_loss")
+    )
+    return 100.0 * rolling / (rolling + sliding)

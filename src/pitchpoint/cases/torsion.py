@@ -49,7 +49,8 @@ def torsion_part(built: Built) -> xr.Dataset:
         "unloading_torque": ("law", "torque"),
     }
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
-    return dataset(
+    yields, rigid = _yielding(built.design.mesh)
+    part = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
             "law": [models.friction[law].name for law in chosen],
@@ -58,19 +59,19 @@ def torsion_part(built: Built) -> xr.Dataset:
         },
         title="torsion",
         warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
-        note=_yielding(built.design.mesh),
+        note=f"{yields} yield; {rigid} are not in it",
     )
+    part["torsional_stiffness"].attrs.update(covers=yields)
+    return part
 
 
-def _yielding(mesh: Mesh) -> str:
-    """What yields and what is left out, in words."""
+def _yielding(mesh: Mesh) -> tuple[str, str]:
+    """What yields, and what is left out, in words."""
     if mesh.ring is None or np.isinf(mesh.ring.support_stiffness):
-        return (
-            "teeth, ring and cup of the flexspline yield; shafts, bearings and joints are not in it"
-        )
+        return "teeth, ring and cup of the flexspline", "bearings, shafts, flange and joints"
     return (
-        "teeth, ring and cup of the flexspline and the bearing inside it yield; its clearance, shafts and "
-        "joints are not in it"
+        "teeth, ring and cup of the flexspline and the bearing inside it",
+        "the clearance of that bearing, shafts, flange and joints",
     )
 
 

@@ -128,7 +128,7 @@ def vibration_part(built: Built) -> xr.Dataset:
     inputs = [(built.design, point, vibrating_of(built)) for point in _loads(built)]
     found = _solved(inputs, built, _course)
     dims = {"dynamic_factor": ("torque", "pair", "node"), "spectrum": ("torque", "order")}
-    nodal = ("transmission_error", "static_transmission_error")
+    nodal = ("transmission_error", "static_transmission_error", "mesh_dynamic_factor")
     data: dict[str, Any] = {"phase": (("node",), found.pop("phase")[0])}
     for name, values in found.items():
         own = ("torque", "node") if name in nodal else ("torque",)
@@ -152,6 +152,7 @@ def _course(stiffness: MeshStiffness, moved: System, found: Response) -> dict[st
         "transmission_error": found.transmission_error.ravel(),
         "static_transmission_error": found.static_transmission_error.ravel(),
         "dynamic_factor": factor.reshape(factor.shape[0], -1),
+        "mesh_dynamic_factor": jnp.sum(factor, axis=0).ravel(),
         "spectrum": found.spectrum(found.transmission_error, ORDERS),
     }
 

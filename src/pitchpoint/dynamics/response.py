@@ -100,6 +100,12 @@ class Response(eqx.Module):
         """True where a pair within its zone of contact carries nothing, or pulls, at some phase."""
         return _separated(self.course, self.stretch)
 
+    @property
+    def separated_share(self) -> Float[Array, ""]:
+        """Share of the period in which no pair touches, on either flank; counted at the nodes."""
+        apart = jnp.where(jnp.all(self.force == 0.0, axis=0), 1.0, 0.0)
+        return self.mean(jnp.where(jnp.isfinite(self.displacement[0]), apart, jnp.nan))
+
     def mean(self, values: Float[Array, "*b element node"]) -> Float[Array, "*b"]:
         """Mean over the period."""
         return self.course.mean(values)

@@ -156,8 +156,9 @@ def transmission_figures(
     total = stiffness.total
     dynamic, static = found.transmission_error, found.static_transmission_error
     factors = found.dynamic_factor(nominal_force(stiffness, moved))
+    whole = jnp.sum(factors, axis=0)
     # Together, so that the polynomials between the nodes are compiled once.
-    low, high = found.extremes(jnp.concatenate([dynamic[None], static[None], factors]))
+    low, high = found.extremes(jnp.concatenate([dynamic[None], static[None], whole[None], factors]))
     spread = high - low
     return {
         "mean_stiffness": stiffness.mean,
@@ -165,7 +166,10 @@ def transmission_figures(
         "mean_transmission_error": found.mean(dynamic),
         "transmission_error_range": spread[0],
         "static_transmission_error_range": spread[1],
-        "largest_dynamic_factor": jnp.max(high[2:]),
+        "transmission_error_rms": found.rms(dynamic),
+        "separated_share": found.separated_share,
+        "largest_mesh_dynamic_factor": high[2],
+        "largest_dynamic_factor": jnp.max(high[3:]),
         "natural_frequency": jnp.sqrt(stiffness.mean / moved.mass[0, 0]) / (2.0 * jnp.pi),
         "mesh_frequency": 1.0 / moved.period,
         "equivalent_mass": moved.mass[0, 0],

@@ -3,7 +3,7 @@
 from jaxtyping import Array
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import along, total
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
@@ -34,11 +34,14 @@ def profile(
     Returns:
         Quantities by name, [node] for the mesh and [node, pair, slice] for each contact; zero where
         a pair is not in contact. Losses beside the teeth are among them where the design has some.
+        Without any load there is no film (NaN), which the laws let grow without limit; over smooth
+        flanks its ratio to their roughness is infinite.
     """
     result = cycle(design, operation, models, nodes, engaged)
     state = result.state
     at, contacts = state.conditions, state.contacts
-    thickness = evaluate(film.function, at)
+    carries = state.balance.force > 0.0
+    thickness = jnp.where(carries, evaluate(film.function, at), jnp.nan)
     slip = along(contacts.slip_arm, at.motion)
     mesh = {
         "phase": result.phase,
@@ -50,6 +53,9 @@ def profile(
         "contact_force_ratio": state.contact_force_ratio,
         "residual": state.balance.residual,
         "locked": state.balance.locked,
+        "jamming_coefficient": state.balance.jamming,
+        "largest_friction": state.balance.largest_friction,
+        "contact_line_length": total(jnp.where(contacts.active, contacts.weight, 0.0)),
     }
     each = {
         "load": state.balance.load,
@@ -60,7 +66,9 @@ def profile(
         "slide_roll_ratio": at.slide_roll_ratio,
         "pressure": at.pressure,
         "film_thickness": thickness,
-        "lambda_ratio": thickness / _positive(at.roughness_rq),
+        "lambda_ratio": jnp.where(
+            at.roughness_rq > 0.0, thickness / _positive(at.roughness_rq), thickness * jnp.inf
+        ),
         "sliding_loss": state.sliding_loss,
         "rolling_loss": state.rolling_loss,
         "radius": contacts.radius,

@@ -416,9 +416,14 @@ class Cycle(eqx.Module):
         A polynomial through the nodes of each segment is read at points between them, and at its
         vertex beside a point where it is level: jumps lie at the ends of segments, where there are
         nodes. Where pairs with clearances come and go between the events, values have kinks that no
-        polynomial follows, and the nodes alone are read.
+        polynomial follows, and the nodes alone are read. Values that are undefined at a node have none.
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
+        known = ~jnp.any(jnp.isnan(segments), axis=-1)
+        low, high = self._ends(segments)
+        return jnp.where(known, low, jnp.nan), jnp.where(known, high, jnp.nan)
+
+    def _ends(self, segments: Float[Array, "*b node"]) -> tuple[Each, Each]:
         if not self.smooth:
             return jnp.min(segments, axis=-1), jnp.max(segments, axis=-1)
         segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
@@ -464,6 +469,20 @@ class Cycle(eqx.Module):
     def locked(self) -> Bool[Array, "*b"]:
         """True where friction locks the mesh at some phase."""
         return jnp.any(self.state.balance.locked, axis=-1)
+
+    @property
+    def jamming(self) -> Each:
+        """Smallest coefficient of friction, the same at all contacts, from which on the mesh is locked."""
+        return jnp.min(self.state.balance.jamming, axis=-1)
+
+    @property
+    def nearest_to_jamming(self) -> tuple[Each, Each]:
+        """Friction coefficient where the mesh is nearest to locking, and the one at which it locks there."""
+        found = self.state.balance
+        each = jnp.broadcast_arrays(found.largest_friction, found.jamming)
+        nearest = jnp.argmax(each[0] / each[1], axis=-1)[..., None]
+        acting, limit = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in each)
+        return acting, limit
 
 
 def cycle(

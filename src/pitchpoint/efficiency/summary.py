@@ -73,6 +73,7 @@ def summary(
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
     high = jnp.minimum(high, jnp.maximum(1.0, jnp.max(state.efficiency, axis=-1)))
     torque_low, torque_high = result.extremes(state.input_torque)
+    acting, limit = result.nearest_to_jamming
     return {
         **_by_gear(design.mesh.dimensions()),
         "contact_ratio": design.mesh.contact_ratio,
@@ -92,6 +93,23 @@ def summary(
         "residual": result.residual,
         "iterations": state.balance.iterations,
         "locked": result.locked,
+        "jamming_coefficient": result.jamming,
+        "nearest_friction": acting,
+        "nearest_jamming_coefficient": limit,
+        "largest_contact_force_ratio": jnp.max(state.contact_force_ratio, axis=-1),
+        **_at_pitch_point(result),
+    }
+
+
+def _at_pitch_point(result: Cycle) -> dict[str, Array]:
+    """What laws for a whole mesh ask for; nothing where there is no pitch point."""
+    at = result.state.conditions
+    if at.reference is None:
+        return {}
+    return {
+        "pitch_line_load": result.mean(at.reference_line_load),
+        "pitch_sum_speed": result.mean(at.reference_sum_speed),
+        "pitch_radius": at.reference_radius,
     }
 
 

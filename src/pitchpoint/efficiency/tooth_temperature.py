@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
-from pitchpoint.materials.solids import SolidRecord, celsius
+from pitchpoint.materials.solids import SolidRecord, celsius, heat_failure
 from pitchpoint.registry import Registry
 
 __all__ = [
@@ -196,6 +196,8 @@ def modulus_at(record: SolidRecord, temperature: float) -> ModulusInUse:
 
 def _softer(record: SolidRecord, temperature: float) -> str:
     """Consequence of a modulus that was found well below the temperature."""
+    if fails := heat_failure(record, temperature):
+        return f"; {fails}"
     known = record.young_temperature
     if known is None or temperature < known.value + _NEAR:
         return ""

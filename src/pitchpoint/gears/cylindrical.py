@@ -309,6 +309,18 @@ class CylindricalPair(Mesh):
         return jnp.minimum(change, 0.0)
 
     @property
+    def backlash(self) -> Float[Array, ""]:
+        """Circumferential backlash on the pitch circles j_wt [m]: the pitch less both tooth thicknesses."""
+        radii = jnp.abs(self.working_radii)
+        halves = [gear.half_thickness_angle(r) for gear, r in zip(self.gears, radii, strict=True)]
+        return 2.0 * jnp.sum(radii * (jnp.pi / jnp.abs(self.teeth) / 2.0 - jnp.stack(halves)))
+
+    @property
+    def normal_backlash(self) -> Float[Array, ""]:
+        """Backlash along the normal of the flanks j_bn = j_wt cos(alpha_wt) cos(beta_b) [m] (ISO 21771)."""
+        return self.backlash * jnp.cos(self.working_pressure_angle) * jnp.cos(self.base_helix_angle)
+
+    @property
     def working_radii(self) -> Float[Array, "2"]:
         """Radii of the pitch circles in operation r_w1, r_w2 [m]."""
         return self.line.working_radii
@@ -491,6 +503,8 @@ class CylindricalPair(Mesh):
             "transverse_contact_ratio": self.transverse_contact_ratio,
             "overlap_ratio": self.overlap_ratio,
             "centre_distance": self.centre_distance,
+            "circumferential_backlash": self.backlash,
+            "normal_backlash": self.normal_backlash,
             "tip_alteration": self.tip_alteration,
             "tip_thickness": jnp.stack([gear.tip_thickness for gear in gears]),
             "undercut_limit": jnp.stack([gear.undercut_limit for gear in gears]),

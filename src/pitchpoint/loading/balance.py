@@ -15,8 +15,12 @@ Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 Drag = Callable[[Lanes], Float[Array, "dof *b"]]
 
-LARGEST_RATIO = 20.0
-"""Contact force over that without sliding friction beyond which the mesh counts as locked."""
+LARGEST_RATIO = 1e4
+"""Contact force over that without sliding friction up to which a balance is looked for.
+
+A constant coefficient of friction comes within 1e-4 of the one that locks the mesh; nearer to it the
+force is the small difference of large torques, and rounding would decide.
+"""
 
 UNSOLVED = 1e-8
 """Relative residual above which a state is no balance and its forces are NaN."""
@@ -38,7 +42,11 @@ class Balance(eqx.Module):
         iterations: of the solver, common to the states that were solved together.
         locked: True where friction holds the load: no force up to `LARGEST_RATIO` times the
             frictionless one moves it. Forces and torques are NaN there, and where the drag takes the
-            driven coordinate along with more than its load, for which other flanks would have to touch.
+            driven coordinate along with more than its load, for which other flanks would have to touch;
+            the friction coefficients there are those under the frictionless force.
+        jamming: coefficient of friction, the same at all contacts, from which on the mesh is locked:
+            normal arm over -sum(share times sliding arm), at which the leverage of the contact force
+            vanishes; infinite where friction pushes on.
     """
 
     force: Float[Array, "*b"]
@@ -51,6 +59,12 @@ class Balance(eqx.Module):
     residual: Float[Array, "*b"]
     iterations: Int[Array, ""]
     locked: Bool[Array, "*b"]
+    jamming: Float[Array, "*b"]
+
+    @property
+    def largest_friction(self) -> Float[Array, "*b"]:
+        """Largest friction coefficient of the contacts."""
+        return jnp.max(self.friction, axis=(0, 1))
 
 
 def balance(
@@ -128,7 +142,8 @@ def balance(
         start = jnp.maximum(start, start - total(laws(start)[2] * roll) / safe_load)
     most = LARGEST_RATIO * jax.lax.stop_gradient(start)
     ratio, iterations = root(unbalance, start, most, unrolled=unrolled)
-    force, coefficient, resistance = laws(ratio)
+    lost = ratio > 0.999 * most
+    force, coefficient, resistance = laws(jnp.where(lost, start, ratio))
     torque = jnp.stack(
         [
             total(
@@ -145,7 +160,9 @@ def balance(
         grip = grip - pressed(force) / jnp.where(ratio == 0.0, 1.0, ratio)
     residual = jnp.abs(jnp.abs(along(torque, loaded)) - load) / safe_load
     residual = jnp.where(carried < 0.0, jnp.inf, residual)
-    locked = (ratio > 0.999 * most) | (grip <= 0.0)
+    locked = lost | (grip <= 0.0)
+    hold = -total(share * slip) / arm
+    jamming = jnp.where(hold > 0.0, 1.0 / jnp.where(hold > 0.0, hold, 1.0), jnp.inf)
     solved = (residual <= UNSOLVED) & (ratio > 0.0) & (carried >= 0.0) & ~locked
     return Balance(
         force=_where(solved, ratio * frictionless),
@@ -158,6 +175,7 @@ def balance(
         residual=residual,
         iterations=iterations,
         locked=locked,
+        jamming=jnp.broadcast_to(jamming, residual.shape),
     )
 
 

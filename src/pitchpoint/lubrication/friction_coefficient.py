@@ -8,6 +8,7 @@ A law is listed in `LAWS` when its form, its coefficients and its units agree in
 not depend on each other.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Final
@@ -28,6 +29,9 @@ __all__ = [
 
 # Far below any physical value in fitted units, large enough for finite powers and gradients.
 _FLOOR: Final = 1e-12
+
+BOUNDARY: Final = 0.2
+"""Coefficient that steel in oil does not exceed in boundary lubrication, where it is about 0.1."""
 
 _XU: Final = (
     -8.916465,
@@ -51,7 +55,10 @@ class FrictionLaw:
         title: name to show.
         function: the law; keyword-only, SI in, coefficient out.
         sources: keys of the bibliography.
-        ranges: fitted range of each argument, in SI; empty where no source states one.
+        ranges: range of arguments in SI, of its fit or of its form, as the note says; empty where
+            no source states one.
+        largest: coefficient beyond which it describes no lubricated contact that it was fitted to.
+        whole: True if it was fitted to whole losses of gears, with those of rolling in them.
         local: True if the law holds at each contact, False if it gives one mean for the mesh.
         note: what it was fitted on, and cautions.
         full_film: True if it describes contacts that a film separates.
@@ -67,6 +74,8 @@ class FrictionLaw:
     local: bool = True
     note: str = ""
     full_film: bool = False
+    largest: float = math.inf
+    whole: bool = False
 
 
 def _floored(value: ArrayLike) -> Array:
@@ -246,9 +255,14 @@ LAWS: Final[tuple[FrictionLaw, ...]] = (
         ),
         local=False,
         note=(
-            "Mean coefficient fitted to losses of gear test rigs; use it with the load of the whole"
-            " mesh. X_L differs between oils, about 0.6 to 1."
+            "Mean coefficient fitted to losses of gear test rigs, those of rolling among them; use it"
+            " with the load of the whole mesh and without a rolling resistance. X_L differs between"
+            " oils, about 0.6 to 1. No range of the fit was found: the limits are those of its form,"
+            " by which flanks without roughness have no friction, and of steel in oil."
         ),
+        ranges={"roughness_ra": (1e-8, math.inf)},
+        largest=BOUNDARY,
+        whole=True,
     ),
     FrictionLaw(
         name="xu_2007",
@@ -268,8 +282,12 @@ LAWS: Final[tuple[FrictionLaw, ...]] = (
         ),
         note=(
             "Regression of thermal EHL solutions for one 75W90 gear oil. Zero at pure rolling;"
-            " doubly exponential in roughness, so too high for rough flanks or mixed friction."
+            " doubly exponential in roughness, so too high for rough flanks or mixed friction. No"
+            " range of the fit was found: the limits are those of its form, which takes the logarithm"
+            " of the viscosity in mPa s, and of a full film."
         ),
+        ranges={"viscosity": (1e-3, math.inf)},
         full_film=True,
+        largest=BOUNDARY,
     ),
 )

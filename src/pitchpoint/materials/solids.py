@@ -23,6 +23,7 @@ __all__ = [
     "catalogue",
     "celsius",
     "find",
+    "heat_failure",
     "reduced_modulus",
 ]
 
@@ -104,6 +105,9 @@ class SolidRecord:
         young_at: modulus against temperature, two points or more from cold to hot, or none.
         conductivity: thermal conductivity [W/m/K], if known.
         specific_heat: specific heat [J/kg/K], if known.
+        melting: temperature at which it melts [K], of plastics.
+        service_limit: temperature that it bears for long in air [K], of plastics.
+        contact_limit: largest Hertz pressure that it bears, a few times only [Pa], if known.
 
     Raises:
         InputError: a value is out of its physical range, or the table is not in order.
@@ -124,6 +128,9 @@ class SolidRecord:
     young_at: tuple[ModulusPoint, ...] = ()
     conductivity: Datum | None = None
     specific_heat: Datum | None = None
+    melting: Datum | None = None
+    service_limit: Datum | None = None
+    contact_limit: Datum | None = None
 
     def __post_init__(self) -> None:
         positive = [item for item in self.data().items() if item[0] != "poisson"]
@@ -144,6 +151,9 @@ class SolidRecord:
             "young_temperature": self.young_temperature,
             "conductivity": self.conductivity,
             "specific_heat": self.specific_heat,
+            "melting": self.melting,
+            "service_limit": self.service_limit,
+            "contact_limit": self.contact_limit,
         }
         table = {f"young_at {celsius(p.temperature)}": p.young for p in self.young_at}
         return {key: datum for key, datum in every.items() if datum is not None} | table
@@ -203,14 +213,37 @@ def celsius(temperature: float) -> str:
     return f"{round(temperature - ZERO_CELSIUS, 1) + 0.0:g} degC"
 
 
+def heat_failure(record: SolidRecord, temperature: float) -> str:
+    """What the heat does to a material, in words; empty where it bears it or nothing is known.
+
+    Args:
+        record: of the material.
+        temperature: of its hottest place [K].
+
+    Example:
+        >>> heat_failure(find("PA66"), 600.0)
+        'PA66 melts at 260 degC'
+        >>> heat_failure(find("PA66"), 350.0)
+        ''
+    """
+    melts, bears = record.melting, record.service_limit
+    if melts is not None and temperature >= melts.value:
+        return f"{record.name} melts at {celsius(melts.value)}"
+    if bears is not None and temperature > bears.value:
+        return f"{record.name} does not bear more than {celsius(bears.value)} for long"
+    return ""
+
+
 def _check_inside(record: SolidRecord, temperature: ArrayLike) -> None:
     low, high = record.young_at[0].temperature, record.young_at[-1].temperature
     given = np.asarray(temperature, dtype=float)
     outside = given[~((given >= low) & (given <= high))]
     if outside.size:
+        fails = heat_failure(record, float(outside[0]))
         raise InputError(
             f"the modulus of {record.name} is known from {celsius(low)} to {celsius(high)} and is "
-            f"not extrapolated: a temperature of {celsius(float(outside[0]))} is not allowed",
+            f"not extrapolated: a temperature of {celsius(float(outside[0]))} is not allowed"
+            f"{'; ' * bool(fails)}{fails}",
             value=float(outside[0]),
         )
 
@@ -241,22 +274,28 @@ def _records() -> dict[str, SolidRecord]:
 
 
 def _record(name: str, entry: dict[str, Any]) -> SolidRecord:
-    known = entry.get("young_temperature_degC")
     return SolidRecord(
         name=name,
         title=entry["title"],
         young=read_datum(entry["young_GPa"], scale=1e9),
         poisson=read_datum(entry["poisson"]),
         density=read_datum(entry["density_kg_m3"]),
-        young_temperature=None if known is None else _from_celsius(read_datum(known)),
+        young_temperature=_temperature(entry, "young_temperature_degC"),
         young_at=tuple(_point(row) for row in entry.get("young_at_GPa", ())),
         conductivity=_optional(entry, "conductivity_W_mK"),
         specific_heat=_optional(entry, "specific_heat_J_kgK"),
+        melting=_temperature(entry, "melting_degC"),
+        service_limit=_temperature(entry, "service_limit_degC"),
+        contact_limit=_optional(entry, "contact_limit_GPa", 1e9),
     )
 
 
-def _optional(entry: dict[str, Any], column: str) -> Datum | None:
-    return read_datum(entry[column]) if column in entry else None
+def _optional(entry: dict[str, Any], column: str, scale: float = 1.0) -> Datum | None:
+    return read_datum(entry[column], scale=scale) if column in entry else None
+
+
+def _temperature(entry: dict[str, Any], column: str) -> Datum | None:
+    return _from_celsius(read_datum(entry[column])) if column in entry else None
 
 
 def _point(row: dict[str, Any]) -> ModulusPoint:

@@ -63,6 +63,29 @@ VARIABLES: dict[str, Variable] = {
     "loss": _power("power loss", "P_loss"),
     "contact_force": Variable("normal force of the mesh", "F_n", "N", "N", "force"),
     "contact_force_ratio": Variable("contact force over that without friction", "β", "1"),
+    "largest_contact_force_ratio": Variable(
+        "largest contact force over that without friction", "β max", "1"
+    ),
+    "jamming_coefficient": Variable("friction coefficient at which the mesh locks", "μ lock", "1"),
+    "largest_friction": Variable("largest friction coefficient of the contacts", "μ max", "1"),
+    "nearest_friction": Variable(
+        "friction coefficient where the mesh is nearest to locking", "μ", "1"
+    ),
+    "nearest_jamming_coefficient": Variable(
+        "friction coefficient at which the mesh locks there", "μ lock", "1"
+    ),
+    "contact_line_length": _length("length of all contact lines together", "l"),
+    "pitch_line_load": Variable(
+        "tangential force at the base circle over the face width, F_bt/b",
+        "F_bt/b",
+        "N/m",
+        "N/mm",
+        "line load",
+    ),
+    "pitch_sum_speed": _speed("sum of the surface speeds at the pitch point", "v_ΣC"),
+    "pitch_radius": _length("relative radius of curvature at the pitch point", "ρ_redC"),
+    "circumferential_backlash": _deviation("backlash on the pitch circles", "j_wt"),
+    "normal_backlash": _deviation("backlash along the normal", "j_bn"),
     "residual": Variable("relative residual of the torque balance", "", "1"),
     "load": Variable("normal force of the pair", "F", "N", "N", "force"),
     "load_share": Variable("share of the load", "λ", "1"),
@@ -90,6 +113,14 @@ VARIABLES: dict[str, Variable] = {
     "transmission_error_range": _deviation("transmission error, peak to peak", "Δδ"),
     "static_transmission_error_range": _deviation(
         "static transmission error, peak to peak", "Δδ_s"
+    ),
+    "transmission_error_rms": _deviation(
+        "transmission error, root mean square about its mean", "δ rms"
+    ),
+    "separated_share": _percent("share of the period in which no pair carries", "t_0/T"),
+    "mesh_dynamic_factor": Variable("force of all pairs over that without vibration", "F/F_0", "1"),
+    "largest_mesh_dynamic_factor": Variable(
+        "largest force of all pairs over that without vibration", "F/F_0 max", "1"
     ),
     "dynamic_factor": Variable("dynamic factor of the pair", "c_d", "1"),
     "largest_dynamic_factor": Variable("largest dynamic factor of a pair", "c_d max", "1"),

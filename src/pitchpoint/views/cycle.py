@@ -12,6 +12,7 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 from pitchpoint.views.facts import Facts, Wave, facts, has_wave, timed
 from pitchpoint.views.figures import (
+    NO_POWER,
     Curve,
     Curves,
     Figure,
@@ -48,6 +49,10 @@ _ALONG = {
     "lambda_ratio": "Below 1 boundary, 1 to 3 mixed, above 3 full film.",
     "friction": "",
     "loss": "Loss of the one pair that is at this place.",
+}
+_MISSING = {
+    "film_thickness": "There is no film to compute: nothing is carried.",
+    "lambda_ratio": "Without limit: the flanks are smooth, or nothing is carried.",
 }
 _WHOLE = ("load_share", "contact_force_ratio", "loss")
 _LINES = {
@@ -228,7 +233,8 @@ def _along_figure(
     if name == "lambda_ratio":
         regimes(look, shown)
     note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
-    return Figure(f"along_{name}", title, shown, look, " ".join(filter(None, (note, same))))
+    note, missing = " ".join(filter(None, (note, same))), _MISSING.get(name, NO_POWER)
+    return Figure(f"along_{name}", title, shown, look, note, missing=missing)
 
 
 def _title(name: str) -> str:

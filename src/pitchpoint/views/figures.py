@@ -7,6 +7,7 @@ computing a case.
 import html
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import floor, isfinite, log10
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.run import Outcome
+from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 
@@ -22,6 +24,7 @@ __all__ = [
     "DASHES",
     "GREY",
     "INK",
+    "NO_POWER",
     "PALETTE",
     "Choice",
     "Curve",
@@ -53,6 +56,7 @@ PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#B07C00", "#56B4E9", "#5
 DASHES = ("solid", "dash", "dot", "dashdot")
 INK, GREY = "#24303a", "#7b8791"
 GRID = "#e6eaed"
+NO_POWER = "Undefined here: no power is transmitted."
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,13 @@ class Figure:
     layout: dict[str, Any]
     note: str = ""
     keys: tuple[Key, ...] = ()
-    missing: str = "Undefined here: no power is transmitted."
+    missing: str = NO_POWER
+
+    def __post_init__(self) -> None:
+        """Gives an axis of constant values a range that says so, where plotly's would be of length two."""
+        axis, level = self.layout.get("yaxis", {}), _constant(self.data)
+        if level is not None and axis.get("type") != "log":
+            axis.setdefault("range", _around(level, "rangemode" in axis))
 
     @property
     def drawn(self) -> bool:
@@ -146,14 +156,33 @@ def laws(data: xr.Dataset) -> list[str]:
 
 
 def rounded(values: Any, digits: int = 5) -> list[Any]:
-    """List of numbers with so many significant digits; None for what is not finite."""
+    """List of numbers with so many significant digits, and with so many of their range where that is finer.
+
+    A ripple far smaller than its mean keeps its shape so. What is rounding against the largest number
+    is zero, and numbers that differ by rounding alone are one; None for what is not finite.
+    """
     array = np.asarray(values, dtype=float)
-    if array.ndim > 1:
-        return [rounded(row, digits) for row in array]
-    return [
-        float(f"{v:.{digits}g}") if finite else None
-        for v, finite in zip(array.tolist(), np.isfinite(array), strict=True)
-    ]
+    finite = array[np.isfinite(array)]
+    size, span = np.max(np.abs(finite), initial=0.0), np.ptp(finite) if finite.size else 0.0
+    if span <= ROUNDING * size:
+        array = np.where(np.isfinite(array), finite[:1].sum(), array)
+    array = np.where(np.abs(array) <= ROUNDING * size, 0.0, array)
+    of_range = _decimals(span, digits) if span > ROUNDING * size else 0
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, list):
+            return [plain(one) for one in value]
+        if not isfinite(value):
+            return None
+        return round(value, max(_decimals(value, digits), of_range))
+
+    told: list[Any] = plain(array.tolist())
+    return told
+
+
+def _decimals(value: float, digits: int) -> int:
+    """Decimals with which a number has so many significant digits."""
+    return digits - 1 - floor(log10(abs(value))) if value else 0
 
 
 def display(name: str, values: Any) -> np.ndarray:
@@ -173,7 +202,7 @@ def line(curve: Curve, x: Any, y: Any, unit: str, **more: Any) -> Trace:
         "x": rounded(x, 6),
         "y": rounded(y),
         "line": {"color": curve.colour, "dash": curve.dash, "width": 2},
-        "hovertemplate": f"%{{y:.5~g}} {unit}<br>at %{{x:.4~g}}",
+        "hovertemplate": f"%{{y:.12~g}} {unit}<br>at %{{x:.4~g}}",
         **more,
     }
 
@@ -190,8 +219,8 @@ def continued(x: np.ndarray, y: np.ndarray, most: int = 600) -> tuple[np.ndarray
         x, y: points in order; at a jump two of them share their place.
         most: count above which points are left out.
     """
-    size = np.nanmax(np.abs(y), initial=0.0)
-    jumps = np.flatnonzero((np.diff(x) < 1e-6) & (np.abs(np.diff(y)) > 1e-3 * size))
+    span = np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf)
+    jumps = np.flatnonzero((np.diff(x) < 1e-6) & (np.abs(np.diff(y)) > 1e-3 * span))
     kept = np.zeros(x.size, bool)
     kept[:: max(x.size // most, 1)] = True
     kept[[0, -1, *jumps, *(jumps + 1)]] = True
@@ -251,6 +280,23 @@ def merged(traces: Sequence[Trace]) -> tuple[list[Trace], str]:
         return list(traces), ""
     one = {**first, "name": "", "meta": "", "line": {"color": INK, "width": 2}}
     return [one], "The same for every curve."
+
+
+def _constant(traces: Sequence[Trace]) -> float | None:
+    """The value of lines that all lie at one height; None for anything else."""
+    if any("z" in trace or "orientation" in trace for trace in traces):
+        return None
+    values = {y for trace in traces for y in trace.get("y", []) if y is not None}
+    return float(values.pop()) if len(values) == 1 else None
+
+
+def _around(value: float, from_zero: bool) -> list[float]:
+    """Range of an axis that shows one value."""
+    if value == 0.0:
+        return [0.0, 1.0] if from_zero else [-1.0, 1.0]
+    if from_zero:
+        return sorted([0.0, 1.25 * value])
+    return [value - 0.05 * abs(value), value + 0.05 * abs(value)]
 
 
 def _variant_laws(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, str]]:

@@ -240,6 +240,10 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     def diameters(name: str) -> list[str]:
         return values(f"{name}_radius", 2e3)
 
+    def backlash(kind: str) -> list[str]:
+        name = f"{kind}_backlash"
+        return [show.quantity(name, float(teeth[name]), with_unit=False)]
+
     def input_row(title: str, key: str) -> list[tuple[str, ...]]:
         found = given(outcome, "gears", key).replace(" deg", "°").split(" / ")
         each = [show.pretty(one).replace("-", "−") for one in found if one]
@@ -268,6 +272,8 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         ("specific sliding at A", *values("specific_sliding_A", 1.0, 4)),
         ("specific sliding at E", *values("specific_sliding_E", 1.0, 4)),
         ("centre distance a [mm]", *values("centre_distance", 1e3)),
+        ("backlash on the pitch circles j_wt [µm]", *backlash("circumferential")),
+        ("backlash along the normal j_bn [µm]", *backlash("normal")),
         ("face width b [mm]", *values("face_width", 1e3)),
         (f"{_transverse(fact)}base pitch p_b{_t(fact)} [mm]", *values("base_pitch", 1e3)),
         (

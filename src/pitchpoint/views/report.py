@@ -11,6 +11,7 @@ import numpy as np
 
 from pitchpoint.cases.comparison import Row, counts
 from pitchpoint.cases.run import Outcome
+from pitchpoint.cases.studies import jamming_words
 from pitchpoint.results.store import write_text
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel, cycle_pitch, loss_places, path_panel
@@ -312,7 +313,9 @@ def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str
         "torque": show.quantity("mean_input_torque", value("mean_input_torque")),
         "torque_range": _range("input_torque", value),
         "ripple": show.quantity("torque_ripple", value("torque_ripple")),
+        "covers": str(data["mean_efficiency"].attrs.get("covers", "")),
         "locked": bool(data["locked"].values[position, 0]),
+        "jamming": _jamming(data, position),
         "back": _back_driving(outcome, law),
         "drag": drag_answer(outcome, position),
         "starting": starting_answer(outcome, law),
@@ -325,24 +328,43 @@ def _range(name: str, value: Callable[[str], float]) -> str:
 
 
 def _back_driving(outcome: Outcome, law: str) -> str:
-    """Efficiency with the other gear driving, or that friction locks the mesh."""
+    """Efficiency with the other gear driving, or that friction locks the mesh, and from when on it does."""
     data = outcome.parts.get("back_driving")
     if data is None or law not in laws(data):
         return "not computed"
     position = laws(data).index(law)
     if bool(data["locked"].values[position, 0]):
-        return "self-locking: friction locks the mesh"
+        ends = ("nearest_friction", "nearest_jamming_coefficient")
+        acting, limit = (float(data[name].values[position, 0]) for name in ends)
+        return f"self-locking: friction locks the mesh; {jamming_words(acting, limit)}"
     value = float(data["mean_efficiency"].values[position, 0])
     if not np.isfinite(value):
         return "undefined, no power"
-    return f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
+    told = f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
+    locks = _jamming(data, position)
+    return f"{told} (it would from μ = {locks} on)" if locks else told
+
+
+def _jamming(data: Any, position: int) -> str:
+    """Friction coefficient at which the mesh locks; empty where none does."""
+    if "jamming_coefficient" not in data:
+        return ""
+    limit = float(data["jamming_coefficient"].values[position, 0])
+    return show.number(limit, 3) if np.isfinite(limit) else ""
 
 
 def _spread(outcome: Outcome) -> dict[str, Any] | None:
     """How far the friction laws that apply disagree; None where that is not known."""
     data = outcome.parts.get("laws")
-    if data is None or not data.sizes["law"]:
+    if data is None:
         return None
+    outside = [
+        (law_title(outcome, str(one["law"])), _efficiency(one), "; ".join(one["reasons"]))
+        for one in json.loads(data.attrs.get("outside", "[]"))
+    ]
+    if not data.sizes["law"]:
+        text = "none of the library is in its range"
+        return {"text": text, "rows": [], "points": "", "outside": outside} if outside else None
     locked = data["locked"].values[:, 0].astype(bool)
     values = data["mean_efficiency"].values[:, 0]
     known = values[np.isfinite(values) & ~locked]
@@ -353,21 +375,32 @@ def _spread(outcome: Outcome) -> dict[str, Any] | None:
     ]
     if not known.size:
         text = "all lock the mesh" if locked.all() else "undefined, no power"
-        return {"text": text, "rows": rows, "points": ""}
-    text = f"{100 * known.min():.2f} to {100 * known.max():.2f} %"
+        return {"text": text, "rows": rows, "points": "", "outside": outside}
+    ends = [f"{100 * end:.2f}" for end in (known.min(), known.max())]
+    text = f"{' to '.join(dict.fromkeys(ends))} %"
     if locked.any():
         names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
         text += f"; locked by {', '.join(names)}"
     if outcome.manifest.get("plastic"):
         text += ", by laws for steel on steel; none was fitted to plastic teeth"
-    return {"text": text, "rows": rows, "points": f"{100 * np.ptp(known):.2f}"}
+    points = f"{100 * np.ptp(known):.2f}" if known.size > 1 else ""
+    return {"text": text, "rows": rows, "points": points, "outside": outside}
+
+
+def _efficiency(entry: Mapping[str, Any]) -> str:
+    value = entry["mean_efficiency"]
+    return show.quantity("mean_efficiency", np.nan if value is None else float(value))
 
 
 def _chosen(outcome: Outcome) -> np.ndarray:
-    """Efficiencies by the laws of the case, those under which the mesh moves."""
+    """Efficiencies by the laws of the case, those in their range under which the mesh moves."""
     data = outcome.parts["operation"]
     values = data["mean_efficiency"].values[:, 0]
-    return np.asarray(values[np.isfinite(values) & ~data["locked"].values[:, 0].astype(bool)])
+    told = json.loads(outcome.parts["laws"].attrs.get("outside", "[]"))
+    inside = ~np.isin(laws(data), [one["law"] for one in told])
+    return np.asarray(
+        values[np.isfinite(values) & inside & ~data["locked"].values[:, 0].astype(bool)]
+    )
 
 
 _SPREAD_SHOWN = ("mean_efficiency", "mean_loss", "mean_friction")

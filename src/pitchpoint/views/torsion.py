@@ -65,6 +65,7 @@ def torsion_answer(outcome: Outcome) -> str:
     return (
         f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
         f"{told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in the mean"
+        + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
     )
 
 

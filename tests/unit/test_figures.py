@@ -1,0 +1,56 @@
+"""Numbers for figures: the shape of a ripple is kept, rounding is not shown, axes of constant values."""
+
+import numpy as np
+
+from pitchpoint.results.rounding import difference
+from pitchpoint.views.figures import Figure, continued, layout, rounded
+
+
+def drawn(y: list[float], **axis: object) -> dict[str, object]:
+    trace = {"type": "scatter", "x": list(range(len(y))), "y": rounded(y)}
+    found: dict[str, object] = Figure("f", "", [trace], layout("x", "y", yaxis=dict(axis))).layout
+    return dict(found["yaxis"])  # type: ignore[call-overload]
+
+
+def test_a_ripple_far_below_its_mean_is_no_staircase() -> None:
+    ripple = 1e-6 * np.sin(np.linspace(0.0, 6.0, 500))
+    values = 79.5 * (1.0 + ripple)
+    found = np.array(rounded(values))
+    assert np.max(np.abs(found - values)) < 1e-4 * np.ptp(values)
+    assert np.unique(found).size > 450
+
+
+def test_small_values_beside_large_ones_keep_their_digits() -> None:
+    assert rounded([123456.789, 0.00123456789]) == [123460.0, 0.0012346]
+    assert rounded([[1.0, 2.0], [np.nan, 1.0 / 3.0]]) == [[1.0, 2.0], [None, 0.33333]]
+
+
+def test_rounding_is_shown_as_zero_or_as_one_value() -> None:
+    assert rounded([1.0, 3e-17, -2e-14]) == [1.0, 0.0, 0.0]
+    assert len(set(rounded(1.0 + 1e-16 * np.arange(-3.0, 4.0)))) == 1
+    assert rounded([0.0, np.nan]) == [0.0, None]
+
+
+def test_a_difference_that_rounding_has_left_is_zero() -> None:
+    high, low = np.array([79.5 + 2e-14, 79.5 + 1e-9, 1.0, np.nan]), np.array([79.5, 79.5, 1.0, 0.0])
+    found = difference(high, low)
+    assert found[0] == found[2] == 0.0
+    np.testing.assert_allclose(found[1], 1e-9, rtol=1e-4)
+    assert np.isnan(found[3])
+
+
+def test_axes_of_constant_and_of_zero_values() -> None:
+    low, high = drawn([0.05, 0.05])["range"]  # type: ignore[misc]
+    assert 0.04 < low < 0.05 < high < 0.06
+    assert drawn([0.0, 0.0], rangemode="tozero")["range"] == [0.0, 1.0]
+    assert drawn([4.0, 4.0], rangemode="nonnegative")["range"] == [0.0, 5.0]
+    assert drawn([0.0, 0.0])["range"] == [-1.0, 1.0]
+    assert "range" not in drawn([1.0, 1.1])
+    assert "range" not in drawn([2.0, 2.0], type="log")
+    assert drawn([2.0], range=[0.0, 9.0])["range"] == [0.0, 9.0]
+
+
+def test_a_small_jump_is_not_drawn_as_a_line() -> None:
+    x = np.array([0.0, 0.5, 0.5, 1.0])
+    _, y = continued(x, 79.5 + 1e-6 * np.array([0.0, 1.0, 2.0, 3.0]))
+    assert np.isnan(y).sum() == 1
