@@ -151,8 +151,9 @@ preload = "300 N"
 """)
 
 INVOLUTE = copy.deepcopy(STRAIN_WAVE)
+INVOLUTE["gears"]["clearance"] = 0.35
 INVOLUTE["gears"]["tooth"] = {"form": "involute", "profile_shift": 3.32}
-INVOLUTE["gears"]["circular_spline"] = {"form": "involute", "profile_shift": 3.3}
+INVOLUTE["gears"]["circular_spline"] = {"form": "involute", "profile_shift": 3.6}
 
 BASES = {"cylindrical": BASE, "strain wave": STRAIN_WAVE, "involute": INVOLUTE}
 WALKS = [
@@ -494,6 +495,11 @@ def bad_drives() -> Iterator[Bad]:
         key = ".".join(part for part in path if isinstance(part, str)).removesuffix(".shape")
         key = key.replace("bearing.bearing", "bearing")
         yield Bad(f"drive {name}", path, value, words, key, "strain wave")
+    words = ("come free at the short axis", "a clearance of 0.35")
+    yield Bad("free", ("gears", "clearance"), 0.1, words, "gears.clearance: ", "involute")
+    for driver in ("wave generator", "gear 3", "Gear 1"):
+        words = (f'"{driver}" is not in this drive; use gear 1 or gear 2\n',)
+        yield Bad(driver, ("operation", "driver"), driver, words, "operation.driver: ")
     churned = {"between": ["gear 1", "housing"], "churning_torque": "1 N m"}
     yield Bad(
         "churning", ("losses",), {"oil": churned}, ("is missing",), "losses.oil.churning_speed"
@@ -581,7 +587,7 @@ def refuse(
     return run
 
 
-@pytest.mark.parametrize("base", ["cylindrical", "strain wave"])
+@pytest.mark.parametrize("base", BASES)
 def test_the_whole_case_is_sound(
     base: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -4,7 +4,7 @@ from importlib import resources
 from pathlib import Path
 
 from pitchpoint.cases.document import Tree, read
-from pitchpoint.errors import InputError, shorten
+from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.registry import nearest
 
 __all__ = ["find", "names", "path_of"]
@@ -41,4 +41,4 @@ def find(case: str) -> tuple[str, Tree]:
     """Short name and tables of a case by its name or its file."""
     path = path_of(case)
     tree = read(path)
-    return (case if case in names() else path.name), tree
+    return (case if case in names() else visible(path.name)), tree

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from math import inf
-from typing import Annotated, Any, Literal, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -23,7 +23,7 @@ from pitchpoint.cases.tables import DECIDING, Table, alternatives, forms
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import nearest
 
-__all__ = ["Case", "quantity_at", "validate"]
+__all__ = ["Case", "keys", "quantity_at", "validate"]
 
 _ZERO_CELSIUS = 273.15
 
@@ -700,6 +700,18 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         if not models:
             raise InputError(f"{shown(part)} is a value, not a table", key=key)
     return None
+
+
+def keys(table: type[BaseModel] = Case) -> Iterator[str]:
+    """Dotted keys that take one value or a list, those of every family and form of a table."""
+    for name, info in table.model_fields.items():
+        inner, kind = alternatives(info.annotation), get_origin(info.annotation)
+        options = get_args(info.annotation) or (info.annotation,)
+        if kind is not dict and len(options) > len(inner):
+            yield name
+        if kind not in (dict, tuple):
+            below = (f"{name}.{key}" for each in inner.values() for key in keys(each))
+            yield from dict.fromkeys(below)
 
 
 def _named_tables(info: FieldInfo) -> bool:
