@@ -29,17 +29,17 @@ app = typer.Typer(
 
 _INTERRUPTED = 130
 _LONGEST = 2000  # characters of one complaint
-_COUNT = re.compile("[1-9][0-9]{0,4}|100000", re.ASCII)
+_SWEEP = re.compile(r"([^=]{0,500})=([^:]*):([^:]*):\s*([1-9][0-9]{0,4}|100000)\s*", re.ASCII)
 
 
 def _cases_from(incomplete: str) -> list[str]:
     """Shipped cases and TOML files that begin so, for the completion of a shell."""
     from pitchpoint.cases.library import names
 
-    files = [Path(path) for path in glob(f"{glob_escape(incomplete)}*")]
-    found = [str(path) for path in files if path.suffix == ".toml"]
-    found += [f"{path}/" for path in files if path.is_dir()]
-    return [name for name in names() if name.startswith(incomplete)] + sorted(found)
+    shipped = [name for name in names() if name.startswith(incomplete)]
+    found = sorted(glob(f"{glob_escape(incomplete)}*"))
+    files = [path for path in found if path.endswith(".toml")]
+    return [*shipped, *files, *(f"{path}/" for path in found if Path(path).is_dir())]
 
 
 def _variants_from(context: typer.Context, incomplete: str) -> list[str]:
@@ -298,19 +298,18 @@ def _studies(texts: list[str]) -> dict[str, "Study"]:
 
     studies: dict[str, Study] = {}
     for text in texts:
-        key, _, grid = text.partition("=")
-        parts = [part.strip() for part in grid.split(":")]
-        if len(parts) != 3 or not _COUNT.fullmatch(parts[2]):
+        given = _SWEEP.fullmatch(text)
+        if given is None:
             raise InputError(
                 f"{shown(text)} is not KEY=START:STOP:COUNT with a count of 1 to 100000",
                 key="--sweep",
             )
-        start, stop, count = parts
-        sweep = Sweep(key=key.strip(), start=start, stop=stop, count=float(count))
-        name = f"sweep_{key.strip().replace('.', '_')}"
+        key, start, stop, count = map(str.strip, given.groups())
+        sweep = Sweep(key=key, start=start, stop=stop, count=float(count))
+        name = f"sweep_{key.replace('.', '_')}"
         if name in studies:
-            raise InputError(f"{shown(key.strip())} is swept twice", key="--sweep")
-        studies[name] = Study(title=f"Sweep of {key.strip()}", sweep=sweep)
+            raise InputError(f"{shown(key)} is swept twice", key="--sweep")
+        studies[name] = Study(title=f"Sweep of {key}", sweep=sweep)
     return studies
 
 

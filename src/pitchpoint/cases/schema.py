@@ -1,6 +1,6 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from math import inf
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -507,10 +507,22 @@ class Issue(Table):
     verdict: Text
 
 
-def _named(value: Any) -> Any:
-    for name in value if isinstance(value, dict) else ():
-        check_name(name, "")
-    return value
+def _at_most(most: int) -> Callable[[Any], Any]:
+    """Validator of tables under names of the user's own, which are counted before they are read."""
+
+    def check(value: Any) -> Any:
+        given = value if isinstance(value, dict) else {}
+        if len(given) > most:
+            raise InputError(_too_many(len(given), most))
+        for name in given:
+            check_name(name, "")
+        return value
+
+    return check
+
+
+def _too_many(count: int, most: int) -> str:
+    return f"{count} were given; allowed are at most {most}"
 
 
 class Case(Table):
@@ -526,11 +538,9 @@ class Case(Table):
     operation: Operating
     models: Choices = Choices()
     housing: Housing = Housing()
-    losses: Annotated[dict[str, Loss], BeforeValidator(_named), Field(max_length=20)] = Field(
-        default_factory=dict
-    )
+    losses: Annotated[dict[str, Loss], BeforeValidator(_at_most(20))] = Field(default_factory=dict)
     dynamics: Dynamics | None = None
-    studies: Annotated[dict[str, Study], BeforeValidator(_named), Field(max_length=200)] = Field(
+    studies: Annotated[dict[str, Study], BeforeValidator(_at_most(200))] = Field(
         default_factory=dict
     )
     loss_map: LossMap | None = None
@@ -790,7 +800,7 @@ def _message(detail: Any) -> str:
     if kind in ("tuple_type", "list_type"):
         return f"{shown(given)} was given where a list belongs"
     if kind == "too_long":
-        return f"{len(given)} were given; allowed are at most {context['max_length']}"
+        return _too_many(len(given), context["max_length"])
     return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
 
 
