@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
 
-from pitchpoint.errors import InputError, unknown_name
+from pitchpoint.errors import InputError
+from pitchpoint.registry import unknown_name
 
 __all__ = ["Reference", "available", "bibtex", "cite", "reference"]
 

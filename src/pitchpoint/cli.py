@@ -1,17 +1,20 @@
 """The command line. Numbers for machines go to stdout with --json, tables and progress to the terminal."""
 
+import io
 import json
 import re
 import sys
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from glob import escape as glob_escape
+from glob import glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pitchpoint.errors import InputError, PitchpointError
+from pitchpoint.errors import InputError, PitchpointError, shorten, visible
 
 if TYPE_CHECKING:
     from pitchpoint.cases.comparison import Row
@@ -19,23 +22,66 @@ if TYPE_CHECKING:
     from pitchpoint.cases.schema import Study
 
 app = typer.Typer(
-    help="Load, sliding, film, friction and efficiency where gear teeth touch.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 _INTERRUPTED = 130
-_COUNT = re.compile("[1-9][0-9]{0,4}|100000", re.ASCII)
+_LONGEST = 2000  # characters of one complaint
+_SWEEP = re.compile(r"([^=]{0,500})=([^:]*):([^:]*):\s*([1-9][0-9]{0,4}|100000)\s*", re.ASCII)
 
-CaseName = Annotated[str, typer.Argument(metavar="CASE", help="A shipped case, or a TOML file.")]
+
+def _cases_from(incomplete: str) -> list[str]:
+    """Shipped cases and TOML files that begin so, for the completion of a shell."""
+    from pitchpoint.cases.library import names
+
+    shipped = [name for name in names() if name.startswith(incomplete)]
+    found = sorted(glob(f"{glob_escape(incomplete)}*"))
+    files = [path for path in found if path.endswith(".toml")]
+    return [*shipped, *files, *(f"{path}/" for path in found if Path(path).is_dir())]
+
+
+def _variants_from(context: typer.Context, incomplete: str) -> list[str]:
+    """Variants of the case that stands before on the line."""
+    from pitchpoint.cases.document import variants
+    from pitchpoint.cases.library import find
+
+    try:
+        known = variants(find(next(iter(context.args), ""))[1])
+    except PitchpointError:
+        return []
+    return [name for name in known if name.startswith(incomplete)]
+
+
+def _keys_from(incomplete: str) -> list[str]:
+    """Keys of case files that begin so."""
+    from pitchpoint.cases.schema import keys
+
+    return [f"{key}=" for key in keys() if key.startswith(incomplete)]
+
+
+CaseName = Annotated[
+    str,
+    typer.Argument(
+        metavar="CASE", help="A shipped case, or a TOML file.", autocompletion=_cases_from
+    ),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON to stdout instead of tables.")]
 Variants = Annotated[
-    list[str] | None, typer.Option("--variant", help="Run this variant only; may be repeated.")
+    list[str] | None,
+    typer.Option(
+        "--variant", help="Run this variant only; may be repeated.", autocompletion=_variants_from
+    ),
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help='For example operation.torque="200 N m".'),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help='For example operation.torque="200 N m".',
+        autocompletion=_keys_from,
+    ),
 ]
 Sweeps = Annotated[
     list[str] | None,
@@ -43,6 +89,7 @@ Sweeps = Annotated[
         "--sweep",
         metavar="KEY=START:STOP:COUNT",
         help='For example operation.speed="500 rpm:3000 rpm:11".',
+        autocompletion=_keys_from,
     ),
 ]
 Folder = Annotated[
@@ -53,6 +100,9 @@ Folder = Annotated[
 
 def main() -> None:
     """Entry point: one sentence for what went wrong, and the exit status that goes with it."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a terminal need not know every letter of a title
+            stream.reconfigure(errors="backslashreplace")
     try:
         status = app(standalone_mode=False) or 0
     except PitchpointError as error:
@@ -61,7 +111,7 @@ def main() -> None:
     except typer.TyperException as error:
         told = error.format_message().rstrip(".")
         if told:  # without arguments the help is all there is to say
-            _complain(f"error: {told}; see pitchpoint --help")
+            _complain(f"error: {shorten(told, 200)}; see pitchpoint --help")
         status = error.exit_code
     except BrokenPipeError:
         sys.stderr.close()
@@ -72,6 +122,24 @@ def main() -> None:
     if status == _INTERRUPTED:
         _complain("interrupted")
     raise SystemExit(status)
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        from pitchpoint import __version__
+
+        typer.echo(f"pitchpoint {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Print the version.", callback=_tell_version, is_eager=True),
+    ] = False,
+) -> None:
+    """Load, sliding, film, friction and efficiency where gear teeth touch."""
 
 
 @app.command()
@@ -144,7 +212,8 @@ def run(
 def compare(
     case: CaseName,
     variant: Annotated[
-        str | None, typer.Option("--variant", help="as_published by default.")
+        str | None,
+        typer.Option("--variant", help="as_published by default.", autocompletion=_variants_from),
     ] = None,
     json_: AsJson = False,
 ) -> None:
@@ -163,6 +232,7 @@ def compare(
             "verdict",
             "reason",
             "unit",
+            "bound",
         ]
         flat = [{key: row.as_json()[key] for key in keep} for row in rows]
         _emit({"case": name, "variant": chosen, "rows": flat})
@@ -190,7 +260,7 @@ def cite(
         _emit([{"key": key, "text": text} for key, text in sources.items()])
         return
     for key, text in sources.items():
-        typer.echo(citations.bibtex(key) if bibtex else f"{key}: {text}")
+        typer.echo(citations.bibtex(key) if bibtex else visible(f"{key}: {text}"))
 
 
 @app.command()
@@ -203,11 +273,13 @@ def models(json_: AsJson = False) -> None:
 
 
 def _settings(texts: list[str]) -> dict[str, Any]:
+    from pitchpoint.cases.quantities import shown
+
     settings = {}
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or not key.strip():
-            raise InputError(f"'{text}' is not KEY=VALUE", key="--set")
+            raise InputError(f"{shown(text)} is not KEY=VALUE", key="--set")
         settings[key.strip()] = _value(value.strip())
     return settings
 
@@ -221,22 +293,23 @@ def _value(text: str) -> Any:
 
 
 def _studies(texts: list[str]) -> dict[str, "Study"]:
+    from pitchpoint.cases.quantities import shown
     from pitchpoint.cases.schema import Study, Sweep
 
     studies: dict[str, Study] = {}
     for text in texts:
-        key, _, grid = text.partition("=")
-        parts = [part.strip() for part in grid.split(":")]
-        if len(parts) != 3 or not _COUNT.fullmatch(parts[2]):
+        given = _SWEEP.fullmatch(text)
+        if given is None:
             raise InputError(
-                f"'{text}' is not KEY=START:STOP:COUNT with a count of 1 to 100000", key="--sweep"
+                f"{shown(text)} is not KEY=START:STOP:COUNT with a count of 1 to 100000",
+                key="--sweep",
             )
-        start, stop, count = parts
-        sweep = Sweep(key=key.strip(), start=start, stop=stop, count=float(count))
-        name = f"sweep_{key.strip().replace('.', '_')}"
+        key, start, stop, count = map(str.strip, given.groups())
+        sweep = Sweep(key=key, start=start, stop=stop, count=float(count))
+        name = f"sweep_{key.replace('.', '_')}"
         if name in studies:
-            raise InputError(f"'{key.strip()}' is swept twice", key="--sweep")
-        studies[name] = Study(title=f"Sweep of {key.strip()}", sweep=sweep)
+            raise InputError(f"{shown(key)} is swept twice", key="--sweep")
+        studies[name] = Study(title=f"Sweep of {key}", sweep=sweep)
     return studies
 
 
@@ -248,10 +321,12 @@ def _write_report(outcomes: "dict[str, Outcome]", folder: Path) -> None:
 
 @contextmanager
 def _progress(folder: Path | None) -> "Iterator[Progress]":
-    """Progress on the terminal; says what is on disk when it is interrupted."""
+    """Progress: a moving line on a terminal, else a line for each part; what is on disk if interrupted."""
     from pitchpoint.cases.run import Progress
 
     console = _console(stderr=True)
+    moving = sys.stderr.isatty() and not console.is_dumb_terminal
+    status = console.status("reading", spinner="line") if moving else None
 
     class Shown(Progress):
         finished = 0
@@ -259,24 +334,27 @@ def _progress(folder: Path | None) -> "Iterator[Progress]":
         def part(self, variant: str, title: str, reused: bool) -> None:
             self.finished += 1
             self.title = f"{variant} {title}".strip() + (" (on disk)" if reused else "")
-            status.update(_plain(self.title))
+            if status is None:
+                _complain(self.title)
+            else:
+                status.update(_plain(self.title))
 
         def points(self, done: int) -> None:
-            status.update(_plain(f"{self.title}: {done} points"))
+            if status is not None:
+                status.update(_plain(f"{self.title}: {done} points"))
 
-    with console.status("reading") as status:
-        shown = Shown()
-        try:
+    shown = Shown()
+    try:
+        with status or nullcontext():
             yield shown
-        except KeyboardInterrupt:
-            status.stop()
-            if folder is not None:
-                _complain(
-                    f"interrupted: {max(shown.finished - 1, 0)} finished parts are in {folder}; "
-                    "the same command goes on from there"
-                )
-                raise SystemExit(130) from None
+    except KeyboardInterrupt:
+        if folder is None:
             raise
+        _complain(
+            f"interrupted: {max(shown.finished - 1, 0)} finished parts are in {folder}; "
+            "the same command goes on from there"
+        )
+        raise SystemExit(_INTERRUPTED) from None
 
 
 def _figures(outcome: "Outcome") -> dict[str, Any]:
@@ -366,20 +444,19 @@ def _warn(warnings: list[str]) -> None:
 def _emit(value: Any) -> None:
     from pitchpoint.results.store import without_nan
 
-    typer.echo(json.dumps(without_nan(value), ensure_ascii=False, indent=1, allow_nan=False))
+    typer.echo(json.dumps(without_nan(value), indent=1, allow_nan=False))
 
 
 def _complain(text: str) -> None:
     """One line, whatever the names of files and keys are made of."""
-    plain = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text.rstrip())
-    sys.stderr.write(plain + "\n")
+    sys.stderr.write(f"{shorten(text.rstrip(), _LONGEST)}\n")
 
 
 def _plain(text: str) -> str:
-    """Text without rich's markup: what the user typed is shown as it is."""
+    """Text of others on one line: without rich's markup, and without what steers a terminal."""
     from rich.markup import escape
 
-    return escape(text)
+    return escape(visible(" ".join(text.split())))
 
 
 def _console(stderr: bool = False) -> Any:
@@ -387,4 +464,5 @@ def _console(stderr: bool = False) -> Any:
 
     stream = sys.stderr if stderr else sys.stdout
     # A file or a pipe has no width; tables there keep their rows whole.
-    return Console(stderr=stderr, highlight=False, width=None if stream.isatty() else 200)
+    width = None if stream.isatty() else 200
+    return Console(stderr=stderr, highlight=False, emoji=False, width=width)

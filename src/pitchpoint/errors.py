@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import copy
-import difflib
 from collections.abc import Iterable
 from typing import ClassVar, Self
 
-__all__ = ["ConvergenceError", "InputError", "PitchpointError", "unknown_name"]
+__all__ = ["ConvergenceError", "InputError", "PitchpointError", "shorten", "visible"]
+
+LONGEST_PLACE = 240
+"""Longest file name or key in a sentence [characters]."""
 
 
 class PitchpointError(Exception):
@@ -50,7 +52,8 @@ class InputError(PitchpointError, ValueError):
         self.allowed = tuple(allowed)
 
     def __str__(self) -> str:
-        return ": ".join(part for part in (self.file, self.key, self.message) if part)
+        where = (shorten(part, LONGEST_PLACE) for part in (self.file, self.key) if part)
+        return ": ".join((*where, self.message))
 
     def at(self, *, file: str | None = None, key: str | None = None) -> Self:
         """Return a copy with the location filled in; what is not given stays as it was."""
@@ -66,20 +69,20 @@ class ConvergenceError(PitchpointError, RuntimeError):
     exit_code: ClassVar[int] = 3
 
 
-def unknown_name(name: str, allowed: Iterable[str], *, what: str) -> InputError:
-    """Return the error for a name that is not in a list, with the nearest names it has.
+def visible(text: str) -> str:
+    r"""Return text with every character written out that could steer a terminal.
 
     Args:
-        name: the name that was asked for.
-        allowed: the names that exist.
-        what: what the name stands for, with its article: "a lubricant".
+        text: from outside: a title, a remark, a key, the name of a file.
 
     Example:
-        >>> str(unknown_name("stel", ["steel", "pom"], what="a material"))
-        '"stel" is not a material in the catalogue; did you mean steel?'
+        >>> visible("title" + chr(27) + "[2J")
+        'title\\x1b[2J'
     """
-    names = sorted(allowed)
-    near = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(names)}"
-    message = f'"{name}" is not {what} in the catalogue; {hint}'
-    return InputError(message, value=name, allowed=names)
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
+
+
+def shorten(text: str, most: int = 60) -> str:
+    """Return visible text of at most so many characters."""
+    told = visible(text[: most + 1])
+    return told if len(told) <= most else f"{told[: most - 3]}..."

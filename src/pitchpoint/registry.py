@@ -1,12 +1,13 @@
 """Registries of rival formulas: a name picks one, an unknown name gets the nearest known ones."""
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Protocol, TypeVar
 
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, shorten
 
-__all__ = ["Registry", "listed", "nearest"]
+__all__ = ["Registry", "alike", "listed", "nearest", "unknown_name"]
 
 _MOST = 24  # names in one sentence
 
@@ -37,7 +38,7 @@ class Registry(Mapping[str, Entry]):
             return self._entries[name]
         except KeyError:
             raise InputError(
-                f"'{name}' is not a known {self.kind}{nearest(name, self._entries)}"
+                f"'{shorten(name)}' is not a known {self.kind}{nearest(name, self._entries)}"
             ) from None
 
     def __iter__(self) -> Iterator[str]:
@@ -53,16 +54,53 @@ class Registry(Mapping[str, Entry]):
         return Registry(self.kind, *self._entries.values(), *entries)
 
 
-def nearest(name: str, known: Mapping[str, object]) -> str:
+def nearest(name: str, known: Iterable[str]) -> str:
     """End of a sentence that offers the known names nearest to a wrong one, or all of them."""
-    close = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
+    names = [*known]
+    close = alike(name, names)
     if close:
         return f"; did you mean {' or '.join(close)}?"
-    return f"; known are {listed(known)}"
+    return f"; known are {listed(names)}"
+
+
+def alike(name: str, known: Iterable[str]) -> list[str]:
+    """At most three known names spelled like another, whatever its case, spaces and hyphens.
+
+    Example:
+        >>> alike("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
+        ['pao-vg-150']
+    """
+    plain = {_letters(one): one for one in known}
+    wanted = _letters(name)
+    if wanted in plain:
+        return [plain[wanted]]
+    return [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=0.6)]
+
+
+def unknown_name(name: str, allowed: Iterable[str], *, what: str) -> InputError:
+    """Error for a name that is not in a list, with the nearest names it has.
+
+    Args:
+        name: the name that was asked for.
+        allowed: the names that exist.
+        what: what the name stands for, with its article: "a lubricant".
+
+    Example:
+        >>> str(unknown_name("stel", ["steel", "pom"], what="a material"))
+        '"stel" is not a material in the catalogue; did you mean steel?'
+    """
+    names = sorted(allowed)
+    told = f'"{shorten(name)}" is not {what} in the catalogue{nearest(name, names)}'
+    return InputError(told, value=name, allowed=names)
 
 
 def listed(names: Iterable[str]) -> str:
     """Names in a sentence, of very many the first ones."""
     every = [*names]
     more = f" and {len(every) - _MOST} more" if len(every) > _MOST else ""
-    return ", ".join(every[:_MOST]) + more
+    return ", ".join(map(shorten, every[:_MOST])) + more
+
+
+def _letters(name: str) -> str:
+    """Letters and digits of a name in lower case."""
+    return re.sub(r"[\W_]", "", name.casefold())

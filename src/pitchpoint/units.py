@@ -96,6 +96,7 @@ _KINDS: dict[str, _Kind] = {
             "rev/min": "turn/minute",
             "1/min": "turn/minute",
             "rev/s": "turn/second",
+            "rps": "turn/second",
             "deg/s": "degree/second",
         },
     ),
@@ -111,8 +112,15 @@ _KINDS: dict[str, _Kind] = {
             "mNm": "millinewton*meter",
             "N mm": "newton*millimeter",
             "Nmm": "newton*millimeter",
+            "N cm": "newton*centimeter",
+            "Ncm": "newton*centimeter",
+            "kgf m": "force_kilogram*meter",
+            "kgf cm": "force_kilogram*centimeter",
             "lbf in": "force_pound*inch",
+            "in lbf": "force_pound*inch",
             "lbf ft": "force_pound*foot",
+            "ft lbf": "force_pound*foot",
+            "ozf in": "force_ounce*inch",
         },
     ),
     "temperature": _Kind(
@@ -187,7 +195,13 @@ _KINDS: dict[str, _Kind] = {
     "force": _Kind(
         "a force",
         "500 N",
-        {"N": "newton", "kN": "kilonewton", "mN": "millinewton", "lbf": "force_pound"},
+        {
+            "N": "newton",
+            "kN": "kilonewton",
+            "mN": "millinewton",
+            "kgf": "force_kilogram",
+            "lbf": "force_pound",
+        },
     ),
     "stiffness": _Kind(
         "a stiffness",
@@ -264,6 +278,7 @@ _KINDS: dict[str, _Kind] = {
     "dimensionless": _Kind(
         "a plain number", "0.3", {"": "dimensionless", "1": "dimensionless", "%": "percent"}
     ),
+    "count": _Kind("a whole number", "20", {"": "dimensionless"}),
 }
 
 _NUMBER = re.compile(
@@ -272,6 +287,14 @@ _NUMBER = re.compile(
 _SIGNS = str.maketrans({"µ": "u", "μ": "u", "²": "2", "³": "3", "·": " ", "⋅": " ", "°": "deg"})
 _PRODUCT = re.compile(r"(?<!\*)\*(?!\*)|(?<=[A-Za-z0-9])\.(?=[A-Za-z])")
 _POWER = re.compile(r"(?<=[A-Za-z])\^(?=-?\d)")
+
+# Units that exist, listed or not: a neighbour in the list may be a thousand times as large.
+_FORCE, _LENGTH = "N|gf|lbf|ozf", "m|in|ft"
+_WORD = (
+    rf"(?:da|[TGMkhdcmunp])?(?:(?:{_FORCE})[kdcmunp]?(?:{_LENGTH})|{_FORCE}|{_LENGTH}|kp|tf|g|lb|oz|t|l|L"
+    r"|Pa|bar|psi|ksi|kip|atm|s|min|h|d|Hz|rpm|rps|rev|turn|rad|deg[CFR]?|arcmin|arcsec|K|W|Wh|J|hp|P|St)"
+)
+_SOUND = re.compile(rf"(?:1/)?\(?{_WORD}-?[1-9]?(?:[ /(]+{_WORD}-?[1-9]?)*\)?", re.ASCII)
 
 
 def kinds() -> tuple[str, ...]:
@@ -301,7 +324,7 @@ def example(kind: str) -> str:
         >>> example("length")
         '"3 mm"'
     """
-    plain = kind == "dimensionless"
+    plain = "" in _kind(kind).units
     return _kind(kind).example if plain else f'"{_kind(kind).example}"'
 
 
@@ -487,11 +510,20 @@ def _refuse_unit(text: str | float, number: str, unit: str, wanted: _Kind) -> No
 
 
 def _advice(number: str, unit: str, other: str | None, wanted: _Kind) -> str:
-    if wanted is _KINDS["dimensionless"]:
-        return "give a number without a unit, or in %"
-    near = [] if other else difflib.get_close_matches(unit, wanted.units, n=1, cutoff=0.6)
-    meant = f' (did you mean "{number} {near[0]}"?)' if near else ""
+    if "" in wanted.units:
+        return f"give a number without a unit{', or in %' if '%' in wanted.units else ''}"
+    near = None if other else _near(unit, wanted)
+    meant = f' (did you mean "{number} {near}"?)' if near else ""
     return f"give a number with one of {_listed(wanted)}{meant}"
+
+
+def _near(unit: str, wanted: _Kind) -> str | None:
+    """Unit of a kind that is spelled like a wrong one; none for a unit that means something else."""
+    if _SOUND.fullmatch(unit):
+        return None
+    lower = {one.lower(): one for one in wanted.units}
+    close = difflib.get_close_matches(unit.lower(), lower, n=1, cutoff=0.6)
+    return lower[close[0]] if close else None
 
 
 def _shown(wanted: _Kind) -> tuple[str, ...]:

@@ -549,6 +549,11 @@ BAD = {
         "deflection",
         "do not come free at the short axis",
     ),
+    "clearance too small": (
+        {"form": INVOLUTE, "clearance": 0.1},
+        "clearance",
+        "reach 2.25 modules into each other, and twice the deflection is 2 modules; a clearance of 0.35",
+    ),
     "pointed teeth": (
         {"form": InvoluteForm(5.0)},
         "form",

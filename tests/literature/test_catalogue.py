@@ -222,6 +222,7 @@ def test_stiffness_beside_the_catalogue(variant, verdicts):
     rows = compare(drive(variant).case.targets, {"torsion": part})
     ratio = [row.computed / row.printed for row in rows]
     assert [row.verdict for row in rows] == verdicts
+    assert [row.bound for row in rows] == 3 * ["< 2 x "] + ["> 0.5 x "]
     assert [row.printed for row in rows[:3]] == [1e-3 * k for k in (K1, K2, K3)]
     for row, found in zip(rows[:3], ratio, strict=False):
         assert float(row.reason.split(" times")[0]) == pytest.approx(found, rel=0.03)

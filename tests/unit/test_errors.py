@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from pitchpoint.errors import ConvergenceError, InputError, PitchpointError, unknown_name
+from pitchpoint.errors import ConvergenceError, InputError, PitchpointError, shorten, visible
 
 
 @pytest.mark.parametrize(
@@ -55,12 +55,26 @@ def test_location_takes_keywords_only():
         InputError("wrong", "pair.toml")
 
 
-def test_unknown_name_tells_the_nearest():
-    error = unknown_name("stel", ["steel", "pom"], what="a material")
-    assert str(error) == '"stel" is not a material in the catalogue; did you mean steel?'
-    assert error.allowed == ("pom", "steel")
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("Zahnräder, α = 20°", "Zahnräder, α = 20°"),
+        ("\x1b]0;title\x07", "\\x1b]0;title\\x07"),
+        ("\x1b]52;c;aGk=\x07\x9b2J", "\\x1b]52;c;aGk=\\x07\\x9b2J"),
+        ("two\nlines\u202e", "two\\nlines\\u202e"),
+    ],
+)
+def test_nothing_that_steers_a_terminal_is_shown(text, told):
+    assert visible(text) == told
 
 
-def test_unknown_name_lists_all_when_none_is_near():
-    error = unknown_name("xyz", ["steel", "pom"], what="a material")
-    assert str(error) == '"xyz" is not a material in the catalogue; it has pom, steel'
+def test_a_long_text_is_cut():
+    assert shorten("x" * 200_000) == "x" * 57 + "..."
+    assert shorten("\x1b" * 59, 60) == ("\\x1b" * 15)[:57] + "..."
+    assert shorten("x" * 60) == "x" * 60
+
+
+def test_a_long_place_is_cut_wherever_it_comes_from():
+    error = InputError("wrong", file="f" * 200_000, key="k" * 200_000)
+    assert len(str(error)) < 500
+    assert str(error).endswith("...: wrong")

@@ -5,6 +5,7 @@ import pytest
 
 from pitchpoint.cases.comparison import compare, demand_parts
 from pitchpoint.cases.document import Document
+from pitchpoint.cases.library import find, names
 from pitchpoint.cases.run import describe
 from pitchpoint.cases.schema import Target, validate
 from pitchpoint.errors import InputError
@@ -98,7 +99,7 @@ def test_values_and_slopes(given, expected):
             "at",
             ("no axis of numbers",),
         ),
-        ({"study": "warmer", "variable": "loss"}, "study", ("no study 'warmer'",)),
+        ({"study": "warmer", "variable": "loss"}, "study", ('no study "warmer"',)),
     ],
 )
 def test_what_cannot_be_read_is_one_sentence(given, key, words):
@@ -128,6 +129,33 @@ def test_a_place_beyond_what_was_computed_makes_a_row_that_misses(given, words):
         assert word in row.reason
 
 
+@pytest.mark.parametrize(
+    ("given", "bound", "verdict"),
+    [
+        ({"expect": "below", "times": 2, "printed": 2e-4}, "< 2 x ", "pass"),
+        ({"expect": "below", "times": 2, "printed": 1e-4}, "< 2 x ", "miss"),
+        ({"expect": "above", "times": 0.5, "printed": 5e-4}, "> 0.5 x ", "pass"),
+        ({"expect": "above", "printed": 5e-4}, "> ", "miss"),
+        ({"tolerance": 3e-4, "printed": 1e-4}, "", "pass"),
+    ],
+)
+def test_a_bound_is_shown_as_one(given, bound, verdict):
+    (row,) = compare([target(**WOUND, at="20 N m", **given)], results())
+    assert (row.bound, row.verdict) == (bound, verdict)
+
+
+def test_no_shipped_case_passes_a_number_within_its_whole_size():
+    """What may be off by its own size is a bound, and says which way."""
+    for name in names():
+        tree = find(name)[1]
+        given = [*tree.get("targets", [])]
+        for overlay in tree.get("variants", {}).values():
+            given += overlay.get("targets", [])
+        assert given
+        wide = [t for t in given if t.get("tolerance", 0.0) >= 0.5 * abs(t["printed"]) > 0.0]
+        assert not [t for t in wide if t.get("expect", "within") == "within"]
+
+
 def test_a_part_that_the_case_does_not_compute_is_told_before_it_runs():
     targets = [target(kind="excluded"), target(**WOUND)]
     demand_parts(targets, ["teeth", "torsion"], "case.toml")
@@ -144,6 +172,7 @@ def test_a_part_that_the_case_does_not_compute_is_told_before_it_runs():
         ({"study": "plain", "at": "1 N m"}, ("at: ", '"plain" has no axis of numbers')),
         ({"study": "loaded", "at": "1 rpm"}, ("at: ", "rotational speed", "torque")),
         ({"reduce": "slop"}, ("reduce: ", "slope")),
+        ({"times": 2}, ("times: ", "expect")),
     ],
 )
 def test_a_target_of_a_wrong_form(given, words):

@@ -1,10 +1,13 @@
 """Quantities as users write them, and what they are told when one is wrong."""
 
 import math
+import re
 import subprocess
 import sys
+from itertools import product
 
 import numpy as np
+import pint
 import pytest
 
 from pitchpoint.errors import InputError
@@ -28,6 +31,13 @@ GOOD = [
     ("0.2 kN m", "torque", 200.0),
     ("1 lbf in", "torque", 4.4482216152605 * 0.0254),
     ("1 lbf ft", "torque", 4.4482216152605 * 0.3048),
+    ("1 ft lbf", "torque", 4.4482216152605 * 0.3048),
+    ("16 ozf in", "torque", 4.4482216152605 * 0.0254),
+    ("600 kgf cm", "torque", 600.0 * 9.80665 * 0.01),
+    ("2 kgf·m", "torque", 2.0 * 9.80665),
+    ("90 N cm", "torque", 0.9),
+    ("3 kgf", "force", 3.0 * 9.80665),
+    ("5 rps", "rotational speed", 10.0 * math.pi),
     ("55 degC", "temperature", 328.15),
     ("55 °C", "temperature", 328.15),
     ("212 degF", "temperature", 373.15),
@@ -121,6 +131,51 @@ def test_message_of_a_bad_quantity(text, kind, message):
     with pytest.raises(UnitError) as caught:
         parse(text, kind)
     assert str(caught.value) == message
+
+
+def suggested(text: str, kind: str) -> str | None:
+    """Unit that is offered for a wrong one."""
+    try:
+        parse(text, kind)
+    except UnitError as error:
+        told = re.search(r'did you mean "3 (.+)"', str(error))
+        return told[1] if told else None
+    return None
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "unit"),
+    [
+        ("3 MPA", "pressure", "MPa"),
+        ("3 RPM", "rotational speed", "rpm"),
+        ("3 Nms", "torque", "Nm"),
+        ("3 in-lb", "torque", "in lbf"),
+        ("3 kgcm", "torque", "kgf cm"),
+        ("3 hPa", "pressure", None),
+        ("3 kN cm", "torque", None),
+        ("3 kNmm", "torque", None),
+        ("3 kg/l", "density", None),
+        ("3 mbar", "pressure", None),
+    ],
+)
+def test_a_unit_that_is_offered_is_spelled_alike(text, kind, unit):
+    assert suggested(text, kind) == unit
+
+
+def test_no_unit_of_another_size_is_offered():
+    """Every listed unit with another prefix: what is offered for it, if anything, is as large."""
+    registry, wrong, tried = pint.UnitRegistry(), [], 0
+    stem = re.compile(r"\b[kMGmunc]?(N|m|g|Pa|s|bar|Hz|W|in|ft|lbf|rad|deg|psi)(?![A-Za-z])")
+    listed = [(kind, unit) for kind in kinds() for unit in units_of(kind)]
+    for kind, unit in listed:
+        for place, prefix in product(stem.finditer(unit), ("", *"kMGmuncdh")):
+            text = f"{unit[: place.start()]}{prefix}{place[1]}{unit[place.end() :]}"
+            tried += (kind, text) not in listed
+            near = suggested(f"3 {text}", kind)
+            if near and abs(registry.Quantity(text).m_as(near) - 1.0) > 0.01:
+                wrong.append((text, near))
+    assert not wrong
+    assert tried > 300
 
 
 def test_error_takes_a_location():

@@ -267,20 +267,30 @@ def _ranges(outcome: Outcome) -> Iterator[tuple[str, list[str], Any]]:
         yield str(curve), causes, values
 
 
+SWEPT = ("mean_efficiency", "torque_ripple", "mean_stiffness", "transmission_error_range")
+
+
 def sweep_tables(outcome: Outcome) -> list[tuple[str, list[dict[str, str]]]]:
-    """Title and rows of every sweep of the command line: the first friction law, point by point."""
-    names = ("mean_efficiency", "torque_ripple", "mean_stiffness", "transmission_error_range")
-    found = []
-    for name, data in outcome.parts.items():
-        if name.startswith("study_sweep_") and "axis" in data:
-            key = data.attrs["sweep_key"]
-            rows = [
-                {key: _place(value, key)}
-                | {_head(n): _shown(n, float(data[n].values[0, k])) for n in names if n in data}
-                for k, value in enumerate(data["axis"].values)
-            ]
-            found.append((str(data.attrs["title"]), rows))
-    return found
+    """Title and rows of every sweep of the command line: point by point, each friction law by name."""
+    return [
+        (
+            str(data.attrs["title"]),
+            [
+                _swept(data, law, point)
+                for point in range(data.sizes["point"])
+                for law in range(data.sizes["law"])
+            ],
+        )
+        for name, data in outcome.parts.items()
+        if name.startswith("study_sweep_") and "axis" in data
+    ]
+
+
+def _swept(data: Any, law: int, point: int) -> dict[str, str]:
+    key = data.attrs["sweep_key"]
+    place = {key: _place(data["axis"].values[point], key)}
+    shown = {_head(n): _shown(n, float(data[n].values[law, point])) for n in SWEPT if n in data}
+    return {**place, "friction law": str(data["law"].values[law]), **shown}
 
 
 def _place(value: float, key: str) -> str:

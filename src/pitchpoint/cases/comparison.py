@@ -27,7 +27,8 @@ OF_VIBRATION = ("mean_transmission_error", "transmission_error_range", "largest_
 class Row:
     """One printed number, in the unit of the print, and what was computed for it.
 
-    `bound` says whether the number is to be exceeded (">") or not reached ("<") instead of met.
+    `bound` says whether the number, or so many times it, is to be exceeded (">") or not reached ("<")
+    instead of met: "< 2 x ".
     """
 
     quantity: str
@@ -104,14 +105,20 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
         kind=target.kind,
         verdict=_verdict(target, computed),
         reason=reason,
-        bound={"above": "> ", "below": "< "}.get(target.expect, ""),
+        bound=_bound(target),
     )
+
+
+def _bound(target: Target) -> str:
+    side = {"above": "> ", "below": "< "}.get(target.expect, "")
+    return f"{side}{target.times:g} x " if target.times != 1.0 else side
 
 
 def _verdict(target: Target, computed: float | None) -> str:
     if computed is None:
         return "excluded"
-    beyond = {"above": computed - target.printed, "below": target.printed - computed}
+    bound = target.times * target.printed
+    beyond = {"above": computed - bound, "below": bound - computed}
     if target.expect in beyond:
         return "pass" if beyond[target.expect] > 0.0 else "miss"
     return "pass" if abs(computed - target.printed) <= target.tolerance else "miss"
@@ -146,8 +153,8 @@ def demand_parts(targets: Sequence[Target], parts: Sequence[str], name: str) -> 
 
 def _absent(target: Target, parts: Iterable[str]) -> InputError:
     if not target.part:
-        return InputError(f"there is no study '{target.study}'", key="study")
-    known = dict.fromkeys(part for part in parts if not part.startswith("study_"))
+        return InputError(f"there is no study {shown(target.study)}", key="study")
+    known = [part for part in parts if not part.startswith("study_")]
     told = f"this case computes no part {shown(target.part)}{nearest(target.part, known)}"
     return InputError(told, key="part")
 
@@ -267,5 +274,5 @@ def _of_slope(number: float, target: Target, variable: str, axis: str) -> float:
     return float(units.convert(number, target.unit, kind))
 
 
-def _names(data: xr.Dataset) -> dict[str, None]:
-    return dict.fromkeys(str(name) for name in data.data_vars)
+def _names(data: xr.Dataset) -> list[str]:
+    return [str(name) for name in data.data_vars]

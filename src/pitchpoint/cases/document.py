@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pitchpoint.cases.quantities import shorten, shown
-from pitchpoint.errors import InputError
+from pitchpoint.cases.quantities import shown, text
+from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import nearest
 
 __all__ = ["Document", "Provenance", "check_name", "read", "setting", "strip"]
@@ -19,6 +19,9 @@ MAX_BYTES = 1_000_000
 
 MAX_DEPTH = 16
 """Deepest nesting of tables and lists that is read; real ones have about five levels."""
+
+MAX_VARIANTS = 50
+"""Most variants of a case; each is computed by itself."""
 
 STATUSES = (
     "printed",
@@ -128,6 +131,9 @@ def _overlays(tree: Tree) -> Tree:
     given = tree.get("variants", {})
     if not isinstance(given, dict):
         raise InputError(f"{shown(given)} was given where a table belongs", key="variants")
+    if len(given) > MAX_VARIANTS:
+        told = f"{len(given)} were given; allowed are at most {MAX_VARIANTS}"
+        raise InputError(told, key="variants")
     for name, overlay in given.items():
         check_name(name, "variants")
         if not isinstance(overlay, dict):
@@ -162,7 +168,7 @@ def resolve(
     known = variants(tree)
     if variant not in known:
         raise InputError(
-            f"{shown(variant)} is not a variant of this case{nearest(variant, dict.fromkeys(known))}",
+            f"{shown(variant)} is not a variant of this case{nearest(variant, known)}",
             file=name,
             key="variants",
         )
@@ -176,6 +182,8 @@ def resolve(
 
 def setting(tree: Tree, key: str, value: Any, *, name: str = "--set") -> Tree:
     """Copy of the tables with the value at a dotted key replaced; `a.b.1` is the value of gear 1."""
+    if key.count(".") + _depth(value) > MAX_DEPTH:
+        raise _too_deep(name).at(key=key)
     result = copy.deepcopy(tree)
     *parents, last = key.split(".")
     node: Any = result
@@ -227,7 +235,10 @@ def _provenance(mark: Tree, name: str, key: str) -> Provenance:
         raise InputError(
             f"{shown(status)} is not a status; use one of {', '.join(STATUSES)}", file=name, key=key
         )
-    return Provenance(str(status), str(mark.get("where", "")), str(mark.get("note", "")))
+    try:
+        return Provenance(status, *(text(mark.get(part, "")) for part in ("where", "note")))
+    except InputError as error:
+        raise error.at(file=name, key=key) from None
 
 
 def _merged(base: Any, overlay: Any) -> Any:

@@ -165,6 +165,7 @@ _KEYS = {
     "groove": "circular_spline",
     "shape": "wave_generator.weights",
     "deflection": "wave_generator.deflection",
+    "force_angle": "wave_generator.force_angle",
 }
 """Keys of the table by arguments of the builder that have other names."""
 

@@ -223,8 +223,8 @@ class SplineDeviations(Table):
     They make the kinematic error; loads, losses and stiffness are those of teeth without deviations.
     """
 
-    flexspline: tuple[Deviation, ...] = ()
-    circular_spline: tuple[Deviation, ...] = ()
+    flexspline: Annotated[tuple[Deviation, ...], Field(max_length=200)] = ()
+    circular_spline: Annotated[tuple[Deviation, ...], Field(max_length=200)] = ()
 
     @property
     def each(self) -> dict[str, tuple[Deviation, ...]]:

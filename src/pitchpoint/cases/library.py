@@ -4,7 +4,7 @@ from importlib import resources
 from pathlib import Path
 
 from pitchpoint.cases.document import Tree, read
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.registry import nearest
 
 __all__ = ["find", "names", "path_of"]
@@ -25,8 +25,8 @@ def path_of(case: str) -> Path:
     if case in names():
         return Path(str(resources.files(__package__) / case / "case.toml"))
     if Path(case).suffix == "" and not _exists(Path(case)):
-        hint = nearest(case, dict.fromkeys(names()))
-        raise InputError(f"'{case[:60]}' is neither a shipped case nor a file{hint}")
+        told = f"'{shorten(case)}' is neither a shipped case nor a file"
+        raise InputError(f"{told}{nearest(case, names())}")
     return Path(case)
 
 
@@ -41,4 +41,4 @@ def find(case: str) -> tuple[str, Tree]:
     """Short name and tables of a case by its name or its file."""
     path = path_of(case)
     tree = read(path)
-    return (case if case in names() else path.name), tree
+    return (case if case in names() else visible(path.name)), tree

@@ -10,12 +10,15 @@ from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from pitchpoint import units
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, shorten
 
-__all__ = ["Pair", "Quantity", "SIValue", "named", "shorten", "shown"]
+__all__ = ["Pair", "Quantity", "SIValue", "named", "shown", "text"]
 
 
 TOO_LONG = 10**40
+
+LONGEST_TEXT = 2000
+"""Longest title or remark [characters]; real ones have some hundred."""
 
 
 class SIValue(float):
@@ -86,7 +89,7 @@ class Quantity:
         if isinstance(value, int) and abs(value) >= TOO_LONG:
             raise InputError(f"{shown(value)} is too large; {self.allowed}")
         try:
-            return units.parse(value, self.kind)
+            return units.parse(value, "count" if self.whole else self.kind)
         except InputError as error:
             raise InputError(f"{error.message}; {self.allowed}", value=value) from None
 
@@ -128,11 +131,20 @@ def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], s
                 f"{shown(value)} is not the name of a {kind}; known are {listed(known)}"
             )
         if value not in known:
-            hint = nearest(value, dict.fromkeys(known))
+            hint = nearest(value, known)
             raise InputError(f"{shown(value)} is not a known {kind}{hint}")
         return value
 
     return read
+
+
+def text(value: Any) -> str:
+    """Text of a case file; InputError if it is none, or would fill the screen."""
+    if not isinstance(value, str):
+        raise InputError(f"{shown(value)} was given where text belongs")
+    if len(value) > LONGEST_TEXT:
+        raise InputError(f"has {len(value)} characters; allowed are at most {LONGEST_TEXT}")
+    return value
 
 
 def shown(value: Any) -> str:
@@ -150,9 +162,3 @@ def shown(value: Any) -> str:
     if isinstance(value, int) and abs(value) >= TOO_LONG:
         return "a whole number of more than 40 digits"
     return shorten(str(value))
-
-
-def shorten(text: str) -> str:
-    """At most 60 characters, none of which moves the cursor."""
-    plain = text if text.isprintable() else ascii(text)[1:-1]
-    return plain if len(plain) <= 60 else f"{plain[:57]}..."

@@ -1,8 +1,8 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from math import inf
-from typing import Annotated, Any, Literal, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -18,12 +18,12 @@ from pydantic.fields import FieldInfo
 from pitchpoint import units
 from pitchpoint.cases.document import Document, check_name
 from pitchpoint.cases.gear_tables import BORE, DEVIATION, Deviation, Gears
-from pitchpoint.cases.quantities import Pair, Quantity, named, shorten, shown
+from pitchpoint.cases.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.cases.tables import DECIDING, Table, alternatives, forms
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import nearest
 
-__all__ = ["Case", "quantity_at", "validate"]
+__all__ = ["Case", "keys", "quantity_at", "validate"]
 
 _ZERO_CELSIUS = 273.15
 
@@ -54,21 +54,16 @@ FORCE = Quantity("force", 0.0, 1e7, "N")
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
+TIMES = Quantity("dimensionless", 0.0, 1000.0, open_low=True)
 NOT_NEGATIVE = Quantity("dimensionless", 0.0, inf)
 POSITION = Quantity("dimensionless", 0, 11, whole=True)
 
-Text = Annotated[str, BeforeValidator(lambda value: _text(value))]
+Text = Annotated[str, BeforeValidator(text)]
 Unit = Annotated[str, BeforeValidator(lambda value: _unit(value))]
 
 
-def _text(value: Any) -> str:
-    if not isinstance(value, str):
-        raise InputError(f"{shown(value)} was given where text belongs")
-    return value
-
-
 def _unit(value: Any) -> str:
-    if _text(value) != "1":
+    if text(value) != "1":
         units.kind_of(value)
     return str(value)
 
@@ -250,9 +245,7 @@ class Operating(Table):
     torque: Annotated[float, TORQUE]
     speed: Annotated[float, SPEED]
     temperature: Annotated[float, TEMPERATURE]
-    driver: Literal["gear 1", "gear 2", "wave generator", "flexspline", "circular spline"] = (
-        "gear 1"
-    )
+    driver: Text = ""
 
 
 class FrictionChoice(BaseModel):
@@ -427,9 +420,9 @@ class Dynamics(Table):
 
     damping_ratio: Annotated[float, RATIO] = 0.1
     inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
-    profile_error: tuple[ProfileError, ...] = ()
+    profile_error: Annotated[tuple[ProfileError, ...], Field(max_length=41)] = ()
     backlash: Annotated[float, DEVIATION] | None = None
-    torques: tuple[Annotated[float, LOADED], ...] = ()
+    torques: Annotated[tuple[Annotated[float, LOADED], ...], Field(max_length=50)] = ()
     speeds: Speeds | None = None
 
 
@@ -467,7 +460,9 @@ class LossMap(Table):
 
     torque: Annotated[float, TORQUE] | None = None
     speed: Annotated[float, MAP_SPEED] | None = None
-    temperatures: tuple[Annotated[float, TEMPERATURE], ...] | None = None
+    temperatures: (
+        Annotated[tuple[Annotated[float, TEMPERATURE], ...], Field(max_length=50)] | None
+    ) = None
     count: Annotated[float, MAP_COUNT] = 9.0
     torque_count: Annotated[float, MAP_COUNT] | None = None
     speed_count: Annotated[float, MAP_COUNT] | None = None
@@ -480,6 +475,7 @@ class Target(Table):
     those that were computed, and `reduce` makes one number of them. `slope` is the change of the
     variable over that of the axis from the first place to the last, `inverse_slope` its inverse:
     with the wind-up of the part `torsion`, which runs over torque, the stiffness between two torques.
+    A number to be exceeded or not reached, `expect`, is `times` the printed one.
     """
 
     quantity: Text
@@ -489,6 +485,7 @@ class Target(Table):
     unit: Unit = "1"
     tolerance: Annotated[float, NOT_NEGATIVE] = 0.0
     expect: Literal["within", "above", "below"] = "within"
+    times: Annotated[float, TIMES] = 1.0
     study: Text = ""
     part: Text = ""
     variable: Annotated[str, BeforeValidator(named(_variables, "quantity"))] = ""
@@ -508,6 +505,8 @@ class Target(Table):
             raise InputError(
                 "study and part were both given; a target reads one of them", key="part"
             )
+        if self.times != 1.0 and self.expect == "within":
+            raise InputError('belongs to a bound, expect = "above" or "below"', key="times")
         return self
 
 
@@ -519,10 +518,22 @@ class Issue(Table):
     verdict: Text
 
 
-def _named(value: Any) -> Any:
-    for name in value if isinstance(value, dict) else ():
-        check_name(name, "")
-    return value
+def _at_most(most: int) -> Callable[[Any], Any]:
+    """Validator of tables under names of the user's own, which are counted before they are read."""
+
+    def check(value: Any) -> Any:
+        given = value if isinstance(value, dict) else {}
+        if len(given) > most:
+            raise InputError(_too_many(len(given), most))
+        for name in given:
+            check_name(name, "")
+        return value
+
+    return check
+
+
+def _too_many(count: int, most: int) -> str:
+    return f"{count} were given; allowed are at most {most}"
 
 
 class Case(Table):
@@ -538,12 +549,14 @@ class Case(Table):
     operation: Operating
     models: Choices = Choices()
     housing: Housing = Housing()
-    losses: Annotated[dict[str, Loss], BeforeValidator(_named)] = Field(default_factory=dict)
+    losses: Annotated[dict[str, Loss], BeforeValidator(_at_most(20))] = Field(default_factory=dict)
     dynamics: Dynamics | None = None
-    studies: Annotated[dict[str, Study], BeforeValidator(_named)] = Field(default_factory=dict)
+    studies: Annotated[dict[str, Study], BeforeValidator(_at_most(200))] = Field(
+        default_factory=dict
+    )
     loss_map: LossMap | None = None
-    targets: tuple[Target, ...] = ()
-    issues: tuple[Issue, ...] = ()
+    targets: Annotated[tuple[Target, ...], Field(max_length=2000)] = ()
+    issues: Annotated[tuple[Issue, ...], Field(max_length=500)] = ()
 
     @model_validator(mode="after")
     def _aimed(self) -> "Case":
@@ -566,17 +579,9 @@ class Case(Table):
         """What is not given stands as is usual for the family; bodies are those that it has."""
         _check_bodies(self)
         _check_meant(self)
+        _check_driver(self)
         operation, models = self.operation, self.models
         driver = operation.driver if _given(operation, "driver") else self.gears.drivers[0]
-        if driver not in self.gears.drivers:
-            why = (
-                "is fixed and cannot drive"
-                if driver in self.gears.members
-                else "is not in this drive"
-            )
-            raise InputError(
-                f"the {driver} {why}; use {' or '.join(self.gears.drivers)}", key="operation.driver"
-            )
         usual: dict[str, Any] = {
             "friction": (FrictionChoice(name=self.gears.friction),),
             "load_sharing": self.gears.load_sharing,
@@ -617,6 +622,17 @@ def _check_meant(case: Case) -> None:
             raise InputError(f"{why}; leave it at {told}", key=f"models.{key}")
 
 
+def _check_driver(case: Case) -> None:
+    """InputError if the member that is to drive is fixed, or none of these gears."""
+    driver, gears = case.operation.driver, case.gears
+    if _given(case.operation, "driver") and driver not in gears.drivers:
+        why = "is fixed and cannot drive" if driver in gears.members else "is not in this drive"
+        raise InputError(
+            f"{shown(driver)} {why}; use {' or '.join(gears.drivers)}",
+            key="operation.driver",
+        )
+
+
 def _check_bodies(case: Case) -> None:
     """InputError if losses arise between bodies that the gears do not have."""
     known = (*case.gears.members, "housing")
@@ -624,7 +640,7 @@ def _check_bodies(case: Case) -> None:
         first, second = loss.between
         strange = next((body for body in loss.between if body not in known), None)
         told = (
-            f"{shown(strange)} is no body of this drive{nearest(strange, dict.fromkeys(known))}"
+            f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
             if strange is not None
             else f"{shown(first)} was given twice; name two bodies of {', '.join(known)}"
         )
@@ -703,8 +719,20 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         models = [model for info in holding for model in forms(info.annotation, tree)]
         named = _named_tables(holding[0])
         if not models:
-            raise InputError(f"'{part}' is a value, not a table", key=key)
+            raise InputError(f"{shown(part)} is a value, not a table", key=key)
     return None
+
+
+def keys(table: type[BaseModel] = Case) -> Iterator[str]:
+    """Dotted keys that take one value or a list, those of every family and form of a table."""
+    for name, info in table.model_fields.items():
+        inner, kind = alternatives(info.annotation), get_origin(info.annotation)
+        options = get_args(info.annotation) or (info.annotation,)
+        if kind is not dict and len(options) > len(inner):
+            yield name
+        if kind not in (dict, tuple):
+            below = (f"{name}.{key}" for each in inner.values() for key in keys(each))
+            yield from dict.fromkeys(below)
 
 
 def _named_tables(info: FieldInfo) -> bool:
@@ -774,8 +802,7 @@ def _message(detail: Any) -> str:
         return f"is missing{_needed(detail['loc'])}"
     if kind == "extra_forbidden":
         what = "table" if isinstance(given, dict) else "key"
-        known = _siblings(detail["loc"])
-        return f"is not a known {what}{nearest(str(detail['loc'][-1]), known)}"
+        return f"is not a known {what}{nearest(str(detail['loc'][-1]), _fields(detail['loc']))}"
     if kind == "literal_error":
         allowed = _options(detail["loc"]) or context["expected"]
         return f"{shown(given)} is not allowed; use {allowed}"
@@ -783,11 +810,9 @@ def _message(detail: Any) -> str:
         return f"{shown(given)} was given where a table belongs"
     if kind in ("tuple_type", "list_type"):
         return f"{shown(given)} was given where a list belongs"
+    if kind == "too_long":
+        return _too_many(len(given), context["max_length"])
     return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
-
-
-def _siblings(location: tuple[Any, ...]) -> dict[str, None]:
-    return dict.fromkeys(_fields(location))
 
 
 def _options(location: tuple[Any, ...]) -> str:

@@ -16,7 +16,7 @@ from pitchpoint.cases.build import Built, build, laws_of
 from pitchpoint.cases.document import Document, leaves, resolve
 from pitchpoint.cases.failures import fails
 from pitchpoint.cases.laws import CASE_LAWS, limits_words
-from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shorten, shown
+from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import (
     SPEED,
@@ -30,7 +30,7 @@ from pitchpoint.cases.schema import (
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.summary import summarise
-from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.errors import ConvergenceError, InputError, shorten
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS

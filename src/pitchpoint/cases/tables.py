@@ -55,7 +55,9 @@ def forms(annotation: Any, node: Any = None) -> list[type[BaseModel]]:
     if len(known) < 2 or not isinstance(node, Mapping):
         return [*known.values()]
     given = next((node[key] for key in DECIDING if key in node), None)
-    return [known[given] if given in known else next(iter(known.values()))]
+    if isinstance(given, str) and given in known:
+        return [known[given]]
+    return [next(iter(known.values()))]
 
 
 def _tables(annotation: Any) -> Iterator[type[BaseModel]]:

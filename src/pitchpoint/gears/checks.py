@@ -562,7 +562,7 @@ def _check_finite(pair: _Pair, gears: list[_Gear], only: tuple[str, ...] = ()) -
             if key != "zero_backlash" and not math.isfinite(value):
                 what = key.replace("_", " ")
                 message = f"the {what} of {name} is {value} and must be a finite number"
-                raise InputError(message, key="gears", value=value)
+                raise InputError(message, value=value)
 
 
 def _warnings(pair: _Pair, gear: _Gear) -> list[str]:
@@ -619,7 +619,7 @@ def _lost_ratio(pair: _Pair, gear: _Gear) -> float:
 
 
 def _refuse(entry: str, value: float, message: str) -> NoReturn:
-    raise InputError(message, key=f"gears.{entry}", value=value)
+    raise InputError(message, key=entry, value=value)
 
 
 def _mm(length: float) -> str:

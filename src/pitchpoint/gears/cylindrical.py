@@ -627,7 +627,7 @@ def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
         if contact_ratio < limit:
             return max(int(limit), 3) if helical else int(limit)
     message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
-    raise InputError(message, key="gears", value=contact_ratio)
+    raise InputError(message, value=contact_ratio)
 
 
 def build_cylindrical_pair(

@@ -332,12 +332,15 @@ def _check_depth(
             f"the clearance of {clearance:.3g} modules is not less than the depth of the teeth, {depth:.3g}",
             key="clearance",
         )
-    if depth - clearance > deflection * difference + _SLACK:
+    least = depth - deflection * difference
+    if clearance < least - _SLACK:
+        usual_frees = depth - clearance <= difference + _SLACK  # a deflection of one
         raise InputError(
             "the teeth do not come free at the short axis: they reach "
             f"{depth - clearance:.4g} modules into each other, and twice the deflection is "
-            f"{deflection * difference:.4g} modules",
-            key="deflection",
+            f"{deflection * difference:.4g} modules; a clearance of {least:.4g} or a larger deflection "
+            "frees them",
+            key="deflection" if usual_frees else "clearance",
         )
 
 

@@ -12,10 +12,11 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.errors import InputError, unknown_name
+from pitchpoint.errors import InputError
 from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
 from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
+from pitchpoint.registry import unknown_name
 
 __all__ = [
     "GreaseRecord",

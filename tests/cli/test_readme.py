@@ -1,0 +1,126 @@
+"""Every block of the README runs, but for the two commands that set a clone up."""
+
+import re
+import shlex
+import sys
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import typer
+
+from pitchpoint import cli
+from pitchpoint.cases import run
+from pitchpoint.cases.comparison import compare
+from pitchpoint.cases.document import Document
+from pitchpoint.cases.schema import Target, validate
+from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.results.store import dataset
+
+README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
+BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+PAIR, PLASTIC, WAVE, TARGETS = (text for kind, text in BLOCKS if kind == "toml")
+SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
+SET_UP = [
+    "sh bootstrap && .venv/bin/pitchpoint run tian2024",
+    "sh bootstrap dev && .venv/bin/pytest",
+]
+CASES = {"pair": PAIR, "plastic": (PAIR, PLASTIC), "wave": WAVE, "targets": (WAVE, TARGETS)}
+"""Whole cases: a block that goes on with another stands behind it."""
+
+
+def merged(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
+    both = {
+        key: merged(first[key], second[key])
+        for key in first.keys() & second.keys()
+        if isinstance(first[key], dict)
+    }
+    return {**first, **second, **both}
+
+
+def tree(name: str) -> dict[str, Any]:
+    given = CASES[name]
+    if isinstance(given, str):
+        return tomllib.loads(given)
+    return merged(*map(tomllib.loads, given))
+
+
+def test_every_block_is_known() -> None:
+    assert {kind for kind, _ in BLOCKS} == {"sh", "toml", "python"}
+    assert sum(kind == "python" for kind, _ in BLOCKS) == 1
+    assert [line for line in SHELL if "bootstrap" in line] == SET_UP
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_case(name: str) -> None:
+    """Read, built, and its parts laid out, targets and sweeps with them."""
+    made = [job.name for job in jobs(Variant(tree(name), "README.md", "default"), {})]
+    assert ("vibration" in made) == (name == "plastic")
+    assert ("kinematic_error" in made) == ("running" in made) == (name in ("wave", "targets"))
+
+
+def test_the_target_reads_what_the_block_says() -> None:
+    (given,) = validate(Document("README.md", tree("targets"))).targets
+    assert isinstance(given, Target)
+    torque = np.linspace(0.0, 94.0, 25)
+    part = dataset({"wind_up": (("torque",), torque / 100e3)}, {"torque": torque})
+    (row,) = compare([given], {"torsion": part})
+    assert row.computed == pytest.approx(100.0)
+    assert (row.bound, row.verdict) == ("< 2 x ", "pass")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Folder with the files that the blocks name; a loss map of few points."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pair.toml").write_text(f"{PAIR}[loss_map]\ncount = 3\n", "utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize("line", [line for line in SHELL if line not in SET_UP])
+def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parsed and laid out as far as the computation itself."""
+    laid_out = []
+
+    def prepare(case: str, *, folder: Path, progress: object, **options: Any) -> dict[str, Any]:
+        laid_out.extend(run.describe(case, **options))
+        return {}
+
+    monkeypatch.setattr(run, "run", prepare)
+    monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder: None)
+    program, *arguments = shlex.split(line)
+    assert program == ".venv/bin/pitchpoint"
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", *arguments])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 0
+    assert laid_out[0]["title"] == "First stage of a robot joint"
+
+
+@pytest.mark.parametrize("sweep", re.findall(r"`--sweep (\S+=\S+)`", README))
+def test_a_sweep_in_the_text(sweep: str, folder: Path) -> None:
+    assert run.describe("pair.toml", studies=cli._studies([sweep]))
+
+
+def test_the_table_of_commands_is_whole() -> None:
+    table = README.partition("### Commands")[2].partition("CASE is")[0]
+    listed = {
+        words.split()[0]: words for words in re.findall(r"^\| `(.+?)` \|", table, re.MULTILINE)
+    }
+    made = typer.main.get_command(cli.app).commands
+    assert listed.keys() == made.keys()
+    for name, words in listed.items():
+        known = {option for one in made[name].params for option in one.opts}
+        assert set(re.findall(r"(--?[a-z]+)", words)) <= known
+
+
+def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (block,) = (text for kind, text in BLOCKS if kind == "python")
+    exec(compile(block, "README.md", "exec"), {})
+    assert (folder / "again.html").stat().st_size > 1_000_000
+    out = capsys.readouterr().out
+    assert "instantaneous efficiency" in out
+    assert "['teeth', 'cycle', 'operation', 'laws', 'loss_map', 'back_driving']" in out

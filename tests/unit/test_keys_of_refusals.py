@@ -1,0 +1,54 @@
+"""What refuses gears names the key of the case file at which they can be changed."""
+
+import ast
+import inspect
+from collections.abc import Iterator
+from types import ModuleType
+
+import pytest
+
+from pitchpoint.cases import build, families
+from pitchpoint.cases.schema import quantity_at
+from pitchpoint.gears import checks, cylindrical, strain_wave_design
+
+MODULES = (checks, cylindrical, strain_wave_design, families)
+MEMBER = "driver"  # a case checks it before it builds: operation.driver
+
+
+def keys_told(module: ModuleType) -> Iterator[str]:
+    """Every key that a refusal of a module may name: first words of `_refuse`, or `key=` of an error."""
+    for node in ast.walk(ast.parse(inspect.getsource(module))):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            given = {keyword.arg: keyword.value for keyword in node.keywords}
+            if node.func.id == "_refuse":
+                yield from words(node.args[0])
+            elif node.func.id == "InputError" and "key" in given:
+                yield from words(given["key"])
+
+
+def words(node: ast.expr) -> Iterator[str]:
+    """Values of an expression that names one key or another."""
+    if isinstance(node, ast.IfExp):
+        yield from (*words(node.body), *words(node.orelse))
+    elif isinstance(node, ast.Constant):
+        yield node.value
+
+
+TOLD = sorted({(module.__name__, key) for module in MODULES for key in keys_told(module)})
+
+
+def test_the_checks_are_found() -> None:
+    found = {key for _, key in TOLD}
+    assert {"addendum", "face_width", "clearance", "form", "force_angle", "bore_diameter"} <= found
+    assert {module for module, _ in TOLD} >= {checks.__name__, strain_wave_design.__name__}
+
+
+@pytest.mark.parametrize(("module", "key"), TOLD)
+def test_every_key_is_one_of_the_schema(module: str, key: str) -> None:
+    if key != MEMBER:
+        quantity_at(f"gears.{families._KEYS.get(key, key)}")
+
+
+@pytest.mark.parametrize("key", sorted(set(build._OIL_KEYS.values())))
+def test_every_key_of_an_oil_is_one_of_the_schema(key: str) -> None:
+    assert quantity_at(f"lubricant.{key}") is not None
