@@ -15,10 +15,9 @@ from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.library import find
 from pitchpoint.cases.run import Outcome, Progress, describe, load_case, open_result, run_variant
 from pitchpoint.cases.studies import Variant, jobs
-from pitchpoint.cases.vibration import stiffness_part, vibrating_of, vibration_part
+from pitchpoint.cases.vibration import _excited, stiffness_part, vibrating_of, vibration_part
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.vibration import excited
 from pitchpoint.errors import InputError
 from pitchpoint.views.report import write_report
 
@@ -306,7 +305,7 @@ def test_every_order_of_a_profile_error_is_resolved(order: int, file: Callable[[
     given = [{"order": order, "amplitude": "2 um", "phase": "30 deg"}]
     built = load_case(file(SPUR), settings={"dynamics.profile_error": given})
     models, _ = laws_of(built)
-    _, _, driven = excited(built.design, built.operation, models, vibrating_of(built))
+    _, _, driven = _excited(built.design, built.operation, models, vibrating_of(built))
     course = course_on(driven, Grid.resolving(order))
     wanted = 2e-6 * np.cos(2.0 * np.pi * order * np.asarray(course.phase) + np.pi / 6.0)
     long = np.diff(np.asarray(course.bounds)) > 0.0
