@@ -1,13 +1,78 @@
-"""Makes what several folders of tests share importable, and gives compiled programs back."""
+"""Compiles quickly, gives compiled programs back, and holds the suite to its budget."""
 
+import os
+from collections import defaultdict
 from collections.abc import Iterator
+from pathlib import Path
 
-import jax
-import pytest
+QUICKLY = (
+    "--xla_backend_optimization_level=0",
+    "--xla_llvm_disable_expensive_passes=true",
+    "--xla_cpu_use_fusion_emitters=false",
+)
+"""Programs of tests run for milliseconds and compile for seconds; those of subprocesses too."""
+
+_given = os.environ.get("XLA_FLAGS", "")
+_more = [flag for flag in QUICKLY if flag.partition("=")[0] not in _given]
+os.environ["XLA_FLAGS"] = " ".join([_given, *_more]).strip()  # read once, with the first array
+
+import jax  # noqa: E402
+import pytest  # noqa: E402
+from budget import Meter, Spent, exceeded, order  # noqa: E402
+
+MOST_MAPS = 20_000
+"""Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
+
+METER = Meter()
+SPENT: dict[str, Spent] = defaultdict(Spent)
+
+
+def pytest_configure() -> None:
+    jax.monitoring.register_event_duration_secs_listener(METER.listen)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: order(item.location[0]))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    before = METER.read()
+    done = yield
+    SPENT[item.location[0]] += METER.read() - before
+    return done
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _compiled_programs_of_this_file_alone() -> Iterator[None]:
-    """Programs of other files are not used again; kept, they exhaust the memory maps of a process."""
+def _programs_within_the_memory_maps() -> Iterator[None]:
+    """Files share what they compile until it could exhaust the memory maps of the process."""
     yield
-    jax.clear_caches()
+    maps = Path("/proc/self/maps")
+    if not maps.exists() or maps.read_bytes().count(b"\n") > MOST_MAPS:
+        jax.clear_caches()
+
+
+# ---- the budget: workers hand in what each file spent, the controller judges the sum
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    handed_in = getattr(session.config, "workeroutput", None)
+    if handed_in is not None:
+        handed_in["spent"] = {file: (own.programs, own.seconds) for file, own in SPENT.items()}
+    elif exceeded(SPENT) and session.exitstatus == pytest.ExitCode.OK:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: object) -> None:
+    for file, own in getattr(node, "workeroutput", {}).get("spent", {}).items():
+        SPENT[file] += Spent(*own)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    whole = sum(SPENT.values(), Spent())
+    terminalreporter.write_line(
+        f"{whole.programs} programs and {whole.seconds:.0f} s of the processor in {len(SPENT)} files"
+    )
+    for told in exceeded(SPENT):
+        terminalreporter.write_line(f"over budget: {told}; see tests/budget.py", red=True)

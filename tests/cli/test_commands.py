@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -9,6 +10,7 @@ import time
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib import resources
 from pathlib import Path
 
@@ -17,6 +19,8 @@ import pytest
 import xarray as xr
 
 from pitchpoint import cli
+from pitchpoint.cases import run as running
+from pitchpoint.cases import studies
 from pitchpoint.cases.run import describe, open_result
 from pitchpoint.materials import lubricants
 
@@ -92,6 +96,15 @@ def tiny(tmp_path: Path) -> Path:
     path = tmp_path / "tiny.toml"
     path.write_text(TINY)
     return path
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of the tiny case, computed once; tests that change them take a copy."""
+    folder = tmp_path_factory.mktemp("finished")
+    (folder / "tiny.toml").write_text(TINY)
+    running.run(str(folder / "tiny.toml"), folder=folder / "out")
+    return folder / "out"
 
 
 def times(folder: Path) -> dict[str, int]:
@@ -188,9 +201,9 @@ def test_run_leaves_results_that_are_not_computed_twice(
 
 
 def test_damaged_parts_are_computed_again(
-    pitchpoint: Callable[..., Told], tiny: Path, tmp_path: Path
+    pitchpoint: Callable[..., Told], tiny: Path, finished: Path, tmp_path: Path
 ) -> None:
-    folder = tmp_path / "out"
+    folder = shutil.copytree(finished, tmp_path / "out")
     before = pitchpoint("run", tiny, "-o", folder, "--json")
     made = times(folder)
     parts = folder / "default"
@@ -210,12 +223,11 @@ def test_damaged_parts_are_computed_again(
     assert kept == {"loss_map", "back_driving", "study_speed", "study_smooth"}
 
 
-def test_cite(pitchpoint: Callable[..., Told], tiny: Path, tmp_path: Path) -> None:
-    pitchpoint("run", tiny, "-o", tmp_path / "out")
-    sources = pitchpoint("cite", tmp_path / "out", "--json").json
+def test_cite(pitchpoint: Callable[..., Told], finished: Path) -> None:
+    sources = pitchpoint("cite", finished, "--json").json
     assert "xu_2007" in [source["key"] for source in sources]
-    assert "xu_2007: " in pitchpoint("cite", tmp_path / "out").out
-    assert "{xu_2007," in pitchpoint("cite", tmp_path / "out", "--bibtex").out
+    assert "xu_2007: " in pitchpoint("cite", finished).out
+    assert "{xu_2007," in pitchpoint("cite", finished, "--bibtex").out
 
 
 def test_a_mesh_that_friction_locks(pitchpoint: Callable[..., Told], tiny: Path) -> None:
@@ -364,66 +376,92 @@ def test_pairs_that_no_paper_holds(
 # ---- interruptions
 
 
-CODE = """
+PIECE, POINTS = 16, 160
+SWEEP = f"operation.torque=10 N m:50 N m:{POINTS}"
+CODE = f"""
 import pitchpoint.cli as cli
+from pitchpoint.cases import studies
+studies.PIECE = {PIECE}
 cli._write_report = lambda outcomes, folder: None
 cli.main()
 """
-COMMAND = [sys.executable, "-c", CODE, "run", "tiny.toml", "-o", "out"]
-LONG = ["--sweep", "operation.torque=10 N m:50 N m:800"]
+PIECES = "study_sweep_operation_torque.0*.nc"
 
 
-def started(folder: Path, wanted: str, gone: int = 0) -> "subprocess.Popen[str]":
-    """A run that has put a part on disk."""
+def killed_after_another_piece(folder: Path, *arguments: str) -> None:
+    """A process of its own that dies when it has put one more piece on disk."""
+    pieces = partial(folder.glob, f"out/default/{PIECES}")
+    gone, limit = len(list(pieces())), time.monotonic() + 120.0
     process = subprocess.Popen(
-        [*COMMAND, *LONG], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", CODE, *arguments],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
-    limit = time.monotonic() + 120.0
-    while len(list(folder.glob(f"out/default/{wanted}"))) <= gone:
+    while len(list(pieces())) <= gone:
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < limit
         time.sleep(0.02)
-    return process
+    process.kill()
+    process.communicate(timeout=60)
+    assert process.returncode == -signal.SIGKILL
 
 
-def test_interrupted_runs_go_on_where_they_were(tiny: Path, tmp_path: Path) -> None:
-    pieces = "study_sweep_operation_torque.0*.nc"
-    process = started(tmp_path, pieces)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert out == ""
-    *progress, last = err.splitlines()
-    assert progress[0] == "default teeth"
-    assert last.startswith("interrupted: ")
-    assert "finished parts are in out" in last
-    assert "the same command goes on from there" in last
+def test_interrupted_runs_go_on_where_they_were(
+    pitchpoint: Callable[..., Told],
+    finished: Path,
+    tiny: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shutil.copytree(finished, tmp_path / "out")
+    for name in ("study_smooth", "loss_map", "back_driving"):
+        (tmp_path / "out" / "default" / f"{name}.nc").unlink()
+    command = ("run", tiny.name, "-o", "out", "--sweep", SWEEP)
+
+    def save(data: xr.Dataset, path: Path) -> None:
+        running_save(data, path)
+        if path.match(PIECES):
+            signal.raise_signal(signal.SIGINT)
+
+    running_save = running.save
+    with monkeypatch.context() as changed:
+        changed.setattr(studies, "PIECE", PIECE)
+        changed.setattr(running, "save", save)
+        told = pitchpoint(*command)
+    assert told.status == 130
+    assert told.out == ""
+    assert len(told.complaint.splitlines()) == 1
+    assert told.complaint.startswith("interrupted: ")
+    assert "finished parts are in out" in told.complaint
+    assert "the same command goes on from there" in told.complaint
     outcome = open_result(tmp_path / "out")["default"]
     assert not outcome.manifest["finished"]
     assert {"teeth", "cycle", "operation", "laws", "study_speed"} <= set(outcome.parts)
     assert not list(tmp_path.glob("out/default/.*"))
     kept = times(tmp_path / "out")
+    assert [name for name in kept if ".0" in name]
 
-    process = started(tmp_path, pieces, gone=len(list(tmp_path.glob(f"out/default/{pieces}"))))
-    process.kill()
-    process.communicate(timeout=60)
+    killed_after_another_piece(tmp_path, *command)
     open_result(tmp_path / "out")
     killed = times(tmp_path / "out")
     assert {name: killed[name] for name in kept} == kept
 
-    done = subprocess.run([*COMMAND, *LONG, "--json"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    finished = times(tmp_path / "out")
-    assert {name: finished[name] for name in finished if name in kept} == {
+    monkeypatch.setattr(studies, "PIECE", PIECE)
+    done = pitchpoint(*command, "--json")
+    assert done.status == 0, done.err
+    whole = times(tmp_path / "out")
+    assert {name: whole[name] for name in whole if name in kept} == {
         name: stamp for name, stamp in kept.items() if ".0" not in name
     }
-    axis = json.loads(done.stdout)["default"]["studies"]["sweep_operation_torque"]["axis"]["values"]
-    assert len(axis) == 800
+    axis = done.json["default"]["studies"]["sweep_operation_torque"]["axis"]["values"]
+    assert len(axis) == POINTS
     assert axis == sorted(axis)
-    assert "study_sweep_operation_torque" in finished
+    assert "study_sweep_operation_torque" in whole
 
 
-def test_a_reader_that_stops_early(tiny: Path, tmp_path: Path) -> None:
+def test_a_reader_that_stops_early() -> None:
     process = subprocess.Popen(
         [sys.executable, "-c", CODE, "models"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )

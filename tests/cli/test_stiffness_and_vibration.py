@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import equinox as eqx
 import numpy as np
 import pytest
 import xarray as xr
@@ -14,9 +15,9 @@ from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.library import find
 from pitchpoint.cases.run import Outcome, Progress, describe, load_case, open_result, run_variant
 from pitchpoint.cases.studies import Variant, jobs
-from pitchpoint.cases.vibration import stiffness_part, vibrating_of, vibration_part
+from pitchpoint.cases.vibration import _excited, stiffness_part, vibrating_of, vibration_part
+from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.vibration import excited
 from pitchpoint.errors import InputError
 from pitchpoint.views.report import write_report
 
@@ -328,14 +329,19 @@ def test_temperature_outside_the_table_of_moduli(
     assert f"a temperature of {temperature} is not allowed" in told
 
 
+@eqx.filter_jit
+def course_on(driven: Excitation, grid: Grid) -> Course:
+    return driven.on(grid)
+
+
 @pytest.mark.parametrize("order", [1, 13, 40])
 def test_every_order_of_a_profile_error_is_resolved(order: int, file: Callable[[str], str]) -> None:
     """Between the events nothing else moves as fast: an error read too coarsely would alias."""
     given = [{"order": order, "amplitude": "2 um", "phase": "30 deg"}]
     built = load_case(file(SPUR), settings={"dynamics.profile_error": given})
     models, _ = laws_of(built)
-    _, _, driven = excited(built.design, built.operation, models, vibrating_of(built))
-    course = driven.on(Grid.resolving(order))
+    _, _, driven = _excited(built.design, built.operation, models, vibrating_of(built))
+    course = course_on(driven, Grid.resolving(order))
     wanted = 2e-6 * np.cos(2.0 * np.pi * order * np.asarray(course.phase) + np.pi / 6.0)
     long = np.diff(np.asarray(course.bounds)) > 0.0
     np.testing.assert_allclose(np.asarray(course.error)[0][long], wanted[long], atol=2e-11)

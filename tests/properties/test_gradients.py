@@ -370,9 +370,10 @@ def test_a_dimension_takes_along_what_follows_from_it():
             profile_shift=(0.35, -0.1),
         )
         inputs = (design_of(mesh), point)
-        return inputs, float(
-            figures_of_many(ravel_pytree(floats(inputs))[0][None], inputs, models(1))[0, 0]
-        )
+        numbers = ravel_pytree(floats(inputs))[0]
+        # As many rows as where gradients are checked, so that one program serves both.
+        rows = jnp.broadcast_to(numbers, (4 * numbers.size + 1, numbers.size))
+        return inputs, float(figures_of_many(rows, inputs, models(1))[0, 0])
 
     slope = (loss(3e-3 + step)[1] - loss(3e-3 - step)[1]) / (2.0 * step)
     by_design, _ = mean_loss_gradient(*loss(3e-3)[0], models(1))

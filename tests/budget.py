@@ -1,0 +1,82 @@
+"""What the suite may cost, counted for each file on whichever worker it ran.
+
+Programs are the first measure: JAX asks for the same number of them on every machine, and each costs
+a trace, a lowering and a compilation. A test that exceeds a budget should share a program with
+another (the same static structure, padded lanes, a fixture of the session) before a budget is raised
+here. Seconds are of the processor, with room for a machine that is half as fast and shared.
+"""
+
+import os
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+PROGRAMS = 3000
+"""Programs of the whole suite that JAX is asked for, found in the cache on disk or not."""
+
+PROGRAMS_OF_A_FILE = 400
+
+SECONDS = 1500.0
+"""Processor time of the whole suite with an empty cache [s]; a quiet machine needs a third."""
+
+SECONDS_OF_A_FILE = 200.0
+
+EVENT = "/jax/core/compile/backend_compile_duration"
+"""Told by JAX for each program that the process does not hold yet."""
+
+SLOWEST_FIRST = ()
+"""Files that start before all others, so that no worker is left alone with one of them."""
+
+
+@dataclass(frozen=True)
+class Spent:
+    """Programs and processor time [s]."""
+
+    programs: int = 0
+    seconds: float = 0.0
+
+    def __add__(self, other: "Spent") -> "Spent":
+        return Spent(self.programs + other.programs, self.seconds + other.seconds)
+
+    def __sub__(self, other: "Spent") -> "Spent":
+        return Spent(self.programs - other.programs, self.seconds - other.seconds)
+
+
+class Meter:
+    """What this process and the processes that it waited for have spent."""
+
+    def __init__(self) -> None:
+        self._told: Counter[str] = Counter()
+
+    def listen(self, event: str, _: float, **__: object) -> None:
+        """Take a duration told by JAX."""
+        self._told[event] += 1
+
+    def read(self) -> Spent:
+        """Spent since the start."""
+        return Spent(self._told[EVENT], sum(os.times()[:4]))
+
+
+def order(file: str) -> int:
+    """Place of a file in the order of the slowest; all others come behind."""
+    name = file.removeprefix("tests/")
+    return SLOWEST_FIRST.index(name) if name in SLOWEST_FIRST else len(SLOWEST_FIRST)
+
+
+def exceeded(spent: Mapping[str, Spent]) -> list[str]:
+    """A sentence for each budget that the files have exceeded."""
+    return [
+        *_beyond("the suite", sum(spent.values(), Spent()), Spent(PROGRAMS, SECONDS)),
+        *(
+            told
+            for file, own in sorted(spent.items())
+            for told in _beyond(file, own, Spent(PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE))
+        ),
+    ]
+
+
+def _beyond(name: str, own: Spent, most: Spent) -> Iterable[str]:
+    if own.programs > most.programs:
+        yield f"{name} asks for {own.programs} programs, {most.programs} are its budget"
+    if own.seconds > most.seconds:
+        yield f"{name} takes {own.seconds:.0f} s of the processor, {most.seconds:.0f} s are its budget"

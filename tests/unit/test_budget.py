@@ -1,0 +1,45 @@
+"""The budget of the suite counts what is compiled, and says which file is beyond it."""
+
+import budget
+import pytest
+from budget import PROGRAMS, PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE, Meter, Spent, exceeded
+
+from pitchpoint._jax import jax
+
+
+def test_a_new_program_is_counted_once():
+    meter = Meter()
+    jax.monitoring.register_event_duration_secs_listener(meter.listen)
+    try:
+        before = meter.read()
+        twice = jax.jit(lambda x: 2.0 * x + len("a program of this test"))
+        given = jax.device_put(1.5)
+        twice(given), twice(given)
+        spent = meter.read() - before
+    finally:
+        jax.monitoring.unregister_event_duration_listener(meter.listen)
+    assert spent.programs == 1
+    assert 0.0 < spent.seconds < 10.0
+
+
+def test_a_suite_within_its_budget_is_silent():
+    most = Spent(PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE)
+    assert exceeded({"tests/a.py": most, "tests/b.py": Spent()}) == []
+
+
+def test_a_file_beyond_its_budget_is_named():
+    told = exceeded({"tests/a.py": Spent(PROGRAMS_OF_A_FILE + 1, SECONDS_OF_A_FILE + 1.0)})
+    assert [one.split(" ")[:2] for one in told] == [["tests/a.py", "asks"], ["tests/a.py", "takes"]]
+    assert f"{PROGRAMS_OF_A_FILE + 1} programs" in told[0]
+
+
+def test_many_files_within_their_own_budgets_may_exceed_that_of_the_suite():
+    each = Spent(PROGRAMS_OF_A_FILE, 1.0)
+    (told,) = exceeded({f"tests/{n}.py": each for n in range(PROGRAMS // PROGRAMS_OF_A_FILE + 1)})
+    assert told.startswith("the suite asks for ")
+
+
+@pytest.mark.parametrize("file", budget.SLOWEST_FIRST)
+def test_files_that_start_first_exist(file, request):
+    assert (request.config.rootpath / "tests" / file).is_file()
+    assert budget.order(f"tests/{file}") < budget.order("tests/any/test_other.py")
