@@ -6,6 +6,7 @@ from math import isfinite
 from typing import Any
 
 import equinox as eqx
+import numpy as np
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.document import Document
@@ -77,7 +78,7 @@ class Built:
     @property
     def loaded(self) -> str:
         """Name of the member that carries the load."""
-        return self.case.gears.members[int(self.design.mesh.loaded.argmax())]
+        return self.case.gears.members[int(np.argmax(self.design.mesh.loaded))]
 
 
 def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Built:

@@ -226,12 +226,19 @@ def _drawing(mesh: Mesh) -> dict[str, Array]:
     return mesh.drawing()
 
 
+@eqx.filter_jit
+def _events(mesh: Mesh) -> Array:
+    return mesh.events()
+
+
 def _cycle(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
     film = FILM_THICKNESS[built.case.models.film_thickness]
     known = engaged(built.design, built.operation, models)
     runs = [
-        profile(built.design, built.operation, _choose(models, index), film, engaged=known)
+        jax.device_get(
+            profile(built.design, built.operation, _choose(models, index), film, engaged=known)
+        )
         for index in chosen
     ]
     names = _names(models, chosen)
@@ -262,7 +269,7 @@ def _cycle(built: Built) -> xr.Dataset:
         title="mesh cycle",
         warnings=warnings,
         film_law=film.name,
-        events=[float(phase) for phase in built.design.mesh.events()],
+        events=np.asarray(_events(built.design.mesh)).tolist(),
     )
     if built.design.mesh.clearances:
         data["path"].attrs.update(long_name="angle from the long axis, in turns", symbol="p/2π")
@@ -414,7 +421,8 @@ def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
 
 def _backwards(variant: Variant, built: Built) -> Built:
     point, mesh = built.case.operation, built.design.mesh
-    step = abs(float((mesh.driver @ mesh.motion) / (mesh.loaded @ mesh.motion)))
+    driver, loaded, motion = map(np.asarray, (mesh.driver, mesh.loaded, mesh.motion))
+    step = abs(float((driver @ motion) / (loaded @ motion)))
     return variant.built(
         {
             "operation.driver": built.loaded,

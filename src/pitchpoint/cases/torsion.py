@@ -9,8 +9,8 @@ import xarray as xr
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.schema import TORQUE
-from pitchpoint.efficiency.quasi_static import Models, coupling, engagement
-from pitchpoint.efficiency.summary import summarise
+from pitchpoint.efficiency.quasi_static import Models, coupling
+from pitchpoint.efficiency.summary import engaged, summarise
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.torsion import hysteresis, wound_up
 from pitchpoint.results.store import dataset
@@ -103,7 +103,8 @@ def _torsion(
 ) -> dict[str, np.ndarray]:
     """Wind-up at every torque, and the load on every tooth there."""
     design = built.design
-    known = engagement(design, built.operation.load, models)
+    known = engaged(design, built.operation, models)
+    assert known is not None  # or there would be no clearances
     body = coupling(design, known.contacts) if known.body is None else known.body
     given = design.mesh, design.solids, models.compliance
     each = [
@@ -111,7 +112,7 @@ def _torsion(
         for torque in torques
     ]
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
-    loop: Any = hysteresis(found, jnp.asarray(friction)[:, None, None])
+    loop: Any = hysteresis(found, friction[:, None, None])
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
     return {
         "phase": phase[::SHOWN],

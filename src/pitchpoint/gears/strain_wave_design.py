@@ -5,6 +5,7 @@ from math import ceil, floor, inf, pi, radians
 
 import equinox as eqx
 import numpy as np
+from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
@@ -173,7 +174,7 @@ def build_strain_wave(
 def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
     """Sentences on what is unusual about a drive that can run."""
     told = []
-    intended = float(mesh.line.radius + mesh.line.deflection + mesh.flank.root_height)
+    intended, widest = map(float, jax.device_get(_extent(mesh)))
     cut = (float(mesh.tip_height) - intended) / float(mesh.module)
     if mesh.conjugate and cut > 0.6:
         told.append(
@@ -192,13 +193,19 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
             "pressure and film there say nothing."
         )
-    if float(jnp.max(jnp.abs(mesh.line.radial(jnp.asarray(pi / 2))))) > 0.1 * float(
-        mesh.line.radius
-    ):
+    if widest > 0.1 * float(mesh.line.radius):
         told.append(
             "The deflection is above a tenth of the radius; the ring theory here is linear."
         )
     return tuple(told)
+
+
+@eqx.filter_jit
+def _extent(mesh: StrainWave) -> tuple[Array, Array]:
+    """Height of the flexspline's root on the long axis, and displacement on the short one [m]."""
+    line = mesh.line
+    root = line.radius + line.deflection + mesh.flank.root_height
+    return root, jnp.abs(line.radial(jnp.asarray(pi / 2)))
 
 
 def double_arc_flank(
@@ -406,6 +413,7 @@ _sweep = eqx.filter_jit(swept)
 _survey = eqx.filter_jit(survey)
 _tip = eqx.filter_jit(tip_with_land)
 _given_groove = eqx.filter_jit(given)
+_lands = eqx.filter_jit(Groove.land)
 
 
 def _swept(
@@ -442,7 +450,7 @@ def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: Tooth
 
 def _check_play(backlash: float, space: Groove, edge: float, z2: int) -> None:
     """Play is taken off the circular spline's teeth; something must be left of their tips."""
-    land = float(space.land(jnp.asarray(2.0 * pi / z2))[0]) + 2.0 * edge
+    land = float(_lands(space, jnp.asarray(2.0 * pi / z2))[0]) + 2.0 * edge
     if backlash >= land:
         raise InputError(
             f"a play of {1e6 * backlash:.6g} um leaves nothing of the circular spline's tips, which are "

@@ -1,6 +1,7 @@
 """Wind-up of a strain-wave gear under torque, its stiffness, and hysteresis by friction of the teeth."""
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
@@ -142,7 +143,7 @@ def wound_up(
     return torsion(mesh, solids, terms, loads, loads, contacts, body)
 
 
-def hysteresis(found: Torsion, friction: float | Float[Array, "..."]) -> Hysteresis:
+def hysteresis(found: Torsion, friction: float | Float[Array | np.ndarray, "..."]) -> Hysteresis:
     """Loop of torque over wind-up by Coulomb friction on the teeth while the drive stands still.
 
     On loading, friction adds mu times the sum of forces times sliding arms to the torque that the
