@@ -2,6 +2,7 @@
 
 import os
 import platform
+from collections import Counter
 from pathlib import Path
 
 FEW_CORES = 4
@@ -17,7 +18,13 @@ if len(_ALLOWED) <= FEW_CORES:
 import jax  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 
-__all__ = ["cache_folder", "jax", "jnp"]
+__all__ = ["bound_programs", "cache_folder", "jax", "jnp"]
+
+MOST_PROGRAMS = 1000
+"""Programs that a process keeps loaded: each takes half a megabyte and some six memory maps, of which
+Linux allows a process 65,530."""
+
+_LOADED = Counter[str]()
 
 
 def cache_folder() -> Path:
@@ -37,5 +44,18 @@ def _enable_cache() -> None:
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
 
 
+def _count(event: str, duration_secs: float, **_: str | int) -> None:
+    if event == "/jax/core/compile/backend_compile_duration":
+        _LOADED["programs"] += 1
+
+
+def bound_programs() -> None:
+    """Unload all programs once there are many; what is needed again comes from the folder of the cache."""
+    if _LOADED["programs"] > MOST_PROGRAMS:
+        jax.clear_caches()
+        _LOADED.clear()
+
+
+jax.monitoring.register_event_duration_secs_listener(_count)
 jax.config.update("jax_enable_x64", True)
 _enable_cache()

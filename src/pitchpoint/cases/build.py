@@ -8,7 +8,7 @@ from typing import Any
 import equinox as eqx
 import numpy as np
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import bound_programs, jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.families import FAMILIES, Family, built_gears
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
@@ -88,6 +88,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         InputError: a gear pair that cannot run, a temperature outside the oil's range, a law that
             does not hold for this pair; with file and key.
     """
+    bound_programs()
     try:
         mesh, warnings = built_gears(case.gears, case.operation.driver, int(case.models.slices))
     except InputError as error:
