@@ -128,7 +128,6 @@ def parts_of_one(built: Built, repeats: int) -> None:
     """Where the time of one torque goes."""
     models, chosen = laws_of(built)
     models = replace(models, choice=jnp.asarray(chosen[0]))
-    bare = replace(models, friction=(), parameters={})
     alone = replace(models, friction=(models.friction[chosen[0]],), choice=jnp.asarray(0))
     design, load = built.design, built.operation.load
     known = engagement(design, load, models)
@@ -138,9 +137,9 @@ def parts_of_one(built: Built, repeats: int) -> None:
     points = Operation(jnp.full(speed.shape, load), speed, degree)
     work = {
         "contacts": lambda: quasi_static._contacts(design.mesh, known.phase),
-        "ring": lambda: quasi_static._body(design, known.contacts),
-        "load on the pairs": lambda: quasi_static._shares(
-            design, known.contacts, load, bare, known.body
+        "ring": lambda: quasi_static.coupling(design, known.contacts),
+        "load on the pairs": lambda: quasi_static._share(
+            design, known.contacts, load, models, known.body
         ),
         "balance": lambda: _balance(design, points, models, known),
         "balance, one law": lambda: _balance(design, points, alone, known),

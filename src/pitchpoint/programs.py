@@ -11,6 +11,7 @@ import json
 import logging
 import os
 import tempfile
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache, partial, update_wrapper
@@ -26,7 +27,14 @@ from jax import export
 
 from pitchpoint._jax import cache_folder, jax
 
-__all__ = ["Program", "fast_program", "forget", "package_state", "program"]
+__all__ = [
+    "Program",
+    "bound_programs",
+    "fast_program",
+    "forget",
+    "package_state",
+    "program",
+]
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -132,11 +140,33 @@ class Program(Generic[P, R]):
 _MADE: "WeakSet[Program[..., Any]]" = WeakSet()
 
 
+MOST_PROGRAMS = 1000
+"""Programs that a process keeps loaded: each takes half a megabyte and some six memory maps, of which
+Linux allows a process 65,530."""
+
+_LOADED = Counter[str]()
+
+
+def _count(event: str, duration_secs: float, **_: str | int) -> None:
+    if event == "/jax/core/compile/backend_compile_duration":
+        _LOADED["programs"] += 1
+
+
+jax.monitoring.register_event_duration_secs_listener(_count)
+
+
+def bound_programs() -> None:
+    """Forget all programs once there are many; what is needed again comes from disk."""
+    if _LOADED["programs"] > MOST_PROGRAMS:
+        forget()
+
+
 def forget() -> None:
     """Give back what programs hold in memory; what is on disk stays."""
     for one in _MADE:
         one.ready.clear()
     jax.clear_caches()
+    _LOADED.clear()
 
 
 def program(function: Callable[P, R]) -> Program[P, R]:

@@ -60,7 +60,7 @@ SPRING = 1e9 * 0.01
 def springs(monkeypatch):
     """Three equal pairs at each end of the axis, the second and the third of them with a clearance."""
 
-    def yielding(mesh, contacts, solids, terms, load):
+    def yielding(mesh, contacts, solids, terms, load, body):
         return Yielding(jnp.full(contacts.path.shape, 1e9), None, load)
 
     at = contacts(np.zeros((6, 1, 1)), GAPS + ARM * 3e-5, SLIPS)

@@ -11,7 +11,10 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
+from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.discs import BallOnDisc, TwinDisc
 from pitchpoint.gears.mesh import Mesh
@@ -290,6 +293,55 @@ def test_torque_route_equals_loss_route(family, rolling):
         assert np.all(np.abs(between - found["loss"]) <= 1e-11 * turnover), law
         assert found["loss"].max() > 1e-4 * turnover.max()
         assert (found["rolling_loss"].max() > 0.0) == (rolling != "none")
+
+
+LOSSES = {
+    "bearing": {
+        "bearing": BEARING_LOSS["palmgren_1959"],
+        "mean_diameter": 0.04,
+        "factors": {"f0": 2.0, "f1": 1e-3},
+        "preload": 50.0,
+    },
+    "seal": {"seal_torque": 0.02},
+    "churning": {"churning_torque": 0.03, "churning_speed": 100.0},
+    "breakaway": {"breakaway_torque": 0.01},
+}
+
+
+@pytest.fixture(scope="module", params=["18/36", "strain wave 200/202"])
+def braked(request):
+    """A drive with a loss between its driver and the housing, at several speeds and temperatures."""
+    mesh = FAMILIES[request.param]()
+
+    def design(kind):
+        drag = Drag(mesh.driver * jnp.sign(mesh.driver @ mesh.motion), **LOSSES[kind])
+        return dataclasses.replace(design_for(mesh), drag=(drag,))
+
+    shape = (2, 3)
+    points = Operation(*(jnp.full(shape, value) for value in (0.0, 100.0, 330.0)))
+    contacts = contacts_of(mesh, jnp.asarray(INSIDE))
+    return SimpleNamespace(mesh=mesh, design=design, points=points, contacts=contacts)
+
+
+@pytest.mark.parametrize("kind", LOSSES)
+def test_every_kind_of_loss_alone_brakes_the_driver(braked, kind):
+    drags = braked.design(kind).drag
+    given = braked.mesh, braked.contacts
+    for resting, each in ((False, drags), (True, at_rest(drags))):
+        torque = resistance(
+            each, *given, speed=braked.points.speed[..., None], kinematic_viscosity=1e-4
+        )(jnp.zeros(braked.contacts.weight.shape))
+        driven = dot(np.asarray(braked.mesh.driver * braked.mesh.motion), np.asarray(torque))
+        assert driven.shape == (2, 3, 1)
+        acts = kind in ("bearing", "seal", "breakaway" if resting else "churning")
+        assert np.all(driven > 0.0) if acts else np.all(driven == 0.0)
+
+
+@pytest.mark.parametrize("kind", LOSSES)
+def test_every_kind_of_loss_alone_has_a_starting_torque(braked, kind):
+    models = models_for(braked.mesh)
+    found = eqx.filter_eval_shape(starting_torque, braked.design(kind), braked.points, models)
+    assert found.shape == (2, 3)
 
 
 # Flanks as curves in the fixed frame, in complex numbers, built from gear data alone.

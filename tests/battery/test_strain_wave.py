@@ -3,6 +3,7 @@
 Positions alone say where flanks are and how they move; see `strain_wave_positions`.
 """
 
+import dataclasses
 from itertools import permutations
 from types import SimpleNamespace
 
@@ -63,6 +64,7 @@ def passing(request):
     height = by.place(found.flank[0], 2.0 * np.pi * found.path).real
     return SimpleNamespace(
         mesh=mesh,
+        phases=phases,
         found=found,
         raw=raw,
         by=by,
@@ -148,6 +150,27 @@ def test_teeth_that_touch_close_by_themselves_and_the_others_after_projection(pa
     assert rigid[~touches].max() > 1e-3
     projected = np.abs(along(passing.found.normal, motion))[active] / size
     assert projected.max() < 1e-13
+
+
+def test_places_beyond_the_pairs_stay_empty(passing):
+    mesh, active = passing.mesh, passing.found.active
+    empty = np.setdiff1d(np.arange(active.shape[0]), mesh.filled)
+    assert mesh.filled.size == 2 * int(mesh.held) < active.shape[0] == 2 * mesh.lanes
+    assert not active[empty].any()
+    assert active[mesh.filled].any()
+
+
+@pytest.mark.parametrize("play", [1e-13, 1e-6])
+def test_play_opens_every_pair_alike_from_the_first(passing, play):
+    """Touching flanks too, whose clearance is rounding: cut off at zero, its sign would decide."""
+    mesh, active = passing.mesh, passing.found.active
+    wider = dataclasses.replace(mesh, backlash=jnp.asarray(play))
+    opened = np.asarray(seen(wider, jnp.asarray(passing.phases))[0].gap) - passing.found.gap
+    along, angle = passing.found.flank[0], 2.0 * np.pi * passing.found.path
+    expected = play / 2.0 * np.cos(passing.by.direction(along, angle, step=2e-7))
+    smooth = active & passing.by.smooth(along)
+    assert np.any(smooth & (passing.found.gap == 0.0))
+    np.testing.assert_allclose(opened[smooth], expected[smooth], rtol=1e-5, atol=1e-21)
 
 
 def test_projection_leaves_the_law_of_the_drive(passing):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from pitchpoint import _jax
 from pitchpoint.cases import run as running
 from pitchpoint.cases.build import TEETH_ALONE
 from pitchpoint.cases.catalogue import (
@@ -82,12 +83,47 @@ temperatures = ["60 degC", "80 degC"]
 """
 
 
+@pytest.fixture(scope="module", autouse=True)
+def programs_stay() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_jax, "MOST_PROGRAMS", 10**9)
+        yield
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     where = tmp_path_factory.mktemp("drive")
     (where / "drive.toml").write_text(DRIVE)
     running.run(str(where / "drive.toml"), folder=where / "out")
     yield where / "out"
+
+
+@pytest.fixture(scope="module")
+def other(folder: Path) -> tuple[int, Outcome]:
+    """Programs that a second drive of other teeth, torque, speed and oil asked for, and what it found."""
+    before = _jax._LOADED["programs"]
+    settings = {
+        "gears.teeth": [190, 192],
+        "operation.torque": "40 N m",
+        "operation.speed": "1500 rpm",
+        "lubricant.name": "mineral-vg-220",
+        "gears.deviations": {"flexspline": [{"order": 2, "amplitude": "0.1 um"}]},
+    }
+    found = running.run(str(folder.parent / "drive.toml"), settings=settings)["default"]
+    return _jax._LOADED["programs"] - before, found
+
+
+def test_another_drive_compiles_nothing_new(other: tuple[int, Outcome]) -> None:
+    programs, found = other
+    assert list(found.parts) == PARTS
+    assert programs == 0
+
+
+def test_empty_places_for_pairs_are_not_told(drive: Outcome, other: tuple[int, Outcome]) -> None:
+    """Teeth within 40 degrees before and 50 behind the long axis, at both of its ends."""
+    for outcome, pairs in ((drive, 2 * 49), (other[1], 2 * 46)):
+        assert outcome.parts["cycle"].sizes["pair"] == pairs
+        assert outcome.parts["torsion"].sizes["pair"] == pairs
 
 
 @pytest.fixture(scope="module")

@@ -96,3 +96,25 @@ def test_forgetting_gives_memory_back(kept):
     assert one.ready
     programs.forget()
     assert not one.ready
+
+
+def test_many_programs_are_unloaded_together(monkeypatch):
+    @jax.jit
+    def double(x):
+        return 2.0 * x
+
+    def fill(count):
+        for size in range(1, count + 1):
+            double(np.zeros(size))
+
+    programs.bound_programs()
+    kept = programs._LOADED["programs"]
+    fill(4)
+    assert programs._LOADED["programs"] >= kept + 4
+    programs.bound_programs()
+    assert double._cache_size() == 4
+    monkeypatch.setattr(programs, "MOST_PROGRAMS", programs._LOADED["programs"] - 1)
+    programs.bound_programs()
+    assert double._cache_size() == 0
+    assert programs._LOADED["programs"] == 0
+    assert float(double(jnp.asarray(3.0))) == 6.0

@@ -39,17 +39,31 @@ from collections import Counter
 
 from pitchpoint._jax import jax
 from pitchpoint.cases.run import run
+from pitchpoint.cases.schema import Study, Sweep
 
 told = Counter()
 jax.monitoring.register_event_listener(lambda event, **_: told.update([event]))
 run(sys.argv[1])
 cache = "/jax/compilation_cache/"
-print(*(told[cache + name] for name in ("compile_requests_use_cache", "cache_hits", "cache_misses")))
+first = [told[cache + name] for name in ("compile_requests_use_cache", "cache_hits", "cache_misses")]
+other = {
+    "gears.teeth": [23, 61],
+    "gears.profile_shift": [0.3, -0.1],
+    "operation.torque": "20 N m",
+    "operation.speed": "900 rpm",
+    "lubricant.name": "75W90-A",
+}
+sweep = Sweep(key="operation.temperature", start="50 degC", stop="70 degC", count=3)
+run(sys.argv[1], settings=other, studies={"warm": Study(sweep=sweep)})
+print(*first, told[cache + "compile_requests_use_cache"] - first[0])
 """
 
 
-def run_once(case: Path, home: Path) -> tuple[int, int, int]:
-    """Programs that a process of its own asked for, found in the cache, and had to compile."""
+def run_once(case: Path, home: Path) -> tuple[int, int, int, int]:
+    """Programs that a process of its own asked for, found in the cache, and had to compile.
+
+    Last comes how many more a second pair of other teeth, torque, speed and oil asked for, with a sweep.
+    """
     environment = {**os.environ, "XDG_CACHE_HOME": str(home), "JAX_PLATFORMS": "cpu"}
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, str(case)],
@@ -59,8 +73,8 @@ def run_once(case: Path, home: Path) -> tuple[int, int, int]:
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    asked, found, missed = map(int, done.stdout.split()[-3:])
-    return asked, found, missed
+    asked, found, missed, more = map(int, done.stdout.split()[-4:])
+    return asked, found, missed, more
 
 
 def programs(home: Path) -> set[str]:
@@ -83,14 +97,14 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> list[tuple]:
 
 
 def test_the_first_process_keeps_what_it_compiles(runs):
-    (_, _, missed), kept, _ = runs[0]
+    (_, _, missed, _), kept, _ = runs[0]
     assert missed > 0
     assert len(kept) == missed
 
 
 def test_the_second_process_compiles_nothing(runs):
     (first, kept, _), (second, kept_after, _) = runs
-    asked, found, missed = second
+    asked, found, missed, _ = second
     assert missed == 0
     assert found == asked == first[0] > 0
     assert kept_after == kept
@@ -100,3 +114,7 @@ def test_the_second_process_traces_nothing_that_was_kept(runs):
     (_, _, before), (_, _, after) = runs
     assert len(before) > 5
     assert after == before
+
+
+def test_another_pair_and_a_sweep_ask_for_no_other_program(runs):
+    assert [more for (*_, more), _, _ in runs] == [0, 0]

@@ -27,7 +27,7 @@ from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.programs import program
+from pitchpoint.programs import bound_programs, program
 
 __all__ = ["Built", "build", "laws_of"]
 
@@ -110,6 +110,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         InputError: a gear pair that cannot run, a temperature outside the oil's range, a law that
             does not hold for this pair; with file and key.
     """
+    bound_programs()
     try:
         mesh, warnings = built_gears(case.gears, case.operation.driver, int(case.models.slices))
     except InputError as error:

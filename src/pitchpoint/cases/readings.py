@@ -12,7 +12,7 @@ from pitchpoint.cases.atanasiu2011 import printed as atanasiu2011
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.xu2021 import printed as xu2021
 from pitchpoint.cases.zhao2022 import printed as zhao2022
-from pitchpoint.gears.strain_wave import StrainWave, Survey
+from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.programs import program
 
 __all__ = ["READINGS", "conjugate_readings", "readings_of"]
@@ -80,7 +80,7 @@ def conjugate_readings(built: Built) -> dict[str, float]:
 
 def _clearance_between(mesh: StrainWave) -> float:
     """Largest clearance between the first and the last angle at which rigid teeth touch [m]."""
-    found = np.asarray(_surveyed(mesh).clearance)
+    found = np.asarray(mesh.surveyed.clearance)
     (touching,) = np.nonzero(found < _TOUCHING * float(mesh.module))
     return float(found[touching[0] : touching[-1] + 1].max())
 
@@ -95,11 +95,6 @@ def _conjugate(mesh: StrainWave) -> dict[str, Any]:
     found = jax.device_get(_branches(sharp))
     own: dict[str, Any] = jax.device_get(_branches(mesh))
     return {**{name: found[name] for name in names}, "clearance": own["clearance"]}
-
-
-@program
-def _surveyed(mesh: StrainWave) -> Survey:
-    return mesh.survey()
 
 
 @program

@@ -270,7 +270,8 @@ def _cycle(built: Built) -> xr.Dataset:
     )
     if built.design.mesh.clearances:
         data["path"].attrs.update(long_name="angle from the long axis, in turns", symbol="p/2π")
-    return data
+    filled = built.design.mesh.filled
+    return data if filled is None else data.isel(pair=filled)
 
 
 def _profiles(built: Built, models: Models, laws: Sequence[int]) -> list[dict[str, np.ndarray]]:

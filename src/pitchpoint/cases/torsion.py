@@ -1,21 +1,18 @@
 """Wind-up of a drive whose teeth come to mesh under load, as a dataset of a case."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.schema import TORQUE
-from pitchpoint.efficiency.quasi_static import Engagement, Models, engagement
-from pitchpoint.efficiency.summary import summarise
+from pitchpoint.efficiency.quasi_static import Models, coupling
+from pitchpoint.efficiency.summary import engaged, summarise
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.tooth_compliance import Terms
-from pitchpoint.loading.torsion import hysteresis, torsion
-from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
+from pitchpoint.loading.torsion import hysteresis, wound_up
 from pitchpoint.results.store import dataset
 
 __all__ = ["torsion_part"]
@@ -30,17 +27,7 @@ def torsion_part(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
     torques = np.linspace(0.0, 2.0 * built.case.operation.torque or 1.0, TORQUES)
     friction = _mean_friction(built, models, chosen)
-    known = engagement(built.design, built.operation.load, models)
-    found = jax.device_get(
-        _torsion(
-            built.design.mesh,
-            built.design.solids,
-            models.compliance,
-            known,
-            jnp.asarray(torques),
-            jnp.asarray(friction),
-        )
-    )
+    found = _torsion(built, models, torques, friction)
     dims = {
         "tooth_angle": ("phase", "pair"),
         "tooth_force": ("torque", "phase", "pair"),
@@ -48,21 +35,22 @@ def torsion_part(built: Built) -> xr.Dataset:
         "loading_torque": ("law", "torque"),
         "unloading_torque": ("law", "torque"),
     }
+    phase = found.pop("phase")
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
     yields, rigid = _yielding(built.design.mesh)
-    part = dataset(
+    whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
             "law": [models.friction[law].name for law in chosen],
             "torque": ("torque", torques),
-            "phase": ("phase", np.asarray(known.phase[::SHOWN])),
+            "phase": ("phase", phase),
         },
         title="torsion",
         warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
         note=f"{yields} yield; {rigid} are not in it",
     )
-    part["torsional_stiffness"].attrs.update(covers=yields)
-    return part
+    whole["torsional_stiffness"].attrs.update(covers=yields)
+    return whole.isel(pair=built.design.mesh.filled)
 
 
 def _yielding(mesh: Mesh) -> tuple[str, str]:
@@ -110,30 +98,31 @@ def _mean_friction(built: Built, models: Models, laws: tuple[int, ...]) -> np.nd
     return np.array([run["mean_friction"][0] for run in runs])
 
 
-@program
 def _torsion(
-    mesh: Mesh,
-    solids: tuple[Solid, Solid],
-    terms: Terms,
-    known: Engagement,
-    torques: Float[Array, " torque"],
-    friction: Float[Array, " law"],
-) -> dict[str, Array]:
-    contacts, _ = known.of_rank(2)
-    found = torsion(mesh, solids, terms, torques[:, None], known.phase[None], contacts)
-    loop = hysteresis(found, friction[:, None, None])
-
-    def mean(values: Array) -> Array:
-        return values @ known.weight
-
+    built: Built, models: Models, torques: np.ndarray, friction: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Wind-up at every torque, and the load on every tooth there."""
+    design = built.design
+    known = engaged(design, built.operation, models)
+    assert known is not None  # or there would be no clearances
+    body = coupling(design, known.contacts) if known.body is None else known.body
+    given = design.mesh, design.solids, models.compliance
+    each = [
+        jax.device_get(wound_up(*given, jnp.asarray(torque), known.contacts, body))
+        for torque in torques
+    ]
+    found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
+    loop: Any = hysteresis(found, friction[:, None, None])
+    phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
     return {
-        "wind_up": mean(found.wind_up),
-        "wind_up_range": jnp.ptp(found.wind_up, axis=-1),
-        "torsional_stiffness": mean(found.stiffness),
-        "loaded_pairs": mean(found.loaded_pairs),
-        "zone_load": mean(found.radial_load).T,
-        "tooth_angle": 2.0 * jnp.pi * known.contacts.path[:, 0, ::SHOWN].T,
-        "tooth_force": jnp.moveaxis(jnp.sum(found.force, axis=1), 0, -1)[:, ::SHOWN],
-        "loading_torque": mean(loop.loading),
-        "unloading_torque": mean(loop.unloading),
+        "phase": phase[::SHOWN],
+        "wind_up": found.wind_up @ weight,
+        "wind_up_range": np.ptp(found.wind_up, axis=-1),
+        "torsional_stiffness": found.stiffness @ weight,
+        "loaded_pairs": found.loaded_pairs @ weight,
+        "zone_load": found.radial_load @ weight,
+        "tooth_angle": 2.0 * np.pi * path[:, 0, ::SHOWN].T,
+        "tooth_force": np.moveaxis(found.force.sum(axis=2), 1, 2)[:, ::SHOWN],
+        "loading_torque": loop.loading @ weight,
+        "unloading_torque": loop.unloading @ weight,
     }

@@ -69,7 +69,7 @@ class Drag(eqx.Module):
             raise InputError(f"'{self.bearing.name}' asks for {wanted}, got {[*self.factors]}")
 
     def torque(self, *, speed: Each, load: Each, kinematic_viscosity: Each) -> Each:
-        """Torque between the bodies [N m], not negative.
+        """Torque between the bodies, in the common shape of the arguments [N m]; not negative.
 
         Args:
             speed: relative one, not negative [rad/s].
@@ -84,7 +84,8 @@ class Drag(eqx.Module):
             **self.factors,
         )
         other = self.breakaway_torque if self.resting else self._churning(speed)
-        return bearing + self.seal_torque + other
+        every = map(jnp.shape, (speed, load, kinematic_viscosity))
+        return jnp.broadcast_to(bearing + self.seal_torque + other, jnp.broadcast_shapes(*every))
 
     def _churning(self, speed: Each) -> Each:
         moves = speed > 0.0

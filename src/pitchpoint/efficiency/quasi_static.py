@@ -14,8 +14,9 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance, tooth_load
-from pitchpoint.loading.sharing import LoadSharing
+from pitchpoint.loading.sharing import LoadSharing, from_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.loading.torsion import wound_up
 from pitchpoint.loading.yielding import body_compliance, yielding
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -32,6 +33,7 @@ __all__ = [
     "Models",
     "Operation",
     "State",
+    "coupling",
     "cycle",
     "cycle_nodes",
     "engagement",
@@ -42,8 +44,8 @@ Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 Coupling = Float[Array, "lane lane *b"]
 
-TOGETHER = 16
-"""Step in the number of pairs that are kept of many."""
+FEWEST = 16
+"""Pairs at each end of the long axis that are kept of many; more are twice as many, and so on."""
 
 ROUNDING = 1e-13
 """Output over input power up to which no power is transmitted: an idle drive has rounding alone."""
@@ -161,13 +163,15 @@ class Engagement(eqx.Module):
     def loaded(self) -> "Engagement":
         """Only the pairs that carry at some node, the same at both ends of the long axis.
 
-        Losses and torques come from these alone. Their number goes up in steps, so that few programs
-        serve all loads; the compliance of the bodies is left out.
+        Losses and torques come from these alone. Their number doubles where it must grow, so that few
+        programs serve all loads; the compliance of the bodies is left out.
         """
         half = self.share.shape[0] // 2
         carries = np.any(np.asarray(self.share) > 0.0, axis=(1, 2)).reshape(2, half).any(axis=0)
-        count = min(-(-int(carries.sum()) // TOGETHER) * TOGETHER, half)
-        kept = np.sort(np.argsort(~carries, kind="stable")[: max(count, 1)])
+        count = FEWEST
+        while count < carries.sum():
+            count *= 2
+        kept = np.sort(np.argsort(~carries, kind="stable")[: min(count, half)])
         pairs = np.concatenate([kept, kept + half])
 
         def of_them(leaf: Array) -> np.ndarray:
@@ -209,11 +213,21 @@ def engagement(
     if like is None:
         phase, weight = _nodes(design.mesh, models.sharing, nodes)
         contacts = _contacts(design.mesh, phase)
-        body = _body(design, contacts) if models.sharing.by_stiffness else None
+        body = coupling(design, contacts) if models.sharing.by_stiffness else None
     else:
         phase, weight, contacts, body = like.phase, like.weight, like.contacts, like.body
-    share = _shares(design, contacts, load, replace(models, friction=(), parameters={}), body)
+    share = _share(design, contacts, load, models, body)
     return Engagement(phase, weight, contacts, share, body, nodes)
+
+
+def _share(
+    design: Design, contacts: Contacts, load: Each, models: Models, body: Coupling | None
+) -> Lanes:
+    """Share of the load on each slice; that from stiffness by the program of the wind-up."""
+    if models.sharing.function is from_stiffness:
+        given = design.mesh, design.solids, models.compliance, jnp.asarray(load, float)
+        return wound_up(*given, contacts, body).share
+    return _shares(design, contacts, load, replace(models, friction=(), parameters={}), body)
 
 
 @program
@@ -227,7 +241,8 @@ def _contacts(mesh: Mesh, phase: Each) -> Contacts:
 
 
 @program
-def _body(design: Design, contacts: Contacts) -> Coupling | None:
+def coupling(design: Design, contacts: Contacts) -> Coupling | None:
+    """How far a unit force on one lane moves another, see `body_compliance`; one program for all drives."""
     return body_compliance(design.mesh, contacts, design.solids)
 
 

@@ -5,6 +5,7 @@ from math import inf
 from typing import ClassVar, Self
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
@@ -110,6 +111,14 @@ class Mesh(eqx.Module):
         as others yield.
         """
         return False
+
+    @property
+    def filled(self) -> np.ndarray | None:
+        """Numbers of the places for pairs that hold one, or None where all do.
+
+        Empty places let meshes of several tooth numbers share their programs.
+        """
+        return None
 
     @property
     def largest_radius(self) -> Float[Array, ""]:

@@ -18,13 +18,29 @@ from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
 from pitchpoint.roots import root
 
-__all__ = ["WINDOW", "StrainWave", "Survey", "Touching", "nearest_points", "places"]
+__all__ = [
+    "WINDOW",
+    "StrainWave",
+    "Survey",
+    "Touching",
+    "lanes_for",
+    "nearest_points",
+    "places",
+    "survey",
+]
 
 WINDOW = (np.deg2rad(-40.0), np.deg2rad(50.0))
 """Angles from the long axis between which pairs are held; others are far from touching.
 
 Where teeth are as near as that beyond, as deep ones with little deflection are, they are held up to
 the short axis.
+"""
+
+PLACES = (25, 50, 63)
+"""Places for pairs in a zone, so that drives of up to 103, 204 and 252 teeth share programs.
+
+More come in multiples of the first. Both zones of 63 stay below 128 rows, from which on a factorisation
+waits for other threads.
 """
 
 TRIES = (29, 14)
@@ -105,11 +121,12 @@ class StrainWave(Mesh):
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
             the circumference [m].
         motion_of, driver_of, loaded_of: see `motion`, `driver`, `loaded`.
-        pairs: that touch without load, mean number.
-        reversal: angle from the long axis at which the sliding of a tooth changes its sense [rad].
+        held: pairs in each of both zones.
+        surveyed: rigid teeth along the wave, as they follow from all these.
         conjugate: True if the groove follows from the flexspline and its motion; static.
         odd: True if the flexspline has an odd number of teeth: zones are half a pitch apart; static.
-        lanes: pairs held in each of both zones; static.
+        lanes: places for pairs in each of both zones, see `lanes_for`; those beyond `held` stay empty;
+            static.
     """
 
     teeth: Float[Array, "2"]
@@ -125,8 +142,8 @@ class StrainWave(Mesh):
     motion_of: Float[Array, "3"]
     driver_of: Float[Array, "3"]
     loaded_of: Float[Array, "3"]
-    pairs: Float[Array, ""]
-    reversal: Float[Array, ""]
+    held: Float[Array, ""]
+    surveyed: Survey
     conjugate: bool = eqx.field(static=True)
     odd: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
@@ -142,28 +159,20 @@ class StrainWave(Mesh):
         if self.conjugate:
             groove = swept(self.tooth_motion, self.tip_height, self.tip_rounding)
             drive = dataclasses.replace(self, groove=groove)
-        survey = drive.survey()
-        return dataclasses.replace(drive, pairs=survey.pairs, reversal=survey.reversal)
-
-    def survey(self) -> "Survey":
-        """Clearances along the wave, and what follows from them for the whole drive."""
-        angle = jnp.asarray(_ALONG)
-        found, overlaps = self.touching(angle), self.overlaps(angle)
-        upright = jnp.abs(jnp.imag(jnp.exp(-1j * found.at.direction) * found.at.whole))
-        part = upright / jnp.abs(found.at.whole)
-        reaches = overlaps & (part > 0.0)
-        play = jnp.min(jnp.where(reaches, found.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
-        left = jnp.where(reaches, found.clearance - part * play, jnp.inf)
-        return Survey(
-            angle=angle,
-            clearance=jnp.where(overlaps, found.clearance, jnp.nan),
-            left=left,
-            rolls=~found.held & (found.at.curvature + found.mate > 0.0),
-            pairs=2.0
-            * jnp.trapezoid((left < _LIGHT * self.module) * 1.0, angle)
-            / self.tooth_angle,
-            reversal=_reversal(angle, found.at.sliding, overlaps),
+        found = survey(
+            drive.tooth_motion, drive.groove, drive.backlash, drive.module, drive.tooth_angle
         )
+        return dataclasses.replace(drive, surveyed=found)
+
+    @property
+    def pairs(self) -> Float[Array, ""]:
+        """Mean number of pairs that touch without load."""
+        return self.surveyed.pairs
+
+    @property
+    def reversal(self) -> Float[Array, ""]:
+        """Angle from the long axis at which the sliding of a tooth changes its sense [rad]."""
+        return self.surveyed.reversal
 
     @property
     def tooth_motion(self) -> ToothMotion:
@@ -238,8 +247,18 @@ class StrainWave(Mesh):
 
     def overlaps(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """True where a tooth reaches into the circular spline's teeth."""
-        tip = self.tooth_motion.place(self.flank.length, angle)
-        return jnp.asarray(jnp.real(tip) > self.groove.low)
+        return _overlaps(self.tooth_motion, self.groove, angle)
+
+    @property
+    def filled(self) -> np.ndarray:
+        """Numbers of the places for pairs that hold one."""
+        return np.flatnonzero(self._place[1] < float(self.held))
+
+    @property
+    def _place(self) -> tuple[np.ndarray, np.ndarray]:
+        """Zone of each place for a pair, and its number in it."""
+        zone, number = np.divmod(np.arange(2 * self.lanes), self.lanes)
+        return zone, number
 
     def touching(self, angle: Float[Array, "*b"]) -> Touching:
         """Nearest points of the flank and its groove for teeth at angles from the long axis [rad]."""
@@ -248,11 +267,10 @@ class StrainWave(Mesh):
     def angles(self, phase: Float[Array, "*b"]) -> Lanes:
         """Angle of each tooth from the end of the long axis that is nearest [rad]."""
         phase = jnp.asarray(phase)
-        number = jnp.arange(2 * self.lanes).reshape(-1, *(1 for _ in range(phase.ndim + 1)))
-        zone = number // self.lanes
+        zone, number = (_as_lanes(each, phase) for each in self._place)
         moved = jnp.mod(phase + zone * self.teeth[0] / 2.0, 1.0)
         start = jnp.ceil(WINDOW[0] / self.tooth_angle)
-        return (start + number % self.lanes + moved) * self.tooth_angle
+        return (start + number + moved) * self.tooth_angle
 
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of the pairs of both zones; one period is one pitch of the flexspline."""
@@ -268,10 +286,15 @@ class StrainWave(Mesh):
     def raw_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts with the arms of rigid teeth: before the elastic part is taken out of the normal arms."""
         given = self.angles(phase)
-        active = self.overlaps(given)
+        holds = _as_lanes(self._place[1], jnp.asarray(phase)) < self.held
+        active = self.overlaps(given) & holds
         angle = jnp.where(active, given, 0.0)
-        found = self.touching(angle)
+        motion = self.tooth_motion
+        found = nearest_points(motion, self.groove, angle)
         at, none = found.at, jnp.zeros_like(angle)
+        # Flanks that overlap do so by the error of the groove's table. The play comes on top of
+        # that: cut off together, its derivative would be the sign of rounding where flanks touch.
+        play = self.backlash / 2.0 * jnp.cos(at.direction)
         sum_curvature = jnp.maximum(at.curvature + found.mate, 1.0 / self.largest_radius)
         roll = (at.turning - found.mate * at.sliding) / sum_curvature
         roll = jnp.where(found.held, 0.0, roll)
@@ -287,7 +310,7 @@ class StrainWave(Mesh):
             curvature=jnp.stack([jnp.stack([at.curvature, none]), jnp.stack([mate, none])]),
             surface=jnp.stack([first, first - jnp.real(local)]),
             normal=jnp.imag(local),
-            gap=jnp.maximum(found.clearance, 0.0),
+            gap=jnp.maximum(found.clearance, 0.0) + play,
             flank=jnp.stack([found.along, self.groove.depth(jnp.real(at.place))]),
             shape="line",
         )
@@ -362,7 +385,6 @@ class StrainWave(Mesh):
         placed = foot[:, None] + jnp.exp(1j * axis[:, None]) * tooth
         width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.heights
         space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
-        survey = self.survey()
         return {
             "teeth": self.teeth,
             "tooth": _points(tooth),
@@ -374,8 +396,8 @@ class StrainWave(Mesh):
             "wave_weights": self.line.weights,
             "rim_thickness": self.rim.thickness,
             "tip_height": self.tip_height,
-            "clearance_angle": survey.angle,
-            "clearance": survey.clearance,
+            "clearance_angle": self.surveyed.angle,
+            "clearance": self.surveyed.clearance,
         }
 
     @property
@@ -383,6 +405,57 @@ class StrainWave(Mesh):
         """Flexspline tooth from root to root over its tip."""
         flank = self.flank.place(jnp.linspace(0.0, 1.0, 81) * self.flank.length)
         return jnp.concatenate([jnp.conj(flank), flank[::-1]])
+
+
+def lanes_for(held: int) -> int:
+    """Places for so many pairs in a zone: one of a few sizes."""
+    several = -(-held // PLACES[0]) * PLACES[0]
+    return next((size for size in PLACES if held <= size), several)
+
+
+def survey(
+    motion: ToothMotion,
+    groove: Groove,
+    backlash: Float[Array, ""],
+    module: Float[Array, ""],
+    tooth_angle: Float[Array, ""],
+) -> Survey:
+    """Clearances along the wave, and what follows from them for the whole drive.
+
+    Args:
+        motion: of the flexspline teeth.
+        groove: of the circular spline.
+        backlash: play on the circumference beyond the groove [m].
+        module: [m].
+        tooth_angle: of one pitch of the flexspline [rad].
+    """
+    angle = jnp.asarray(_ALONG)
+    found = nearest_points(motion, groove, angle, backlash)
+    overlaps = _overlaps(motion, groove, angle)
+    upright = jnp.abs(jnp.imag(jnp.exp(-1j * found.at.direction) * found.at.whole))
+    part = upright / jnp.abs(found.at.whole)
+    reaches = overlaps & (part > 0.0)
+    play = jnp.min(jnp.where(reaches, found.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
+    left = jnp.where(reaches, found.clearance - part * play, jnp.inf)
+    return Survey(
+        angle=angle,
+        clearance=jnp.where(overlaps, found.clearance, jnp.nan),
+        left=left,
+        rolls=~found.held & (found.at.curvature + found.mate > 0.0),
+        pairs=2.0 * jnp.trapezoid((left < _LIGHT * module) * 1.0, angle) / tooth_angle,
+        reversal=_reversal(angle, found.at.sliding, overlaps),
+    )
+
+
+def _overlaps(motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"]) -> Bool[Array, "*b"]:
+    """True where a tooth reaches into the circular spline's teeth."""
+    tip = motion.place(motion.flank.length, angle)
+    return jnp.asarray(jnp.real(tip) > groove.low)
+
+
+def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Float[Array, "pair 1 *b"]:
+    """Values of the pairs, broadcast over slices and phases."""
+    return jnp.reshape(each, (-1, *(1 for _ in range(phase.ndim + 1))))
 
 
 def places(

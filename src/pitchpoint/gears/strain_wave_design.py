@@ -1,9 +1,10 @@
 """Strain wave gears from the dimensions that a designer gives, and the checks that go with them."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from math import ceil, floor, inf, pi, radians
 
 import numpy as np
+from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
@@ -11,7 +12,7 @@ from pitchpoint.gears.flexible_ring import FlexibleRing
 from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.groove import NODES, Groove, given, swept, tip_with_land
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
-from pitchpoint.gears.strain_wave import WINDOW, StrainWave, Survey
+from pitchpoint.gears.strain_wave import WINDOW, StrainWave, Survey, lanes_for, survey
 from pitchpoint.gears.tooth_motion import ToothMotion
 from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 from pitchpoint.programs import program
@@ -138,7 +139,10 @@ def build_strain_wave(
         space = _given(groove, z2, module, low, travel)
     _check_play(backlash, space, edge, z2)
     array = jnp.asarray
-    drive = StrainWave(
+    found = _survey(travel, space, *map(array, (backlash, module, 2.0 * pi / z1)))
+    _check_contact(found, module, backlash, conjugate=groove is None)
+    held = _held(z1, found, module)
+    return StrainWave(
         teeth=array([z1, z2], dtype=float),
         module=array(module),
         face_width=array(face_width),
@@ -159,22 +163,18 @@ def build_strain_wave(
         motion_of=array(motion),
         driver_of=array(np.eye(3)[MEMBERS.index(driver)]),
         loaded_of=array(np.eye(3)[loaded]),
-        pairs=array(0.0),
-        reversal=array(0.0),
+        held=array(float(held)),
+        surveyed=found,
         conjugate=groove is None,
         odd=z1 % 2 == 1,
-        lanes=_lanes(z1),
+        lanes=lanes_for(held),
     )
-    found = _surveyed(drive)
-    _check_contact(drive, found)
-    lanes = _lanes(z1, _last(found, module))
-    return replace(drive, pairs=found.pairs, reversal=found.reversal, lanes=lanes)
 
 
 def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
     """Sentences on what is unusual about a drive that can run."""
     told = []
-    intended = float(mesh.line.radius + mesh.line.deflection + mesh.flank.root_height)
+    intended, widest = map(float, jax.device_get(_extent(mesh)))
     cut = (float(mesh.tip_height) - intended) / float(mesh.module)
     if mesh.conjugate and cut > 0.6:
         told.append(
@@ -182,7 +182,7 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             "on the long axis: the flexspline's tips pass there and would leave less than "
             f"{LEAST_LAND:g} modules of tip land."
         )
-    overlap = -float(np.nanmin(np.asarray(_surveyed(mesh).clearance)))
+    overlap = -float(np.nanmin(np.asarray(mesh.surveyed.clearance)))
     if overlap > INTERFERENCE * float(mesh.module):
         told.append(
             f"Flexspline and circular spline overlap by {1e6 * overlap:.2g} um where the swept flank is "
@@ -193,13 +193,19 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
             "pressure and film there say nothing."
         )
-    if float(jnp.max(jnp.abs(mesh.line.radial(jnp.asarray(pi / 2))))) > 0.1 * float(
-        mesh.line.radius
-    ):
+    if widest > 0.1 * float(mesh.line.radius):
         told.append(
             "The deflection is above a tenth of the radius; the ring theory here is linear."
         )
     return tuple(told)
+
+
+@program
+def _extent(mesh: StrainWave) -> tuple[Array, Array]:
+    """Height of the flexspline's root on the long axis, and displacement on the short one [m]."""
+    line = mesh.line
+    root = line.radius + line.deflection + mesh.flank.root_height
+    return root, jnp.abs(line.radial(jnp.asarray(pi / 2)))
 
 
 def double_arc_flank(
@@ -389,10 +395,10 @@ def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> n
     return np.asarray(weights / weights.sum())
 
 
-def _lanes(z1: int, last: float = WINDOW[1]) -> int:
-    """Pairs held at each end of the long axis, up to an angle."""
+def _held(z1: int, found: Survey, module: float) -> int:
+    """Pairs held at each end of the long axis."""
     pitch = 2.0 * pi / z1
-    return int(floor(last / pitch) - ceil(WINDOW[0] / pitch))
+    return int(floor(_last(found, module) / pitch) - ceil(WINDOW[0] / pitch))
 
 
 def _last(found: Survey, module: float) -> float:
@@ -407,8 +413,10 @@ def _prepared(flank: Flank) -> Flank:
 
 
 _sweep = program(swept)
+_survey = program(survey)
 _tip = program(tip_with_land)
 _given_groove = program(given)
+_lands = program(Groove.land)
 
 
 def _swept(
@@ -443,14 +451,9 @@ def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: Tooth
     return _given_groove(flank, jnp.asarray(tip), high)
 
 
-@program
-def _surveyed(drive: StrainWave) -> Survey:
-    return drive.survey()
-
-
 def _check_play(backlash: float, space: Groove, edge: float, z2: int) -> None:
     """Play is taken off the circular spline's teeth; something must be left of their tips."""
-    land = float(space.land(jnp.asarray(2.0 * pi / z2))[0]) + 2.0 * edge
+    land = float(_lands(space, jnp.asarray(2.0 * pi / z2))[0]) + 2.0 * edge
     if backlash >= land:
         raise InputError(
             f"a play of {1e6 * backlash:.6g} um leaves nothing of the circular spline's tips, which are "
@@ -459,12 +462,12 @@ def _check_play(backlash: float, space: Groove, edge: float, z2: int) -> None:
         )
 
 
-def _check_contact(drive: StrainWave, found: Survey) -> None:
+def _check_contact(found: Survey, module: float, backlash: float, *, conjugate: bool) -> None:
     """Rigid teeth must touch, without overlap, and somewhere with a positive relative curvature."""
-    clearance, module = np.nan_to_num(np.asarray(found.clearance), nan=np.inf), float(drive.module)
-    where = "form" if drive.conjugate else "groove"
+    clearance = np.nan_to_num(np.asarray(found.clearance), nan=np.inf)
+    where = "form" if conjugate else "groove"
     least = int(np.argmin(clearance))
-    allowed = SWEPT_ACCURACY if drive.conjugate else INTERFERENCE
+    allowed = SWEPT_ACCURACY if conjugate else INTERFERENCE
     if clearance[least] < -allowed * module:
         raise InputError(
             f"flexspline and circular spline interfere: {-1e6 * clearance[least]:.3g} um of overlap "
@@ -477,7 +480,7 @@ def _check_contact(drive: StrainWave, found: Survey) -> None:
             "circular spline",
             key=where,
         )
-    beyond = clearance[least] - float(drive.backlash) / 2.0  # each flank has half of the play
+    beyond = clearance[least] - backlash / 2.0  # each flank has half of the play
     if not beyond < _FARTHEST * module:
         raise InputError(
             "no tooth of the flexspline engages: the least clearance is "

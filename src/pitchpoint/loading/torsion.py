@@ -1,6 +1,7 @@
 """Wind-up of a strain-wave gear under torque, its stiffness, and hysteresis by friction of the teeth."""
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
@@ -11,8 +12,9 @@ from pitchpoint.loading.clearances import Shared, shared_load
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.loading.yielding import yielding
 from pitchpoint.materials.solids import Solid
+from pitchpoint.programs import program
 
-__all__ = ["Hysteresis", "Torsion", "hysteresis", "torsion"]
+__all__ = ["Hysteresis", "Torsion", "hysteresis", "torsion", "wound_up"]
 
 Each = Float[Array, "*b"]
 
@@ -27,6 +29,7 @@ class Torsion(eqx.Module):
         stiffness: slope of the load over the wind-up [N m/rad]; steps up where a pair comes to carry.
         loaded_pairs: number of pairs that carry.
         force: normal force of each slice [N].
+        share: part of the sum of all forces; without load the limit for a vanishing one.
         radial_load: inward force of the teeth on the ring at each end of the long axis [N].
         slip_torque: sum of forces times their sliding arms: what a friction coefficient of one would
             hold at the loaded member [N m].
@@ -40,6 +43,7 @@ class Torsion(eqx.Module):
     stiffness: Each
     loaded_pairs: Int[Array, "*b"]
     force: Float[Array, "pair slice *b"]
+    share: Float[Array, "pair slice *b"]
     radial_load: Float[Array, "2 *b"]
     slip_torque: Each
     residual: Each
@@ -66,6 +70,7 @@ def torsion(
     load: Each,
     phase: Each,
     contacts: Contacts | None = None,
+    body: Float[Array, "lane lane *b"] | None = None,
 ) -> Torsion:
     """Wind-up of the loaded member at torques and phases, with the pairs that come to carry.
 
@@ -77,6 +82,7 @@ def torsion(
         load: torques of the loaded member, not negative, broadcast against the phases [N m].
         phase: of the mesh [periods], as many axes as `load`.
         contacts: at these phases, where they are known already.
+        body: see `body_compliance`, where it is known already.
 
     Returns:
         NaN where no equilibrium was found. Teeth, ring and cup yield, and the bearing inside the ring
@@ -93,7 +99,7 @@ def torsion(
     load = jnp.broadcast_to(load, jnp.broadcast_shapes(jnp.shape(load), jnp.shape(phase)))
 
     def approach(torque: Each) -> tuple[Each, Shared]:
-        compliance = yielding(mesh, contacts, solids, terms, torque).compliance(contacts)
+        compliance = yielding(mesh, contacts, solids, terms, torque, body).compliance(contacts)
         given = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
         found = shared_load(compliance, **given, load=torque)
         return found.approach, found
@@ -113,6 +119,7 @@ def torsion(
         stiffness=1.0 / slope,
         loaded_pairs=jnp.sum(jnp.any(found.loaded, axis=1), axis=0),
         force=found.force,
+        share=found.share,
         radial_load=jnp.stack([total(inward[:half]), total(inward[half:])]),
         slip_torque=total(found.force * slip),
         residual=found.residual,
@@ -120,7 +127,24 @@ def torsion(
     )
 
 
-def hysteresis(found: Torsion, friction: float | Float[Array, "..."]) -> Hysteresis:
+@program
+def wound_up(
+    mesh: Mesh,
+    solids: tuple[Solid, Solid],
+    terms: Terms,
+    load: Float[Array, ""],
+    contacts: Contacts,
+    body: Float[Array, "lane lane *b"] | None,
+) -> Torsion:
+    """Wind-up at one torque at all phases of known contacts: one program for every torque and part of a run.
+
+    Arguments and result as in `torsion`.
+    """
+    loads = jnp.broadcast_to(load, contacts.path.shape[2:])
+    return torsion(mesh, solids, terms, loads, loads, contacts, body)
+
+
+def hysteresis(found: Torsion, friction: float | Float[Array | np.ndarray, "..."]) -> Hysteresis:
     """Loop of torque over wind-up by Coulomb friction on the teeth while the drive stands still.
 
     On loading, friction adds mu times the sum of forces times sliding arms to the torque that the
