@@ -1,6 +1,7 @@
 """Running a case: every part is on disk, whole, as soon as it is computed, and is not computed twice."""
 
 import json
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.comparison import Row, compare, demand_parts
 from pitchpoint.cases.document import Tree, variants
 from pitchpoint.cases.library import find, names
+from pitchpoint.cases.quantities import shorten
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record
 from pitchpoint.cases.schema import Study, validate
 from pitchpoint.cases.studies import Job, Variant, jobs
@@ -30,6 +32,7 @@ from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.registry import nearest
 from pitchpoint.results.store import (
     fingerprint,
     load,
@@ -193,10 +196,15 @@ def manifests(result: str) -> list[dict[str, Any]]:
     Raises:
         InputError: it is none of these.
     """
-    folder = Path(result)
-    if (result in names() or folder.is_file()) and not (folder / RUN).is_file():
-        return describe(result)
-    return [outcome.manifest for outcome in open_result(folder).values()]
+    folder, shipped = Path(result), result in names()
+    if not shipped and not os.path.exists(folder):
+        hint = nearest(result, dict.fromkeys(names()))
+        raise InputError(
+            f"is neither a result nor a case of pitchpoint{hint}", file=shorten(result)
+        )
+    if folder.is_dir() and (not shipped or (folder / RUN).is_file()):
+        return [outcome.manifest for outcome in open_result(folder).values()]
+    return describe(result)
 
 
 def load_case(

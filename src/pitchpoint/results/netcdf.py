@@ -45,7 +45,8 @@ def decode(image: bytes) -> xr.Dataset:
     with h5py.File.in_memory(image) as file:
         items = dict(file.items())
         scales = [name for name, item in items.items() if _NUMBER in item.attrs]
-        kept = {name: item for name, item in items.items() if not _bare(item)}
+        order = [*(name for name in items if name not in scales), *scales]  # as xarray has them
+        kept = {name: items[name] for name in order if not _bare(items[name])}
         variables = {name: _read(name, item, scales) for name, item in kept.items()}
         return xr.Dataset(variables, attrs=_described(file))
 
