@@ -9,11 +9,12 @@ from pathlib import Path
 FEW_CORES = 4
 """Cores up to which compiled programs run on one of them."""
 
-# Factorisations of a batch (LU, Cholesky, eigenvalues of jaxlib 0.10.2) hand parts of it to the pool of
-# threads on which they run themselves, and wait. As many of them at once as the pool has threads wait
-# for each other without end: eight batches of LU solves in one program hang on two threads within
-# seconds, every time; on one thread they take the parts themselves. Nothing is lost by one:
-# TIMES
+# Factorisations of a batch (LU and others in jaxlib 0.10.2, `ParallelBatchMap`) hand parts of it to the
+# pool of threads on which they run themselves, and wait. As many of them at once as the pool has
+# threads wait for each other without end: a program with eight batches of `jnp.linalg.solve` hangs on
+# two threads within seconds, every time; on one they take the parts themselves. Two would bring
+# nothing: a later run of tian2024 takes 13.4 to 13.6 s of CPU on one thread and 13.4 to 13.8 s on two,
+# examples/strain_wave.toml 15.8 to 16.4 s and 14.3 to 15.7 s, in the same wall time.
 # The pool is made with the first array and asks this variable for its size.
 _ALLOWED = getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count() or 1))(0)
 if len(_ALLOWED) <= FEW_CORES:

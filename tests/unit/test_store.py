@@ -192,7 +192,7 @@ def test_content_is_on_disk_before_its_name_and_the_name_after(
 
     monkeypatch.setattr(os, "fsync", synced)
     monkeypatch.setattr(Path, "replace", renamed)
-    store.write_text(tmp_path / "run.json", "{}")
+    store.save(every_kind(), tmp_path / "part.nc")
     assert told == ["content", "name", "folder"]
 
 

@@ -103,7 +103,7 @@ def save(data: xr.Dataset, path: Path) -> None:
         OSError: the disk is full, say; its `filename` is the path.
     """
     image = encode(data)
-    _whole(path, image + _seal(image))
+    _whole(path, image + _seal(image), lasting=True)
 
 
 def load(path: Path) -> xr.Dataset:
@@ -129,8 +129,8 @@ def make_folder(folder: Path) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write text the same way."""
-    _whole(path, text.encode("utf-8"))
+    """Write text the same way; if the power fails, the next run writes it again."""
+    _whole(path, text.encode("utf-8"), lasting=False)
 
 
 def read_bytes(path: Path, most: int) -> bytes:
@@ -188,29 +188,31 @@ def _locked(folder: Path) -> int | None:
     return handle
 
 
-def _whole(path: Path, content: bytes) -> None:
+def _whole(path: Path, content: bytes, *, lasting: bool) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _renamed(path, content)
+        _renamed(path, content, lasting=lasting)
     except OSError as error:
         told = f"{error.strerror}; what was finished before is kept and found again"
         raise OSError(error.errno, told, str(path)) from None
 
 
-def _renamed(path: Path, content: bytes) -> None:
-    """Content on disk before the name is, and the name before anything that builds on it."""
+def _renamed(path: Path, content: bytes, *, lasting: bool) -> None:
+    """What lasts is on disk before its name is, and the name before anything builds on it."""
     handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
     part = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
             file.flush()
-            os.fsync(handle)
+            if lasting:
+                os.fsync(handle)
         part.chmod(0o644)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
-    _sync(path.parent)
+    if lasting:
+        _sync(path.parent)
 
 
 def _sync(folder: Path) -> None:
