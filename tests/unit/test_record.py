@@ -1,12 +1,14 @@
 """Whose folder it is, and folders that somebody else has filled."""
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pitchpoint.cases import run as running
+from pitchpoint.cases.library import as_text, find
 from pitchpoint.cases.record import MANIFEST, RUN, Record, default_folder, owner
 from pitchpoint.cases.run import manifests, open_result
 from pitchpoint.errors import InputError
@@ -166,7 +168,7 @@ def pairs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run_into(folder: Path, case: str, overwrite: bool = False) -> None:
-    with running._own_folder(folder, case, Path(case).name, ["default"], overwrite):
+    with running._own_folder(folder, case, as_text(Path(case).name), ["default"], overwrite):
         pass
 
 
@@ -221,6 +223,19 @@ def test_cases_of_one_name_have_folders_of_their_own(pairs: Path) -> None:
     assert made == ["pair", "b-pair", "tian2024", f"{pairs.name}-pair"]
     assert [folder_of(case) for case in reversed(cases)] == made[::-1]
     assert [folder_of(str(pairs / "b" / "pair.toml"))] == ["b-pair"]
+
+
+def test_names_that_are_no_text(pairs: Path) -> None:
+    case = os.fsdecode(b"\xff/\xfe.toml")
+    Path(case).parent.mkdir()
+    Path(case).write_text("")
+    assert find(case)[0] == "\\xfe.toml"
+    out = Path(os.fsdecode(b"out\xfd"))
+    run_into(out, case)
+    run_into(out, case)
+    assert default_folder(case, out.parent).name == os.fsdecode(b"\xfe")
+    with pytest.raises(InputError, match="another case"):
+        run_into(out, "pair.toml")
 
 
 def test_a_file_named_like_a_shipped_case(pairs: Path) -> None:

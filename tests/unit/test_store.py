@@ -13,7 +13,7 @@ import xarray as xr
 
 from pitchpoint.errors import InputError
 from pitchpoint.results import store
-from pitchpoint.results.netcdf import encode
+from pitchpoint.results.netcdf import decode, encode
 
 
 def every_kind() -> xr.Dataset:
@@ -77,6 +77,11 @@ def test_xarray_reads_what_it_would_have_written(kept: Path, tmp_path: Path) -> 
 def test_what_is_read_is_what_was_written(kept: Path) -> None:
     assert_equal(store.load(kept), every_kind())
     assert encode(store.load(kept)) == encode(every_kind())
+
+
+def test_a_text_may_hold_a_zero() -> None:
+    title = decode(encode(store.dataset({}, {}, title="a\0b"))).attrs["title"]
+    assert title == "a\\0b"
 
 
 def test_dimensions_are_scales_with_numbers(kept: Path) -> None:

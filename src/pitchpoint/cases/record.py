@@ -4,13 +4,14 @@ Folders travel between people: what these files hold is checked before it is bel
 """
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 
 from pitchpoint.cases.comparison import Row
-from pitchpoint.cases.library import names, path_of
+from pitchpoint.cases.library import as_text, names, path_of
 from pitchpoint.cases.quantities import shorten
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import read_bytes, write_text
@@ -180,7 +181,6 @@ def _way(case: str, folder: Path) -> str:
     if case in names():
         return ""
     file = os.path.realpath(path_of(case))
-    try:
-        return os.path.relpath(file, os.path.realpath(folder))
-    except ValueError:  # on another drive
-        return file
+    with suppress(ValueError):  # on another drive
+        file = os.path.relpath(file, os.path.realpath(folder))
+    return as_text(file)

@@ -17,7 +17,6 @@ from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.comparison import Row, compare, demand_parts
 from pitchpoint.cases.document import Tree, variants
 from pitchpoint.cases.library import find, names
-from pitchpoint.cases.quantities import shorten
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record
 from pitchpoint.cases.schema import Study, validate
 from pitchpoint.cases.studies import Job, Variant, jobs
@@ -199,9 +198,7 @@ def manifests(result: str) -> list[dict[str, Any]]:
     folder, shipped = Path(result), result in names()
     if not shipped and not os.path.exists(folder):
         hint = nearest(result, dict.fromkeys(names()))
-        raise InputError(
-            f"is neither a result nor a case of pitchpoint{hint}", file=shorten(result)
-        )
+        raise InputError(f"is neither a result nor a case of pitchpoint{hint}", file=result)
     if folder.is_dir() and (not shipped or (folder / RUN).is_file()):
         return [outcome.manifest for outcome in open_result(folder).values()]
     return describe(result)

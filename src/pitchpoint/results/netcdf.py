@@ -96,9 +96,10 @@ def _attach(
 
 
 def _describe(item: h5py.File | h5py.Dataset, attributes: dict[Any, Any]) -> None:
-    """Attributes: texts as they are, numbers as arrays of one, as the netCDF library writes them."""
+    """Attributes: texts, in which HDF5 takes no zero, and numbers as arrays of one, as netCDF has them."""
     for name, value in attributes.items():
-        item.attrs[name] = value if isinstance(value, str) else np.atleast_1d(value)
+        text = isinstance(value, str)
+        item.attrs[name] = value.replace("\0", "\\0") if text else np.atleast_1d(value)
 
 
 def _read(name: str, item: h5py.Dataset, scales: list[str]) -> xr.Variable:
