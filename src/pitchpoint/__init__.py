@@ -34,6 +34,7 @@ _LAZY: dict[str, str] = {
     "input_torque_gradient": "pitchpoint.efficiency.gradients",
     "ripple_gradient": "pitchpoint.efficiency.gradients",
     "FrictionLaw": "pitchpoint.lubrication.friction_coefficient",
+    "PitchpointError": "pitchpoint.errors",
     "InputError": "pitchpoint.errors",
     "ConvergenceError": "pitchpoint.errors",
 }

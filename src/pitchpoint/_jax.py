@@ -1,16 +1,22 @@
 """The one place that configures JAX: double precision and a private, persistent compilation cache."""
 
+import logging
 import os
 import platform
+import stat
 from collections.abc import Sequence
 from pathlib import Path
 
 FEW_CORES = 4
 """Cores up to which compiled programs run on one of them."""
 
-# Factorisations of a batch wait for other threads of the pool that runs them, and several at once
-# then wait for each other without end where the pool is small (jaxlib 0.10). A pool of one runs them
-# in place. It is made with the first array and asks this variable for its size.
+# Factorisations of a batch (LU and others in jaxlib 0.10.2, `ParallelBatchMap`) hand parts of it to the
+# pool of threads on which they run themselves, and wait. As many of them at once as the pool has
+# threads wait for each other without end: a program with eight batches of `jnp.linalg.solve` hangs on
+# two threads within seconds, every time; on one they take the parts themselves. Two would bring
+# nothing: a later run of tian2024 takes 13.4 to 13.6 s of CPU on one thread and 13.4 to 13.8 s on two,
+# examples/strain_wave.toml 15.8 to 16.4 s and 14.3 to 15.7 s, in the same wall time.
+# The pool is made with the first array and asks this variable for its size.
 _ALLOWED = getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count() or 1))(0)
 if len(_ALLOWED) <= FEW_CORES:
     os.environ.setdefault("NPROC", "1")
@@ -20,11 +26,15 @@ import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
 from jax.typing import ArrayLike, DTypeLike  # noqa: E402
 
-__all__ = ["array", "cache_folder", "jax", "jnp"]
+__all__ = ["array", "cache_folder", "jax", "jnp", "kept_folder", "private"]
 
 
 def cache_folder() -> Path:
-    """Folder of compiled programs: under the user's cache, one for each kind of machine."""
+    """Folder of compiled programs: under the user's cache, one for each kind of machine.
+
+    Raises:
+        RuntimeError: the user has no home, as in a container that runs under a number.
+    """
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return base / "pitchpoint" / f"xla-{platform.machine()}-{jax.__version__}"
 
@@ -34,16 +44,43 @@ def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) ->
     return jnp.asarray(value if isinstance(value, jax.Array) else np.asarray(value, dtype), dtype)
 
 
-def _enable_cache() -> None:
-    folder = cache_folder()
+def private(folder: Path) -> bool:
+    """True if nobody but the user and the administrator can put files there."""
+    if not hasattr(os, "geteuid"):
+        return True  # Windows keeps a user's folders to the user
+    own = folder.stat()
+    mine = own.st_uid == os.geteuid() and not own.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    return mine and not any(map(_open_to_all, folder.resolve().parents))
+
+
+def _open_to_all(folder: Path) -> bool:
+    """True if anybody could replace what lies in a folder."""
+    mode = folder.stat().st_mode
+    return bool(mode & stat.S_IWOTH) and not mode & stat.S_ISVTX
+
+
+def kept_folder() -> Path | None:
+    """Folder of compiled programs that is in use; None where nothing is kept."""
+    return _KEPT
+
+
+def _enable_cache() -> Path | None:
+    """The folder, if only the user can write to it, as that of JAX's compiled programs too."""
     try:
+        folder = cache_folder()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    except OSError:
-        return  # a read-only home costs compile time, nothing else
+        safe = private(folder)
+    except (OSError, RuntimeError):
+        return None  # without a home, or with one that cannot be written to, programs are compiled anew
+    if not safe:
+        told = "%s can be written to by others and is not used; programs are compiled anew"
+        logging.getLogger("pitchpoint").warning(told, folder)
+        return None
     jax.config.update("jax_compilation_cache_dir", str(folder))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+    return folder
 
 
 jax.config.update("jax_enable_x64", True)
-_enable_cache()
+_KEPT = _enable_cache()

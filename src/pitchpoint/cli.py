@@ -96,6 +96,9 @@ Folder = Annotated[
     Path | None,
     typer.Option("-o", "--output", metavar="DIR", help="Default: results/CASE."),
 ]
+Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="Replace the results of another case in the folder.")
+]
 
 
 def main() -> None:
@@ -179,13 +182,15 @@ def run(
     variant: Variants = None,
     set_: Settings = None,
     sweep: Sweeps = None,
+    overwrite: Overwrite = False,
     json_: AsJson = False,
 ) -> None:
     """Compute a case: tables on screen, results and report.html in a folder."""
+    from pitchpoint.cases.record import default_folder
     from pitchpoint.cases.run import run as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
-    folder = output or Path("results") / Path(case).stem
+    folder = output or default_folder(case, Path("results"))
     with _progress(folder) as progress:
         outcomes = compute(
             case,
@@ -193,6 +198,7 @@ def run(
             only=variant or [],
             settings=settings,
             studies=studies,
+            overwrite=overwrite,
             progress=progress,
         )
         progress.part("", "report", False)
@@ -245,11 +251,16 @@ def compare(
 
 @app.command()
 def cite(
-    result: Annotated[Path, typer.Argument(metavar="RESULT", help="Folder that `run` wrote.")],
+    result: Annotated[
+        str,
+        typer.Argument(
+            metavar="RESULT", help="Folder that `run` wrote, a shipped case, or a file."
+        ),
+    ],
     bibtex: Annotated[bool, typer.Option("--bibtex", help="BibTeX entries.")] = False,
     json_: AsJson = False,
 ) -> None:
-    """List the sources behind a result."""
+    """List the sources behind a result or a case."""
     from pitchpoint import citations
     from pitchpoint.cases.run import manifests
 

@@ -25,7 +25,7 @@ import equinox as eqx
 import numpy as np
 from jax import export
 
-from pitchpoint._jax import cache_folder, jax
+from pitchpoint._jax import jax, kept_folder
 
 __all__ = [
     "Program",
@@ -123,7 +123,7 @@ class Program(Generic[P, R]):
 
     def _path(self, given: Any) -> Path:
         """File of the program for such arguments."""
-        folder = cache_folder()
+        folder = kept_folder()
         if folder is None:
             raise _NamelessError
         told = [_surroundings(), _name(self.function), sorted(self.options.items()), _text(given)]

@@ -200,6 +200,26 @@ def test_run_leaves_results_that_are_not_computed_twice(
     assert changed["operation"] != made["operation"]
 
 
+def test_another_case_is_not_written_over(
+    pitchpoint: Callable[..., Told], tiny: Path, tmp_path: Path
+) -> None:
+    other = tmp_path / "other" / "tiny.toml"
+    other.parent.mkdir()
+    other.write_text(TINY.replace("50 N m", "60 N m"))
+    assert pitchpoint("run", tiny).status == 0
+    made = times(tmp_path / "results" / "tiny")
+    told = pitchpoint("run", other, "-o", "results/tiny")
+    assert (told.status, told.out) == (2, "")
+    assert told.err.startswith(
+        "error: results/tiny: holds results of another case, ../../tiny.toml;"
+    )
+    assert times(tmp_path / "results" / "tiny") == made
+    assert "results/other-tiny/report.html" in pitchpoint("run", other).out
+    assert times(tmp_path / "results" / "tiny") == made
+    assert pitchpoint("run", other, "-o", "results/tiny", "--overwrite").status == 0
+    assert times(tmp_path / "results" / "tiny")["operation"] != made["operation"]
+
+
 def test_damaged_parts_are_computed_again(
     pitchpoint: Callable[..., Told], tiny: Path, finished: Path, tmp_path: Path
 ) -> None:
@@ -212,6 +232,9 @@ def test_damaged_parts_are_computed_again(
     (parts / "cycle.nc").write_bytes(whole[: len(whole) // 2])
     (parts / "laws.nc").write_bytes(b"")
     (parts / "teeth.nc").unlink()
+    pieces = [parts / "gone.0003.nc", parts / ".laws-abcd1234.nc"]  # of runs that were killed
+    for piece in pieces:
+        piece.touch()
     refused = pitchpoint("cite", folder)
     assert refused.status == 2
     assert refused.out == ""
@@ -219,15 +242,17 @@ def test_damaged_parts_are_computed_again(
     assert ".nc: " in refused.err
     after = pitchpoint("run", tiny, "-o", folder, "--json")
     assert after.json == before.json
+    assert not any(piece.exists() for piece in pieces)
     kept = {name for name, stamp in times(folder).items() if stamp == made.get(name)}
     assert kept == {"loss_map", "back_driving", "study_speed", "study_smooth"}
 
 
-def test_cite(pitchpoint: Callable[..., Told], finished: Path) -> None:
+def test_cite(pitchpoint: Callable[..., Told], finished: Path, tiny: Path) -> None:
     sources = pitchpoint("cite", finished, "--json").json
     assert "xu_2007" in [source["key"] for source in sources]
     assert "xu_2007: " in pitchpoint("cite", finished).out
     assert "{xu_2007," in pitchpoint("cite", finished, "--bibtex").out
+    assert pitchpoint("cite", tiny, "--json").json == sources
 
 
 def test_a_mesh_that_friction_locks(pitchpoint: Callable[..., Told], tiny: Path) -> None:

@@ -34,6 +34,11 @@ def test_every_public_name_loads() -> None:
         _ = pitchpoint.pitch_point
 
 
+def test_every_error_can_be_caught_by_one_public_name() -> None:
+    for name in ("InputError", "ConvergenceError"):
+        assert issubclass(getattr(pitchpoint, name), pitchpoint.PitchpointError)
+
+
 def test_wheel_holds_every_source_file(tmp_path: Path) -> None:
     build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
     subprocess.run(build, cwd=ROOT, check=True, capture_output=True, timeout=120)

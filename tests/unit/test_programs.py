@@ -36,7 +36,7 @@ moved.__module__ = "pitchpoint.programs"
 @pytest.fixture
 def kept(tmp_path, monkeypatch):
     """A folder of its own for programs, and a program whose memory is empty each time it is asked."""
-    monkeypatch.setattr(programs, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(programs, "kept_folder", lambda: tmp_path)
     TRACED.clear()
     return lambda **how: Program(moved, programs.QUICK)(Bodies(jnp.arange(3.0), "a"), **how)
 
@@ -69,7 +69,7 @@ def test_a_damaged_program_is_traced_again(kept, tmp_path, damage):
 
 
 def test_without_a_folder_nothing_is_kept(kept, monkeypatch):
-    monkeypatch.setattr(programs, "cache_folder", lambda: None)
+    monkeypatch.setattr(programs, "kept_folder", lambda: None)
     assert kept(by=2.0)["force"][2] == 4.0
     assert TRACED == ["a"]
 

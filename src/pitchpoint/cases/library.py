@@ -1,5 +1,6 @@
 """Cases that ship with the package, and cases in files."""
 
+import os
 from importlib import resources
 from pathlib import Path
 
@@ -7,7 +8,7 @@ from pitchpoint.cases.document import Tree, read
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.registry import nearest
 
-__all__ = ["find", "names", "path_of"]
+__all__ = ["as_text", "find", "names", "path_of"]
 
 
 def names() -> list[str]:
@@ -41,4 +42,9 @@ def find(case: str) -> tuple[str, Tree]:
     """Short name and tables of a case by its name or its file."""
     path = path_of(case)
     tree = read(path)
-    return (case if case in names() else visible(path.name)), tree
+    return (case if case in names() else visible(as_text(path.name))), tree
+
+
+def as_text(path: str) -> str:
+    """Path that can be written into any file; bytes in it that are no UTF-8 are spelled out."""
+    return os.fsencode(path).decode("utf-8", "backslashreplace")

@@ -1,8 +1,9 @@
 """Running a case: every part is on disk, whole, as soon as it is computed, and is not computed twice."""
 
 import json
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from math import prod
 from pathlib import Path
@@ -16,7 +17,8 @@ from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.comparison import Row, compare, demand_parts
 from pitchpoint.cases.document import Tree, variants
 from pitchpoint.cases.failures import worst_first
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find, names
+from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record
 from pitchpoint.cases.schema import Study, validate
 from pitchpoint.cases.studies import Job, Variant, jobs
 from pitchpoint.citations import cite
@@ -31,21 +33,19 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.programs import package_state
+from pitchpoint.registry import nearest
 from pitchpoint.results.store import (
     fingerprint,
     load,
     make_folder,
     save,
+    sole_writer,
+    sweep,
     without_nan,
     write_text,
 )
 
 __all__ = ["Outcome", "Progress", "open_result", "run", "run_variant"]
-
-MANIFEST = "manifest.json"
-
-RUN = "run.json"
-"""Case and variants of the last run into a folder."""
 
 
 class Progress:
@@ -84,6 +84,7 @@ def run(
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
     friction: Callable[..., Any] | None = None,
+    overwrite: bool = False,
     progress: Progress | None = None,
 ) -> dict[str, Outcome]:
     """Compute all parts of a case.
@@ -96,14 +97,17 @@ def run(
         studies: further studies, as `--sweep` makes them.
         friction: a law of one's own in place of those of the case: a function of JAX arrays whose
             keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`.
+        overwrite: True to replace the results of another case in the folder.
         progress: told about parts and points.
 
     Returns:
         Outcomes by variant.
 
     Raises:
-        InputError: anything wrong with the input.
+        InputError: anything wrong with the input; the folder holds another case, or another run is
+            writing there.
         ConvergenceError: a balance that was not found; what was finished is on disk.
+        OSError: the disk is full, say; what was finished is on disk.
     """
     name, tree = find(case)
     chosen = list(only) or variants(tree)
@@ -111,18 +115,32 @@ def run(
     made = [Variant(tree, name, variant, dict(settings or {}), own) for variant in chosen]
     work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
     where = None if folder is None else Path(folder)
-    if where is not None:
-        make_folder(where)  # only now: a wrong input leaves nothing behind
-        write_text(where / RUN, json.dumps({"case": name, "variants": [*work]}))
-    return {
-        one: run_variant(
-            *prepared,
-            folder=None if where is None else where / one,
-            studies=studies or {},
-            progress=progress or Progress(),
-        )
-        for one, prepared in work.items()
-    }
+    with nullcontext() if where is None else _own_folder(where, case, name, [*work], overwrite):
+        return {
+            one: run_variant(
+                *prepared,
+                folder=None if where is None else where / one,
+                studies=studies or {},
+                progress=progress or Progress(),
+            )
+            for one, prepared in work.items()
+        }
+
+
+@contextmanager
+def _own_folder(
+    folder: Path, case: str, name: str, variants: list[str], overwrite: bool
+) -> Iterator[None]:
+    """Folder of this case and no other, in which no other run writes meanwhile."""
+    record = Record.of(case, name, folder, variants)
+    make_folder(folder)
+    with sole_writer(folder) as alone:
+        if not overwrite:
+            record.demand_own(folder)
+        for place in (folder, *(folder / one for one in variants)) if alone else ():
+            sweep(place)
+        record.write(folder)
+        yield
 
 
 def run_variant(
@@ -144,6 +162,8 @@ def run_variant(
         _note(outcome, folder, finished=False)
     outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
     _note(outcome, folder, finished=True)
+    if folder is not None:
+        _drop_pieces(folder, "*")  # of parts that were not asked for again
     return outcome
 
 
@@ -160,21 +180,29 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     Raises:
         InputError: the folder holds no result.
     """
-    try:
-        names = json.loads((Path(folder) / RUN).read_text(encoding="utf-8"))["variants"]
-    except (OSError, ValueError, KeyError, TypeError):
-        raise InputError("holds no result of pitchpoint", file=str(folder)) from None
-    paths = {name: Path(folder) / name / MANIFEST for name in names}
+    where = Path(folder)
+    if not (where / RUN).is_file():
+        raise InputError("holds no result of pitchpoint", file=str(folder))
+    paths = {name: where / name / MANIFEST for name in Record.read(where / RUN).variants}
     return {name: _opened(path) for name, path in paths.items() if path.is_file()}
 
 
-def manifests(folder: str | Path) -> list[dict[str, Any]]:
-    """Manifests of a result, one for each variant.
+def manifests(result: str) -> list[dict[str, Any]]:
+    """Manifests of a result, one for each variant, or of a case that has not been computed.
+
+    Args:
+        result: folder that `run` wrote, name of a shipped case, or a file.
 
     Raises:
-        InputError: the folder holds no result.
+        InputError: it is none of these.
     """
-    return [outcome.manifest for outcome in open_result(folder).values()]
+    folder, shipped = Path(result), result in names()
+    if not shipped and not os.path.exists(folder):
+        hint = nearest(result, dict.fromkeys(names()))
+        raise InputError(f"is neither a result nor a case of pitchpoint{hint}", file=result)
+    if folder.is_dir() and (not shipped or (folder / RUN).is_file()):
+        return [outcome.manifest for outcome in open_result(folder).values()]
+    return describe(result)
 
 
 def load_case(
@@ -249,11 +277,8 @@ def _unwatched(_: Path | None) -> Iterator[Progress]:
 
 
 def _opened(path: Path) -> Outcome:
-    try:
-        manifest = json.loads(path.read_text(encoding="utf-8"))
-        parts = {name: load(path.parent / f"{name}.nc") for name in manifest["parts"]}
-    except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"is not a manifest of pitchpoint: {error}", file=str(path)) from None
+    manifest = Manifest.read(path).model_dump()
+    parts = {name: load(path.parent / f"{name}.nc") for name in manifest["parts"]}
     return Outcome(manifest, parts)
 
 
@@ -291,9 +316,13 @@ def _part(
     data.attrs.update(labels)
     _keep(data, whole)
     if folder is not None:
-        for path in folder.glob(f"{job.name}.[0-9][0-9][0-9][0-9].nc"):
-            path.unlink()
+        _drop_pieces(folder, job.name)
     return data
+
+
+def _drop_pieces(folder: Path, part: str) -> None:
+    for path in folder.glob(f"{part}.[0-9][0-9][0-9][0-9]*.nc"):
+        path.unlink()
 
 
 def _computed(
@@ -313,12 +342,12 @@ def _points(piece: xr.Dataset) -> int:
 
 def _found(path: Path | None, mark: str) -> xr.Dataset | None:
     """Dataset on disk if it is whole and of these very inputs."""
-    if path is None or not path.is_file():
+    if path is None:
         return None
     try:
         data = load(path)
     except InputError:
-        return None  # not ours or damaged: computed again
+        return None  # none, not ours, or damaged: computed
     return data if data.attrs.get("fingerprint") == mark else None
 
 

@@ -4,16 +4,20 @@ import hashlib
 import json
 import math
 import os
+import re
+import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import xarray as xr
 
 from pitchpoint.errors import InputError
+from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = [
@@ -21,10 +25,21 @@ __all__ = [
     "fingerprint",
     "load",
     "make_folder",
+    "read_bytes",
     "save",
+    "sole_writer",
+    "sweep",
     "without_nan",
     "write_text",
 ]
+
+SEAL = 8 + hashlib.sha256().digest_size
+"""Bytes behind the end of a dataset's file: its length and its digest.
+
+No reader of NetCDF looks there. In the same file as what they vouch for, one rename puts both in place.
+"""
+
+_TEMPORARY = re.compile(r"\.[\w.-]+-[a-z0-9_]{8}\.(nc|json|html)", re.ASCII)
 
 
 def dataset(
@@ -72,8 +87,26 @@ def without_nan(value: Any) -> Any:
 
 
 def save(data: xr.Dataset, path: Path) -> None:
-    """Write a dataset; a reader never sees half a file, whatever happens meanwhile."""
-    _whole(path, lambda part: data.to_netcdf(part, engine="h5netcdf"))
+    """Write a dataset; a reader never sees half a file, whatever happens meanwhile.
+
+    Raises:
+        OSError: the disk is full, say; its `filename` is the path.
+    """
+    image = encode(data)
+    _whole(path, image + _seal(image), lasting=True)
+
+
+def load(path: Path) -> xr.Dataset:
+    """Read a dataset that `save` wrote.
+
+    Raises:
+        InputError: there is no such file, or it is not what was written.
+    """
+    image = _unsealed(path)
+    try:
+        return decode(image)
+    except Exception as error:  # sealed by someone else: h5py raises what it likes
+        raise InputError(f"is not a result of pitchpoint: {error}", file=str(path)) from None
 
 
 def make_folder(folder: Path) -> None:
@@ -86,30 +119,128 @@ def make_folder(folder: Path) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write text the same way."""
-    _whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+    """Write text the same way; if the power fails, the next run writes it again."""
+    _whole(path, text.encode("utf-8"), lasting=False)
 
 
-def _whole(path: Path, write: Callable[[Path], Any]) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
+def read_bytes(path: Path, most: int) -> bytes:
+    """Read a file of at most so many bytes.
+
+    Raises:
+        InputError: no file, or a larger one.
+    """
+    with _opened(path) as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise InputError(f"has more than {most / 1e6:g} MB, the most allowed", file=str(path))
+    return content
+
+
+@contextmanager
+def sole_writer(folder: Path) -> Iterator[bool]:
+    """Keep other runs out of a folder; the system lets go however this process ends.
+
+    Yields:
+        False where folders cannot be locked, as on Windows and some network drives.
+
+    Raises:
+        InputError: another run is writing there.
+    """
+    handle = _locked(folder)
+    try:
+        yield handle is not None
+    finally:
+        if handle is not None:
+            os.close(handle)
+
+
+def sweep(folder: Path) -> None:
+    """Remove what killed runs left half written; for the sole writer of a folder."""
+    for path in folder.glob(".*"):
+        if _TEMPORARY.fullmatch(path.name):
+            path.unlink(missing_ok=True)
+
+
+def _locked(folder: Path) -> int | None:
+    if sys.platform == "win32":
+        return None
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(handle)
+        if isinstance(error, BlockingIOError):
+            told = "another run is writing there; wait for it or give another folder"
+            raise InputError(told, file=str(folder)) from None
+        return None
+    return handle
+
+
+def _whole(path: Path, content: bytes, *, lasting: bool) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _renamed(path, content, lasting=lasting)
+    except OSError as error:
+        told = f"{error.strerror}; what was finished before is kept and found again"
+        raise OSError(error.errno, told, str(path)) from None
+
+
+def _renamed(path: Path, content: bytes, *, lasting: bool) -> None:
+    """What lasts is on disk before its name is, and the name before anything builds on it."""
     handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
     part = Path(name)
     try:
-        write(part)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            if lasting:
+                os.fsync(handle)
         part.chmod(0o644)
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
+    if lasting:
+        _sync(path.parent)
 
 
-def load(path: Path) -> xr.Dataset:
-    """Read a dataset that `save` wrote, whole, so that the file is closed again."""
+def _sync(folder: Path) -> None:
+    with suppress(OSError):  # some systems cannot
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def _seal(image: bytes) -> bytes:
+    return len(image).to_bytes(8, "big") + hashlib.sha256(image).digest()
+
+
+def _unsealed(path: Path) -> bytes:
+    """File without its seal; a damaged one never reaches HDF5, which may hang on it or believe it."""
+    with _opened(path) as file:
+        length = max(file.seek(0, os.SEEK_END) - SEAL, 0)
+        file.seek(length)
+        seal = file.read()
+        file.seek(0)
+        image = file.read(length) if seal[:8] == length.to_bytes(8, "big") else b""
+    if seal != _seal(image):
+        told = "is damaged or not of pitchpoint; the same run computes it again"
+        raise InputError(told, file=str(path))
+    return image
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[BinaryIO]:
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as data:
-            return data.load()
-    except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"is not a result of pitchpoint: {error}", file=str(path)) from None
+        if not path.is_file():  # a pipe would never end
+            raise InputError("there is no such file", file=str(path))
+        with path.open("rb") as file:
+            yield file
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", file=str(path)) from None
 
 
 def _attribute(value: Any) -> str | int | float:
