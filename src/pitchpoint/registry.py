@@ -60,7 +60,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     close = alike(name, names)
     if close:
         return f"; did you mean {' or '.join(close)}?"
-    return f"; known are {listed(names)}"
+    return f"; known are {listed(names)}" if names else "; there are none"
 
 
 def alike(name: str, known: Iterable[str]) -> list[str]:

@@ -750,6 +750,11 @@ FILES = {
         b"".join(b"[variants.a%d]\n" % i for i in range(5000)),
         "variants: 5000 were given; allowed are at most 50",
     ),
+    "a long key of a change": (
+        SMALL.encode() + b"[studies.a.change.gears.module]\n" + b"k" * 100_000 + b" = 1",
+        "studies.a: gears.module.kkk",
+        '...: "module" is a value, not a table',
+    ),
     "a long title": (
         b"title = '" + b"k" * 100_000 + b"'",
         "title: has 100000 characters; allowed are at most 2000",

@@ -62,6 +62,14 @@ def test_a_case(name: str) -> None:
     assert ("kinematic_error" in made) == ("running" in made) == (name in ("wave", "targets"))
 
 
+def test_the_involute_flexspline_of_the_text() -> None:
+    (found,) = re.findall(r"`tooth = (\{.*?\})` with `clearance = (.*?)`", README)
+    tooth, clearance = (tomllib.loads(f"value = {text}")["value"] for text in found)
+    given = tree("wave")
+    given["gears"] |= {"tooth": tooth, "clearance": clearance}
+    assert Variant(given, "README.md", "default").built({}).case.gears.tooth.form == "involute"
+
+
 def test_the_target_reads_what_the_block_says() -> None:
     (given,) = validate(Document("README.md", tree("targets"))).targets
     assert isinstance(given, Target)

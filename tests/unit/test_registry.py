@@ -46,5 +46,9 @@ def test_a_name_that_differs_in_spelling_alone_is_offered_alone():
     assert len(alike("pao-vg-15", lubricants.catalogue())) == 3
 
 
+def test_an_empty_list_says_so():
+    assert nearest("xyz", []) == "; there are none"
+
+
 def test_a_long_name_is_cut():
     assert len(str(unknown_name("x" * 200_000, KNOWN, what="a material"))) < 150

@@ -404,7 +404,7 @@ def _point(variant: Variant, changes: Mapping[str, Any], where: str, swept: str 
         return variant.built(changes)
     except InputError as error:
         at = f"at {swept} = {_told(swept, changes[swept])}: " if swept else ""
-        inside = f"{error.key}: " if error.key and error.key != swept else ""
+        inside = f"{shorten(error.key, 160)}: " if error.key and error.key != swept else ""
         message = f"{at}{inside}{error.message}"
         raise InputError(message, file=error.file, key=where, value=changes.get(swept)) from None
 
@@ -436,7 +436,9 @@ def sweep_values(
                 return list(sweep.values), None
             return [_read(quantity, value) for value in sweep.values], quantity
         if quantity is None:
-            raise InputError(f"'{sweep.key}' is no number; give values in place of start and stop")
+            raise InputError(
+                f"{shown(sweep.key)} is no number; give values in place of start and stop"
+            )
         ends = quantity.read(sweep.start), quantity.read(sweep.stop)
         grid = np.linspace(*ends, int(sweep.count))
         return [SIValue(value) for value in (np.round(grid) if quantity.whole else grid)], quantity
