@@ -6,7 +6,7 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["TOLERANCE", "root"]
+__all__ = ["TOLERANCE", "quotient", "root", "third_order_step"]
 
 TOLERANCE = 1e-12
 """Largest residual at which the iteration stops; a last step follows."""
@@ -25,8 +25,6 @@ def root(
     function: Callable[[Each], Each],
     guess: Each,
     most: float | Float[Array, ""],
-    *,
-    unrolled: int = 0,
 ) -> tuple[Each, Int[Array, ""]]:
     """Root of an equation that each state solves for itself, and the steps it took.
 
@@ -35,29 +33,20 @@ def root(
     the last step, from the root that was found, carries the first derivatives with respect to
     everything that the function closes over (no second ones). So the compiled program holds no
     callback and is kept between processes, which an implicit adjoint of a library's solver does not
-    allow. Written-out steps are 1.4 times faster than the loop, because what does not depend on the
-    unknown is computed once (`benchmarks/states.py`); they are not bracketed.
+    allow.
 
     Args:
         function: residual of order one at each state, negative at zero, elementwise.
         guess: start values.
         most: largest root that counts.
-        unrolled: number of third-order steps to write out; 0 iterates until all states have
-            converged.
 
     Returns:
         Roots, and the number of steps; the caller checks the residual.
     """
-    start = jax.lax.stop_gradient(guess)
-    if unrolled:
-        found, steps = start, jnp.asarray(unrolled)
-        for _ in range(unrolled - 1):
-            found = _halley(function, found)
-    else:
-        found, steps = _iterate(function, jnp.minimum(start, most), most)
+    found, steps = _iterate(function, jnp.minimum(jax.lax.stop_gradient(guess), most), most)
     found = jax.lax.stop_gradient(found)
     value, slope = _tangent(function, found)
-    step = _quotient(value, jax.lax.stop_gradient(slope))
+    step = quotient(value, jax.lax.stop_gradient(slope))
     return found - jnp.where(jnp.abs(value) < NEAR, step, 0.0), steps
 
 
@@ -73,7 +62,7 @@ def _iterate(
         at, low, high, _, steps = carry
         value, slope = _tangent(function, at)
         low, high = jnp.where(value < 0.0, at, low), jnp.where(value < 0.0, high, at)
-        newton = at - _quotient(value, slope)
+        newton = at - quotient(value, slope)
         inside = (newton > low) & (newton < high)
         further = jnp.where(inside, newton, (low + high) / 2.0)
         done = jnp.abs(value) <= TOLERANCE
@@ -91,14 +80,14 @@ def _tangent(function: Callable[[Each], Each], at: Each) -> tuple[Each, Each]:
     return value, slope
 
 
-def _halley(function: Callable[[Each], Each], at: Each) -> Each:
-    """Step of third order: Newton's with the curvature."""
+def third_order_step(function: Callable[[Each], Each], at: Each) -> Each:
+    """One step towards the root of each state: Newton's with the curvature."""
     (value, slope), (_, curve) = jax.jvp(
         lambda x: _tangent(function, x), (at,), (jnp.ones_like(at),)
     )
-    return at - _quotient(value * slope, slope**2 - 0.5 * value * curve)
+    return at - quotient(value * slope, slope**2 - 0.5 * value * curve)
 
 
-def _quotient(over: Each, under: Each) -> Each:
+def quotient(over: Each, under: Each) -> Each:
     """Quotient, zero where the divisor is."""
     return jnp.where(under == 0.0, 0.0, over / jnp.where(under == 0.0, 1.0, under))

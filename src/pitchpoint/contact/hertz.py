@@ -3,6 +3,7 @@
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import root
 
 __all__ = ["elliptic_pressure", "line_half_width", "line_pressure"]
 
@@ -19,7 +20,7 @@ def line_half_width(
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.43 (there E* = E'/2).
     """
-    return _root(8.0 * line_load * radius / (jnp.pi * modulus))
+    return root(8.0 * line_load * radius / (jnp.pi * modulus))
 
 
 def line_pressure(
@@ -34,7 +35,7 @@ def line_pressure(
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.45 (there E* = E'/2).
     """
-    return _root(line_load * modulus / (2.0 * jnp.pi * radius))
+    return root(line_load * modulus / (2.0 * jnp.pi * radius))
 
 
 def elliptic_pressure(
@@ -62,8 +63,3 @@ def elliptic_pressure(
     pressed = jnp.where(load > 0.0, load, 1.0)
     major = jnp.cbrt(6.0 * ratio**2 * integral * pressed * combined / (jnp.pi * modulus))
     return jnp.where(load > 0.0, 1.5 * pressed * ratio / (jnp.pi * major**2), 0.0)
-
-
-def _root(square: Float[Array, "*b"]) -> Float[Array, "*b"]:
-    """Square root with a zero gradient at zero instead of an infinite one."""
-    return jnp.where(square > 0.0, jnp.sqrt(jnp.where(square > 0.0, square, 1.0)), 0.0)

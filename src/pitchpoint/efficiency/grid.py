@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
-from pitchpoint.programs import program
+from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, state
+from pitchpoint.programs import fast_program
 
 __all__ = ["Block", "state_grid"]
 
@@ -21,10 +21,8 @@ ROWS = 256
 COLUMNS = 4096
 """Most positions of one block."""
 
-_CACHED = 2048
-"""States solved together: their work arrays stay in the cache of a core."""
-
-_STEPS = 2
+_ROWS, _COLUMNS = 16, 128
+"""Operating points and positions that are solved together: their work arrays stay in the cache of a core."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +59,8 @@ def state_grid(
 
     Yields:
         Blocks of at most `ROWS` operating points and `COLUMNS` positions; what is kept of them
-        bounds the memory. Two written-out steps solve the balance; a block that has then a residual
-        above 1e-10 is solved again, iterating to convergence.
+        bounds the memory. Two steps solve the balance, the first one in single precision; a block that
+        has then a residual above 1e-10 is solved again, iterating to convergence.
     """
     count, places = int(operation.load.shape[0]), int(phase.shape[0])
     rows = min(ROWS, 1 << (count - 1).bit_length())
@@ -86,10 +84,10 @@ Inputs = tuple[Design, Operation]
 
 
 def _solved(inputs: Inputs, phase: Array, models: Models) -> Columns:
-    quick = _block(inputs, phase, models, _STEPS)
-    if bool(jnp.all(quick[-1] <= TOLERANCE)):
-        return quick
-    return _block(inputs, phase, models, 0)
+    found = _block(inputs, phase, models, quick=True)
+    if bool(jnp.all(found[-1] <= TOLERANCE)):
+        return found
+    return _block(inputs, phase, models, quick=False)
 
 
 def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
@@ -106,21 +104,41 @@ def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
     )
 
 
-@program
-def _block(inputs: Inputs, phase: Array, models: Models, steps: int) -> Columns:
-    rows = inputs[1].load.shape[0]
-    together = min(rows, 1 << max(0, (_CACHED // phase.shape[0]).bit_length() - 1))
-
-    def solve(part: Inputs) -> Columns:
-        found = state(*part, phase, models, unrolled=steps)
-        balance = found.balance
-        return balance.force, found.input_torque, found.efficiency, balance.residual
+@fast_program
+def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> Columns:
+    """States in tiles of rows and columns: what varies along one of them is computed once for the other."""
+    count, places = inputs[1].load.shape[0], phase.shape[0]
+    rows, columns = min(count, _ROWS), min(places, _COLUMNS)
 
     def per_row(leaf: Any) -> bool:
-        return eqx.is_array(leaf) and jnp.ndim(leaf) == 2 and leaf.shape[0] == rows
+        return eqx.is_array(leaf) and jnp.ndim(leaf) == 2 and leaf.shape[0] == count
 
     rowwise, whole = eqx.partition(inputs, per_row)
-    stacked = jax.tree.map(lambda leaf: leaf.reshape(-1, together, *leaf.shape[1:]), rowwise)
-    out: Columns = jax.lax.map(lambda part: solve(eqx.combine(part, whole)), stacked)
-    force, torque, efficiency, residual = (x.reshape(rows, phase.shape[0]) for x in out)
+    stacked = jax.tree.map(lambda leaf: leaf.reshape(-1, rows, *leaf.shape[1:]), rowwise)
+
+    def strip(at: Float[Array, " column"]) -> Columns:
+        known = _engaged(inputs[0], at, models)
+
+        def tile(part: Inputs) -> Columns:
+            found = state(*eqx.combine(part, whole), at, models, quick=quick, engaged=known)
+            balance = found.balance
+            return balance.force, found.input_torque, found.efficiency, balance.residual
+
+        out: Columns = jax.lax.map(tile, stacked)
+        return out
+
+    strips = jnp.pad(phase, (0, -places % columns), mode="edge").reshape(-1, columns)
+    out: Columns = jax.lax.map(strip, strips)
+    force, torque, efficiency, residual = (
+        jnp.moveaxis(x, 0, 2).reshape(count, -1)[:, :places] for x in out
+    )
     return force, torque, efficiency, residual
+
+
+def _engaged(design: Design, phase: Float[Array, " column"], models: Models) -> Engagement | None:
+    """Contacts and shares at some phases, where the shares do not depend on the load."""
+    if models.sharing.by_stiffness:
+        return None
+    contacts = design.mesh.contacts(phase)
+    share = models.share(design, contacts, jnp.zeros(()))
+    return Engagement(phase, jnp.ones_like(phase), contacts, share, None, 1)

@@ -3,7 +3,7 @@
 from jaxtyping import Array
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import along, total
+from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
@@ -42,7 +42,6 @@ def profile(
     at, contacts = state.conditions, state.contacts
     carries = state.balance.force > 0.0
     thickness = jnp.where(carries, evaluate(film.function, at), jnp.nan)
-    slip = along(contacts.slip_arm, at.motion)
     mesh = {
         "phase": result.phase,
         "weight": result.weight,
@@ -61,7 +60,7 @@ def profile(
         "load": state.balance.load,
         "load_share": state.balance.load / _positive(state.balance.force),
         "friction": state.balance.friction,
-        "sliding_velocity": slip * at.speed,
+        "sliding_velocity": at.slip * at.speed,
         "entrainment": at.entrainment,
         "slide_roll_ratio": at.slide_roll_ratio,
         "pressure": at.pressure,

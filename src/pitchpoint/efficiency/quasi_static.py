@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -10,10 +11,12 @@ from jaxtyping import Array, Bool, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.efficiency.drag import Drag, resistance
+from pitchpoint.factored import Factored
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
-from pitchpoint.loading.balance import Balance, balance, tooth_load
+from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
+from pitchpoint.loading.balance import Drag as TorqueOnBodies
 from pitchpoint.loading.sharing import LoadSharing, from_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.loading.torsion import wound_up
@@ -308,7 +311,7 @@ def state(
     phase: Each,
     models: Models,
     *,
-    unrolled: int = 0,
+    quick: bool = False,
     engaged: Engagement | None = None,
 ) -> State:
     """State of the mesh in static equilibrium with friction.
@@ -318,7 +321,8 @@ def state(
         operation: operating points [*b], broadcast against the phases.
         phase: [*b] periods.
         models: laws.
-        unrolled: fixed number of steps of the balance, for speed; check the residual then.
+        quick: two steps for the balance, the first one in single precision, instead of as many as it
+            takes; check the residual then.
         engaged: contacts and shares at these phases, where they are known already.
     """
     mesh = design.mesh
@@ -328,15 +332,7 @@ def state(
     if contacts is None:
         contacts = mesh.contacts(phase)
     oil, temperature = design.lubricant, operation.temperature
-    drag = None
-    if design.drag:
-        drag = resistance(
-            design.drag,
-            mesh,
-            contacts,
-            speed=operation.speed,
-            kinematic_viscosity=oil.kinematic_viscosity(temperature),
-        )
+    drag = _drag(design, operation, contacts, oil.kinematic_viscosity(temperature))
     carried = tooth_load(contacts, loaded=mesh.loaded, load=operation.load, drag=drag)
     # Losses beside the teeth hardly move the shares; leaving them out, one sharing of each load
     # serves all speeds and temperatures.
@@ -347,7 +343,8 @@ def state(
         contacts=contacts,
         load=jnp.zeros_like(share),
         nominal_load=carried / arm,
-        motion=mesh.motion,
+        slip=along(contacts.slip_arm, mesh.motion),
+        roll=along(contacts.roll_arm, mesh.motion),
         speed=operation.speed,
         modulus=design.modulus,
         viscosity=oil.viscosity(temperature),
@@ -359,39 +356,76 @@ def state(
         reference=mesh.reference,
     )
 
-    def conditions(load: Lanes) -> Conditions:
-        return replace(unloaded, load=load)
-
-    def friction(load: Lanes) -> Lanes:
-        return models.coefficient(conditions(load))
-
-    def rolling(load: Lanes) -> Lanes:
-        return evaluate(models.rolling.function, conditions(load)) * contacts.weight
-
-    balanced = balance(
-        contacts,
-        share,
-        motion=mesh.motion,
-        loaded=mesh.loaded,
-        load=operation.load,
-        friction=friction,
-        rolling=None if models.rolling.name == "none" else rolling,
-        drag=drag,
-        unrolled=unrolled,
-    )
-    at_contact = conditions(balanced.load)
+    given = design, operation, contacts, share, unloaded, mesh.motion, mesh.loaded
+    guess = None
+    if quick:
+        single = jax.tree.map(_single, given)
+        guess = jnp.asarray(first_guess(**_in_balance(*single, models)), jnp.float64)
+    balanced = balance(**_in_balance(*given, models), guess=guess)
+    at_contact = replace(unloaded, load=balanced.load)
     driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
     others = (1.0 - mesh.driver) * mesh.motion
     return State(
         contacts=contacts,
         conditions=at_contact,
         balance=balanced,
-        sliding_loss=balanced.load * balanced.friction * at_contact.sliding,
-        rolling_loss=2.0 * balanced.rolling * at_contact.entrainment,
+        sliding_loss=balanced.load * balanced.friction * at_contact.sliding.value,
+        rolling_loss=2.0 * balanced.rolling * at_contact.entrainment.value,
         drag_loss=along(balanced.drag, mesh.motion) * operation.speed,
         input_torque=along(balanced.torque, driver),
         output_power=-along(balanced.torque, others) * operation.speed,
     )
+
+
+def _in_balance(
+    design: Design,
+    operation: Operation,
+    contacts: Contacts,
+    share: Lanes,
+    unloaded: Conditions,
+    motion: Float[Array, " dof"],
+    loaded: Float[Array, " dof"],
+    models: Models,
+) -> dict[str, Any]:
+    """What the balance of forces asks for, with the laws under any load."""
+
+    def friction(load: Factored) -> Lanes:
+        return models.coefficient(replace(unloaded, load=load))
+
+    def rolling(load: Factored) -> Lanes:
+        at = replace(unloaded, load=load)
+        return evaluate(models.rolling.function, at) * contacts.weight
+
+    return {
+        "contacts": contacts,
+        "share": share,
+        "motion": motion,
+        "loaded": loaded,
+        "load": operation.load,
+        "friction": friction,
+        "rolling": None if models.rolling.name == "none" else rolling,
+        "drag": _drag(design, operation, contacts, unloaded.kinematic_viscosity),
+    }
+
+
+def _drag(
+    design: Design, operation: Operation, contacts: Contacts, kinematic_viscosity: Each
+) -> TorqueOnBodies | None:
+    """Losses beside the teeth as torques from the loads on them; None without any."""
+    if not design.drag:
+        return None
+    return resistance(
+        design.drag,
+        design.mesh,
+        contacts,
+        speed=operation.speed,
+        kinematic_viscosity=kinematic_viscosity,
+    )
+
+
+def _single(value: Any) -> Any:
+    """Arrays of numbers in single precision."""
+    return jnp.asarray(value, jnp.float32) if eqx.is_inexact_array(value) else value
 
 
 def _of_rank(values: Each, rank: int) -> Each:

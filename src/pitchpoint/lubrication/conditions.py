@@ -10,8 +10,9 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
-from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Factored, as_array
 from pitchpoint.gears.mesh import Reference
 
 __all__ = ["Conditions", "arguments", "evaluate"]
@@ -27,7 +28,7 @@ class Conditions(eqx.Module):
         contacts: of the mesh.
         load: normal force of each slice [N].
         nominal_load: normal force of the whole mesh without friction [N].
-        motion: rates of the coordinates per radian of the driver.
+        slip, roll: difference and sum of the surface velocities per radian of the driver [m/rad].
         speed: of the driver [rad/s].
         modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
         viscosity, kinematic_viscosity: dynamic [Pa s] and kinematic [m2/s], at oil temperature.
@@ -39,9 +40,10 @@ class Conditions(eqx.Module):
     """
 
     contacts: Contacts
-    load: Lanes
+    load: Factored | Lanes
     nominal_load: Each
-    motion: Float[Array, " dof"]
+    slip: Lanes
+    roll: Lanes
     speed: Each
     modulus: Float[Array, ""]
     viscosity: Each
@@ -53,35 +55,34 @@ class Conditions(eqx.Module):
     reference: Reference | None
 
     @property
-    def line_load(self) -> Lanes:
+    def line_load(self) -> Factored | Lanes:
         """Normal load per length of contact line [N/m]."""
         return self.load / self.contacts.weight
 
     @property
     def speed_a(self) -> Lanes:
         """Surface speed of member 0 relative to the contact [m/s]."""
-        return along(self.contacts.surface[0], self.motion) * self.speed
+        return (self.roll + self.slip) / 2.0 * self.speed
 
     @property
     def speed_b(self) -> Lanes:
         """Surface speed of member 1 relative to the contact [m/s]."""
-        return along(self.contacts.surface[1], self.motion) * self.speed
+        return (self.roll - self.slip) / 2.0 * self.speed
 
     @property
-    def entrainment(self) -> Lanes:
+    def entrainment(self) -> Factored:
         """Mean of the surface speeds, without sign [m/s]."""
-        return jnp.abs(along(self.contacts.roll_arm, self.motion) / 2.0) * self.speed
+        return Factored((jnp.abs(self.roll / 2.0), self.speed))
 
     @property
-    def sliding(self) -> Lanes:
+    def sliding(self) -> Factored:
         """Difference of the surface speeds, without sign [m/s]."""
-        return jnp.abs(along(self.contacts.slip_arm, self.motion)) * self.speed
+        return Factored((jnp.abs(self.slip), self.speed))
 
     @property
     def slide_roll_ratio(self) -> Lanes:
         """Sliding over entrainment; a matter of geometry, defined at standstill too."""
-        mean = jnp.abs(along(self.contacts.roll_arm, self.motion)) / 2.0
-        slip = jnp.abs(along(self.contacts.slip_arm, self.motion))
+        mean, slip = jnp.abs(self.roll) / 2.0, jnp.abs(self.slip)
         return jnp.where(mean > 0.0, slip / jnp.where(mean > 0.0, mean, 1.0), 0.0)
 
     @property
@@ -95,11 +96,11 @@ class Conditions(eqx.Module):
         return 1.0 / self.contacts.relative_curvature[1]
 
     @property
-    def pressure(self) -> Lanes:
+    def pressure(self) -> Factored | Lanes:
         """Largest Hertz pressure [Pa]."""
         if self.contacts.shape == "ellipse":
             return hertz.elliptic_pressure(
-                load=self.load,
+                load=as_array(self.load),
                 radius=self.radius,
                 transverse_radius=self.transverse_radius,
                 modulus=self.modulus,
@@ -109,7 +110,7 @@ class Conditions(eqx.Module):
         )
 
     @property
-    def half_width(self) -> Lanes:
+    def half_width(self) -> Factored | Lanes:
         """Half-width of a line contact [m]."""
         return hertz.line_half_width(
             line_load=self.line_load, radius=self.radius, modulus=self.modulus

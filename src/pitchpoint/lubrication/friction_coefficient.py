@@ -11,12 +11,15 @@ not depend on each other.
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import or_
 from typing import Final
 
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import as_array, log
 
 __all__ = [
     "LAWS",
@@ -78,22 +81,19 @@ class FrictionLaw:
     whole: bool = False
 
 
-def _floored(value: ArrayLike) -> Array:
-    return jnp.where(jnp.asarray(value) > _FLOOR, value, _FLOOR)
-
-
 def _power_product(*factors: tuple[ArrayLike, float], exponent: ArrayLike = 0.0) -> Array:
     """Product of value ** power, times exp(exponent); 0 where a factor of positive power vanishes.
 
     A factor of negative power has no finite limit at zero: it is held at the floor.
     """
-    total = jnp.asarray(exponent)
-    vanishes = jnp.asarray(False)
-    for value, power in factors:
-        total = total + power * jnp.log(_floored(value))
-        if power > 0:
-            vanishes = vanishes | (jnp.asarray(value) <= _FLOOR)
-    return jnp.where(vanishes, 0.0, jnp.exp(total))
+    logs = [(log(value, _FLOOR), power) for value, power in factors]
+    total = sum((power * one for one, power in sorted(logs, key=_size)), 0.0) + exponent
+    vanishes = [one <= math.log(_FLOOR) for one, power in logs if power > 0.0]
+    return jnp.where(reduce(or_, vanishes), 0.0, jnp.exp(total))
+
+
+def _size(term: tuple[Array, float]) -> int:
+    return int(jnp.size(term[0]))
 
 
 def constant(*, coefficient: ArrayLike = 0.05) -> Float[Array, "..."]:
@@ -157,16 +157,12 @@ def iso_tr_14179_2(
         >>> round(float(mu), 4)
         0.0544
     """
-    newton_per_mm = jnp.asarray(reference_line_load) * 1e-3
-    mm, mPas, um = (
-        jnp.asarray(reference_radius) * 1e3,
-        jnp.asarray(viscosity) * 1e3,
-        jnp.asarray(roughness_ra) * 1e6,
-    )
+    newton_per_mm, mm = reference_line_load * 1e-3, reference_radius * 1e3
+    mPas, um = viscosity * 1e3, roughness_ra * 1e6
     powers = _power_product(
         (newton_per_mm, 0.2), (reference_sum_speed, -0.2), (mm, -0.2), (mPas, -0.05), (um, 0.25)
     )
-    return 0.048 * powers * jnp.asarray(lubricant_factor)
+    return 0.048 * powers * lubricant_factor
 
 
 def xu_2007(
@@ -205,10 +201,9 @@ def xu_2007(
         0.021024
     """
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = _XU
-    GPa, cP = jnp.asarray(pressure) * 1e-9, jnp.asarray(viscosity) * 1e3
-    um, SR = jnp.asarray(roughness_rq) * 1e6, jnp.abs(jnp.asarray(slide_roll_ratio))
-    heaviness = SR * GPa * jnp.log(_floored(cP)) / jnp.log(10.0)
-    f = b1 + b4 * heaviness + b5 * jnp.exp(-heaviness) + b9 * jnp.exp(um)
+    GPa, cP, um, SR = pressure * 1e-9, viscosity * 1e3, roughness_rq * 1e6, abs(slide_roll_ratio)
+    heaviness = as_array(GPa * (SR * log(cP, _FLOOR) / math.log(10.0)))
+    f = (b1 + b9 * jnp.exp(um)) + b4 * heaviness + b5 * jnp.exp(-heaviness)
     return _power_product(
         (GPa, b2),
         (SR, b3),

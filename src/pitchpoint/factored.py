@@ -1,0 +1,116 @@
+"""Products that keep their factors on their own axes."""
+
+from __future__ import annotations
+
+from functools import reduce
+from math import log as natural_logarithm
+from operator import mul
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+from jax.typing import ArrayLike
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+
+__all__ = ["Factored", "as_array", "log", "root"]
+
+
+class Factored(eqx.Module):
+    """A product of values of which each varies along axes of its own, such as positions or loads.
+
+    Logarithms and powers are taken where the factors are: for a million states at a thousand positions
+    and a thousand loads, of two thousand numbers. Everywhere else it is the array that it stands for.
+
+    Attributes:
+        factors: broadcast against each other.
+    """
+
+    factors: tuple[ArrayLike, ...]
+
+    @property
+    def merged(self) -> list[Array]:
+        """Factors of one shape multiplied with each other, the smallest first."""
+        found: dict[tuple[int, ...], Any] = {}
+        for one in self.factors:
+            shape = jnp.shape(one)
+            found[shape] = one * found[shape] if shape in found else one
+        return sorted(found.values(), key=jnp.size)
+
+    @property
+    def value(self) -> Float[Array, "..."]:
+        """The product as one array."""
+        return jnp.asarray(reduce(mul, self.merged))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the product."""
+        return np.broadcast_shapes(*map(jnp.shape, self.factors))
+
+    def __jax_array__(self) -> Array:
+        return self.value
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.value, name)
+
+    def __mul__(self, other: Any) -> Factored:
+        return Factored(
+            (*self.factors, *(other.factors if isinstance(other, Factored) else (other,)))
+        )
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Factored:
+        return self * (other**-1.0 if isinstance(other, Factored) else 1.0 / other)
+
+    def __rtruediv__(self, other: Any) -> Factored:
+        return self**-1.0 * other
+
+    def __pow__(self, power: ArrayLike) -> Factored:
+        return Factored(tuple(one**power for one in self.merged))
+
+    def __abs__(self) -> Factored:
+        return Factored(tuple(map(jnp.abs, self.merged)))
+
+
+def _on_value(name: str) -> Any:
+    def operator(self: Factored, *others: Any) -> Any:
+        return getattr(self.value, name)(*map(as_array, others))
+
+    return operator
+
+
+_OPERATORS = "add radd sub rsub rpow mod neg pos lt le gt ge"
+for _name in _OPERATORS.split():
+    setattr(Factored, f"__{_name}__", _on_value(f"__{_name}__"))
+
+
+def as_array(value: Factored | ArrayLike) -> Any:
+    """The value itself, or the array that a product stands for."""
+    return value.value if isinstance(value, Factored) else value
+
+
+def log(value: Factored | ArrayLike, least: float) -> Float[Array, "..."]:
+    """Natural logarithm, of a product as a sum over its factors.
+
+    Args:
+        value: not negative.
+        least: positive; values below it count as it.
+    """
+    merged = value.merged if isinstance(value, Factored) else [jnp.asarray(value)]
+    return jnp.maximum(sum(map(_log, merged)), natural_logarithm(least))
+
+
+def _log(value: Array) -> Array:
+    tiny = jnp.finfo(jnp.result_type(value, jnp.float32)).tiny
+    return jnp.log(jnp.where(value > tiny, value, tiny))
+
+
+def root(square: Factored | Float[Array, "*b"]) -> Any:
+    """Square root with a zero gradient at zero instead of an infinite one."""
+    if isinstance(square, Factored):
+        return Factored(tuple(map(root, square.merged)))
+    return jnp.where(square > 0.0, jnp.sqrt(jnp.where(square > 0.0, square, 1.0)), 0.0)
