@@ -36,7 +36,8 @@ from pitchpoint.materials import lubricants, solids
 from pitchpoint.units import si_unit
 
 LANES = 5  # one compiled program serves all contact ratios below it
-EXAMPLES = 150
+EXAMPLES = 60
+"""Thousands are drawn by `pytest tests/long/many_random_cases.py`."""
 
 # Each sharing and each rolling resistance, in as few compiled programs as that takes.
 SHARINGS = [name for name, model in LOAD_SHARING.items() if model.flanks != "apart"]
@@ -203,11 +204,12 @@ def answer(case: dict[str, Any]) -> str:
     return "results"
 
 
-def test_random_cases() -> None:
+def explore(examples: int) -> None:
+    """Draw cases, the same in every run, and hold each to its answer."""
     counts = {"results": 0, "input": 0, "convergence": 0}
 
     @settings(
-        max_examples=EXAMPLES,
+        max_examples=examples,
         deadline=None,
         derandomize=True,
         database=None,
@@ -219,8 +221,12 @@ def test_random_cases() -> None:
         counts[answer(case)] += 1
 
     draw()
-    assert counts["results"] > EXAMPLES / 4  # most of the others have gears that cannot run
+    assert counts["results"] > examples / 4  # most of the others have gears that cannot run
     assert counts["input"] > 0
+
+
+def test_random_cases() -> None:
+    explore(EXAMPLES)
 
 
 SOUND = tomllib.loads("""
