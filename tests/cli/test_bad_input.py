@@ -20,6 +20,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 import pytest
 from pydantic import BaseModel, BeforeValidator
+from sound import PAIR
 
 from pitchpoint import cli, units
 from pitchpoint.cases import gear_tables, schema
@@ -629,21 +630,6 @@ def test_a_missing_key(base: str, path: Path_, refuse: Callable[..., str], tmp_p
 
 # ---- files that are wrong as a whole
 
-SMALL = """
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = "20 mm"
-[lubricant]
-name = "75W90-A"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
-"""
-
 GEAR_WORDS = {
     "pointed tooth": (
         ("gears", {"profile_shift": [1.5, 0.0], "teeth": [12, 61]}),
@@ -705,7 +691,7 @@ GEAR_WORDS = {
 @pytest.mark.parametrize("name", GEAR_WORDS)
 def test_gears_that_cannot_run(name: str, refuse: Callable[..., str], tmp_path: Path) -> None:
     (table, change), *words = GEAR_WORDS[name]
-    tree = {**tomllib.loads(SMALL), "models": {"load_sharing": "sanchez_2017"}}
+    tree = {**tomllib.loads(PAIR), "models": {"load_sharing": "sanchez_2017"}}
     tree[table] = {**tree.get(table, {}), **change}
     told = refuse("show", written(tree, tmp_path))
     assert "bad.toml: " in told
@@ -777,7 +763,7 @@ def test_no_such_file(command: str, refuse: Callable[..., str], tmp_path: Path) 
 
 
 def test_a_case_without_targets(refuse: Callable[..., str], tmp_path: Path) -> None:
-    path = written(tomllib.loads(SMALL), tmp_path)
+    path = written(tomllib.loads(PAIR), tmp_path)
     assert "bad.toml: has no targets to compare with" in refuse("compare", path)
 
 
@@ -849,7 +835,7 @@ def test_nothing_to_cite(name: str, refuse: Callable[..., str], tmp_path: Path) 
 def test_command_lines(
     arguments: list[str], words: list[str], refuse: Callable[..., str], tmp_path: Path
 ) -> None:
-    told = refuse("run", written(tomllib.loads(SMALL), tmp_path), *arguments)
+    told = refuse("run", written(tomllib.loads(PAIR), tmp_path), *arguments)
     for word in words:
         assert word in told
     assert not (tmp_path / "results").exists()
@@ -861,7 +847,7 @@ def test_no_such_command(refuse: Callable[..., str]) -> None:
 
 
 def test_a_study_that_goes_wrong_half_way() -> None:
-    tree = tomllib.loads(SMALL)
+    tree = tomllib.loads(PAIR)
     sweep = {"key": "gears.profile_shift.1", "values": [0.0, 1.4, 0.1]}
     tree["studies"] = {"shift": {"sweep": sweep}}
     tree["gears"]["teeth"] = [12, 61]
@@ -876,7 +862,7 @@ def test_a_study_that_goes_wrong_half_way() -> None:
 
 
 def test_a_change_that_goes_wrong(refuse: Callable[..., str], tmp_path: Path) -> None:
-    tree = tomllib.loads(SMALL)
+    tree = tomllib.loads(PAIR)
     tree["studies"] = {"hot": {"change": {"operation": {"temperature": "200 degC"}}}}
     told = refuse("show", written(tree, tmp_path))
     assert "bad.toml: studies.hot: operation.temperature: 200 degC is outside" in told
@@ -886,7 +872,7 @@ def test_a_change_that_goes_wrong(refuse: Callable[..., str], tmp_path: Path) ->
 
 
 def test_a_folder_that_cannot_be_written(refuse: Callable[..., str], tmp_path: Path) -> None:
-    path = written(tomllib.loads(SMALL), tmp_path)
+    path = written(tomllib.loads(PAIR), tmp_path)
     (tmp_path / "file").write_text("in the way")
     told = refuse("run", path, "-o", tmp_path / "file")
     assert f"{tmp_path / 'file'}: cannot be written to: " in told
@@ -898,7 +884,7 @@ def test_a_folder_that_cannot_be_written(refuse: Callable[..., str], tmp_path: P
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_folder_without_permission(refuse: Callable[..., str], tmp_path: Path) -> None:
-    path = written(tomllib.loads(SMALL), tmp_path)
+    path = written(tomllib.loads(PAIR), tmp_path)
     (tmp_path / "closed").mkdir(mode=0o500)
     assert "cannot be written to: Permission denied" in refuse(
         "run", path, "-o", tmp_path / "closed"
@@ -911,8 +897,8 @@ def test_a_folder_without_permission(refuse: Callable[..., str], tmp_path: Path)
 @pytest.mark.parametrize(
     ("content", "arguments", "words"),
     [
-        (SMALL.replace('"2 mm"', '"[bold]2 mm[/bold]"'), [], ['"[bold]2 mm[/bold]"', "100 mm"]),
-        (SMALL, ["--bogus"], ["No such option: --bogus"]),
+        (PAIR.replace('"2 mm"', '"[bold]2 mm[/bold]"'), [], ['"[bold]2 mm[/bold]"', "100 mm"]),
+        (PAIR, ["--bogus"], ["No such option: --bogus"]),
     ],
     ids=["markup", "option"],
 )
