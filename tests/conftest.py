@@ -1,5 +1,6 @@
 """Compiles quickly, gives compiled programs back, and holds the suite to its budget."""
 
+import gc
 import os
 from collections import defaultdict
 from collections.abc import Iterator
@@ -33,6 +34,12 @@ def pytest_configure() -> None:
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: order(item.location[0]))
+
+
+def pytest_collection_finish() -> None:
+    """What is there by now stays: looking through it for garbage took a tenth of the time."""
+    gc.freeze()
+    gc.set_threshold(100_000, 20, 20)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -16,7 +16,7 @@ from pitchpoint.gears.mesh import Mesh, Reference
 from pitchpoint.gears.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
-from pitchpoint.roots import root
+from pitchpoint.roots import hypot, root
 
 __all__ = [
     "WINDOW",
@@ -360,7 +360,7 @@ class StrainWave(Mesh):
         width, slope = groove.width_and_slope(radius)
         half = jnp.pi / self.teeth[1] * radius - width - self.backlash / 2.0
         return _section(
-            half, groove.high - radius, rate / jnp.hypot(1.0, slope), -jnp.arctan(slope), ends
+            half, groove.high - radius, rate / hypot(1.0, slope), -jnp.arctan(slope), ends
         )
 
     def dimensions(self) -> dict[str, Float[Array, "..."]]:
