@@ -40,7 +40,7 @@ PLACES = (25, 50, 63)
 """Places for pairs in a zone, so that drives of up to 103, 204 and 252 teeth share programs.
 
 More come in multiples of the first. Both zones of 63 stay below 128 rows, from which on a factorisation
-waits for other threads.
+may wait for other threads, see `_jax`.
 """
 
 TRIES = (29, 14)
