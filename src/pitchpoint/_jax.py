@@ -7,6 +7,10 @@ import stat
 from collections.abc import Sequence
 from pathlib import Path
 
+# From 128 rows on the library behind a factorisation divides it among threads that spin while they wait:
+# 24 of 144 rows take 3 ms of one thread and up to 850 ms of two on a busy machine. It reads this once.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 FEW_CORES = 4
 """Cores up to which compiled programs run on one of them."""
 

@@ -40,7 +40,7 @@ PLACES = (25, 50, 63)
 """Places for pairs in a zone, so that drives of up to 103, 204 and 252 teeth share programs.
 
 More come in multiples of the first. Both zones of 63 stay below 128 rows, from which on a factorisation
-waits for other threads.
+may wait for other threads, see `_jax`.
 """
 
 TRIES = (29, 14)
@@ -119,7 +119,8 @@ class StrainWave(Mesh):
         tip_height: radius at which the circular spline's teeth end [m].
         tip_rounding: of the edges of these teeth [m].
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
-            the circumference [m].
+            the circumference [m]. It opens all gaps alike, so losses have one derivative by it on
+            both sides, at no play too.
         motion_of, driver_of, loaded_of: see `motion`, `driver`, `loaded`.
         held: pairs in each of both zones.
         surveyed: rigid teeth along the wave, as they follow from all these.
