@@ -21,6 +21,8 @@ import jax  # noqa: E402
 import pytest  # noqa: E402
 from budget import Meter, Spent, exceeded, order  # noqa: E402
 
+from pitchpoint import programs  # noqa: E402
+
 MOST_MAPS = 20_000
 """Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
 
@@ -56,7 +58,7 @@ def _programs_within_the_memory_maps() -> Iterator[None]:
     yield
     maps = Path("/proc/self/maps")
     if not maps.exists() or maps.read_bytes().count(b"\n") > MOST_MAPS:
-        jax.clear_caches()
+        programs.forget()
 
 
 # ---- the budget: workers hand in what each file spent, the controller judges the sum
