@@ -7,6 +7,10 @@ import stat
 from collections.abc import Sequence
 from pathlib import Path
 
+# From 128 rows on the library behind a factorisation divides it among threads that spin while they wait:
+# 24 of 144 rows take 3 ms of one thread and up to 850 ms of two on a busy machine. It reads this once.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 FEW_CORES = 4
 """Cores up to which compiled programs run on one of them."""
 
@@ -14,8 +18,9 @@ FEW_CORES = 4
 # pool of threads on which they run themselves, and wait. As many of them at once as the pool has
 # threads wait for each other without end: a program with eight batches of `jnp.linalg.solve` hangs on
 # two threads within seconds, every time; on one they take the parts themselves. Two would bring
-# nothing: a later run of tian2024 takes 13.4 to 13.6 s of CPU on one thread and 13.4 to 13.8 s on two,
-# examples/strain_wave.toml 15.8 to 16.4 s and 14.3 to 15.7 s, in the same wall time.
+# nothing to a later run on two busy cores, three each: tian2024 took 7.8 to 12 s of CPU on one thread
+# and 8.2 to 9.4 s on two, examples/strain_wave.toml 10.0 to 11.0 s and 9.5 to 10.3 s, and in wall time
+# they could not be told apart.
 # The pool is made with the first array and asks this variable for its size.
 _ALLOWED = getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count() or 1))(0)
 if len(_ALLOWED) <= FEW_CORES:

@@ -1,4 +1,4 @@
-"""Roots of scalar equations, one at each of many states at once."""
+"""Roots of scalar equations, one at each of many states at once, and of sums of squares."""
 
 from collections.abc import Callable
 
@@ -6,7 +6,7 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["TOLERANCE", "quotient", "root", "third_order_step"]
+__all__ = ["TOLERANCE", "hypot", "quotient", "root", "third_order_step"]
 
 TOLERANCE = 1e-12
 """Largest residual at which the iteration stops; a last step follows."""
@@ -19,6 +19,15 @@ MOST = 60
 
 Each = Float[Array, "*b"]
 Carry = tuple[Each, Each, Each, Each, Array]
+
+
+def hypot(x: Each | float, y: Each) -> Each:
+    """Length of a vector by its components, of any one unit.
+
+    The derivative of `jnp.hypot` asks by an equality which component is the larger, and is lost
+    where a compiler computes the two sides of it with different rounding.
+    """
+    return jnp.sqrt(x**2 + y**2)
 
 
 def root(

@@ -5,9 +5,9 @@ import dataclasses
 import equinox as eqx
 import numpy as np
 import pytest
+from sound import pair
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -19,17 +19,6 @@ STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 PA66 = Solid(young=3.54e9, poisson=0.35, density=1140.0)
 BOTH_STEEL = (STEEL, STEEL)
 FULL, BEAM = "beam_foundation_weber", "beam_hertz"
-
-
-def pair(teeth, degrees=0.0, module=3e-3, width=20e-3, **options):
-    return build_cylindrical_pair(
-        teeth=teeth,
-        module=module,
-        pressure_angle=np.deg2rad(20.0),
-        helix_angle=np.deg2rad(degrees),
-        face_width=width,
-        **options,
-    )
 
 
 def few(teeth, module, shift):

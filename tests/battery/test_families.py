@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Mapping
+from functools import cache, partial
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -68,8 +69,10 @@ FAMILIES: Mapping[str, Callable[[], Mesh]] = {
     "12/120": lambda: spur((12, 120), 1e-3, profile_shift=(0.5, 0.0)),
     "20/60, pitch point in double contact": lambda: spur((20, 60), profile_shift=(0.8, -0.8)),
     "helical 20/30": lambda: helical((20, 30), 15.0),
-    "helical 4/51, eps_alpha below one": lambda: helical(
-        (4, 51), 20.0, 1.5e-3, profile_shift=(0.74, 0.05), least_tip=0.25
+    # Its tips count as given, so that it is alike for the compiler.
+    "helical 4/51, eps_alpha below one": lambda: dataclasses.replace(
+        helical((4, 51), 20.0, 1.5e-3, profile_shift=(0.74, 0.05), least_tip=0.25),
+        shortened=(False, False),
     ),
     "helical 20/30, narrow, wheel drives, right flank": lambda: helical(
         (20, 30), 8.0, driver=2, right_flank=True
@@ -119,10 +122,9 @@ def properties(mesh):
     }
 
 
-@eqx.filter_jit
-def state_of(design, operation, phase, models):
+def state_at(design, operation, phase, models):
     found = state(design, operation, phase, models)
-    return {
+    return found, {
         "torque": found.balance.torque,
         "force": found.balance.force,
         "loss": found.loss,
@@ -137,6 +139,11 @@ def state_of(design, operation, phase, models):
 
 
 @eqx.filter_jit
+def rolling_state(design, operation, phase, models):
+    return state_at(design, operation, phase, models)[1]
+
+
+@eqx.filter_jit
 def states_alone(design, operation, phase, models):
     return jax.lax.map(lambda at: state(design, operation, at, models).balance.torque, phase)
 
@@ -146,24 +153,20 @@ def floats(tree):
 
 
 @eqx.filter_jit
-def gradient_of_all_lanes(mesh, phase):
-    def whole(mesh):
-        return sum(jnp.sum(leaf) for leaf in jax.tree.leaves(floats(mesh.contacts(phase))))
-
-    return eqx.filter_value_and_grad(whole)(mesh)
-
-
-@eqx.filter_jit
 def gradient_of_state(design, operation, phase, models):
+    """Sums over all lanes of contacts and state, their derivatives, and the states."""
+
     def whole(both):
-        found = state(both[0], both[1], phase, models)
+        found, told = state_at(both[0], both[1], phase, models)
         at = found.conditions
         kept = (found.balance.torque, found.balance.load, found.balance.friction)
         lanes = (at.pressure, at.slide_roll_ratio, at.entrainment, at.sliding, at.radius)
         lost = (found.sliding_loss, found.rolling_loss)
-        return sum(jnp.sum(leaf) for leaf in (*kept, *lanes, *lost))
+        sums = [jnp.sum(leaf) for leaf in (*kept, *lanes, *lost)]
+        return sum(sums + [jnp.sum(leaf) for leaf in jax.tree.leaves(floats(found.contacts))]), told
 
-    return eqx.filter_value_and_grad(whole)((design, operation))
+    (value, told), gradient = eqx.filter_value_and_grad(whole, has_aux=True)((design, operation))
+    return value, gradient, told
 
 
 def models_for(mesh, law="constant", rolling="none"):
@@ -227,7 +230,24 @@ def family(request):
     )
     everywhere = jnp.asarray(np.concatenate([phase, events]))
     found = jax.tree.map(np.asarray, contacts_of(mesh, jnp.asarray(phase)))
-    return SimpleNamespace(mesh=mesh, told=told, phase=phase, everywhere=everywhere, at=found)
+    seen = {"mesh": mesh, "told": told, "phase": phase, "everywhere": everywhere, "at": found}
+    return SimpleNamespace(**seen, differentiated=cache(partial(differentiated, mesh, everywhere)))
+
+
+def differentiated(mesh, everywhere, law="xu_2007", load=None):
+    """Sums, gradient and states of one law on the grid and on the events themselves."""
+    given = (design_for(mesh), operation_for(mesh, load), everywhere)
+    return jax.device_get(gradient_of_state(*given, models_for(mesh, law)))
+
+
+def states(family, law, rolling):
+    """States on the grid; the events come last where they are differentiated as well."""
+    if rolling == "none":
+        found = family.differentiated(law)[2]
+        grid = slice(family.phase.size)
+        return {key: v[..., grid] if v.ndim else v for key, v in found.items()}
+    given = (design_for(family.mesh), operation_for(family.mesh), jnp.asarray(family.phase))
+    return jax.device_get(rolling_state(*given, models_for(family.mesh, law, rolling)))
 
 
 def test_active_contacts_keep_touching_on_the_nominal_motion(family):
@@ -277,12 +297,9 @@ def test_torque_route_equals_loss_route(family, rolling):
     if rolling != "none" and family.at.shape != "line":
         # Its film and load parameters are per length of a line: it is not defined for an ellipse.
         pytest.skip("the formula is for line contacts")
-    design, operation = design_for(family.mesh), operation_for(family.mesh)
+    operation = operation_for(family.mesh)
     for law in laws(family):
-        found = state_of(
-            design, operation, jnp.asarray(family.phase), models_for(family.mesh, law, rolling)
-        )
-        found = {key: np.asarray(value) for key, value in found.items()}
+        found = states(family, law, rolling)
         check_energy(found)
         rates = family.told.motion * float(operation.speed)
         lost = dot(rates, found["torque"])
@@ -610,40 +627,37 @@ def test_batch_equals_loop(family):
         if family.mesh.clearances
         else {"rtol": 1e-14, "atol": 1e-17}
     )
+    # Places across the face are counted from its middle and rounded like its half.
+    rounded = {"width": 2e-15 * np.abs(family.at.width).max()}
     for name, values in leaves_of(family.at).items():
+        near = close | {"atol": max(close["atol"], rounded.get(name, 0.0)), "err_msg": name}
         for other in (alone, mapped):
             found = np.moveaxis(getattr(other, name), 0, -1)
-            np.testing.assert_allclose(found, values, **close, err_msg=name)
+            np.testing.assert_allclose(found, values, **near)
         shaped = values.reshape(*values.shape[:-1], 2, 13)
-        np.testing.assert_allclose(np.asarray(getattr(square, name)), shaped, **close, err_msg=name)
+        np.testing.assert_allclose(np.asarray(getattr(square, name)), shaped, **near)
 
 
 def test_states_together_equal_states_alone(family):
     mesh, phase = family.mesh, jnp.asarray(family.phase)
-    given = (design_for(mesh), operation_for(mesh), phase)
-    together = state_of(*given, models_for(mesh, "xu_2007"))["torque"]
-    alone = states_alone(*given, xu_alone(mesh))
+    together = states(family, "xu_2007", "none")["torque"]
+    alone = states_alone(design_for(mesh), operation_for(mesh), phase, xu_alone(mesh))
     np.testing.assert_allclose(np.transpose(alone), together, rtol=1e-11, atol=1e-14)
 
 
-def test_every_lane_is_finite_with_its_gradient(family):
-    value, gradient = gradient_of_all_lanes(family.mesh, family.everywhere)
-    assert np.isfinite(value)
+def test_every_lane_is_finite(family):
     for leaf in leaves_of(family.at).values():
         assert np.all(np.isfinite(leaf))
-    for path, leaf in jax.tree_util.tree_leaves_with_path(floats(gradient)):
-        assert np.all(np.isfinite(leaf)), jax.tree_util.keystr(path)
 
 
 @pytest.mark.parametrize("load", [0.0, None], ids=["no load", "loaded"])
-def test_every_state_is_finite_with_its_gradient(family, load):
-    mesh = family.mesh
-    value, gradient = gradient_of_state(
-        design_for(mesh), operation_for(mesh, load), family.everywhere, xu_alone(mesh)
-    )
-    assert np.isfinite(value)
-    for path, leaf in jax.tree_util.tree_leaves_with_path(floats(gradient)):
-        assert np.all(np.isfinite(leaf)), jax.tree_util.keystr(path)
+def test_every_lane_and_state_is_finite_with_its_gradient(family, load):
+    """On the events too, where rounding decides on which side they are."""
+    for law in laws(family):
+        value, gradient, _ = family.differentiated(law, load)
+        assert np.isfinite(value)
+        for path, leaf in jax.tree_util.tree_leaves_with_path(floats(gradient)):
+            assert np.all(np.isfinite(leaf)), (law, jax.tree_util.keystr(path))
 
 
 def test_rigid_flanks_touch_where_they_are_active(family):

@@ -416,7 +416,7 @@ PIECES = "study_sweep_operation_torque.0*.nc"
 def killed_after_another_piece(folder: Path, *arguments: str) -> None:
     """A process of its own that dies when it has put one more piece on disk."""
     pieces = partial(folder.glob, f"out/default/{PIECES}")
-    gone, limit = len(list(pieces())), time.monotonic() + 120.0
+    gone, limit = len(list(pieces())), time.monotonic() + 300.0
     process = subprocess.Popen(
         [sys.executable, "-c", CODE, *arguments],
         cwd=folder,

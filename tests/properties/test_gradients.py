@@ -9,6 +9,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from jax.flatten_util import ravel_pytree
+from sound import pair
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
@@ -28,12 +29,6 @@ STEEL = solids.find("steel").build()
 
 LAW = {law.name: law for law in LAWS}
 PHASE = jnp.asarray(0.37)
-
-
-def pair(teeth, **options):
-    return build_cylindrical_pair(
-        teeth=teeth, module=3e-3, pressure_angle=np.deg2rad(20.0), face_width=0.02, **options
-    )
 
 
 def number(value):

@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from sound import PAIR
 
 from pitchpoint.cases import studies
 from pitchpoint.cases.build import Built
@@ -37,6 +38,7 @@ from pitchpoint.units import si_unit
 
 LANES = 5  # one compiled program serves all contact ratios below it
 EXAMPLES = 150
+"""Thousands are drawn by `pytest tests/long/many_random_cases.py`."""
 
 # Each sharing and each rolling resistance, in as few compiled programs as that takes.
 SHARINGS = [name for name, model in LOAD_SHARING.items() if model.flanks != "apart"]
@@ -203,11 +205,12 @@ def answer(case: dict[str, Any]) -> str:
     return "results"
 
 
-def test_random_cases() -> None:
+def explore(examples: int) -> None:
+    """Draw cases, the same in every run, and hold each to its answer."""
     counts = {"results": 0, "input": 0, "convergence": 0}
 
     @settings(
-        max_examples=EXAMPLES,
+        max_examples=examples,
         deadline=None,
         derandomize=True,
         database=None,
@@ -219,27 +222,18 @@ def test_random_cases() -> None:
         counts[answer(case)] += 1
 
     draw()
-    assert counts["results"] > EXAMPLES / 4  # most of the others have gears that cannot run
+    assert counts["results"] > examples / 4  # most of the others have gears that cannot run
     assert counts["input"] > 0
 
 
-SOUND = tomllib.loads("""
-source = "tian_2024"
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = "20 mm"
-[lubricant]
-name = "75W90-A"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
-[models]
-load_sharing = "equal"
-""")
+def test_random_cases() -> None:
+    explore(EXAMPLES)
+
+
+SOUND = tomllib.loads(PAIR) | {
+    "source": "tian_2024",
+    "models": {"load_sharing": "equal"},
+}
 
 
 @pytest.mark.parametrize(

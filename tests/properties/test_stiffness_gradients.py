@@ -5,13 +5,13 @@ import dataclasses
 import equinox as eqx
 import numpy as np
 import pytest
+from sound import pair
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.response import Status
 from pitchpoint.dynamics.vibration import Vibrating, excited, steady, transmission_figures
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -25,17 +25,6 @@ FIGURES = ("mean_stiffness", "transmission_error_range", "static_transmission_er
 GRID = Grid(4)
 STEP = 2e-4
 """Relative step of central differences of order four: their own error is of the order of 1e-14."""
-
-
-def pair(teeth, degrees, module, width, **options):
-    return build_cylindrical_pair(
-        teeth=teeth,
-        module=module,
-        pressure_angle=np.deg2rad(20.0),
-        helix_angle=np.deg2rad(degrees),
-        face_width=width,
-        **options,
-    )
 
 
 CASES = {

@@ -1,5 +1,8 @@
 """The budget of the suite counts what is compiled, and says which file is beyond it."""
 
+from collections import defaultdict
+from types import SimpleNamespace
+
 import budget
 import pytest
 from budget import PROGRAMS, PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE, Meter, Spent, exceeded
@@ -37,6 +40,34 @@ def test_many_files_within_their_own_budgets_may_exceed_that_of_the_suite():
     each = Spent(PROGRAMS_OF_A_FILE, 1.0)
     (told,) = exceeded({f"tests/{n}.py": each for n in range(PROGRAMS // PROGRAMS_OF_A_FILE + 1)})
     assert told.startswith("the suite asks for ")
+
+
+@pytest.mark.parametrize(
+    ("programs", "status"),
+    [
+        (PROGRAMS_OF_A_FILE, pytest.ExitCode.OK),
+        (PROGRAMS_OF_A_FILE + 1, pytest.ExitCode.TESTS_FAILED),
+    ],
+)
+def test_a_run_beyond_its_budget_fails(request, monkeypatch, programs, status):
+    plugin = request.config.pluginmanager.getplugin(
+        str(request.config.rootpath / "tests/conftest.py")
+    )
+    monkeypatch.setattr(plugin, "SPENT", {"tests/a.py": Spent(programs, 1.0)})
+    session = SimpleNamespace(config=SimpleNamespace(), exitstatus=pytest.ExitCode.OK)
+    plugin.pytest_sessionfinish(session)
+    assert session.exitstatus is status
+
+
+def test_workers_hand_in_what_each_file_spent(request, monkeypatch):
+    plugin = request.config.pluginmanager.getplugin(
+        str(request.config.rootpath / "tests/conftest.py")
+    )
+    monkeypatch.setattr(plugin, "SPENT", defaultdict(Spent, {"tests/a.py": Spent(2, 1.0)}))
+    worker = SimpleNamespace(config=SimpleNamespace(workeroutput={}), exitstatus=0)
+    plugin.pytest_sessionfinish(worker)
+    plugin.pytest_testnodedown(worker.config)
+    assert dict(plugin.SPENT) == {"tests/a.py": Spent(4, 2.0)}
 
 
 @pytest.mark.parametrize("file", budget.SLOWEST_FIRST)

@@ -1,6 +1,10 @@
 """Programs are traced once: kept on disk under all that decides them, and found again."""
 
+import os
+import subprocess
+import sys
 from functools import partial
+from pathlib import Path
 
 import equinox as eqx
 import jax
@@ -118,3 +122,23 @@ def test_many_programs_are_unloaded_together(monkeypatch):
     assert double._cache_size() == 0
     assert programs._LOADED["programs"] == 0
     assert float(double(jnp.asarray(3.0))) == 6.0
+
+
+THREADS = """
+import ctypes
+from pitchpoint._jax import jnp
+
+jnp.linalg.cholesky(jnp.eye(3)).block_until_ready()
+maps = {line.split()[-1] for line in open("/proc/self/maps") if "scipy.libs" in line}
+library = ctypes.CDLL(next(path for path in maps if "openblas" in path))
+print(library.scipy_openblas_get_num_threads())
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="asks Linux for its libraries")
+def test_factorisations_run_on_one_thread():
+    environment = {name: value for name, value in os.environ.items() if "OPENBLAS" not in name}
+    done = subprocess.run(
+        [sys.executable, "-c", THREADS], env=environment, capture_output=True, text=True, check=True
+    )
+    assert int(done.stdout) == 1

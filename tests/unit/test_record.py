@@ -141,6 +141,11 @@ def test_a_manifest_that_is_none(folder: Path, text: str) -> None:
     assert "was not written by this version of pitchpoint" in told(folder)
 
 
+def test_a_run_that_was_killed_at_once(folder: Path) -> None:
+    (folder / "default" / MANIFEST).unlink()
+    assert told(folder) == f"{folder}: holds no part yet that a run has finished"
+
+
 def test_a_huge_record_is_not_read(folder: Path) -> None:
     with (folder / RUN).open("wb") as file:
         file.truncate(10**12)

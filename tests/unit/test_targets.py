@@ -1,7 +1,10 @@
 """How a target reads one number out of a part: places of the axis, slopes, and what is refused."""
 
+import tomllib
+
 import numpy as np
 import pytest
+from sound import PAIR
 
 from pitchpoint.cases.comparison import compare, demand_parts
 from pitchpoint.cases.document import Document
@@ -196,13 +199,6 @@ def test_a_variant_is_measured_by_targets_of_its_own(tmp_path):
         describe(str(path))
 
 
-PAIR = """
-gears = { teeth = [23, 61], module = "2 mm", face_width = "20 mm" }
-lubricant = { name = "75W90-A" }
-roughness = { ra = "0.4 um" }
-operation = { torque = "50 N m", speed = "1500 rpm", temperature = "60 degC" }
-"""
-
 WINDING = """
 [[{}targets]]
 quantity = "wind-up"
@@ -213,13 +209,9 @@ part = "torsion"
 variable = "wind_up"
 """
 
-REST = {
+REST = tomllib.loads(PAIR) | {
     "studies": {
         "plain": {},
         "loaded": {"sweep": {"key": "operation.torque", "values": ["1 N m", "2 N m"]}},
     },
-    "gears": {"teeth": [23, 61], "module": "2 mm", "face_width": "20 mm"},
-    "lubricant": {"name": "75W90-A"},
-    "roughness": {"ra": "0.4 um"},
-    "operation": {"torque": "50 N m", "speed": "1500 rpm", "temperature": "60 degC"},
 }

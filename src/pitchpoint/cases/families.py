@@ -3,8 +3,10 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
-from math import cos, inf, pi, sin, tan
+from math import ceil, cos, inf, pi, sin, tan
 from typing import Any
+
+import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.cases.gear_tables import (
@@ -230,13 +232,15 @@ def _deviations(gears: StrainWaveGears) -> tuple[Deviations, Deviations] | None:
     return _waves(given.flexspline), _waves(given.circular_spline)
 
 
+WAVES = 4
+"""Waves of a spline come in multiples of it, the last ones without height: few programs serve all."""
+
+
 def _waves(given: tuple[Deviation, ...]) -> Deviations:
-    return Deviations(
-        **{
-            one.name: jnp.asarray([getattr(wave, one.name) for wave in given], dtype=float)
-            for one in fields(Deviations)
-        }
-    )
+    rows = np.zeros((len(fields(Deviations)), max(1, ceil(len(given) / WAVES)) * WAVES))
+    for row, one in zip(rows, fields(Deviations), strict=True):
+        row[: len(given)] = [getattr(wave, one.name) for wave in given]
+    return Deviations(*map(jnp.asarray, rows))
 
 
 FAMILIES: dict[type, Family] = {

@@ -115,9 +115,9 @@ def _step(teeth: np.ndarray) -> float:
 def _alone(over: Over, deviations: Both, spline: int, teeth: np.ndarray) -> np.ndarray:
     """Errors [curve, state] with deviations of one spline alone over one turn against it."""
     count = int(teeth[spline])
-    if not deviations[spline].order.size:
+    if not np.any(deviations[spline].amplitude):
         return np.zeros((len(CURVES), count * PHASES))
-    none = Deviations(*jnp.zeros((3, 0)))
+    none = Deviations(*jnp.zeros((3, deviations[1 - spline].order.size)))
     own = (deviations[0], none) if spline == 0 else (none, deviations[1])
     return over(own, count)
 
@@ -127,7 +127,7 @@ def _together(
 ) -> np.ndarray:
     """Errors [curve, state] with both over one turn against the circular spline."""
     count = int(teeth[1])
-    given = [bool(one.order.size) for one in deviations]
+    given = [bool(np.any(one.amplitude)) for one in deviations]
     if all(given):
         return over(deviations, count)
     own = alone[given.index(True)]

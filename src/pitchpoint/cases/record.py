@@ -26,7 +26,7 @@ MAX_BYTES = 50_000_000
 """Largest manifest that is read; real ones have some ten kilobytes."""
 
 # Of a variant or part, and of its folder or file: never a path that leads elsewhere.
-Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]{1,100}$")]
+Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]{1,200}$")]
 
 
 class _Kept(BaseModel):

@@ -184,7 +184,10 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     if not (where / RUN).is_file():
         raise InputError("holds no result of pitchpoint", file=str(folder))
     paths = {name: where / name / MANIFEST for name in Record.read(where / RUN).variants}
-    return {name: _opened(path) for name, path in paths.items() if path.is_file()}
+    opened = {name: _opened(path) for name, path in paths.items() if path.is_file()}
+    if not opened:
+        raise InputError("holds no part yet that a run has finished", file=str(folder))
+    return opened
 
 
 def manifests(result: str) -> list[dict[str, Any]]:

@@ -22,7 +22,7 @@ from pitchpoint.gears.involute import (
 from pitchpoint.gears.mesh import Mesh, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.programs import program
-from pitchpoint.roots import root
+from pitchpoint.roots import hypot, root
 
 __all__ = ["CylindricalPair", "zero_backlash_centre_distance"]
 
@@ -519,10 +519,10 @@ class CylindricalPair(Mesh):
             "root_radius": jnp.stack([gear.root_radius for gear in gears]),
             "reference_radius": jnp.stack([gear.reference_radius for gear in gears]),
             "working_radius": self.working_radii,
-            "form_radius": jnp.hypot(
+            "form_radius": hypot(
                 self.base_radii, jnp.stack([gear.form_roll_length for gear in gears])
             ),
-            "active_root_radius": jnp.hypot(self.base_radii, self._innermost),
+            "active_root_radius": hypot(self.base_radii, self._innermost),
         }
         return {
             "outline": jnp.stack([gear.outline() for gear in gears]),

@@ -9,6 +9,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.tooth_motion import ToothMotion
+from pitchpoint.roots import hypot
 
 __all__ = ["Groove", "given", "swept", "tip_with_land"]
 
@@ -112,7 +113,7 @@ class Groove(eqx.Module):
     @property
     def _arcs(self) -> Float[Array, " cell"]:
         """Arc lengths between the nodes [m]."""
-        grown = jnp.hypot(1.0, self.slope)
+        grown = hypot(1.0, self.slope)
         return (grown[1:] + grown[:-1]) / 2.0 * jnp.diff(self.heights)
 
     def with_edges(self, radius: Float[Array, ""]) -> "Groove":

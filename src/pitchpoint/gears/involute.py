@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
-from pitchpoint.roots import root
+from pitchpoint.roots import hypot, root
 
 __all__ = [
     "InvoluteGear",
@@ -225,7 +225,7 @@ class InvoluteGear(eqx.Module):
         unit = jnp.linspace(0.0, 1.0, count)
         fillet = self._fillet(unit)
         lengths = self.form_roll_length + (self.tip_roll_length - self.form_roll_length) * unit
-        flank_radius = jnp.hypot(self.base_radius, lengths)
+        flank_radius = hypot(self.base_radius, lengths)
         flank = jnp.stack([flank_radius, self.half_thickness_angle(flank_radius)])
         tip = jnp.stack([jnp.full(count, jnp.abs(self.tip_radius)), flank[1, -1] * (1.0 - unit)])
         half = self.pitch_half_angle
@@ -238,7 +238,7 @@ class InvoluteGear(eqx.Module):
 
     def _flank_place(self, length: Float[Array, " point"]) -> Float[Array, "2 point"]:
         """Half thickness and height of the involute at roll lengths [m]."""
-        radius = jnp.hypot(self.base_radius, length)
+        radius = hypot(self.base_radius, length)
         return self._place(jnp.stack([radius, self.half_thickness_angle(radius)]))
 
     def _fillet_place(self, unit: Float[Array, " point"]) -> Float[Array, "2 point"]:
@@ -252,7 +252,7 @@ class InvoluteGear(eqx.Module):
     def _load_angle(self, length: Float[Array, " point"]) -> Float[Array, " point"]:
         """Angle between the flank's normal and the perpendicular to the tooth's axis [rad]."""
         base = jnp.abs(self.base_radius)
-        half = self.half_thickness_angle(jnp.hypot(base, length))
+        half = self.half_thickness_angle(hypot(base, length))
         return jnp.arctan(length / base) - self.side * half
 
     def _fillet(self, unit: Float[Array, " point"]) -> Float[Array, "2 point"]:
@@ -272,15 +272,13 @@ class InvoluteGear(eqx.Module):
         turn = centre + (tangent + jnp.pi / 2.0 - centre) * unit
         along = distance * jnp.cos(centre) + rounding * jnp.cos(turn)
         across = distance * jnp.sin(centre) + rounding * jnp.sin(turn)
-        return jnp.stack(
-            [jnp.hypot(along, across), self.pitch_half_angle - jnp.arctan2(across, along)]
-        )
+        return jnp.stack([hypot(along, across), self.pitch_half_angle - jnp.arctan2(across, along)])
 
     @property
     def _ring_fillet_angles(self) -> tuple[Float[Array, ""], Float[Array, ""]]:
         """Angles from the space's axis to the form circle's base tangent point and to the arc's centre."""
         base, form = jnp.abs(self.base_radius), self.form_roll_length
-        radius = jnp.hypot(base, form)
+        radius = hypot(base, form)
         space = self.pitch_half_angle - self.half_thickness_angle(radius)
         tangent = space - jnp.arctan(form / base)
         return tangent, tangent + jnp.arctan((form - self.fillet_radius * self.module) / base)
@@ -312,7 +310,7 @@ class InvoluteGear(eqx.Module):
         x = below * cosine / (sine * stretch)  # the normal passes through the pitch point
         centre = x - stretch * rounding * cosine
         y = self.reference_radius - below
-        return jnp.hypot(x, y), jnp.arctan2(x, y) - (centre - corner) / self.reference_radius
+        return hypot(x, y), jnp.arctan2(x, y) - (centre - corner) / self.reference_radius
 
     def crossing_angle(self) -> Float[Array, ""]:
         """Normal angle of the fillet point where an undercut crosses the involute [rad]."""

@@ -16,7 +16,7 @@ from pitchpoint.gears.mesh import Mesh, Reference
 from pitchpoint.gears.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
-from pitchpoint.roots import root
+from pitchpoint.roots import hypot, root
 
 __all__ = [
     "WINDOW",
@@ -40,7 +40,7 @@ PLACES = (25, 50, 63)
 """Places for pairs in a zone, so that drives of up to 103, 204 and 252 teeth share programs.
 
 More come in multiples of the first. Both zones of 63 stay below 128 rows, from which on a factorisation
-waits for other threads.
+may wait for other threads, see `_jax`.
 """
 
 TRIES = (29, 14)
@@ -119,7 +119,8 @@ class StrainWave(Mesh):
         tip_height: radius at which the circular spline's teeth end [m].
         tip_rounding: of the edges of these teeth [m].
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
-            the circumference [m].
+            the circumference [m]. It opens all gaps alike, so losses have one derivative by it on
+            both sides, at no play too.
         motion_of, driver_of, loaded_of: see `motion`, `driver`, `loaded`.
         held: pairs in each of both zones.
         surveyed: rigid teeth along the wave, as they follow from all these.
@@ -360,7 +361,7 @@ class StrainWave(Mesh):
         width, slope = groove.width_and_slope(radius)
         half = jnp.pi / self.teeth[1] * radius - width - self.backlash / 2.0
         return _section(
-            half, groove.high - radius, rate / jnp.hypot(1.0, slope), -jnp.arctan(slope), ends
+            half, groove.high - radius, rate / hypot(1.0, slope), -jnp.arctan(slope), ends
         )
 
     def dimensions(self) -> dict[str, Float[Array, "..."]]:

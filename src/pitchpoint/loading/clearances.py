@@ -160,9 +160,11 @@ def _normalised(
     arms, gaps = jnp.where(may, rows(arm), 0.0), rows(gap)
     constant = jax.lax.stop_gradient
     safe_arms = jnp.where(may, arms, 1.0)
-    touch = constant(jnp.min(jnp.where(may, gaps / safe_arms, jnp.inf), axis=-1))
+    approach = gaps / safe_arms
+    touch = constant(jnp.min(jnp.where(may, approach, jnp.inf), axis=-1))
     touch = jnp.where(jnp.isfinite(touch), touch, 0.0)
-    gaps = jnp.where(may, gaps - arms * touch[..., None], 0.0)
+    # By differences of the approach the first pair to touch is left with none at all, whatever rounds.
+    gaps = jnp.where(may, arms * (approach - touch[..., None]), 0.0)
     mean_arm = constant(_mean(arms, may))
     mean_compliance = constant(_mean(jnp.diagonal(own, axis1=-2, axis2=-1), may))
     force = jnp.broadcast_to(load, batch) / mean_arm

@@ -1,0 +1,33 @@
+"""Cases and pairs that several files take as a sound beginning."""
+
+import numpy as np
+
+from pitchpoint.gears.cylindrical import build_cylindrical_pair
+
+PAIR = """
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = "20 mm"
+[lubricant]
+name = "75W90-A"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+"""
+"""The shortest case file of a pair."""
+
+
+def pair(teeth, degrees=0.0, module=3e-3, width=20e-3, **options):
+    """A cylindrical pair of 20 deg by teeth, helix [deg], module and face width [m]."""
+    return build_cylindrical_pair(
+        teeth=teeth,
+        module=module,
+        pressure_angle=np.deg2rad(20.0),
+        helix_angle=np.deg2rad(degrees),
+        face_width=width,
+        **options,
+    )
