@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 
-__all__ = ["Factored", "as_array", "log", "root"]
+__all__ = ["Factored", "as_array", "log", "product", "root", "scaled"]
 
 
 class Factored(eqx.Module):
@@ -57,14 +57,14 @@ class Factored(eqx.Module):
         return getattr(self.value, name)
 
     def __mul__(self, other: Any) -> Factored:
-        return Factored(
-            (*self.factors, *(other.factors if isinstance(other, Factored) else (other,)))
-        )
+        more = other.factors if isinstance(other, Factored) else (other,)
+        return Factored((*self.factors, *more))
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Any) -> Factored:
-        return self * (other**-1.0 if isinstance(other, Factored) else 1.0 / other)
+        over: Any = other**-1.0 if isinstance(other, Factored) else 1.0 / other
+        return self * over
 
     def __rtruediv__(self, other: Any) -> Factored:
         return self**-1.0 * other
@@ -88,6 +88,16 @@ for _name in _OPERATORS.split():
     setattr(Factored, f"__{_name}__", _on_value(f"__{_name}__"))
 
 
+def scaled(value: ArrayLike, by: float) -> Any:
+    """A value times a number, as in a change of unit; a product stays one."""
+    return value * by if isinstance(value, Factored) else jnp.asarray(value) * by
+
+
+def product(*factors: ArrayLike) -> Any:
+    """Product that keeps its factors, for whoever takes an array."""
+    return Factored(factors)
+
+
 def as_array(value: Factored | ArrayLike) -> Any:
     """The value itself, or the array that a product stands for."""
     return value.value if isinstance(value, Factored) else value
@@ -105,7 +115,7 @@ def log(value: Factored | ArrayLike, least: float) -> Float[Array, "..."]:
 
 
 def _log(value: Array) -> Array:
-    tiny = jnp.finfo(jnp.result_type(value, jnp.float32)).tiny
+    tiny = float(np.finfo(jnp.result_type(value, jnp.float32)).tiny)
     return jnp.log(jnp.where(value > tiny, value, tiny))
 
 

@@ -20,7 +20,8 @@ def line_half_width(
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.43 (there E* = E'/2).
     """
-    return root(8.0 * line_load * radius / (jnp.pi * modulus))
+    found: Float[Array, "*b"] = root(8.0 * line_load * radius / (jnp.pi * modulus))
+    return found
 
 
 def line_pressure(
@@ -35,7 +36,8 @@ def line_pressure(
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.45 (there E* = E'/2).
     """
-    return root(line_load * modulus / (2.0 * jnp.pi * radius))
+    found: Float[Array, "*b"] = root(line_load * modulus / (2.0 * jnp.pi * radius))
+    return found
 
 
 def elliptic_pressure(

@@ -21,7 +21,7 @@ ROWS = 256
 COLUMNS = 4096
 """Most positions of one block."""
 
-_ROWS, _COLUMNS = 16, 128
+_ROWS, _COLUMNS = 64, 128
 """Operating points and positions that are solved together: their work arrays stay in the cache of a core."""
 
 
@@ -120,7 +120,8 @@ def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> Columns
         known = _engaged(inputs[0], at, models)
 
         def tile(part: Inputs) -> Columns:
-            found = state(*eqx.combine(part, whole), at, models, quick=quick, engaged=known)
+            design, operation = eqx.combine(part, whole)
+            found = state(design, operation, at, models, quick=quick, engaged=known)
             balance = found.balance
             return balance.force, found.input_torque, found.efficiency, balance.residual
 

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.efficiency.drag import Drag, resistance
-from pitchpoint.factored import Factored
+from pitchpoint.factored import as_array
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
@@ -360,8 +360,8 @@ def state(
     guess = None
     if quick:
         single = jax.tree.map(_single, given)
-        guess = jnp.asarray(first_guess(**_in_balance(*single, models)), jnp.float64)
-    balanced = balance(**_in_balance(*given, models), guess=guess)
+        guess = jnp.asarray(first_guess(**_in_balance(single, models)), jnp.float64)
+    balanced = balance(**_in_balance(given, models), guess=guess)
     at_contact = replace(unloaded, load=balanced.load)
     driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
     others = (1.0 - mesh.driver) * mesh.motion
@@ -369,30 +369,25 @@ def state(
         contacts=contacts,
         conditions=at_contact,
         balance=balanced,
-        sliding_loss=balanced.load * balanced.friction * at_contact.sliding.value,
-        rolling_loss=2.0 * balanced.rolling * at_contact.entrainment.value,
+        sliding_loss=balanced.load * balanced.friction * as_array(at_contact.sliding),
+        rolling_loss=2.0 * balanced.rolling * as_array(at_contact.entrainment),
         drag_loss=along(balanced.drag, mesh.motion) * operation.speed,
         input_torque=along(balanced.torque, driver),
         output_power=-along(balanced.torque, others) * operation.speed,
     )
 
 
-def _in_balance(
-    design: Design,
-    operation: Operation,
-    contacts: Contacts,
-    share: Lanes,
-    unloaded: Conditions,
-    motion: Float[Array, " dof"],
-    loaded: Float[Array, " dof"],
-    models: Models,
-) -> dict[str, Any]:
-    """What the balance of forces asks for, with the laws under any load."""
+_Given = tuple[Design, Operation, Contacts, Lanes, Conditions, Array, Array]
 
-    def friction(load: Factored) -> Lanes:
+
+def _in_balance(given: _Given, models: Models) -> dict[str, Any]:
+    """What the balance of forces asks for, with the laws under any load."""
+    design, operation, contacts, share, unloaded, motion, loaded = given
+
+    def friction(load: Lanes) -> Lanes:
         return models.coefficient(replace(unloaded, load=load))
 
-    def rolling(load: Factored) -> Lanes:
+    def rolling(load: Lanes) -> Lanes:
         at = replace(unloaded, load=load)
         return evaluate(models.rolling.function, at) * contacts.weight
 

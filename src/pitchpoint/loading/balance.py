@@ -8,7 +8,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.factored import Factored
+from pitchpoint.factored import product
 from pitchpoint.roots import quotient, root, third_order_step
 
 __all__ = ["Balance", "balance", "first_guess", "tooth_load"]
@@ -16,7 +16,7 @@ __all__ = ["Balance", "balance", "first_guess", "tooth_load"]
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 Drag = Callable[[Lanes], Float[Array, "dof *b"]]
-Friction = Callable[[Factored], Lanes]
+Friction = Callable[[Lanes], Lanes]
 Torques = list[Float[Array, "*b"]]
 Terms = tuple[Lanes, Lanes, Torques, Torques]
 
@@ -114,7 +114,7 @@ class _Equation:
         # Laws never see a load of zero, where their slopes may be infinite.
         safe = jnp.where(force > 0.0, force, self.safe_load / self.arm)
         lanes = self.carrying & (self.carried > 0.0)
-        load = Factored((self.safe_share, safe))
+        load = product(self.safe_share, safe)
         coefficient = jnp.where(lanes, self.friction(load), 0.0)
         if self.rolling is None:
             return coefficient, jnp.zeros_like(coefficient)
@@ -149,7 +149,8 @@ class _Equation:
 
     def last_step(self, ratio: Each) -> tuple[Each, Terms, Each]:
         """Newton's step from near the root; laws go along their tangent, which leaves its square."""
-        found, change = jax.jvp(self.terms, (ratio,), (jnp.ones_like(ratio),))
+        ratio = _apart(ratio)
+        found, change = _apart(jax.jvp(self.terms, (ratio,), (jnp.ones_like(ratio),)))
         step = -quotient(found[0], jax.lax.stop_gradient(change[0]))
         terms: Terms = jax.tree.map(lambda a, b: a + b * step, found[1], change[1])
         return ratio + step, terms, step**2
@@ -251,6 +252,8 @@ def balance(
     slip = along(equation.friction_arms, loaded)
     hold = -equation.side * total(slip) / equation.arm
     jamming = jnp.where(hold > 0.0, 1.0 / jnp.where(hold > 0.0, hold, 1.0), jnp.inf)
+    if guess is not None:
+        ratio, torque, residual, grip = _apart((ratio, torque, residual, grip))
     solved = (residual <= UNSOLVED) & (ratio > 0.0) & (equation.carried >= 0.0) & ~locked
     return Balance(
         force=_where(solved, ratio * equation.frictionless),
@@ -301,6 +304,17 @@ def _along(torques: Torques, rates: Float[Array, " dof"]) -> Each:
         (rate * one for rate, one in zip(rates[1:], torques[1:], strict=True)),
         rates[0] * torques[0],
     )
+
+
+def _apart(values: Any) -> Any:
+    """The values as they are, in a way that keeps what follows from being fused with what made them.
+
+    The compiler fuses cheap and expensive operations alike into every loop that asks for their result,
+    and computes them again in each; its own barriers it removes before it fuses. A condition that is
+    always true, which it cannot know, is one that stays (a sixth of the time of `benchmarks/states.py`).
+    """
+    always = jax.tree.leaves(values)[0].ravel()[0] > -jnp.inf
+    return jax.lax.cond(always, lambda x: x, lambda x: jax.tree.map(jnp.negative, x), values)
 
 
 def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Array, "..."]:

@@ -12,7 +12,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Factored, as_array
+from pitchpoint.factored import as_array, product
 from pitchpoint.gears.mesh import Reference
 
 __all__ = ["Conditions", "arguments", "evaluate"]
@@ -40,7 +40,7 @@ class Conditions(eqx.Module):
     """
 
     contacts: Contacts
-    load: Factored | Lanes
+    load: Lanes
     nominal_load: Each
     slip: Lanes
     roll: Lanes
@@ -55,7 +55,7 @@ class Conditions(eqx.Module):
     reference: Reference | None
 
     @property
-    def line_load(self) -> Factored | Lanes:
+    def line_load(self) -> Lanes:
         """Normal load per length of contact line [N/m]."""
         return self.load / self.contacts.weight
 
@@ -70,14 +70,16 @@ class Conditions(eqx.Module):
         return (self.roll - self.slip) / 2.0 * self.speed
 
     @property
-    def entrainment(self) -> Factored:
+    def entrainment(self) -> Lanes:
         """Mean of the surface speeds, without sign [m/s]."""
-        return Factored((jnp.abs(self.roll / 2.0), self.speed))
+        found: Lanes = product(jnp.abs(self.roll / 2.0), self.speed)
+        return found
 
     @property
-    def sliding(self) -> Factored:
+    def sliding(self) -> Lanes:
         """Difference of the surface speeds, without sign [m/s]."""
-        return Factored((jnp.abs(self.slip), self.speed))
+        found: Lanes = product(jnp.abs(self.slip), self.speed)
+        return found
 
     @property
     def slide_roll_ratio(self) -> Lanes:
@@ -96,7 +98,7 @@ class Conditions(eqx.Module):
         return 1.0 / self.contacts.relative_curvature[1]
 
     @property
-    def pressure(self) -> Factored | Lanes:
+    def pressure(self) -> Lanes:
         """Largest Hertz pressure [Pa]."""
         if self.contacts.shape == "ellipse":
             return hertz.elliptic_pressure(
@@ -110,7 +112,7 @@ class Conditions(eqx.Module):
         )
 
     @property
-    def half_width(self) -> Factored | Lanes:
+    def half_width(self) -> Lanes:
         """Half-width of a line contact [m]."""
         return hertz.line_half_width(
             line_load=self.line_load, radius=self.radius, modulus=self.modulus

@@ -19,7 +19,7 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import as_array, log
+from pitchpoint.factored import as_array, log, scaled
 
 __all__ = [
     "LAWS",
@@ -157,12 +157,12 @@ def iso_tr_14179_2(
         >>> round(float(mu), 4)
         0.0544
     """
-    newton_per_mm, mm = reference_line_load * 1e-3, reference_radius * 1e3
-    mPas, um = viscosity * 1e3, roughness_ra * 1e6
+    newton_per_mm, mm = scaled(reference_line_load, 1e-3), scaled(reference_radius, 1e3)
+    mPas, um = scaled(viscosity, 1e3), scaled(roughness_ra, 1e6)
     powers = _power_product(
         (newton_per_mm, 0.2), (reference_sum_speed, -0.2), (mm, -0.2), (mPas, -0.05), (um, 0.25)
     )
-    return 0.048 * powers * lubricant_factor
+    return 0.048 * powers * jnp.asarray(lubricant_factor)
 
 
 def xu_2007(
@@ -201,7 +201,8 @@ def xu_2007(
         0.021024
     """
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = _XU
-    GPa, cP, um, SR = pressure * 1e-9, viscosity * 1e3, roughness_rq * 1e6, abs(slide_roll_ratio)
+    GPa, cP = scaled(pressure, 1e-9), scaled(viscosity, 1e3)
+    um, SR = scaled(roughness_rq, 1e6), abs(scaled(slide_roll_ratio, 1.0))
     heaviness = as_array(GPa * (SR * log(cP, _FLOOR) / math.log(10.0)))
     f = (b1 + b9 * jnp.exp(um)) + b4 * heaviness + b5 * jnp.exp(-heaviness)
     return _power_product(
