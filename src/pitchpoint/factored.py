@@ -48,6 +48,11 @@ class Factored(eqx.Module):
         """Shape of the product."""
         return np.broadcast_shapes(*map(jnp.shape, self.factors))
 
+    @property
+    def dtype(self) -> Any:
+        """Type of the numbers of the product."""
+        return jnp.result_type(*self.factors)
+
     def __jax_array__(self) -> Array:
         return self.value
 
@@ -64,10 +69,12 @@ class Factored(eqx.Module):
 
     def __truediv__(self, other: Any) -> Factored:
         over: Any = other**-1.0 if isinstance(other, Factored) else 1.0 / other
-        return self * over
+        found: Factored = self * over
+        return found
 
     def __rtruediv__(self, other: Any) -> Factored:
-        return self**-1.0 * other
+        found: Factored = self**-1.0 * other
+        return found
 
     def __pow__(self, power: ArrayLike) -> Factored:
         return Factored(tuple(one**power for one in self.merged))

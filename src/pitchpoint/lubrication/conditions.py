@@ -213,7 +213,7 @@ def evaluate(
     wanted, _ = arguments(law)
     values = {name: getattr(conditions, name) for name in wanted}
     found = _once(law)(**values, **(parameters or {}))
-    return jnp.broadcast_to(found, conditions.load.shape)
+    return jnp.broadcast_to(found, conditions.load.shape).astype(conditions.load.dtype)
 
 
 @lru_cache(maxsize=64)
