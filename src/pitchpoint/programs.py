@@ -274,7 +274,7 @@ def _text(value: Any) -> Any:
 
 def _name(thing: Any) -> str:
     """Name by which a later process finds a function or a class of the package."""
-    module, name = thing.__module__, thing.__qualname__
+    module, name = str(thing.__module__), thing.__qualname__
     if not module.startswith("pitchpoint.") or "<locals>" in name:
         raise _NamelessError
     if "<lambda>" in name:

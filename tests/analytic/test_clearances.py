@@ -2,8 +2,9 @@
 
 import itertools
 from functools import partial
-from types import SimpleNamespace
+from typing import ClassVar
 
+import equinox as eqx
 import numpy as np
 import pytest
 from scipy.optimize import nnls
@@ -256,13 +257,18 @@ def contacts(path, gap=0.0, active=True):
 
 def mesh(separate):
     """As much of a mesh as the models look at."""
-    return SimpleNamespace(
-        clearances=separate,
-        toothed=True,
-        overlap_ratio=0.0,
-        contact_ratio=1.5,
-        loaded=jnp.asarray([0.0, 0.0, 1.0]),
-    )
+    return _Looked(separate)
+
+
+class _Looked(eqx.Module):
+    clearances: bool = eqx.field(static=True)
+    toothed: ClassVar[bool] = True
+    overlap_ratio: ClassVar[float] = 0.0
+    contact_ratio: ClassVar[float] = 1.5
+
+    @property
+    def loaded(self):
+        return jnp.asarray([0.0, 0.0, 1.0])
 
 
 @partial(jax.jit, static_argnames="separate")

@@ -729,12 +729,12 @@ FILES = {
     "many hexadecimal digits": (b"title = 0x" + b"f" * 9000, "title: a whole number", "text"),
     "control characters": (b'"a\\nb\\u001b[1m" = 1', "a\\nb\\x1b[1m", "known key"),
     "many losses": (
-        SMALL.encode()
+        PAIR.encode()
         + b"".join(b"[losses.a%d]\nbetween = ['gear 1', 'housing']\n" % i for i in range(400)),
         "losses: 400 were given; allowed are at most 20",
     ),
     "many studies": (
-        SMALL.encode() + b"".join(b"[studies.a%d]\n" % i for i in range(20_000)),
+        PAIR.encode() + b"".join(b"[studies.a%d]\n" % i for i in range(20_000)),
         "studies: 20000 were given; allowed are at most 200",
     ),
     "many variants": (
@@ -742,7 +742,7 @@ FILES = {
         "variants: 5000 were given; allowed are at most 50",
     ),
     "a long key of a change": (
-        SMALL.encode() + b"[studies.a.change.gears.module]\n" + b"k" * 100_000 + b" = 1",
+        PAIR.encode() + b"[studies.a.change.gears.module]\n" + b"k" * 100_000 + b" = 1",
         "studies.a: gears.module.kkk",
         '...: "module" is a value, not a table',
     ),

@@ -93,7 +93,9 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
     """Parsed and laid out as far as the computation itself."""
     laid_out = []
 
-    def prepare(case: str, *, folder: Path, progress: object, **options: Any) -> dict[str, Any]:
+    def prepare(
+        case: str, *, folder: Path, progress: object, overwrite: bool, **options: Any
+    ) -> dict[str, Any]:
         laid_out.extend(run.describe(case, **options))
         return {}
 

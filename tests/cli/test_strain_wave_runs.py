@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from sound import PAIR
 
-from pitchpoint import _jax
+from pitchpoint import programs
 from pitchpoint.cases import run as running
 from pitchpoint.cases.build import TEETH_ALONE
 from pitchpoint.cases.catalogue import (
@@ -75,7 +75,7 @@ temperatures = ["60 degC", "80 degC"]
 @pytest.fixture(scope="module", autouse=True)
 def programs_stay() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_jax, "MOST_PROGRAMS", 10**9)
+        patch.setattr(programs, "MOST_PROGRAMS", 10**9)
         yield
 
 
@@ -90,7 +90,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="module")
 def other(folder: Path) -> tuple[int, Outcome]:
     """Programs that a second drive of other teeth, torque, speed and oil asked for, and what it found."""
-    before = _jax._LOADED["programs"]
+    before = programs._LOADED["programs"]
     settings = {
         "gears.teeth": [190, 192],
         "operation.torque": "40 N m",
@@ -99,13 +99,13 @@ def other(folder: Path) -> tuple[int, Outcome]:
         "gears.deviations": {"flexspline": [{"order": 2, "amplitude": "0.1 um"}]},
     }
     found = running.run(str(folder.parent / "drive.toml"), settings=settings)["default"]
-    return _jax._LOADED["programs"] - before, found
+    return programs._LOADED["programs"] - before, found
 
 
 def test_another_drive_compiles_nothing_new(other: tuple[int, Outcome]) -> None:
-    programs, found = other
+    more, found = other
     assert list(found.parts) == PARTS
-    assert programs == 0
+    assert more == 0
 
 
 def test_empty_places_for_pairs_are_not_told(drive: Outcome, other: tuple[int, Outcome]) -> None:
