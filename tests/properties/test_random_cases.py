@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from sound import PAIR
 
@@ -38,6 +38,7 @@ from pitchpoint.units import si_unit
 
 LANES = 5  # one compiled program serves all contact ratios below it
 EXAMPLES = 150
+SEED = 1
 """Thousands are drawn by `pytest tests/long/many_random_cases.py`."""
 
 # Each sharing and each rolling resistance, in as few compiled programs as that takes.
@@ -211,10 +212,10 @@ def explore(examples: int) -> None:
     """Draw cases, the same in every run, and hold each to its answer."""
     counts = {"results": 0, "input": 0, "convergence": 0}
 
+    @seed(SEED)  # the same draws whatever becomes of this code
     @settings(
         max_examples=examples,
         deadline=None,
-        derandomize=True,
         database=None,
         phases=[Phase.generate, Phase.shrink],
         suppress_health_check=list(HealthCheck),
