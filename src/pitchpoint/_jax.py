@@ -1,9 +1,7 @@
 """The one place that configures JAX: double precision and a private, persistent compilation cache."""
 
-import logging
 import os
 import platform
-import stat
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -31,37 +29,23 @@ import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
 from jax.typing import ArrayLike, DTypeLike  # noqa: E402
 
-__all__ = ["array", "cache_folder", "jax", "jnp", "kept_folder", "private"]
+from pitchpoint.kept import base_folder, prepared  # noqa: E402
+
+__all__ = ["array", "cache_folder", "jax", "jnp", "kept_folder"]
 
 
 def cache_folder() -> Path:
     """Folder of compiled programs: under the user's cache, one for each kind of machine.
 
     Raises:
-        RuntimeError: the user has no home, as in a container that runs under a number.
+        RuntimeError: the user has no home.
     """
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "pitchpoint" / f"xla-{platform.machine()}-{jax.__version__}"
+    return base_folder() / f"xla-{platform.machine()}-{jax.__version__}"
 
 
 def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) -> jax.Array:
     """Value as an array; unlike `jnp.asarray` it compiles no program for a plain number."""
     return jnp.asarray(value if isinstance(value, jax.Array) else np.asarray(value, dtype), dtype)
-
-
-def private(folder: Path) -> bool:
-    """True if nobody but the user and the administrator can put files there."""
-    if not hasattr(os, "geteuid"):
-        return True  # Windows keeps a user's folders to the user
-    own = folder.stat()
-    mine = own.st_uid == os.geteuid() and not own.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-    return mine and not any(map(_open_to_all, folder.resolve().parents))
-
-
-def _open_to_all(folder: Path) -> bool:
-    """True if anybody could replace what lies in a folder."""
-    mode = folder.stat().st_mode
-    return bool(mode & stat.S_IWOTH) and not mode & stat.S_ISVTX
 
 
 def kept_folder() -> Path | None:
@@ -72,14 +56,10 @@ def kept_folder() -> Path | None:
 def _enable_cache() -> Path | None:
     """The folder, if only the user can write to it, as that of JAX's compiled programs too."""
     try:
-        folder = cache_folder()
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        safe = private(folder)
-    except (OSError, RuntimeError):
-        return None  # without a home, or with one that cannot be written to, programs are compiled anew
-    if not safe:
-        told = "%s can be written to by others and is not used; programs are compiled anew"
-        logging.getLogger("pitchpoint").warning(told, folder)
+        folder = prepared(cache_folder())
+    except RuntimeError:
+        return None
+    if folder is None:
         return None
     jax.config.update("jax_compilation_cache_dir", str(folder))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)

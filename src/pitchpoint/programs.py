@@ -8,9 +8,7 @@ JAX, the structure of the arguments. What has no such name (a law of the user's 
 
 import hashlib
 import json
-import logging
 import os
-import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
@@ -26,6 +24,7 @@ import numpy as np
 from jax import export
 
 from pitchpoint._jax import jax, kept_folder
+from pitchpoint.kept import read, write
 
 __all__ = [
     "Program",
@@ -38,8 +37,6 @@ __all__ = [
 
 P = ParamSpec("P")
 R = TypeVar("R")
-
-_LOG = logging.getLogger(__name__)
 
 QUICK: Mapping[str, bool | int] = {
     "xla_backend_optimization_level": 0,
@@ -114,7 +111,8 @@ class Program(Generic[P, R]):
             kept = _read(path)
             if kept is None:
                 kept = self._exported(_Flat(self.function, structure, static), arrays)
-                _write(path, *kept)
+                outline, blob = kept
+                write(path, json.dumps(outline).encode() + b"\n" + blob)
         except _NamelessError:
             return None
         outline, blob = kept
@@ -284,25 +282,8 @@ def _name(thing: Any) -> str:
 
 def _read(path: Path) -> tuple[Any, bytes] | None:
     """Outline and portable form of a program that was kept; None if there is none, or it is damaged."""
-    try:
-        data = path.read_bytes()
-    except OSError:
-        return None
-    digest, body = data[:32], data[32:]
-    if hashlib.sha256(body).digest() != digest:
+    body = read(path)
+    if body is None:
         return None
     outline, _, blob = body.partition(b"\n")
     return json.loads(outline), blob
-
-
-def _write(path: Path, outline: Any, blob: bytes) -> None:
-    """Keep a program, whole or not at all; a folder that cannot be written to costs time, nothing else."""
-    body = json.dumps(outline).encode() + b"\n" + blob
-    try:
-        path.parent.mkdir(mode=0o700, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent)
-        with os.fdopen(handle, "wb") as part:
-            part.write(hashlib.sha256(body).digest() + body)
-        os.replace(name, path)
-    except OSError as error:
-        _LOG.info("a compiled program is not kept: %s", error)

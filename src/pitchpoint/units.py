@@ -2,7 +2,7 @@
 
 The number and the unit are split here, and the unit must be on the list of its quantity kind.
 Only our own expression for a listed unit reaches pint, never the text a user wrote. Factors are
-looked up once for each unit and kept, and pint is imported when the first one is needed.
+asked of pint once for all units and kept in the user's cache.
 
 Spelling: `*`, `.` and `·` between units mean a product and may be written as a space ("N m",
 "N*m"), a power is written "mm2", "mm^2" or "mm²", and "µm", "°C" and "°" are understood.
@@ -13,15 +13,18 @@ given in rpm, rev/s, rad/s or deg/s.
 from __future__ import annotations
 
 import difflib
+import hashlib
+import json
 import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, NoReturn, overload
 
 from pitchpoint.errors import InputError
+from pitchpoint.kept import base_folder, prepared, read, write
 
 if TYPE_CHECKING:
     import numpy as np
@@ -559,14 +562,39 @@ def _registry() -> pint.UnitRegistry[Decimal]:
     return pint.UnitRegistry(non_int_type=Decimal)
 
 
-@lru_cache(maxsize=256)
 def _factors(kind: str, unit: str) -> tuple[Decimal, Decimal]:
     """Return scale and offset of `si = scale * value + offset`; decimals keep "0.8 um" exact."""
     if unit == si_unit(kind):
         return Decimal(1), Decimal(0)
+    scale, offset = _every_factor()[kind][unit]
+    return Decimal(scale), Decimal(offset)
+
+
+@cache
+def _every_factor() -> dict[str, dict[str, tuple[str, str]]]:
+    """Factors of all units by kind, as pint gives them; kept, because pint takes its time."""
+    from importlib.metadata import version
+
+    listed = {kind: dict(each.units) for kind, each in _KINDS.items()}
+    state = hashlib.sha256(json.dumps([version("pint"), listed]).encode()).hexdigest()[:16]
+    try:
+        folder = prepared(base_folder())
+    except RuntimeError:
+        folder = None
+    path = None if folder is None else folder / f"units-{state}.json"
+    kept = None if path is None else read(path)
+    if kept is not None:
+        return dict(json.loads(kept))
+    found = {kind: {unit: _by_pint(kind, unit) for unit in units} for kind, units in listed.items()}
+    if path is not None:
+        write(path, json.dumps(found).encode())
+    return found
+
+
+def _by_pint(kind: str, unit: str) -> tuple[str, str]:
     if kind == "temperature":
-        return _factors("temperature difference", unit)[0], _in_si(kind, unit, Decimal(0))
-    return _in_si(kind, unit, Decimal(1)), Decimal(0)
+        return _by_pint("temperature difference", unit)[0], str(_in_si(kind, unit, Decimal(0)))
+    return str(_in_si(kind, unit, Decimal(1))), "0"
 
 
 def _in_si(kind: str, unit: str, value: Decimal) -> Decimal:

@@ -12,7 +12,7 @@ import pitchpoint
 
 SOURCE = Path(pitchpoint.__file__).parent
 FLOW = (
-    {"errors", "units", "citations", "registry", "roots", "_jax", "programs", "factored"},
+    {"errors", "units", "citations", "registry", "roots", "_jax", "kept", "programs", "factored"},
     {"materials"},
     {"contact"},
     {"gears"},

@@ -1,6 +1,7 @@
 """Quantities as users write them, and what they are told when one is wrong."""
 
 import math
+import os
 import re
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import numpy as np
 import pint
 import pytest
 
+from pitchpoint import units
 from pitchpoint.errors import InputError
 from pitchpoint.units import UnitError, convert, kind_of, kinds, parse, si_unit, units_of
 
@@ -247,9 +249,31 @@ def test_unknown_kind_is_a_mistake_of_the_program_not_of_the_input():
     assert not isinstance(caught.value, UnitError)
 
 
-def test_pint_is_imported_only_when_a_factor_is_needed():
+def test_pint_is_imported_only_for_factors_that_are_not_kept(tmp_path):
     script = (
         "import sys, pitchpoint.units as u; u.parse('3 m', 'length'); u.parse(1, 'dimensionless');"
-        "assert 'pint' not in sys.modules; u.parse('3 mm', 'length'); assert 'pint' in sys.modules"
+        "assert 'pint' not in sys.modules; u.parse('3 mm', 'length'); print('pint' in sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", script], check=True)
+    kept = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+
+    def run() -> str:
+        done = [sys.executable, "-c", script]
+        return subprocess.run(done, check=True, capture_output=True, text=True, env=kept).stdout
+
+    assert [run(), run()] == ["True\n", "False\n"]
+    (file,) = (tmp_path / "pitchpoint").glob("units-*")
+    file.write_bytes(file.read_bytes().replace(b"0.001", b"0.002"))
+    assert [run(), run()] == ["True\n", "False\n"]
+
+
+def test_factors_that_are_kept_are_those_of_pint(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    units._every_factor.cache_clear()
+    first = units._every_factor()
+    units._every_factor.cache_clear()
+    again = units._every_factor()
+    units._every_factor.cache_clear()
+    for kind, each in first.items():
+        assert {unit: tuple(pair) for unit, pair in again[kind].items()} == each
+    assert parse("3 mm", "length") == 0.003
+    assert parse("20 degC", "temperature") == pytest.approx(293.15, rel=1e-15)
