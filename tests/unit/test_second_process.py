@@ -79,7 +79,9 @@ def run_once(case: Path, home: Path) -> tuple[int, int, int, int]:
 
 def programs(home: Path) -> set[str]:
     """Compiled programs on disk; the files beside them hold the time of last use."""
-    kept = {path.name for path in home.rglob("*") if path.is_file() and "-atime" not in path.name}
+    kept = {
+        path.name for path in home.rglob("xla-*/*") if path.is_file() and "-atime" not in path.name
+    }
     return kept - traced(home).keys()
 
 

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 
-import equinox as eqx
 import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
@@ -40,9 +39,11 @@ def pieces(built: Built) -> Iterator[Piece]:
 
 
 def _start(built: Built) -> tuple[Engagement | None, int]:
-    """What all torques have in common: contacts, where they are known beforehand, and their number."""
+    """What all torques have in common: contacts, where they are known beforehand, and how many there are."""
     models, _ = laws_of(built)
-    return engaged(built.design, built.operation, models, _NODES), _lanes(built.design, models)
+    known = engaged(built.design, built.operation, models, _NODES)
+    length = _line_length(built.design, models) if known is None else known.contacts.weight
+    return known, int(np.prod(length.shape))
 
 
 def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -149,13 +150,8 @@ def _map(
     return np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
 
 
-def _lanes(design: Design, models: Models) -> int:
-    """Contacts in all nodes of a cycle."""
-    shapes = eqx.filter_eval_shape(_contacts, design, models)
-    return int(np.prod(shapes.shape))
-
-
-def _contacts(design: Design, models: Models) -> Array:
+@program
+def _line_length(design: Design, models: Models) -> Array:
     phase, _ = cycle_nodes(design.mesh, models.sharing, _NODES)
     return design.mesh.contacts(phase).weight
 
