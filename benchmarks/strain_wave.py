@@ -162,11 +162,12 @@ def theirs(
     weight = np.asarray(known.weight)
     once, found = timed(lambda: rival.geometry(drive, np.asarray(known.phase)))
     same = package_geometry(built, known)
+    held = built.design.mesh.filled
     seconds, own, shared = [], [], []
     for torque in torques:
         compliance = np.asarray(
             _compliance(tree, known.contacts, models.compliance, jnp.asarray(torque))
-        )
+        )[np.ix_(held, held)]
         inputs = (drive, found, compliance, weight, float(torque), speeds[1:], nu)
         took, figure = timed(lambda inputs=inputs: loop(*inputs))
         seconds.append(took)

@@ -19,13 +19,16 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_nodes,
 )
 from pitchpoint.efficiency.summary import engaged
-from pitchpoint.programs import program
+from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
 
 __all__ = ["joined", "map_axes", "pieces"]
 
 STATES = 1 << 20
 """Contacts (pairs, slices, nodes of the cycle, operating points) that are computed together at most."""
+
+MANY = 100
+"""Points of each torque from which on a program that takes longer to compile saves time."""
 
 Piece = Callable[[Callable[[int], None]], xr.Dataset]
 
@@ -139,11 +142,12 @@ def _map(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
     moving = np.where(speeds > 0.0, speeds, 1.0)  # at rest nothing is lost, whatever the laws say
+    compute = _figures if speeds.size * degrees.size < MANY else _figures_of_many
     parts = []
     for start in range(0, speeds.size, together):
         part = moving[start : start + together]
         filled = np.concatenate([part, np.full(together - part.size, part[-1])])
-        found = _figures(design, array(torque), array(filled), array(degrees), models, known)
+        found = compute(design, array(torque), array(filled), array(degrees), models, known)
         parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
     loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
     turns = (speeds > 0.0)[:, None]
@@ -172,3 +176,6 @@ def _figures(
     points = Operation(jnp.full(speed.shape, torque), speed, degree)
     found = cycle(design, points, models, _NODES, known)
     return found.mean_loss, found.mean_efficiency, found.locked
+
+
+_figures_of_many = fast_program(_figures.function)
