@@ -104,13 +104,13 @@ def _compliance(built_in: Any, contacts: Any, terms: Any, torque: Any) -> Any:
 
 def package_geometry(built: Built, known: Engagement) -> rival.Geometry:
     """The package's contacts in the rival's form, to compare what follows from them."""
-    contacts = known.contacts
+    contacts, held = known.contacts, built.design.mesh.filled
     return rival.Geometry(
-        active=np.asarray(contacts.active[:, 0]),
-        gap=np.asarray(contacts.gap[:, 0]),
-        normal=np.asarray(contacts.normal[:, :, 0]),
-        slip=np.asarray(contacts.slip_arm[:, :, 0]),
-        radial=np.asarray(built.design.mesh.support(contacts)[0, :, 0]),
+        active=np.asarray(contacts.active[held, 0]),
+        gap=np.asarray(contacts.gap[held, 0]),
+        normal=np.asarray(contacts.normal[:, held, 0]),
+        slip=np.asarray(contacts.slip_arm[:, held, 0]),
+        radial=np.asarray(built.design.mesh.support(contacts)[0, held, 0]),
     )
 
 
