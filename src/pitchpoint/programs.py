@@ -11,6 +11,7 @@ import json
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from functools import cache, partial, update_wrapper
 from importlib import import_module
@@ -94,7 +95,7 @@ class Program(Generic[P, R]):
         arrays = [leaf for leaf in leaves if _is_array(leaf)]
         if any(isinstance(leaf, jax.core.Tracer) for leaf in arrays):
             return self.traced(*args, **kwargs)
-        static = tuple(None if _is_array(leaf) else (leaf,) for leaf in leaves)
+        static = tuple(None if _is_array(leaf) else (leaf, type(leaf)) for leaf in leaves)
         key = structure, static, tuple((leaf.shape, leaf.dtype) for leaf in arrays)
         if key not in self.ready:
             self.ready[key] = self._made(structure, static, arrays, (args, kwargs))
@@ -113,6 +114,7 @@ class Program(Generic[P, R]):
                 kept = self._exported(_Flat(self.function, structure, static), arrays)
                 outline, blob = kept
                 write(path, json.dumps(outline).encode() + b"\n" + blob)
+                _make_room(path.parent)
         except _NamelessError:
             return None
         outline, blob = kept
@@ -280,10 +282,24 @@ def _name(thing: Any) -> str:
     return f"{module}:{name}"
 
 
+MOST_KEPT = 1000
+"""Programs that are kept on disk, a tenth of a megabyte each."""
+
+
+def _make_room(folder: Path) -> None:
+    """Delete the programs that were asked for longest ago: those of earlier versions."""
+    with suppress(OSError):
+        by_use = sorted(folder.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+        for path in by_use[:-MOST_KEPT]:
+            path.unlink(missing_ok=True)
+
+
 def _read(path: Path) -> tuple[Any, bytes] | None:
     """Outline and portable form of a program that was kept; None if there is none, or it is damaged."""
     body = read(path)
     if body is None:
         return None
+    with suppress(OSError):
+        os.utime(path)
     outline, _, blob = body.partition(b"\n")
     return json.loads(outline), blob

@@ -72,6 +72,18 @@ def test_a_damaged_program_is_traced_again(kept, tmp_path, damage):
     assert TRACED == ["a", "a"]
 
 
+def test_programs_that_were_asked_for_longest_ago_make_room(kept, tmp_path, monkeypatch):
+    monkeypatch.setattr(programs, "MOST_KEPT", 2)
+    for by in (1.0, 2.0, 1.0, 3.0):
+        kept(by=by)
+    assert len(list((tmp_path / "programs").iterdir())) == 2
+    assert len(TRACED) == 3
+    kept(by=1.0)
+    assert len(TRACED) == 3
+    kept(by=2.0)
+    assert len(TRACED) == 4
+
+
 def test_without_a_folder_nothing_is_kept(kept, monkeypatch):
     monkeypatch.setattr(programs, "kept_folder", lambda: None)
     assert kept(by=2.0)["force"][2] == 4.0

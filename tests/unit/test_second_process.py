@@ -86,8 +86,8 @@ def programs(home: Path) -> set[str]:
 
 
 def traced(home: Path) -> dict[str, int]:
-    """Programs as they are after tracing, on disk, with the time at which each was written."""
-    return {path.name: path.stat().st_mtime_ns for path in home.rglob("programs/*")}
+    """Programs as they are after tracing, on disk, each by the file that it was written to."""
+    return {path.name: path.stat().st_ino for path in home.rglob("programs/*")}
 
 
 @pytest.fixture(scope="module")
