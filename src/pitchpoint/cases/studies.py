@@ -694,7 +694,7 @@ def _pressure_warning(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) ->
     name = built.solids[gear - 1].record.name
     return [
         fails(
-            f"the Hertz pressure reaches {PRESSURE.show(largest)}; {name} bears about "
+            f"the Hertz pressure reaches {PRESSURE.show(float(f'{largest:.3g}'))}; {name} bears about "
             f"{PRESSURE.show(weakest)}, and that a few times only."
         )
     ]
