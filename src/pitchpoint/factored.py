@@ -80,6 +80,8 @@ class Factored(eqx.Module):
         return found
 
     def __pow__(self, power: ArrayLike) -> Factored:
+        if any(isinstance(one, int | float) and one < 0 for one in self.factors):
+            return Factored((self.value**power,))  # two negative factors have a positive product
         return Factored(tuple(one**power for one in self.merged))
 
     def __abs__(self) -> Factored:
@@ -93,8 +95,9 @@ def _on_value(name: str) -> Any:
     return operator
 
 
-_OPERATORS = "add radd sub rsub rpow mod neg pos lt le gt ge"
-for _name in _OPERATORS.split():
+_OPERATORS = "add radd sub rsub rpow mod rmod floordiv rfloordiv matmul neg pos"
+_QUESTIONS = "lt le gt ge eq ne getitem len iter"
+for _name in [*_OPERATORS.split(), *_QUESTIONS.split()]:
     setattr(Factored, f"__{_name}__", _on_value(f"__{_name}__"))
 
 

@@ -31,7 +31,7 @@ def prepared(folder: Path) -> Path | None:
     except OSError:
         return None
     _LOG.warning(
-        "%s can be written to by others and is not used; programs are compiled anew", folder
+        "%s can be written to by others and is not used; what it would keep is made anew", folder
     )
     return None
 

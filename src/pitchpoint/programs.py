@@ -8,13 +8,16 @@ JAX, the structure of the arguments. What has no such name (a law of the user's 
 
 import hashlib
 import json
+import logging
 import os
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from functools import cache, partial, update_wrapper
 from importlib import import_module
+from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
 from typing import Any, Generic, ParamSpec, TypeVar
@@ -39,6 +42,10 @@ __all__ = [
 P = ParamSpec("P")
 R = TypeVar("R")
 
+_LOG = logging.getLogger(__name__)
+_TRACED = ("pitchpoint", "jax", "jaxlib", "equinox", "diffrax")
+"""Packages whose code is in a program."""
+
 QUICK: Mapping[str, bool | int] = {
     "xla_backend_optimization_level": 0,
     "xla_llvm_disable_expensive_passes": True,
@@ -59,16 +66,13 @@ class _NamelessError(Exception):
 
 
 @cache
-def package_state() -> list[tuple[str, int, int]]:
-    """Size and time of every file of the package: changed code or data computes again."""
-    root = Path(__file__).parent
-    kept = sorted(path for path in root.rglob("*") if path.suffix in (".py", ".toml"))
-    return [(str(path.relative_to(root)), *_size_and_time(path)) for path in kept]
-
-
-def _size_and_time(path: Path) -> tuple[int, int]:
-    found = path.stat()
-    return found.st_size, found.st_mtime_ns
+def package_state() -> str:
+    """Digest of every file of the package: changed code or data computes again."""
+    root, found = Path(__file__).parent, hashlib.sha256()
+    for path in sorted(root.rglob("*")):
+        if path.suffix in (".py", ".toml"):
+            found.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    return found.hexdigest()
 
 
 class Program(Generic[P, R]):
@@ -115,10 +119,14 @@ class Program(Generic[P, R]):
                 outline, blob = kept
                 write(path, json.dumps(outline).encode() + b"\n" + blob)
                 _make_room(path.parent)
+            outline, blob = kept
+            found = export.deserialize(bytearray(blob))
         except _NamelessError:
             return None
-        outline, blob = kept
-        call = jax.jit(export.deserialize(bytearray(blob)).call, compiler_options=self.options)
+        except Exception as error:  # what is wrong with the function itself shows when it is traced
+            _LOG.info("%s is not kept: %s", self.function.__qualname__, error)
+            return None
+        call = jax.jit(found.call, compiler_options=self.options)
         return lambda *leaves: _rebuilt(outline, iter(call(*leaves)))
 
     def _path(self, given: Any) -> Path:
@@ -246,7 +254,8 @@ def _surroundings() -> list[Any]:
     """What decides about every program beside its own arguments."""
     flags = os.environ.get("XLA_FLAGS", "")
     device = jax.devices()[0]
-    return [package_state(), jax.__version__, device.platform, device.device_kind, flags]
+    versions = [version(name) for name in _TRACED]
+    return [package_state(), versions, device.platform, device.device_kind, flags]
 
 
 def _text(value: Any) -> Any:
@@ -275,10 +284,14 @@ def _text(value: Any) -> Any:
 def _name(thing: Any) -> str:
     """Name by which a later process finds a function or a class of the package."""
     module, name = str(thing.__module__), thing.__qualname__
-    if not module.startswith("pitchpoint.") or "<locals>" in name:
+    if not module.startswith("pitchpoint."):
         raise _NamelessError
-    if "<lambda>" in name:
-        return f"{module}:{thing.__code__.co_firstlineno}"
+    found: Any = sys.modules[module]
+    for part in name.split("."):
+        found = getattr(found, part, None)
+    # A wrapper of the user's own may go by the name of what it wraps.
+    if getattr(found, "function", found) is not thing:
+        raise _NamelessError
     return f"{module}:{name}"
 
 

@@ -578,10 +578,10 @@ def _every_factor() -> dict[str, dict[str, tuple[str, str]]]:
     listed = {kind: dict(each.units) for kind, each in _KINDS.items()}
     state = hashlib.sha256(json.dumps([version("pint"), listed]).encode()).hexdigest()[:16]
     try:
-        folder = prepared(base_folder())
+        folder = prepared(base_folder() / "units")
     except RuntimeError:
         folder = None
-    path = None if folder is None else folder / f"units-{state}.json"
+    path = None if folder is None else folder / state
     kept = None if path is None else read(path)
     if kept is not None:
         return dict(json.loads(kept))

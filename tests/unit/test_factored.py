@@ -22,6 +22,9 @@ def test_it_is_an_array_to_whoever_asks():
     np.testing.assert_allclose(jnp.sqrt(BOTH), np.sqrt(PLAIN), rtol=1e-15)
     np.testing.assert_allclose(BOTH.sum(), PLAIN.sum(), rtol=1e-15)
     np.testing.assert_array_equal(BOTH > 5.0, PLAIN > 5.0)
+    np.testing.assert_array_equal(BOTH[0, 1] == BOTH, np.isclose(PLAIN, PLAIN[0, 1]))
+    assert len(BOTH) == 2
+    np.testing.assert_allclose(product(-2.0, -ROW * 3.0) ** 0.5, (6.0 * np.asarray(ROW)) ** 0.5)
     np.testing.assert_allclose(1.0 - BOTH + PLAIN, 1.0, rtol=1e-14)
 
 

@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 
 import equinox as eqx
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from pitchpoint import programs
-from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.lubrication.friction_coefficient import LAWS, xu_2007
 from pitchpoint.programs import Program, program
 
 
@@ -35,6 +35,7 @@ def moved(bodies: Bodies, *, by: float, twice: bool = False) -> dict:
 
 
 moved.__module__ = "pitchpoint.programs"
+programs.moved = moved
 
 
 @pytest.fixture
@@ -94,7 +95,11 @@ def test_a_law_of_ones_own_has_no_name():
     def own(*, pressure):
         return pressure
 
-    for nameless in (own, partial(own), lambda: None, object()):
+    @wraps(xu_2007)
+    def larger(**at):
+        return 1.2 * xu_2007(**at)
+
+    for nameless in (own, partial(own), larger, lambda: None, object()):
         with pytest.raises(programs._NamelessError):
             programs._text(nameless)
     assert len({str(programs._text(law)) for law in LAWS}) == len(LAWS)

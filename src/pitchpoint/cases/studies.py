@@ -712,6 +712,8 @@ def _outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> l
         for name, limits in law.ranges.items()
         if np.any(run[f"outside {law.name} {name}"])
     ]
+    if run["locked"].any():
+        reasons.append(f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh")
     loaded = run["load"] > 0.0
     if not loaded.any():
         return reasons

@@ -167,8 +167,8 @@ def _alike(one: Design, other: Design) -> bool:
 
 def _equal(one: Any, other: Any) -> bool:
     """True if trees of the same kind hold equal numbers."""
-    leaves = zip(jax.tree.leaves(one), jax.tree.leaves(other), strict=True)
-    return all(np.array_equal(*pair) for pair in leaves)
+    first, second = jax.tree.leaves(one), jax.tree.leaves(other)
+    return len(first) == len(second) and all(map(np.array_equal, first, second))
 
 
 def engaged(

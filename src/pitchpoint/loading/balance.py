@@ -313,7 +313,7 @@ def _apart(values: Any) -> Any:
     and computes them again in each; its own barriers it removes before it fuses. A condition that is
     always true, which it cannot know, is one that stays (a sixth of the time of `benchmarks/states.py`).
     """
-    always = jax.tree.leaves(values)[0].ravel()[0] > -jnp.inf
+    always = jax.tree.leaves(values)[0].ravel()[0] != -jnp.inf
     return jax.lax.cond(always, lambda x: x, lambda x: jax.tree.map(jnp.negative, x), values)
 
 
