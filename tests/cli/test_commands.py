@@ -232,7 +232,7 @@ def test_damaged_parts_are_computed_again(
     (parts / "cycle.nc").write_bytes(whole[: len(whole) // 2])
     (parts / "laws.nc").write_bytes(b"")
     (parts / "teeth.nc").unlink()
-    pieces = [parts / "gone.0003.nc", parts / ".laws-abcd1234.nc"]  # of runs that were killed
+    pieces = [parts / "study_gone.0003.nc", parts / ".laws-abcd1234.nc"]  # of runs that were killed
     for piece in pieces:
         piece.touch()
     refused = pitchpoint("cite", folder)

@@ -41,13 +41,14 @@ def cycle(**changes: Any) -> dict[str, np.ndarray]:
         name: np.full((2, 1, 1), changes.pop(name, value), float) for name, value in lanes.items()
     }
     asked = [f"outside {law.name} {name}" for law in (XU, ISO) for name in law.ranges]
-    outside = {name: np.zeros(2, bool) for name in asked}
+    outside = {name: np.zeros(2, bool) for name in (*asked, "locked")}
     return {**run, **outside, "weight": np.array([0.25, 0.75]), **changes}
 
 
 @pytest.mark.parametrize(
     ("law", "run", "words"),
     [
+        (XU, {"locked": np.array([True, False])}, "its friction coefficient, 0.04, locks the mesh"),
         (XU, {"lambda_ratio": 0.4}, "the film is down to 0.4 of the composite roughness"),
         (XU, {"friction": 0.42}, "reaches 0.42; steel in oil has at most about 0.2"),
         (ISO, {"friction": 0.28}, "reaches 0.28; steel in oil has at most about 0.2"),
