@@ -7,10 +7,10 @@ from typing import ClassVar
 import equinox as eqx
 import numpy as np
 import pytest
+from bare_contacts import line_contacts
 from scipy.optimize import nnls
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading import clearances
@@ -241,7 +241,7 @@ def test_stiffness_is_the_slope_of_the_load():
 def contacts(path, gap=0.0, active=True):
     path = np.asarray(path, float).reshape(-1, 1, 1)
     none = jnp.zeros(path.shape)
-    return Contacts(
+    return line_contacts(
         active=jnp.broadcast_to(jnp.asarray(active), path.shape),
         path=jnp.asarray(path),
         width=none,
@@ -251,7 +251,6 @@ def contacts(path, gap=0.0, active=True):
         normal=jnp.stack([none, none, none - 0.02]),
         gap=none + gap,
         flank=jnp.stack([none, none]),
-        shape="line",
     )
 
 

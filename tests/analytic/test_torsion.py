@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import equinox as eqx
 import numpy as np
 import pytest
+from bare_contacts import line_contacts
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.contacts import along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.gears.flexible_ring import RingLoads
@@ -33,7 +34,7 @@ def contacts(path, gap=0.0, slip=0.0):
     path = jnp.asarray(path)
     none = jnp.zeros(path.shape)
     surface = jnp.zeros((2, 3, *path.shape)).at[0, 2].set(none + slip)
-    return Contacts(
+    return line_contacts(
         active=jnp.ones(path.shape, bool),
         path=path,
         width=none,
@@ -43,7 +44,6 @@ def contacts(path, gap=0.0, slip=0.0):
         normal=jnp.stack([none, none, none - ARM]),
         gap=none + gap,
         flank=jnp.stack([none, none]),
-        shape="line",
     )
 
 

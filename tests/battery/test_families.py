@@ -122,6 +122,13 @@ def properties(mesh):
     }
 
 
+@eqx.filter_jit
+def frame(mesh, contacts):
+    """Coordinates, and the velocity of the contacts' points with each of them."""
+    bodies = mesh.coordinates
+    return bodies, jnp.stack([body.velocity(contacts.point) for body in bodies])
+
+
 def state_at(design, operation, phase, models):
     found = state(design, operation, phase, models)
     return found, {
@@ -273,6 +280,31 @@ def test_driver_moves_by_one_radian_and_load_is_on_another_coordinate(family):
     assert abs(told.driver @ told.motion) == pytest.approx(1.0, rel=1e-15)
     assert told.driver @ told.loaded == 0.0
     assert np.sum(told.driver) == np.sum(told.loaded) == 1.0
+
+
+def test_arms_follow_from_places_and_directions_in_one_frame(family):
+    at = family.at
+    frames = np.stack([at.direction, at.tangent], axis=1)
+    np.testing.assert_allclose(
+        np.einsum("xk...,xl...->kl...", frames, frames),
+        np.broadcast_to(np.eye(2).reshape(2, 2, 1, 1, 1), (2, 2, *at.active.shape)),
+        atol=1e-14,
+    )
+    bodies, velocity = jax.tree.map(np.asarray, frame(family.mesh, at))
+    assert {body.member for body in bodies} >= {0, 1}
+    for k, body in enumerate(bodies):
+        if body.member is None or not body.rigid:
+            continue
+        sense = 1.0 if body.member == 0 else -1.0
+        closing, slip = (
+            sense * np.einsum("x...,x...->...", velocity[k], vector)
+            for vector in (at.direction, at.tangent)
+        )
+        size = np.linalg.norm(velocity[k], axis=0).max()
+        if all(one.rigid for one in bodies):
+            np.testing.assert_allclose(at.normal[k], closing, atol=1e-13 * size)
+        moves = body.turns  # a load that presses bodies together slides on none
+        np.testing.assert_allclose(at.slip_arm[k], slip if moves else 0.0, atol=1e-12 * size)
 
 
 def dot(rates, arms):

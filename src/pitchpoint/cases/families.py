@@ -46,7 +46,6 @@ class Family:
     Attributes:
         build: mesh and warnings from the table, the name of the driver and the number of slices.
         following: values that the table leaves open, as the mesh has them, by key inside the table.
-        bearings: row of `Mesh.support` of the bearing between two bodies.
         deviations: of the teeth of both members, from the table; None where it gives none.
         drawing: dimensions of the arrays of a drawing.
         coordinates: labels along those dimensions.
@@ -54,7 +53,6 @@ class Family:
 
     build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
     following: Callable[[Any, Any], dict[str, Any]]
-    bearings: Mapping[frozenset[str], int] = field(default_factory=dict)
     deviations: Callable[[Any], tuple[Deviations, Deviations] | None] = lambda gears: None
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
@@ -253,7 +251,6 @@ FAMILIES: dict[type, Family] = {
     StrainWaveGears: Family(
         _strain_wave,
         _of_drive,
-        bearings={frozenset(("wave generator", "flexspline")): 0},
         deviations=_deviations,
         drawing={
             "tooth": ("corner", "xy"),

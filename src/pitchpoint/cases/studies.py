@@ -538,13 +538,21 @@ def _summaries(
         for law, locked in zip(laws, out["locked"], strict=True):
             warnings += _lock_warning(models.friction[law], locked)
     data = dataset(
-        {**{name: (("law", "point"), values) for name, values in out.items()}, **extra},
-        {"law": _names(models, laws)},
+        {**{name: (_FIGURE[: values.ndim], values) for name, values in out.items()}, **extra},
+        {"law": _names(models, laws), **_named_places(points[0])},
         title=title,
         warnings=warnings,
     )
     data["mean_efficiency"].attrs.update(points[0].covers)
     return data
+
+
+_FIGURE = ("law", "point", "place")
+
+
+def _named_places(built: Built) -> dict[str, list[str]]:
+    """Places beside the teeth where power is lost; none without any."""
+    return {"place": [*built.case.losses]} if built.case.losses else {}
 
 
 def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -580,13 +588,16 @@ def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[st
 def _in_groups(
     points: Sequence[Built], compute: Callable[[Sequence[Built]], dict[str, np.ndarray]]
 ) -> dict[str, np.ndarray]:
-    """Results [point] in order, from computations of points of equal static structure."""
+    """Results [point ...] in order, from computations of points of equal static structure."""
     groups: dict[Any, list[int]] = {}
     for position, point in enumerate(points):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(point.design))
         groups.setdefault((jax.tree.structure(point.design), shapes), []).append(position)
     parts = [(where, compute([points[i] for i in where])) for where in groups.values()]
-    result = {name: np.empty(len(points), values.dtype) for name, values in parts[0][1].items()}
+    result = {
+        name: np.empty((len(points), *values.shape[1:]), values.dtype)
+        for name, values in parts[0][1].items()
+    }
     for where, values in parts:
         for name in result:
             result[name][where] = values[name]

@@ -11,6 +11,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
+from pitchpoint.efficiency.drag import bearing_loads
 from pitchpoint.efficiency.quasi_static import (
     Cycle,
     Design,
@@ -21,6 +22,8 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_nodes,
     engagement,
 )
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.reactions import radial_and_axial
 from pitchpoint.loading.sharing import equal
 from pitchpoint.programs import program
 
@@ -98,6 +101,8 @@ def summary(
         "nearest_friction": acting,
         "nearest_jamming_coefficient": limit,
         "largest_contact_force_ratio": jnp.max(state.contact_force_ratio, axis=-1),
+        **_by_gear(_reactions(design.mesh, result)),
+        **_bearing_loads(design, result),
         **_at_pitch_point(result),
     }
 
@@ -112,6 +117,22 @@ def _at_pitch_point(result: Cycle) -> dict[str, Array]:
         "pitch_sum_speed": result.mean(at.reference_sum_speed),
         "pitch_radius": at.reference_radius,
     }
+
+
+def _reactions(mesh: Mesh, result: Cycle) -> dict[str, Array]:
+    """Mean load of the teeth on the bearings of each member, across its axis and along it [N]."""
+    held = radial_and_axial(mesh, result.state.contacts, result.state.balance.load)
+    return dict(zip(("radial_reaction", "axial_reaction"), result.mean(held), strict=True))
+
+
+def _bearing_loads(design: Design, result: Cycle) -> dict[str, Array]:
+    """Mean load on the bearing of each place beside the teeth [place] [N]; nothing without places."""
+    if not design.drag:
+        return {}
+    state, nodes = result.state, result.phase.shape
+    loads = bearing_loads(design.drag, design.mesh, state.contacts, state.balance.load)
+    means = [result.mean(jnp.broadcast_to(load, nodes)) for load in loads]
+    return {"bearing_load": jnp.stack(means)}
 
 
 def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:

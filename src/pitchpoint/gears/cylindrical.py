@@ -12,6 +12,7 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import (
     InvoluteGear,
     base_helix,
@@ -19,6 +20,7 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
+from pitchpoint.gears.members import CYLINDRICAL
 from pitchpoint.gears.mesh import Mesh, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.programs import program
@@ -427,6 +429,16 @@ class CylindricalPair(Mesh):
             pitch_line_speed=speed,
         )
 
+    @property
+    def coordinates(self) -> tuple[Coordinate, Coordinate]:
+        """Both gears: the origin on the axis of gear 1, x towards the pitch point, z as `width`."""
+        places = jnp.zeros((2, 3)).at[1, 0].set(self.line.distance)
+        first, second = (
+            Coordinate(name, place, jnp.asarray(AXIAL), member)
+            for member, (name, place) in enumerate(zip(CYLINDRICAL, places, strict=True))
+        )
+        return first, second
+
     def events(self) -> Float[Array, " event"]:
         """Phases of entry, exit and pitch point.
 
@@ -464,6 +476,7 @@ class CylindricalPair(Mesh):
             normal=jnp.stack([jnp.broadcast_to(arm, lanes) for arm in arms]),
             gap=none,
             flank=jnp.stack([rolling[k] ** 2 / (2.0 * jnp.abs(base[k])) for k in (0, 1)]),
+            **self._frame(line, position, self.face_width * (across - 0.5) + none),
             shape="line",
         )
 
@@ -538,6 +551,24 @@ class CylindricalPair(Mesh):
             "specific_sliding_A": self.specific_sliding(self.limits[0]),
             "specific_sliding_E": self.specific_sliding(self.limits[1]),
             **self.dimensions(),
+        }
+
+    def _frame(
+        self, line: LineOfAction, position: Array, width: Array
+    ) -> dict[str, Float[Array, "3 pair slice *b"]]:
+        """Points on the plane of action and the directions there, the same at all of them."""
+        cosine, sine, side = line.cosine, line.sine, self._side
+        none, tilt = jnp.zeros(()), jnp.sin(self.base_helix_angle)
+        start = line.base_radii[0] * jnp.stack([cosine, -side * sine])
+        along = jnp.stack([sine, side * cosine])
+
+        def everywhere(parts: list[Array]) -> Array:
+            return jnp.stack([jnp.broadcast_to(part, position.shape) for part in parts])
+
+        return {
+            "point": jnp.stack([start[k] + position * along[k] for k in (0, 1)] + [width]),
+            "direction": everywhere([*(line.slope * along), tilt]),
+            "tangent": everywhere([-cosine, side * sine, none]),
         }
 
     @property

@@ -1,10 +1,13 @@
 """Two test rigs with closed forms everywhere: twin disc and ball on disc."""
 
+import abc
+
 import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.mesh import Mesh, Reference
 
 __all__ = ["BallOnDisc", "TwinDisc"]
@@ -43,6 +46,16 @@ class _Rig(Mesh):
         """A rig has no pitch point."""
         return None
 
+    @property
+    def _path(self) -> Coordinate:
+        """The way along which the load presses body 0 on body 1."""
+        return Coordinate("load", self._frame[0], self._frame[1], 0, turns=False)
+
+    @property
+    @abc.abstractmethod
+    def _frame(self) -> Float[Array, "3 3"]:
+        """Place of the contact, normal out of body 0, and tangent."""
+
     def events(self) -> Float[Array, "1"]:
         """Nothing enters or leaves."""
         return jnp.zeros(1)
@@ -57,6 +70,7 @@ class _Rig(Mesh):
     ) -> Contacts:
         lanes = (1, 1, *jnp.shape(phase))
         zero = jnp.zeros(lanes)
+        point, direction, tangent = _everywhere(self._frame, lanes)
         turn = jnp.mod(phase, 1.0)[None, None]
         surface = jnp.zeros((2, 3)).at[0, 0].set(arms[0]).at[1, 1].set(arms[1])
         speeds = surface @ self.motion
@@ -70,6 +84,9 @@ class _Rig(Mesh):
             normal=_everywhere(self.loaded, lanes),
             gap=zero,
             flank=_everywhere(speeds * self.period, lanes) * turn,
+            point=point,
+            direction=direction,
+            tangent=tangent,
             shape=shape,
         )
 
@@ -101,6 +118,19 @@ class TwinDisc(_Rig):
             [jnp.asarray(1.0), -self.speed_ratio * self.radii[0] / self.radii[1], jnp.asarray(0.0)]
         )
 
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Disc 0 at the origin, disc 1 beside it on the x axis."""
+        centres = jnp.zeros((2, 3)).at[1, 0].set(jnp.sum(self.radii))
+        axis = jnp.asarray(AXIAL)
+        discs = [Coordinate(f"disc {k}", centres[k], axis, k) for k in (0, 1)]
+        return (*discs, self._path)
+
+    @property
+    def _frame(self) -> Float[Array, "3 3"]:
+        directions = jnp.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        return directions.at[0, 0].set(self.radii[0])
+
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one contact line, the same at every phase."""
         curvature = jnp.stack([1.0 / self.radii, jnp.zeros(2)], axis=-1)
@@ -126,6 +156,19 @@ class BallOnDisc(_Rig):
         """The disc turns so that its track runs along with the ball's surface."""
         ratio = self.speed_ratio * self.ball_radius / self.track_radius
         return jnp.stack([jnp.asarray(1.0), ratio, jnp.asarray(0.0)])
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The ball on the disc, which turns about z at the origin; the contact lies on the x axis."""
+        point = self._frame[0]
+        above = point.at[2].set(self.ball_radius)
+        ball = Coordinate("ball", above, jnp.array([1.0, 0.0, 0.0]), 0)
+        return ball, Coordinate("disc", jnp.zeros(3), jnp.asarray(AXIAL), 1), self._path
+
+    @property
+    def _frame(self) -> Float[Array, "3 3"]:
+        directions = jnp.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+        return directions.at[0, 0].set(self.track_radius)
 
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one circular contact, the same at every phase."""

@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.tooth_section import ToothSection
 
@@ -69,9 +70,12 @@ class Mesh(eqx.Module):
 
     Attributes:
         pitch_point: of the class; True if `reference` is not None.
+        inner_bearing: of the class; the two bodies between which a bearing sits inside the drive, by name;
+            empty without one.
     """
 
     pitch_point: ClassVar[bool] = False
+    inner_bearing: ClassVar[frozenset[str]] = frozenset()
 
     def completed(self) -> Self:
         """The same mesh with dimensions that follow from others computed from them again.
@@ -145,12 +149,13 @@ class Mesh(eqx.Module):
         """
         return None
 
-    def support(self, contacts: Contacts) -> Float[Array, "bearing pair slice *b"] | None:
-        """Radial load on each bearing of the mesh for a unit normal force at each contact, or None.
+    def inner_load(self, contacts: Contacts) -> Float[Array, "pair slice *b"]:
+        """Load on the bearing inside the drive for a unit normal force at each contact, not negative.
 
-        Rows are not negative; losses beside the teeth name the row of the bearing that they stand for.
+        Forces that press on it from all around are no reaction, in which they cancel: their sizes add up.
+        Zero without such a bearing, see `inner_bearing`.
         """
-        return None
+        return jnp.zeros_like(contacts.weight)
 
     @property
     def standard(self) -> StandardPair | None:
@@ -172,6 +177,11 @@ class Mesh(eqx.Module):
     def drawing(self) -> dict[str, Float[Array, "..."]]:
         """What a drawing of the teeth to scale needs; empty where there is none."""
         return {}
+
+    @property
+    @abc.abstractmethod
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The bodies and their axes, in the order of `motion`."""
 
     @abc.abstractmethod
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:

@@ -1,7 +1,7 @@
 """Strain wave gear: wave generator, flexspline and circular spline, and the many contacts between them."""
 
 import dataclasses
-from typing import Self
+from typing import ClassVar, Self
 
 import equinox as eqx
 import numpy as np
@@ -9,9 +9,11 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.groove import Groove, swept
+from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.gears.mesh import Mesh, Reference
 from pitchpoint.gears.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
@@ -129,6 +131,8 @@ class StrainWave(Mesh):
         lanes: places for pairs in each of both zones, see `lanes_for`; those beyond `held` stay empty;
             static.
     """
+
+    inner_bearing: ClassVar[frozenset[str]] = frozenset(MEMBERS[:2])
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
@@ -303,6 +307,9 @@ class StrainWave(Mesh):
         local = jnp.exp(-1j * at.direction) * velocity
         first = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
+        # The space that a tooth meets lies at its angle around the circular spline.
+        zone = _as_lanes(self._place[0], jnp.asarray(phase))
+        turned = jnp.exp(1j * (given * self.teeth[0] / self.teeth[1] + jnp.pi * zone))
         return Contacts(
             active=active,
             path=given / (2.0 * jnp.pi),
@@ -313,6 +320,9 @@ class StrainWave(Mesh):
             normal=jnp.imag(local),
             gap=jnp.maximum(found.clearance, 0.0) + play,
             flank=jnp.stack([found.along, self.groove.depth(jnp.real(at.place))]),
+            point=_vector(turned * at.place),
+            direction=_vector(1j * turned * jnp.exp(1j * at.direction)),
+            tangent=_vector(turned * jnp.exp(1j * at.direction)),
             shape="line",
         )
 
@@ -332,9 +342,19 @@ class StrainWave(Mesh):
         """Angles around flexspline and circular spline at which their teeth touch [rad]."""
         return places(contacts, phase, self.teeth)
 
-    def support(self, contacts: Contacts) -> Float[Array, "1 pair slice *b"]:
-        """Radial load on the wave generator's bearing by a unit force at each contact."""
-        return -self.ring_loads(contacts).radial[None]
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The three bodies on their common axis, x along the long axis of the wave generator."""
+        flanks, rigid = (None, 0, 1), (True, False, True)
+        centre, axis = jnp.zeros(3), jnp.asarray(AXIAL)
+        return tuple(
+            Coordinate(name, centre, axis, member, rigid=stiff)
+            for name, member, stiff in zip(MEMBERS, flanks, rigid, strict=True)
+        )
+
+    def inner_load(self, contacts: Contacts) -> Float[Array, "pair slice *b"]:
+        """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones."""
+        return -self.ring_loads(contacts).radial
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -406,6 +426,11 @@ class StrainWave(Mesh):
         """Flexspline tooth from root to root over its tip."""
         flank = self.flank.place(jnp.linspace(0.0, 1.0, 81) * self.flank.length)
         return jnp.concatenate([jnp.conj(flank), flank[::-1]])
+
+
+def _vector(place: Array) -> Float[Array, "3 pair slice *b"]:
+    """Vector of a place in the plane across the axis."""
+    return jnp.stack([jnp.real(place), jnp.imag(place), jnp.zeros(place.shape)])
 
 
 def lanes_for(held: int) -> int:

@@ -45,6 +45,10 @@ def _power(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "W", "W", "power")
 
 
+def _force(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "N", "N", "force")
+
+
 def _angle(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "rad", "deg", "angle")
 
@@ -273,6 +277,11 @@ VARIABLES: dict[str, Variable] = {
     "engagement_depth": _length("depth by which the teeth reach into each other", "h_e"),
     "loss_factor": Variable("loss factor, equal sharing where all flanks touch", "H_V", "1"),
     "mean_loss": _power("mean power loss", "P_loss"),
+    "radial_reaction_1": _force("mean radial load of the teeth on the bearings of gear 1", "F_r1"),
+    "radial_reaction_2": _force("mean radial load of the teeth on the bearings of gear 2", "F_r2"),
+    "axial_reaction_1": _force("mean axial load of the teeth on the bearings of gear 1", "F_a1"),
+    "axial_reaction_2": _force("mean axial load of the teeth on the bearings of gear 2", "F_a2"),
+    "bearing_load": _force("mean load on the bearing", "F_B"),
     "mean_drag_loss": _power("mean power loss beside the teeth", "P_drag mean"),
     "mean_efficiency": _percent("mean efficiency", "η mean"),
     "min_efficiency": _percent("smallest efficiency", "η min"),
