@@ -613,7 +613,7 @@ def test_one_period_later_all_is_the_same(family, turns):
     here = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE)))
     there = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE + turns)))
     for name, values in here.items():
-        rtol = ROUNDING if family.mesh.clearances else 1e-12
+        rtol = ROUNDING if not family.mesh.touching else 1e-12
         np.testing.assert_allclose(there[name], values, rtol=rtol, atol=1e-15, err_msg=name)
 
 
@@ -656,7 +656,7 @@ def test_batch_equals_loop(family):
     square = contacts_of(family.mesh, phase.reshape(2, 13))
     close = (
         {"rtol": ROUNDING, "atol": 1e-15}
-        if family.mesh.clearances
+        if not family.mesh.touching
         else {"rtol": 1e-14, "atol": 1e-17}
     )
     # Places across the face are counted from its middle and rounded like its half.
@@ -695,7 +695,7 @@ def test_every_lane_and_state_is_finite_with_its_gradient(family, load):
 def test_rigid_flanks_touch_where_they_are_active(family):
     assert np.all(family.at.gap >= 0.0)
     touching = family.at.gap[family.at.active]
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         # Only some of the pairs that reach into each other touch, to the table of the groove.
         least = np.where(family.at.active, family.at.gap, np.inf).min(axis=(0, 1))
         assert np.all(least < 1e-10)
@@ -705,7 +705,7 @@ def test_rigid_flanks_touch_where_they_are_active(family):
 
 
 def test_number_of_pairs_changes_at_events_only(family):
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         pytest.skip("pairs come and go unloaded; the number that touches depends on the load")
     events = family.told.events
     assert events.shape == jax.eval_shape(type(family.mesh).events, family.mesh).shape
@@ -722,7 +722,7 @@ def test_number_of_pairs_changes_at_events_only(family):
 
 
 def test_sliding_changes_its_sense_at_events_only(family):
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         pytest.skip("each tooth reverses its sliding near the long axis, one of many that carry")
     edges = np.unique(np.concatenate([[0.0], family.told.events, [1.0]]))
     for low, high in pairwise(edges):

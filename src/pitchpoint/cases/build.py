@@ -95,7 +95,7 @@ class Built:
     @property
     def covers(self) -> dict[str, str]:
         """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
-        alone = self.design.mesh.clearances and not self.case.losses
+        alone = self.design.mesh.inner_bearing and not self.case.losses
         return {"covers": "teeth alone"} if alone else {}
 
     @property
@@ -305,7 +305,7 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
 def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     """What the model of tooth compliance does not cover, where it is used."""
     sharing = LOAD_SHARING[case.models.load_sharing]
-    if mesh.ring is not None or (case.dynamics is None and not sharing.by_stiffness):
+    if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
     sections = _sections(mesh)
     assert sections is not None

@@ -17,6 +17,7 @@ from pitchpoint.cases.gear_tables import (
     InvoluteTooth,
     StrainWaveGears,
 )
+from pitchpoint.contact.surface import Surfaces, Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
@@ -29,7 +30,6 @@ from pitchpoint.gears.strain_wave_design import (
     build_strain_wave,
     check_strain_wave,
 )
-from pitchpoint.loading.deviations import Deviations
 
 __all__ = ["FAMILIES", "Family", "built_gears"]
 
@@ -46,14 +46,14 @@ class Family:
     Attributes:
         build: mesh and warnings from the table, the name of the driver and the number of slices.
         following: values that the table leaves open, as the mesh has them, by key inside the table.
-        deviations: of the teeth of both members, from the table; None where it gives none.
+        deviations: of the teeth around both members, from the table.
         drawing: dimensions of the arrays of a drawing.
         coordinates: labels along those dimensions.
     """
 
     build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
     following: Callable[[Any, Any], dict[str, Any]]
-    deviations: Callable[[Any], tuple[Deviations, Deviations] | None] = lambda gears: None
+    deviations: Callable[[Any], Surfaces] = lambda gears: ((), ())
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
 
@@ -223,9 +223,7 @@ def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
     }
 
 
-def _deviations(gears: StrainWaveGears) -> tuple[Deviations, Deviations] | None:
-    if not any(gears.deviations.each.values()):
-        return None
+def _deviations(gears: StrainWaveGears) -> Surfaces:
     given = gears.deviations
     return _waves(given.flexspline), _waves(given.circular_spline)
 
@@ -234,11 +232,13 @@ WAVES = 4
 """Waves of a spline come in multiples of it, the last ones without height: few programs serve all."""
 
 
-def _waves(given: tuple[Deviation, ...]) -> Deviations:
-    rows = np.zeros((len(fields(Deviations)), max(1, ceil(len(given) / WAVES)) * WAVES))
-    for row, one in zip(rows, fields(Deviations), strict=True):
+def _waves(given: tuple[Deviation, ...]) -> tuple[Waves, ...]:
+    if not given:
+        return ()
+    rows = np.zeros((len(fields(Waves)), ceil(len(given) / WAVES) * WAVES))
+    for row, one in zip(rows, fields(Waves), strict=True):
         row[: len(given)] = [getattr(wave, one.name) for wave in given]
-    return Deviations(*map(jnp.asarray, rows))
+    return (Waves(*map(jnp.asarray, rows)),)
 
 
 FAMILIES: dict[type, Family] = {

@@ -40,13 +40,13 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
     """Loss factor H_V: P_loss = P_in mu H_V to first order in mu.
 
     Mean over one pitch of the sliding arms over the driver's arm; for an involute pair with equal
-    load sharing it is Ohlendorf's closed form. Pairs with clearances cannot share equally: they take
-    their shares of one load.
+    load sharing it is Ohlendorf's closed form. Pairs with gaps cannot share equally: they take their
+    shares of one load.
 
     Args:
         design: mesh.
         models: for the nodes of the cycle.
-        engaged: contacts and shares of a mesh with clearances; equal shares by default.
+        engaged: contacts and shares of a mesh with gaps; equal shares by default.
     """
     mesh = design.mesh
     if engaged is None:
@@ -199,14 +199,14 @@ def engaged(
     nodes: int = 24,
     like: Engagement | None = None,
 ) -> Engagement | None:
-    """Contacts and shares of a mesh with clearances at one load; None for others, which are quick.
+    """Contacts and shares of a mesh with gaps at one load; None for others, which are quick.
 
     Args:
         design, operation, models: of one point.
         nodes: in each segment between events.
         like: of the same mesh, solids and nodes under another load.
     """
-    if not design.mesh.clearances:
+    if design.mesh.touching:
         return None
     for known in _LAST:
         if like is None and known.serves(design, models, nodes):

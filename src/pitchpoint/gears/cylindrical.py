@@ -10,6 +10,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Offset, Spot, Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
@@ -21,7 +22,7 @@ from pitchpoint.gears.involute import (
     transverse_angle,
 )
 from pitchpoint.gears.members import CYLINDRICAL
-from pitchpoint.gears.mesh import Mesh, Reference, StandardPair
+from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.programs import program
 from pitchpoint.roots import hypot, root
@@ -212,9 +213,12 @@ class CylindricalPair(Mesh):
         internal: True if gear 2 is a ring; static.
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
+        surfaces: how the flanks of both gears differ from involutes.
     """
 
     pitch_point: ClassVar[bool] = True
+    toothed: ClassVar[bool] = True
+    counts: ClassVar[Path] = "action"
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
@@ -239,6 +243,7 @@ class CylindricalPair(Mesh):
     internal: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
     slices: int = eqx.field(static=True)
+    surfaces: Surfaces = ((), ())
 
     def completed(self) -> Self:
         """The pair with centre distance and tip alterations as they follow from the rest."""
@@ -255,11 +260,6 @@ class CylindricalPair(Mesh):
     def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
         """Both gears for themselves."""
         return self._gear(0), self._gear(1)
-
-    @property
-    def toothed(self) -> bool:
-        """Both gears have teeth."""
-        return True
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -452,7 +452,7 @@ class CylindricalPair(Mesh):
             found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
@@ -479,6 +479,33 @@ class CylindricalPair(Mesh):
             **self._frame(line, position, self.face_width * (across - 0.5) + none),
             shape="line",
         )
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same gears on their other flanks, which lie back by the backlash."""
+        first, second = self.surfaces
+        surfaces = ((*first, Offset(self.normal_backlash)), second)
+        return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
+
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
+        lanes = contacts.path.shape
+        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+        entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
+        found = []
+        for member, teeth in enumerate(jnp.abs(self.teeth)):
+            # A tooth that enters later lies behind those before it.
+            sense = -self._side * (1.0 if member == 0 else -jnp.sign(self.teeth[1]))
+            found.append(
+                Spot(
+                    flank=contacts.flank[member],
+                    across=contacts.width,
+                    angle=jnp.broadcast_to(sense * phase * 2.0 * jnp.pi / teeth, lanes),
+                    tooth=jnp.mod(sense * entered, teeth).astype(int),
+                    leaning=jnp.ones(lanes),
+                )
+            )
+        return found[0], found[1]
 
     @property
     def standard(self) -> StandardPair:

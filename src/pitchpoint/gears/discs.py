@@ -131,7 +131,7 @@ class TwinDisc(_Rig):
         directions = jnp.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
         return directions.at[0, 0].set(self.radii[0])
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one contact line, the same at every phase."""
         curvature = jnp.stack([1.0 / self.radii, jnp.zeros(2)], axis=-1)
         arms = (self.radii[0], -self.radii[1])
@@ -170,7 +170,7 @@ class BallOnDisc(_Rig):
         directions = jnp.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
         return directions.at[0, 0].set(self.track_radius)
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one circular contact, the same at every phase."""
         curvature = jnp.stack([jnp.full(2, 1.0 / self.ball_radius), jnp.zeros(2)])
         arms = (self.ball_radius, self.track_radius)

@@ -9,15 +9,18 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.surface import Spot
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.groove import Groove, swept
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
-from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.mesh import Mesh, Path, Reference
+from pitchpoint.gears.ring_compliance import ring_compliance
 from pitchpoint.gears.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
+from pitchpoint.materials.solids import Solid
 from pitchpoint.roots import hypot, root
 
 __all__ = [
@@ -132,6 +135,9 @@ class StrainWave(Mesh):
             static.
     """
 
+    toothed: ClassVar[bool] = True
+    couples: ClassVar[bool] = True
+    counts: ClassVar[Path] = "wave"
     inner_bearing: ClassVar[frozenset[str]] = frozenset(MEMBERS[:2])
 
     teeth: Float[Array, "2"]
@@ -216,24 +222,14 @@ class StrainWave(Mesh):
         return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
 
     @property
-    def clearances(self) -> bool:
+    def touching(self) -> bool:
         """Most teeth of a zone have a clearance that load must close."""
-        return True
+        return False
 
     @property
     def largest_radius(self) -> Float[Array, ""]:
         """Flatter contacts would be wider under load than the flank is high."""
         return _FLATTEST * self.module
-
-    @property
-    def ring(self) -> FlexibleRing:
-        """The flexspline's rim carries the teeth of member 0."""
-        return self.rim
-
-    @property
-    def toothed(self) -> bool:
-        """Both splines have teeth."""
-        return True
 
     @property
     def reference(self) -> Reference | None:
@@ -265,7 +261,7 @@ class StrainWave(Mesh):
         zone, number = np.divmod(np.arange(2 * self.lanes), self.lanes)
         return zone, number
 
-    def touching(self, angle: Float[Array, "*b"]) -> Touching:
+    def nearest(self, angle: Float[Array, "*b"]) -> Touching:
         """Nearest points of the flank and its groove for teeth at angles from the long axis [rad]."""
         return nearest_points(self.tooth_motion, self.groove, angle, self.backlash)
 
@@ -277,7 +273,7 @@ class StrainWave(Mesh):
         start = jnp.ceil(WINDOW[0] / self.tooth_angle)
         return (start + number + moved) * self.tooth_angle
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of the pairs of both zones; one period is one pitch of the flexspline."""
         raw = self.raw_contacts(phase)
         # Teeth that carry only because others yield do not close on the nominal motion. In a steady
@@ -336,11 +332,42 @@ class StrainWave(Mesh):
             height=jnp.real(self.flank.place(contacts.flank[0])),
         )
 
-    def places(
-        self, contacts: Contacts, phase: Float[Array, "*b"]
-    ) -> Float[Array, "member pair slice *b"]:
-        """Angles around flexspline and circular spline at which their teeth touch [rad]."""
-        return places(contacts, phase, self.teeth)
+    @property
+    def yielding(self) -> tuple[str, str]:
+        """Teeth and the ring that carries them; the bearing inside unless it is rigid."""
+        if np.isinf(self.rim.support_stiffness):
+            return "teeth, ring and cup of the flexspline", "bearings, shafts, flange and joints"
+        return (
+            "teeth, ring and cup of the flexspline and the bearing inside it",
+            "the clearance of that bearing, shafts, flange and joints",
+        )
+
+    def body_compliance(
+        self, contacts: Contacts, solids: tuple[Solid, Solid]
+    ) -> Float[Array, "lane lane *b"]:
+        """The flexspline's rim couples all its teeth."""
+        return ring_compliance(self.rim, solids[0], self.ring_loads(contacts))
+
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Angles are those of the teeth, which stand as they are while they touch.
+
+        A tooth that lies behind its place moves along the circumference; the normals of roundings at root
+        and tip lean to the radius.
+        """
+        around = places(contacts, phase, self.teeth)
+        across = jnp.where(contacts.active, jnp.abs(self.ring_loads(contacts).tangential), 0.0)
+        leaning = across / jnp.max(across)
+        first, second = (
+            Spot(
+                flank=contacts.flank[member],
+                across=contacts.width,
+                angle=around[member],
+                tooth=jnp.mod(jnp.round(around[member] / (2.0 * jnp.pi / z)), z).astype(int),
+                leaning=leaning,
+            )
+            for member, z in enumerate(self.teeth)
+        )
+        return first, second
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -352,9 +379,11 @@ class StrainWave(Mesh):
             for name, member, stiff in zip(MEMBERS, flanks, rigid, strict=True)
         )
 
-    def inner_load(self, contacts: Contacts) -> Float[Array, "pair slice *b"]:
+    def inner_load(self, contacts: Contacts) -> Float[Array, "2 pair slice *b"]:
         """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones."""
-        return -self.ring_loads(contacts).radial
+        zone = _as_lanes(self._place[0], contacts.path[0, 0])
+        pressed = -self.ring_loads(contacts).radial
+        return jnp.stack([jnp.where(zone == end, pressed, 0.0) for end in (0, 1)])
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:

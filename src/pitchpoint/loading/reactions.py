@@ -72,7 +72,7 @@ class InnerBearing(eqx.Module):
 
     def load(self, mesh: Mesh, contacts: Contacts, force: Lanes) -> Each:
         """Sum of the sizes of the loads around the bearing [N]; arguments as in `Bearing.load`."""
-        return total(mesh.inner_load(contacts) * force)
+        return jnp.sum(mesh.inner_load(contacts) * force, axis=(0, 1, 2))
 
 
 def unit_forces(body: Coordinate, contacts: Contacts) -> Vectors:

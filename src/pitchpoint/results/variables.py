@@ -267,7 +267,30 @@ VARIABLES: dict[str, Variable] = {
     ),
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
-    "tooth_angle": _angle("angle of the tooth from its end of the long axis", "p"),
+    "lost_motion": Variable(
+        "play of the loaded member between its flanks without load",
+        "Δθ_0",
+        "rad",
+        "arcmin",
+        "angle",
+    ),
+    "angular_transmission_error": Variable(
+        "rotation of the loaded member under load", "θ_e", "rad", "arcmin", "angle"
+    ),
+    "angular_transmission_error_range": Variable(
+        "static transmission error at the loaded member, peak to peak",
+        "Δθ_e",
+        "rad",
+        "arcsec",
+        "angle",
+    ),
+    "mesh_torsional_stiffness": Variable(
+        "torsional stiffness over the mesh cycle",
+        "K(φ)",
+        "N m/rad",
+        "kN m/rad",
+        "torsional stiffness",
+    ),
     "tooth_force": Variable("normal force of the tooth", "F", "N", "N", "force"),
     "loading_torque": _torque("torque while the wind-up grows", "T"),
     "unloading_torque": _torque("torque while the wind-up shrinks", "T"),
