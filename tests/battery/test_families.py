@@ -659,8 +659,9 @@ def test_batch_equals_loop(family):
         if not family.mesh.touching
         else {"rtol": 1e-14, "atol": 1e-17}
     )
-    # Places across the face are counted from its middle and rounded like its half.
-    rounded = {"width": 2e-15 * np.abs(family.at.width).max()}
+    # Places across the face are counted from its middle and rounded like its half; places in the frame
+    # of the mesh, of which one component vanishes at the pitch point, like the whole radius.
+    rounded = {name: 2e-15 * np.abs(getattr(family.at, name)).max() for name in ("width", "point")}
     for name, values in leaves_of(family.at).items():
         near = close | {"atol": max(close["atol"], rounded.get(name, 0.0)), "err_msg": name}
         for other in (alone, mapped):

@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.contact.surface import Spot
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.mesh import Mesh, Reference
 
@@ -59,6 +60,21 @@ class _Rig(Mesh):
     def events(self) -> Float[Array, "1"]:
         """Nothing enters or leaves."""
         return jnp.zeros(1)
+
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Each body turns past the contact; its surface is the same all around."""
+        lanes = contacts.path.shape
+        first, second = (
+            Spot(
+                flank=contacts.flank[member],
+                across=contacts.width,
+                angle=jnp.broadcast_to(-rate * self.period * phase, lanes),
+                tooth=jnp.zeros(lanes, int),
+                leaning=jnp.ones(lanes),
+            )
+            for member, rate in enumerate(self.motion[:2])
+        )
+        return first, second
 
     def _contacts(
         self,
