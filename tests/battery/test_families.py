@@ -17,8 +17,9 @@ from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
-from pitchpoint.gears.discs import BallOnDisc, TwinDisc
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.loading.sharing import LOAD_SHARING

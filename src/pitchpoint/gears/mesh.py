@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.tooth_section import ToothSection
 
@@ -69,9 +69,11 @@ class Mesh(eqx.Module):
 
     Attributes:
         pitch_point: of the class; True if `reference` is not None.
+        shape: of the class; that of all its contacts.
     """
 
     pitch_point: ClassVar[bool] = False
+    shape: ClassVar[Shape] = "line"
 
     def completed(self) -> Self:
         """The same mesh with dimensions that follow from others computed from them again.
