@@ -662,7 +662,10 @@ def _check_driver(case: Case) -> None:
     """InputError if the member that is to drive is fixed, or none of these gears."""
     driver, gears = case.operation.driver, case.gears
     if _given(case.operation, "driver") and driver not in gears.drivers:
-        why = "is fixed and cannot drive" if driver in gears.members else "is not in this drive"
+        fixed = (
+            "is fixed and cannot drive" if driver == getattr(gears, "fixed", "") else "cannot drive"
+        )
+        why = fixed if driver in gears.members else "is not in this drive"
         raise InputError(
             f"{shown(driver)} {why}; use {' or '.join(gears.drivers)}",
             key="operation.driver",
