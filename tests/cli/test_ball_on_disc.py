@@ -186,13 +186,6 @@ def test_bad_input_is_one_sentence(key: str) -> None:
     assert str(error.value) == f"{EXAMPLE.name}: {key}: {told}"
 
 
-def test_a_missing_force_is_told_as_a_force(tmp_path: Path) -> None:
-    path = tmp_path / "rig.toml"
-    path.write_text("\n".join(x for x in EXAMPLE.read_text().splitlines() if x[:5] != "force"))
-    with pytest.raises(InputError, match=r'operation.force: is missing; write "500 N"; allowed is'):
-        describe(str(path))
-
-
 def test_gears_take_no_force_and_no_film_of_an_ellipse() -> None:
     pair = str(EXAMPLE.with_name("pair_23_61.toml"))
     with pytest.raises(InputError, match=r"operation.force: gears carry a torque; give torque in"):
