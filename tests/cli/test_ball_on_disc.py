@@ -79,6 +79,7 @@ def test_friction_torque_and_loss(outcome: Outcome) -> None:
     assert at(operation, "mean_input_torque") == pytest.approx(MU * FORCE * TRACK, rel=1e-13)
     assert at(operation, "entrainment") == pytest.approx(DISC / 1.05, rel=1e-13)
     sliding = 0.1 * DISC / 1.05
+    assert at(operation, "sliding_velocity") == pytest.approx(sliding, rel=1e-12)
     assert at(operation, "mean_loss") == pytest.approx(MU * FORCE * sliding, rel=1e-12)
 
 
@@ -89,6 +90,8 @@ def test_the_sense_of_sliding_turns_the_torque(outcome: Outcome) -> None:
     np.testing.assert_allclose(torque, MU * FORCE * TRACK * np.sign(ratio), rtol=1e-12)
     np.testing.assert_allclose(loss, MU * FORCE * np.abs(ratio) * mean, rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(study(outcome, "slip", "entrainment"), mean, rtol=1e-13)
+    sliding = study(outcome, "slip", "sliding_velocity")
+    np.testing.assert_allclose(sliding, ratio * mean, rtol=1e-12, atol=1e-15)
     assert loss[-1] == pytest.approx(MU * FORCE * DISC)  # the ball at rest
 
 

@@ -52,7 +52,7 @@ _TOLD = ("targets", "issues", "studies")
 SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
 
-AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "slide_roll_ratio")
+AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "sliding_velocity")
 """Figures of a test rig, whose contact stays as it is."""
 
 _SHOWN = 3
