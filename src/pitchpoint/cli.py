@@ -376,6 +376,7 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 def _summary(name: str, outcome: "Outcome") -> None:
     from pitchpoint.cases.catalogue import (
+        bearing_table,
         kinematic_error_table,
         of_contact,
         summary_table,
@@ -392,7 +393,7 @@ def _summary(name: str, outcome: "Outcome") -> None:
     rows, columns, note = summary_table(outcome)
     _table(rows, columns)
     _console().print(_plain(note))
-    for table in (vibration_table, wind_up_table, kinematic_error_table):
+    for table in (bearing_table, vibration_table, wind_up_table, kinematic_error_table):
         rows, columns = table(outcome)
         if rows:
             _table(rows, columns)

@@ -126,6 +126,13 @@ def properties(mesh):
     }
 
 
+@eqx.filter_jit
+def frame(mesh, contacts):
+    """Coordinates, and the velocity of the contacts' points with each of them."""
+    bodies = mesh.coordinates
+    return bodies, jnp.stack([body.velocity(contacts.point) for body in bodies])
+
+
 def state_at(design, operation, phase, models):
     found = state(design, operation, phase, models)
     return found, {
@@ -281,6 +288,31 @@ def test_driver_moves_by_one_radian_and_load_is_on_another_coordinate(family):
     assert abs(told.driver @ told.motion) == pytest.approx(1.0, rel=1e-15)
     assert told.driver @ told.loaded == 0.0
     assert np.sum(told.driver) == np.sum(told.loaded) == 1.0
+
+
+def test_arms_follow_from_places_and_directions_in_one_frame(family):
+    at = family.at
+    frames = np.stack([at.direction, at.tangent], axis=1)
+    np.testing.assert_allclose(
+        np.einsum("xk...,xl...->kl...", frames, frames),
+        np.broadcast_to(np.eye(2).reshape(2, 2, 1, 1, 1), (2, 2, *at.active.shape)),
+        atol=1e-14,
+    )
+    bodies, velocity = jax.tree.map(np.asarray, frame(family.mesh, at))
+    assert {body.member for body in bodies} >= {0, 1}
+    for k, body in enumerate(bodies):
+        if body.member is None or not body.rigid:
+            continue
+        sense = 1.0 if body.member == 0 else -1.0
+        closing, slip = (
+            sense * np.einsum("x...,x...->...", velocity[k], vector)
+            for vector in (at.direction, at.tangent)
+        )
+        size = np.linalg.norm(velocity[k], axis=0).max()
+        if all(one.rigid for one in bodies):
+            np.testing.assert_allclose(at.normal[k], closing, atol=1e-13 * size)
+        moves = body.turns  # a load that presses bodies together slides on none
+        np.testing.assert_allclose(at.slip_arm[k], slip if moves else 0.0, atol=1e-12 * size)
 
 
 def dot(rates, arms):
@@ -589,7 +621,7 @@ def test_one_period_later_all_is_the_same(family, turns):
     here = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE)))
     there = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE + turns)))
     for name, values in here.items():
-        rtol = ROUNDING if family.mesh.clearances else 1e-12
+        rtol = ROUNDING if not family.mesh.touching else 1e-12
         np.testing.assert_allclose(there[name], values, rtol=rtol, atol=1e-15, err_msg=name)
 
 
@@ -632,7 +664,7 @@ def test_batch_equals_loop(family):
     square = contacts_of(family.mesh, phase.reshape(2, 13))
     close = (
         {"rtol": ROUNDING, "atol": 1e-15}
-        if family.mesh.clearances
+        if not family.mesh.touching
         else {"rtol": 1e-14, "atol": 1e-17}
     )
     # Places across the face are counted from its middle and rounded like its half.
@@ -671,7 +703,7 @@ def test_every_lane_and_state_is_finite_with_its_gradient(family, load):
 def test_rigid_flanks_touch_where_they_are_active(family):
     assert np.all(family.at.gap >= 0.0)
     touching = family.at.gap[family.at.active]
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         # Only some of the pairs that reach into each other touch, to the table of the groove.
         least = np.where(family.at.active, family.at.gap, np.inf).min(axis=(0, 1))
         assert np.all(least < 1e-10)
@@ -681,7 +713,7 @@ def test_rigid_flanks_touch_where_they_are_active(family):
 
 
 def test_number_of_pairs_changes_at_events_only(family):
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         pytest.skip("pairs come and go unloaded; the number that touches depends on the load")
     events = family.told.events
     assert events.shape == jax.eval_shape(type(family.mesh).events, family.mesh).shape
@@ -698,7 +730,7 @@ def test_number_of_pairs_changes_at_events_only(family):
 
 
 def test_sliding_changes_its_sense_at_events_only(family):
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         pytest.skip("each tooth reverses its sliding near the long axis, one of many that carry")
     edges = np.unique(np.concatenate([[0.0], family.told.events, [1.0]]))
     for low, high in pairwise(edges):

@@ -32,6 +32,7 @@ def conditions(shape):
         normal=array(np.ones((3, 1, 1))),
         gap=one,
         flank=array(np.ones((2, 1, 1))),
+        **dict.fromkeys(("point", "direction", "tangent"), array(np.ones((3, 1, 1)))),
         shape=shape,
     )
     scalars = dict.fromkeys(

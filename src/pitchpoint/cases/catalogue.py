@@ -123,16 +123,17 @@ def figures(outcome: Outcome) -> dict[str, Any]:
         "units": {
             name: VARIABLES[name].unit
             for name in (
-                *MAIN,
-                *CONTACT,
-                *VIBRATION,
-                *TEMPERATURES,
-                *WIND_UP,
-                "kinematic_error_range",
+                *(*MAIN, *CONTACT, *REACTIONS, "bearing_load"),
+                *(*VIBRATION, *TEMPERATURES, *WIND_UP, "kinematic_error_range"),
             )
         },
         "operation": _by_law(outcome.parts["operation"], main_figures(outcome.parts["operation"])),
         "efficiency_of": _covers(outcome),
+        "reactions": _by_law(outcome.parts["operation"], REACTIONS),
+        "bearing_load": {
+            str(law): dict(_loads(outcome.parts["operation"], k))
+            for k, law in enumerate(outcome.parts["operation"]["law"].values)
+        },
         "vibration": _by_torque(outcome, "vibration", VIBRATION),
         "torsion": _by_torque(outcome, "torsion", WIND_UP),
         "kinematic_error_range": {
@@ -266,6 +267,33 @@ def vibration_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, 
         for k, torque in enumerate(data["torque"].values)
     ]
     return rows, tuple(rows[0])
+
+
+REACTIONS = tuple(f"{way}_reaction_{gear}" for gear in (1, 2) for way in ("radial", "axial"))
+
+
+def bearing_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
+    """Rows and columns: load on the bearings by law, those that are nothing anywhere left out."""
+    data = outcome.parts["operation"]
+    rows = [
+        {"friction law": str(law)}
+        | {_head(name): _cell(data, name, k) for name in REACTIONS if np.any(data[name])}
+        | {
+            f"{_head('bearing_load')} {place}": _shown("bearing_load", float(load))
+            for place, load in _loads(data, k)
+        }
+        for k, law in enumerate(data["law"].values)
+    ]
+    return (rows, tuple(rows[0])) if len(rows[0]) > 1 else ([], ())
+
+
+def _loads(data: Any, law: int) -> list[tuple[str, float]]:
+    """Bearings by name and what they bear [N]."""
+    if "bearing_load" not in data:
+        return []
+    loads = data["bearing_load"].values[:, 0]
+    bears = loads.any(axis=0)
+    return [(str(place), loads[law, k]) for k, place in enumerate(data["place"].values) if bears[k]]
 
 
 WIND_UP = ("wind_up", "torsional_stiffness", "loaded_pairs")

@@ -1,6 +1,6 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import inf
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -51,6 +51,7 @@ COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
 FORCE = Quantity("force", 0.0, 1e7, "N")
+PLACE = Quantity("length", -10.0, 10.0, "mm")
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
@@ -76,6 +77,12 @@ def _places(value: Any) -> tuple[Any, ...]:
     if not 1 <= len(several) <= 12:
         raise InputError(f"{len(several)} places were given; allowed are 1 to 12")
     return tuple(several)
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{shown(value)} was given; allowed are true and false")
+    return value
 
 
 def _reductions() -> list[str]:
@@ -351,8 +358,11 @@ class Housing(Table):
 class Loss(Table):
     """A place beside the teeth where two bodies brake each other, or one of them and the housing.
 
-    Torques are those between the two bodies. A bearing between wave generator and flexspline bears the
-    radial load of the teeth beside its preload.
+    Torques are those between the two bodies. A bearing between a body and the housing bears, beside its
+    preload, what the teeth put on that body: all of it where it stands for all bearings of the body, its
+    part where two are given with their positions along the axis, counted from the middle of the face
+    towards the end that a contact line reaches last. The one that is locating takes the axial force. A
+    bearing between wave generator and flexspline bears the radial load of the teeth in both zones.
     """
 
     between: tuple[Text, Text]
@@ -361,6 +371,8 @@ class Loss(Table):
     f0: Annotated[float, BEARING_FACTOR] | None = None
     f1: Annotated[float, BEARING_FACTOR] | None = None
     preload: Annotated[float, FORCE] = 0.0
+    position: Annotated[float, PLACE] | None = None
+    locating: Annotated[bool, BeforeValidator(_flag)] | None = None
     seal_torque: Annotated[float, TORQUE] = 0.0
     churning_torque: Annotated[float, TORQUE] = 0.0
     churning_speed: Annotated[float, SPEED] | None = None
@@ -389,7 +401,8 @@ class Loss(Table):
             raise InputError(
                 "is missing; churning_torque is that at this speed", key="churning_speed"
             )
-        alone = {"preload": "a bearing"} if self.bearing == "none" else {}
+        of_bearing = dict.fromkeys(("preload", "position", "locating"), "a bearing")
+        alone = of_bearing if self.bearing == "none" else {}
         if not _given(self, "churning_torque"):
             alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
         for name in (key for key in alone if _given(self, key)):
@@ -568,6 +581,14 @@ class Case(Table):
     targets: Annotated[tuple[Target, ...], Field(max_length=2000)] = ()
     issues: Annotated[tuple[Issue, ...], Field(max_length=500)] = ()
 
+    def bearings_of(self, body: str) -> dict[str, Loss]:
+        """Bearings between a body and the housing, by name of their loss."""
+        return {
+            name: loss
+            for name, loss in self.losses.items()
+            if loss.bearing != "none" and {*loss.between} == {body, "housing"}
+        }
+
     @model_validator(mode="after")
     def _aimed(self) -> "Case":
         for position, target in enumerate(self.targets):
@@ -589,6 +610,8 @@ class Case(Table):
         """What is not given stands as is usual for the family; bodies are those that it has."""
         _check_load(self)
         _check_bodies(self)
+        for body in self.gears.members:
+            _check_span(body, self.bearings_of(body))
         _check_meant(self)
         _check_driver(self)
         operation, models = self.operation, self.models
@@ -685,6 +708,47 @@ def _check_bodies(case: Case) -> None:
         )
         if strange is not None or first == second:
             raise InputError(told, key=f"losses.{name}.between")
+
+
+def _check_span(body: str, bearings: Mapping[str, Loss]) -> None:
+    """InputError if the loads on the bearings of a body do not follow from their places."""
+    placed = [name for name, one in bearings.items() if one.position is not None]
+    for name, one in bearings.items():
+        wrong = _out_of_place(body, one, [other for other in bearings.values() if other is not one])
+        if wrong is not None:
+            raise InputError(wrong[1], key=f"losses.{name}.{wrong[0]}")
+        if placed and one.position is None:
+            told = (
+                f"is missing; {placed[0]} has one, and the load of two bearings on {body} follows"
+            )
+            raise InputError(f"{told} from the places of both", key=f"losses.{name}.position")
+
+
+def _out_of_place(body: str, one: Loss, others: Sequence[Loss]) -> tuple[str, str] | None:
+    """Key and sentence on a bearing whose load does not follow from its place and those of the others."""
+    if len(others) > 1:
+        count = f"{len(others) + 1} bearings hold {body}"
+        return "between", f"{count}; the loads of more than two do not follow from their places"
+    for key in ("position", "locating"):
+        if not others and getattr(one, key) is not None:
+            told = f"was given for the only bearing of {body}, which takes all load"
+            return key, f"{told}; give the second bearing too, or leave it out"
+    if others and one.position is None and others[0].position is None:
+        return "position", (
+            f"is missing; the load of two bearings on {body} follows from the places of both: give "
+            "position to each, or one bearing alone that stands for both"
+        )
+    if others and one.position == others[0].position:
+        return "position", (
+            f"{PLACE.show(one.position or 0.0)} is where the other bearing of {body} sits too; two "
+            "bearings need a span between them"
+        )
+    if others and one.locating is not None and one.locating == others[0].locating:
+        return (
+            "locating",
+            f"is {str(one.locating).lower()} for both bearings of {body}; one is locating",
+        )
+    return None
 
 
 def validate(document: Document) -> Case:

@@ -28,11 +28,12 @@ from pitchpoint.cases.schema import (
     quantity_at,
     validate,
 )
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError, shorten
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -163,7 +164,7 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     yield Job("cycle", "mesh cycle", (lambda _: _cycle(built),))
     yield Job("operation", "operating point", (lambda _: _operation(built),))
     yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
-    yield from _wind_up(built) if mesh.clearances else _yielding(built)
+    yield from _yielding(built)
     yield from studies
     if built.transmits:
         yield from _of_power(variant, built)
@@ -179,14 +180,8 @@ def _of_power(variant: Variant, built: Built) -> Iterator[Job]:
     yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
 
 
-def _wind_up(built: Built) -> Iterator[Job]:
-    """Parts on teeth with clearances, which come to mesh under load."""
-    from pitchpoint.cases import torsion
-
-    yield Job("torsion", "torsion", (lambda _: torsion.torsion_part(built),))
-    deviations = built.family.deviations(built.case.gears)
-    if deviations is None:
-        return
+def _deviating(built: Built, deviations: Surfaces) -> Iterator[Job]:
+    """What deviations around the gears do to their motion."""
     from pitchpoint.cases import kinematic_error
 
     def compute(told: Progress) -> xr.Dataset:
@@ -208,9 +203,17 @@ def _running(variant: Variant, built: Built) -> Iterator[Job]:
 
 
 def _yielding(built: Built) -> Iterator[Job]:
-    """Parts on stiffness and vibration; what they import is not needed without them."""
-    dynamics = built.case.dynamics
-    if dynamics is None and not LOAD_SHARING[built.case.models.load_sharing].by_stiffness:
+    """Parts on how teeth yield, and what follows; what they import is not needed without them."""
+    dynamics, deviations = built.case.dynamics, built.family.deviations(built.case.gears)
+    shares = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
+    if not shares and dynamics is None and built.design.mesh.touching and not any(deviations):
+        return
+    from pitchpoint.cases import torsion
+
+    yield Job("torsion", "torsion", (lambda _: torsion.torsion_part(built),))
+    if any(deviations):
+        yield from _deviating(built, deviations)
+    if built.design.mesh.line_of_action is None:
         return
     from pitchpoint.cases import vibration
 
@@ -278,8 +281,8 @@ def _cycle(built: Built) -> xr.Dataset:
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )
-    if built.design.mesh.clearances:
-        data["path"].attrs.update(long_name="angle from the long axis, in turns", symbol="p/2π")
+    long_name, symbol = PATHS[built.design.mesh.counts]
+    data["path"].attrs.update(long_name=long_name, symbol=symbol)
     filled = built.design.mesh.filled
     return data if filled is None else data.isel(pair=filled)
 
@@ -553,7 +556,7 @@ def _summaries(
     out = {name: values for name, values in out.items() if not name.endswith("_path")}
     out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
     out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
-    if points[0].design.mesh.clearances:
+    if not points[0].design.mesh.touching:
         del out["loss_factor"]  # of the shares of one load: no figure of the gears alone
     else:
         out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
@@ -567,8 +570,8 @@ def _summaries(
         for law, locked in zip(laws, out["locked"], strict=True):
             warnings += _lock_warning(models.friction[law], locked)
     data = dataset(
-        {**{name: (("law", "point"), values) for name, values in out.items()}, **extra},
-        {"law": _names(models, laws)},
+        {**{name: (_FIGURE[: values.ndim], values) for name, values in out.items()}, **extra},
+        {"law": _names(models, laws), **_named_places(points[0])},
         title=title,
         warnings=warnings,
     )
@@ -576,6 +579,14 @@ def _summaries(
     if not points[0].transmits:
         data["mean_efficiency"].attrs["note"] = "undefined (NaN): no power goes through a test rig"
     return data
+
+
+_FIGURE = ("law", "point", "place")
+
+
+def _named_places(built: Built) -> dict[str, list[str]]:
+    """Places beside the teeth where power is lost; none without any."""
+    return {"place": [*built.case.losses]} if built.case.losses else {}
 
 
 def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -611,13 +622,16 @@ def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[st
 def _in_groups(
     points: Sequence[Built], compute: Callable[[Sequence[Built]], dict[str, np.ndarray]]
 ) -> dict[str, np.ndarray]:
-    """Results [point] in order, from computations of points of equal static structure."""
+    """Results [point ...] in order, from computations of points of equal static structure."""
     groups: dict[Any, list[int]] = {}
     for position, point in enumerate(points):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(point.design))
         groups.setdefault((jax.tree.structure(point.design), shapes), []).append(position)
     parts = [(where, compute([points[i] for i in where])) for where in groups.values()]
-    result = {name: np.empty(len(points), values.dtype) for name, values in parts[0][1].items()}
+    result = {
+        name: np.empty((len(points), *values.shape[1:]), values.dtype)
+        for name, values in parts[0][1].items()
+    }
     for where, values in parts:
         for name in result:
             result[name][where] = values[name]

@@ -17,10 +17,10 @@ from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
 from pitchpoint.loading.balance import Drag as TorqueOnBodies
+from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.sharing import LoadSharing, from_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
-from pitchpoint.loading.torsion import wound_up
-from pitchpoint.loading.yielding import body_compliance, yielding
+from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import RollingResistance
@@ -47,8 +47,8 @@ Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 Coupling = Float[Array, "lane lane *b"]
 
-FEWEST = 16
-"""Pairs at each end of the long axis that are kept of many; more are twice as many, and so on."""
+FEWEST = 32
+"""Pairs that are kept of many; more are twice as many, and so on."""
 
 ROUNDING = 1e-13
 """Output over input power up to which no power is transmitted: an idle drive has rounding alone."""
@@ -140,7 +140,7 @@ class Models(eqx.Module):
         """
         mesh, yields = design.mesh, None
         if self.sharing.by_stiffness:
-            yields = yielding(mesh, contacts, design.solids, self.compliance, load, body)
+            yields = compliance(mesh, contacts, design.solids, self.compliance, load, body)
         return self.sharing.function(contacts, mesh, yields)
 
 
@@ -164,18 +164,16 @@ class Engagement(eqx.Module):
     nodes: int = eqx.field(static=True)
 
     def loaded(self) -> "Engagement":
-        """Only the pairs that carry at some node, the same at both ends of the long axis.
+        """Only the pairs that carry at some node.
 
         Losses and torques come from these alone. Their number doubles where it must grow, so that few
         programs serve all loads; the compliance of the bodies is left out.
         """
-        half = self.share.shape[0] // 2
-        carries = np.any(np.asarray(self.share) > 0.0, axis=(1, 2)).reshape(2, half).any(axis=0)
+        carries = np.any(np.asarray(self.share) > 0.0, axis=(1, 2))
         count = FEWEST
         while count < carries.sum():
             count *= 2
-        kept = np.sort(np.argsort(~carries, kind="stable")[: min(count, half)])
-        pairs = np.concatenate([kept, kept + half])
+        pairs = np.sort(np.argsort(~carries, kind="stable")[:count])
 
         def of_them(leaf: Array) -> np.ndarray:
             return np.asarray(leaf)[..., pairs, :, :]
@@ -202,8 +200,8 @@ def engagement(
 ) -> Engagement:
     """Contacts and shares for one load, in programs that serve all later ones.
 
-    Worth it for meshes with many pairs and clearances, whose contacts and shares take most of the
-    work; a cycle without it computes them itself.
+    Worth it for meshes whose pairs have gaps: contacts and shares take most of the work there. A cycle
+    without it computes them itself.
 
     Args:
         design: mesh and materials.
@@ -245,8 +243,8 @@ def _contacts(mesh: Mesh, phase: Each) -> Contacts:
 
 @program
 def coupling(design: Design, contacts: Contacts) -> Coupling | None:
-    """How far a unit force on one lane moves another, see `body_compliance`; one program for all drives."""
-    return body_compliance(design.mesh, contacts, design.solids)
+    """How far a unit force on one lane moves another; one program for all drives."""
+    return design.mesh.body_compliance(contacts, design.solids)
 
 
 @program
@@ -457,7 +455,7 @@ class Cycle(eqx.Module):
 
         A polynomial through the nodes of each segment is read at points between them, and at its
         vertex beside a point where it is level: jumps lie at the ends of segments, where there are
-        nodes. Where pairs with clearances come and go between the events, values have kinks that no
+        nodes. Where pairs with gaps come and go between the events, values have kinks that no
         polynomial follows, and the nodes alone are read. Values that are undefined at a node have none.
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
@@ -553,7 +551,7 @@ def cycle(
         temperature=operation.temperature[..., None],
     )
     found = state(design, points, phase, models, engaged=engaged)
-    return Cycle(phase, weight, found, nodes, smooth=not design.mesh.clearances)
+    return Cycle(phase, weight, found, nodes, smooth=design.mesh.touching)
 
 
 def cycle_nodes(

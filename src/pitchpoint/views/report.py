@@ -25,7 +25,7 @@ from pitchpoint.views.geometry import dimensions, drawing
 from pitchpoint.views.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.maps import efficiency_panel, map_panel
 from pitchpoint.views.plane_of_action import plane_of_action
-from pitchpoint.views.running import drag_answer, drag_panel, starting_answer
+from pitchpoint.views.running import bearing_answer, drag_answer, drag_panel, starting_answer
 from pitchpoint.views.sliding import sliding_figure
 from pitchpoint.views.stiffness import (
     outside_standard,
@@ -325,6 +325,7 @@ def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str
             for name in _at_contact(data)
         ],
         "drag": drag_answer(outcome, position),
+        "bearings": bearing_answer(outcome, position),
         "starting": starting_answer(outcome, law),
     }
 

@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.rigs.rig import Rig
 
 __all__ = ["BallOnDisc"]
@@ -38,7 +39,19 @@ class BallOnDisc(Rig):
         ball = self.track_radius / self.radius[0] * (2.0 - slip) / (2.0 + slip)
         return jnp.stack([jnp.asarray(1.0), ball, jnp.asarray(0.0)])
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The disc about z at the origin, the ball above the contact on the x axis."""
+        above = self._frame[0].at[2].set(self.radius[0])
+        disc = Coordinate("disc", jnp.zeros(3), jnp.asarray(AXIAL), 0)
+        return disc, Coordinate("ball", above, jnp.array([1.0, 0.0, 0.0]), 1), self._approach
+
+    @property
+    def _frame(self) -> Float[Array, "3 3"]:
+        directions = jnp.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+        return directions.at[0, 0].set(self.track_radius)
+
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one elliptic contact, the same at every phase."""
         curvature = jnp.stack([jnp.zeros(2), 1.0 / self.radius])
         arms = (self.track_radius, self.radius[0])

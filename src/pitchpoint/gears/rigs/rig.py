@@ -1,9 +1,13 @@
 """What test rigs have in common: one contact that stays where it is."""
 
+import abc
+
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Spot
+from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, Reference
 
 __all__ = ["Rig"]
@@ -41,9 +45,34 @@ class Rig(Mesh):
         """A rig has no pitch point."""
         return None
 
+    @property
+    def _approach(self) -> Coordinate:
+        """The way along which the load presses body 1 on body 0."""
+        return Coordinate("load", self._frame[0], -self._frame[1], 1, turns=False)
+
+    @property
+    @abc.abstractmethod
+    def _frame(self) -> Float[Array, "3 3"]:
+        """Place of the contact, normal out of body 0, and tangent."""
+
     def events(self) -> Float[Array, "1"]:
         """Nothing enters or leaves."""
         return jnp.zeros(1)
+
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Both bodies turn on under the contact."""
+        lanes = contacts.path.shape
+        first, second = (
+            Spot(
+                flank=flank,
+                across=contacts.width,
+                angle=jnp.broadcast_to(-rate * self.period * phase, lanes),
+                tooth=jnp.zeros(lanes, int),
+                leaning=jnp.ones(lanes),
+            )
+            for flank, rate in zip(contacts.flank, self.motion[:2], strict=True)
+        )
+        return first, second
 
     def _contacts(
         self,
@@ -62,6 +91,7 @@ class Rig(Mesh):
         """
         lanes = (1, 1, *jnp.shape(phase))
         zero = jnp.zeros(lanes)
+        point, direction, tangent = _everywhere(self._frame, lanes)
         turn = jnp.mod(phase, 1.0)[None, None]
         surface = jnp.zeros((2, 3)).at[0, 0].set(arms[0]).at[1, 1].set(arms[1])
         speeds = surface @ self.motion
@@ -75,6 +105,9 @@ class Rig(Mesh):
             normal=_everywhere(self.loaded, lanes),
             gap=zero,
             flank=_everywhere(speeds * self.period, lanes) * turn,
+            point=point,
+            direction=direction,
+            tangent=tangent,
             shape=self.shape,
         )
 

@@ -4,6 +4,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.rigs.rig import Rig
 
 __all__ = ["TwinDisc"]
@@ -29,7 +30,20 @@ class TwinDisc(Rig):
             [jnp.asarray(1.0), -self.speed_ratio * self.radii[0] / self.radii[1], jnp.asarray(0.0)]
         )
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Disc 0 at the origin, disc 1 beside it on the x axis."""
+        centres = jnp.zeros((2, 3)).at[1, 0].set(jnp.sum(self.radii))
+        axis = jnp.asarray(AXIAL)
+        discs = [Coordinate(f"disc {k}", centres[k], axis, k) for k in (0, 1)]
+        return (*discs, self._approach)
+
+    @property
+    def _frame(self) -> Float[Array, "3 3"]:
+        directions = jnp.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        return directions.at[0, 0].set(self.radii[0])
+
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """The one contact line, the same at every phase."""
         curvature = jnp.stack([1.0 / self.radii, jnp.zeros(2)], axis=-1)
         return self._contacts(phase, curvature, (self.radii[0], -self.radii[1]), self.length)
