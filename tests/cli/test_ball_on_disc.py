@@ -83,6 +83,12 @@ def test_friction_torque_and_loss(outcome: Outcome) -> None:
     assert at(operation, "mean_loss") == pytest.approx(MU * FORCE * sliding, rel=1e-12)
 
 
+def test_bearings_hold_disc_along_and_ball_across_its_axis(outcome: Outcome) -> None:
+    operation = outcome.parts["operation"]
+    held = [at(operation, f"{way}_reaction_{k}") for k in (1, 2) for way in ("axial", "radial")]
+    np.testing.assert_allclose(held, [-FORCE, 0.0, 0.0, FORCE], rtol=1e-14, atol=1e-12)
+
+
 def test_the_sense_of_sliding_turns_the_torque(outcome: Outcome) -> None:
     ratio = np.array(SWEEPS["slip"][1])
     mean = DISC / (1.0 + ratio / 2.0)
