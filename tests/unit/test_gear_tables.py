@@ -53,6 +53,7 @@ def test_what_is_left_open_is_as_usual_for_the_family() -> None:
     assert (pair.models.load_sharing, wave.models.load_sharing) == ("equal", "from_stiffness")
     names = [one.models.friction[0].name for one in (pair, wave)]
     assert names == ["iso_tr_14179_2", "constant"]
+    assert {one.models.film_thickness for one in (pair, wave)} == {"dowson_higginson_1959"}
     given = case({**DRIVE, "models": {"load_sharing": "xu_2021_cosine"}})
     assert given.models.load_sharing == "xu_2021_cosine"
 

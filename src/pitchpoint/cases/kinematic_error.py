@@ -56,10 +56,11 @@ def kinematic_error_part(
         progress: told the number of states that are done, after each group of teeth.
     """
     models, _ = laws_of(built)
-    design = built.design
-    load = jnp.full((1, 1), built.case.operation.torque)
+    design, gears = built.design, built.case.gears
+    assert hasattr(gears, "teeth")
+    load = jnp.full((1, 1), built.case.operation.load)
     period = _period(design.mesh, design.solids, models.compliance, load)
-    teeth = np.asarray(built.case.gears.teeth)
+    teeth = np.asarray(gears.teeth)
     solved: list[np.ndarray] = []
 
     def over(own: Surfaces, count: int) -> np.ndarray:
