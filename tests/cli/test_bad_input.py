@@ -341,6 +341,10 @@ def named_list(site: Site) -> list[str] | None:
     return str(caught.value).partition("known are ")[2].split(", ")
 
 
+def takes_flag(site: Site) -> bool:
+    return any(bool in get_args(option) for option in get_args(site.annotation))
+
+
 def bads_at(site: Site) -> Iterator[Bad]:
     quantity, pair, known = site.mark(Quantity), site.mark(Pair), named_list(site)
     if pair is not None:
@@ -361,6 +365,10 @@ def bads_at(site: Site) -> Iterator[Bad]:
         options = get_args(site.annotation)
         for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
             yield Bad(name, site.path, value, (shown, *options), site.key)
+    elif takes_flag(site):
+        for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
+            if not isinstance(value, bool):
+                yield Bad(name, site.path, value, (shown, "true and false"), site.key)
     elif site.annotation is str:
         for name, (value, shown) in NAMES.items():
             yield Bad(name, site.path, value, (shown, "text"), site.key)
