@@ -346,7 +346,10 @@ def test_an_efficiency_of_the_teeth_alone_says_so(whole: Outcome, page: str) -> 
 
 
 def test_the_torsional_stiffness_says_what_yields(whole: Outcome, page: str) -> None:
-    assert "pairs carry in the mean; without load it is free to turn by 1.031 arcmin between its flanks" in words(page)
+    assert (
+        "pairs carry in the mean; without load it is free to turn by 1.031 arcmin between its flanks"
+        in words(page)
+    )
     assert torsion_answer(whole).endswith("; teeth and ring yield")
 
 
