@@ -289,8 +289,7 @@ def _of_gear(pair: Any, gear: str, value: Any) -> Any:
         raise InputError(f"there is no gear {shorten(gear)}; use 1 or 2")
     if isinstance(pair, dict):
         pair = pair.get("value", 0.0)
-    if isinstance(value, dict):
-        value = value["value"]
+    mark = value if isinstance(value, dict) else {"value": value}
     both = list(pair) if isinstance(pair, list | tuple) and len(pair) == 2 else [pair, pair]
-    both[int(gear) - 1] = value
-    return both
+    both[int(gear) - 1] = mark["value"]
+    return {**mark, "value": both}
