@@ -237,7 +237,9 @@ def test_deviations_are_read_and_shown() -> None:
     assert rows["deviations.circular_spline"]["value"] == "none"
     (row,) = (row for row in inputs if row["key"] == "deviations.flexspline")
     assert row["kind"] == {"order": "dimensionless", "amplitude": "length", "phase": "angle"}
-    assert row["value"][0] == {"order": 1.0, "amplitude": 5e-6, "phase": radians(30.0)}
+    assert row["value"][0] == pytest.approx(
+        {"order": 1.0, "amplitude": 5e-6, "phase": radians(30.0)}
+    )
     given = built.family.deviations(built.case.gears)
     assert given is not None
     first, second = given
