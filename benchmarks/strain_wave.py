@@ -40,7 +40,7 @@ from pitchpoint.efficiency import quasi_static
 from pitchpoint.efficiency.quasi_static import Engagement, Operation, cycle, engagement
 from pitchpoint.gears import strain_wave
 from pitchpoint.gears.groove import swept
-from pitchpoint.loading.yielding import yielding
+from pitchpoint.loading.compliance import compliance
 
 OUTLINE = 400_001
 
@@ -99,7 +99,11 @@ def given(built: Built) -> rival.Drive:
 @eqx.filter_jit
 def _compliance(built_in: Any, contacts: Any, terms: Any, torque: Any) -> Any:
     mesh, solids = built_in
-    return yielding(mesh, contacts, solids, terms, torque).compliance(contacts)
+    yields = compliance(mesh, contacts, solids, terms, torque)
+    teeth = yields.of_teeth(contacts)
+    lanes = teeth.reshape(-1, *teeth.shape[2:])
+    count = lanes.shape[0]
+    return yields.body + jnp.eye(count).reshape(count, count, *(1 for _ in lanes.shape[1:])) * lanes
 
 
 def package_geometry(built: Built, known: Engagement) -> rival.Geometry:

@@ -380,7 +380,9 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 def _summary(name: str, outcome: "Outcome") -> None:
     from pitchpoint.cases.catalogue import (
+        bearing_table,
         kinematic_error_table,
+        of_contact,
         summary_table,
         sweep_tables,
         vibration_table,
@@ -389,11 +391,13 @@ def _summary(name: str, outcome: "Outcome") -> None:
 
     manifest = outcome.manifest
     _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
-    _console().print(_plain(f"Oil: {manifest['oil']}. Averages over: {manifest['averaging']}."))
+    averages = f" Averages over: {manifest['averaging']}."
+    single = of_contact(outcome.parts["operation"])
+    _console().print(_plain(f"Oil: {manifest['oil']}.{'' if single else averages}"))
     rows, columns, note = summary_table(outcome)
     _table(rows, columns)
     _console().print(_plain(note))
-    for table in (vibration_table, wind_up_table, kinematic_error_table):
+    for table in (bearing_table, vibration_table, wind_up_table, kinematic_error_table):
         rows, columns = table(outcome)
         if rows:
             _table(rows, columns)

@@ -14,8 +14,9 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
-from pitchpoint.gears.discs import TwinDisc
+from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
+from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -31,23 +32,14 @@ PHASE = jnp.linspace(0.03, 0.97, 11)
 RPM = 2.0 * np.pi / 60.0
 
 
-class SupportedPair(CylindricalPair):
-    """Gears whose two shafts each run in one bearing beside the wheel."""
-
-    def support(self, contacts):
-        return jnp.ones((2, *contacts.weight.shape))
-
-
 def supported(driver=1):
-    pair = build_cylindrical_pair(
+    return build_cylindrical_pair(
         teeth=(18, 36),
         module=3e-3,
         pressure_angle=np.deg2rad(20.0),
         face_width=26.7e-3,
         driver=driver,
     )
-    fields = dataclasses.fields(pair)
-    return SupportedPair(**{field.name: getattr(pair, field.name) for field in fields})
 
 
 MESH = supported()
@@ -61,7 +53,7 @@ def bearing(row, between=None, *, f0=2.0, f1=1e-3, preload=50.0, **others):
         mean_diameter=0.06,
         factors={"f0": f0, "f1": f1},
         preload=preload,
-        support=row,
+        seat=Bearing(row),
         **others,
     )
 
@@ -178,9 +170,6 @@ def test_registry_of_bearing_losses():
         BEARING_LOSS["palmgren_1957"]
     with pytest.raises(InputError, match="'palmgren_1959' asks for f0, f1, got"):
         Drag([1.0, 0.0], bearing=PALMGREN, factors={"f0": 1.0})
-    row = dataclasses.replace(bearing(1), support=2)
-    with pytest.raises(InputError, match="this mesh loads 2 bearings, there is no row 2"):
-        state(design(row), operation(), jnp.asarray(0.2), models())
 
 
 @pytest.mark.parametrize("quick", [False, True])

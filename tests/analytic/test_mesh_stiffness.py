@@ -8,11 +8,11 @@ import pytest
 from sound import pair
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.loading.yielding import yielding
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
@@ -59,7 +59,7 @@ def plastic(name, model=BEAM, slices=12):
 @eqx.filter_jit
 def _shares(mesh, terms, load, phase):
     contacts = mesh.contacts(phase)
-    yields = yielding(mesh, contacts, BOTH_STEEL, terms, load)
+    yields = compliance(mesh, contacts, BOTH_STEEL, terms, load)
     return LOAD_SHARING["from_stiffness"].function(contacts, mesh, yields), contacts, mesh
 
 

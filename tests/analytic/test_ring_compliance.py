@@ -8,7 +8,7 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
-from pitchpoint.loading.ring_compliance import WAVES, ring_compliance
+from pitchpoint.gears.ring_compliance import WAVES, ring_compliance
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)

@@ -22,9 +22,9 @@ from pitchpoint.gears.strain_wave_design import (
     double_arc_flank,
 )
 from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
-from pitchpoint.loading.clearances import shared_load
+from pitchpoint.loading.compliance import compliance
+from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.loading.yielding import yielding
 from pitchpoint.materials import solids
 
 MODULE, RIM = 0.3e-3, 0.7e-3
@@ -408,12 +408,14 @@ def test_teeth_pass_the_whole_turn_without_interference(drives, pair, shape):
 @eqx.filter_jit
 def engaged(mesh, phase, load):
     contacts = mesh.contacts(phase)
-    yields = yielding(mesh, contacts, (STEEL, STEEL), TERMS_OF_TEETH, load)
-    compliance = yields.compliance(contacts)
+    yields = compliance(mesh, contacts, (STEEL, STEEL), TERMS_OF_TEETH, load)
+    teeth = yields.of_teeth(contacts)
+    given = {"gap": contacts.gap, "active": contacts.active, "load": load}
     arm = jnp.abs(along(contacts.normal, mesh.loaded))
-    found = shared_load(compliance, gap=contacts.gap, arm=arm, active=contacts.active, load=load)
+    found = equilibrium(teeth, yields.body, arm=arm, **given)
     force = found.force.reshape(-1, *phase.shape)
-    moved = jnp.einsum("ij...,j...->i...", compliance, force)
+    moved = jnp.einsum("ij...,j...->i...", yields.body, force)
+    moved = moved + teeth.reshape(force.shape) * force
     return {
         "angle": 2.0 * jnp.pi * contacts.path[:, 0],
         "active": contacts.active[:, 0],

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 import equinox as eqx
 import numpy as np
 import pytest
+from bare_contacts import line_contacts
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.errors import InputError
@@ -109,7 +109,7 @@ class Pair:
         none = jnp.zeros((1, 1, len(path)))
         curvature = jnp.asarray(np.cos(self.base_helix) / rolling)[:, None, None, None]
         flank = rolling**2 / (2.0 * np.array(self.base)[:, None])
-        return Contacts(
+        return line_contacts(
             active=none == 0.0,
             path=jnp.asarray(path)[None, None],
             width=none,
@@ -119,7 +119,6 @@ class Pair:
             normal=jnp.zeros((2, *none.shape)),
             gap=none,
             flank=jnp.asarray(flank)[:, None, None],
-            shape="line",
         )
 
     def unit_stiffness(self, path, model, solids=(STEEL, PA66), load=LOAD):

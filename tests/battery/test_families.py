@@ -17,8 +17,9 @@ from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
-from pitchpoint.gears.discs import BallOnDisc, TwinDisc
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -55,7 +56,10 @@ RING = {"fillet_radius": (0.38, 0.2), "profile_shift": (0.3, 0.2)}
 FAMILIES: Mapping[str, Callable[[], Mesh]] = {
     "twin disc": lambda: TwinDisc(*map(jnp.asarray, ([0.02, 0.035], 0.008, 0.8))),
     "twin disc, faster follower": lambda: TwinDisc(*map(jnp.asarray, ([0.03, 0.02], 0.01, 1.3))),
-    "ball on disc": lambda: BallOnDisc(*map(jnp.asarray, (0.0095, 0.04, 0.7))),
+    "ball on disc": lambda: BallOnDisc(*map(jnp.asarray, ([0.0095, 0.0095], 0.04, 0.35))),
+    "barrel on disc, faster barrel": lambda: BallOnDisc(
+        *map(jnp.asarray, ([0.01, 0.03], 0.035, -0.2))
+    ),
     "18/36": lambda: spur((18, 36)),
     "18/36, right flank": lambda: spur((18, 36), right_flank=True),
     "18/36, wheel drives": lambda: spur((18, 36), driver=2),
@@ -120,6 +124,13 @@ def properties(mesh):
         "period": mesh.period,
         "contact_ratio": mesh.contact_ratio,
     }
+
+
+@eqx.filter_jit
+def frame(mesh, contacts):
+    """Coordinates, and the velocity of the contacts' points with each of them."""
+    bodies = mesh.coordinates
+    return bodies, jnp.stack([body.velocity(contacts.point) for body in bodies])
 
 
 def state_at(design, operation, phase, models):
@@ -257,6 +268,10 @@ def test_active_contacts_keep_touching_on_the_nominal_motion(family):
     assert np.max(np.abs(closing / np.maximum(size, 1e-6))[family.at.active]) < 1e-14
 
 
+def test_contacts_have_the_shape_of_the_family(family):
+    assert family.at.shape == family.mesh.shape
+
+
 def test_sliding_is_the_difference_of_the_surface_speeds(family):
     motion = family.told.motion
     first, second = (np.asarray(along(arms, motion)) for arms in family.at.surface)
@@ -273,6 +288,31 @@ def test_driver_moves_by_one_radian_and_load_is_on_another_coordinate(family):
     assert abs(told.driver @ told.motion) == pytest.approx(1.0, rel=1e-15)
     assert told.driver @ told.loaded == 0.0
     assert np.sum(told.driver) == np.sum(told.loaded) == 1.0
+
+
+def test_arms_follow_from_places_and_directions_in_one_frame(family):
+    at = family.at
+    frames = np.stack([at.direction, at.tangent], axis=1)
+    np.testing.assert_allclose(
+        np.einsum("xk...,xl...->kl...", frames, frames),
+        np.broadcast_to(np.eye(2).reshape(2, 2, 1, 1, 1), (2, 2, *at.active.shape)),
+        atol=1e-14,
+    )
+    bodies, velocity = jax.tree.map(np.asarray, frame(family.mesh, at))
+    assert {body.member for body in bodies} >= {0, 1}
+    for k, body in enumerate(bodies):
+        if body.member is None or not body.rigid:
+            continue
+        sense = 1.0 if body.member == 0 else -1.0
+        closing, slip = (
+            sense * np.einsum("x...,x...->...", velocity[k], vector)
+            for vector in (at.direction, at.tangent)
+        )
+        size = np.linalg.norm(velocity[k], axis=0).max()
+        if all(one.rigid for one in bodies):
+            np.testing.assert_allclose(at.normal[k], closing, atol=1e-13 * size)
+        moves = body.turns  # a load that presses bodies together slides on none
+        np.testing.assert_allclose(at.slip_arm[k], slip if moves else 0.0, atol=1e-12 * size)
 
 
 def dot(rates, arms):
@@ -454,7 +494,7 @@ def test_curvature_is_the_second_derivative_of_the_gap(family):
         check_involute_curvature(family)
         return
     first, second = principal_radii(family.mesh)
-    step = 0.02 * min(first[0], second[0])
+    step = 0.02 * min(*first, *second)
     across = STEPS * step
     for direction in (0, 1):
         each = [circle(r[direction], across) for r in (first, second)]
@@ -470,7 +510,7 @@ def principal_radii(mesh):
     flat = 1e30
     if isinstance(mesh, TwinDisc):
         return tuple((float(r), flat) for r in mesh.radii)
-    return (float(mesh.ball_radius),) * 2, (flat, flat)
+    return (flat, flat), tuple(map(float, mesh.radius))
 
 
 def active_lanes(family):
@@ -519,7 +559,7 @@ def test_arms_are_the_velocities_of_the_turning_flanks(family):
         # Discs side by side: equal senses of rotation move the touching surfaces apart.
         arms = np.diag(np.asarray(family.mesh.radii) * [1.0, -1.0])
     else:
-        arms = np.diag([float(family.mesh.ball_radius), float(family.mesh.track_radius)])
+        arms = np.diag([float(family.mesh.track_radius), float(family.mesh.radius[0])])
     np.testing.assert_allclose(turning, np.broadcast_to(arms, turning.shape), rtol=1e-15)
     np.testing.assert_array_equal(family.at.normal[:2], 0.0)
 
@@ -581,7 +621,7 @@ def test_one_period_later_all_is_the_same(family, turns):
     here = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE)))
     there = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE + turns)))
     for name, values in here.items():
-        rtol = ROUNDING if family.mesh.clearances else 1e-12
+        rtol = ROUNDING if not family.mesh.touching else 1e-12
         np.testing.assert_allclose(there[name], values, rtol=rtol, atol=1e-15, err_msg=name)
 
 
@@ -624,11 +664,12 @@ def test_batch_equals_loop(family):
     square = contacts_of(family.mesh, phase.reshape(2, 13))
     close = (
         {"rtol": ROUNDING, "atol": 1e-15}
-        if family.mesh.clearances
+        if not family.mesh.touching
         else {"rtol": 1e-14, "atol": 1e-17}
     )
-    # Places across the face are counted from its middle and rounded like its half.
-    rounded = {"width": 2e-15 * np.abs(family.at.width).max()}
+    # Places across the face are counted from its middle and rounded like its half; places in the frame
+    # of the mesh, of which one component vanishes at the pitch point, like the whole radius.
+    rounded = {name: 2e-15 * np.abs(getattr(family.at, name)).max() for name in ("width", "point")}
     for name, values in leaves_of(family.at).items():
         near = close | {"atol": max(close["atol"], rounded.get(name, 0.0)), "err_msg": name}
         for other in (alone, mapped):
@@ -663,7 +704,7 @@ def test_every_lane_and_state_is_finite_with_its_gradient(family, load):
 def test_rigid_flanks_touch_where_they_are_active(family):
     assert np.all(family.at.gap >= 0.0)
     touching = family.at.gap[family.at.active]
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         # Only some of the pairs that reach into each other touch, to the table of the groove.
         least = np.where(family.at.active, family.at.gap, np.inf).min(axis=(0, 1))
         assert np.all(least < 1e-10)
@@ -673,7 +714,7 @@ def test_rigid_flanks_touch_where_they_are_active(family):
 
 
 def test_number_of_pairs_changes_at_events_only(family):
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         pytest.skip("pairs come and go unloaded; the number that touches depends on the load")
     events = family.told.events
     assert events.shape == jax.eval_shape(type(family.mesh).events, family.mesh).shape
@@ -690,7 +731,7 @@ def test_number_of_pairs_changes_at_events_only(family):
 
 
 def test_sliding_changes_its_sense_at_events_only(family):
-    if family.mesh.clearances:
+    if not family.mesh.touching:
         pytest.skip("each tooth reverses its sliding near the long axis, one of many that carry")
     edges = np.unique(np.concatenate([[0.0], family.told.events, [1.0]]))
     for low, high in pairwise(edges):

@@ -95,6 +95,17 @@ def test_arms_are_velocities_of_the_material_by_positions(passing):
     assert np.max(np.abs(at.slip - expected.real)[:, smooth] / size[smooth]) < 1e-6
 
 
+def test_a_rigid_circular_spline_turns_its_flanks_about_the_axis(passing):
+    raw = passing.raw
+    turned = np.stack([-raw.point[1], raw.point[0], np.zeros(raw.active.shape)])
+    size = np.linalg.norm(turned, axis=0).max()
+    closing = -np.einsum("x...,x...->...", turned, raw.direction)
+    np.testing.assert_allclose(raw.normal[2], closing, atol=1e-12 * size)
+    # Teeth of both zones press the flexspline inwards: their forces on it nearly cancel.
+    pressed = np.where(raw.active, raw.direction, 0.0).sum(axis=(1, 2))
+    assert np.abs(pressed).max() < 1e-9 * raw.active.sum()
+
+
 def test_curvatures_are_second_derivatives_of_positions(passing):
     by, at = passing.by, passing
     own, mate, one = at.curvatures

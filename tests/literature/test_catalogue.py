@@ -24,7 +24,7 @@ from pitchpoint.cases.run import load_case
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.loading.torsion import torsion
+from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.results.store import dataset
 from pitchpoint.units import parse
 
@@ -184,7 +184,7 @@ def test_tooth_friction_alone_does_not_lock_the_drive(arcs, driver):
 
 @eqx.filter_jit
 def _torsion(design, terms, load, phase):
-    return torsion(design.mesh, design.solids, terms, load, phase)
+    return wind_up(design.mesh, design.solids, terms, load, phase)
 
 
 def drive(variant="rigid_bearing", scale=1.0):
@@ -238,7 +238,7 @@ def test_example_of_the_manual():
 
 def test_support_of_the_case_is_that_of_the_balls():
     """23 balls of 6.35 mm on a circle of 69.5 mm, at the load of one zone in the middle of K1."""
-    load, ball = size_32().radial_load[:, list(LOADS).index(29.0 / 2.0)].mean(), 6.35
+    load, ball = size_32().inner_load[:, list(LOADS).index(29.0 / 2.0)].mean(), 6.35
     yields = 4.36e-4 * load ** (2.0 / 3.0) / ball ** (1.0 / 3.0) * 1e-3
     slope = 1.5 * load / yields / (np.pi * 69.5e-3 / 23)
     support = float(drive("ball_bearing").design.mesh.ring.support_stiffness)

@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import equinox as eqx
 import numpy as np
 import pytest
+from bare_contacts import line_contacts
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from jax.flatten_util import ravel_pytree
 from sound import pair
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.gradients import (
     input_torque_gradient,
     mean_loss_gradient,
@@ -205,7 +205,7 @@ def test_ripple_has_a_slope_on_each_side_of_an_event(design):
 
 def contacts_on(path, active):
     lanes = path.shape
-    return Contacts(
+    return line_contacts(
         active=active,
         path=path,
         width=jnp.zeros(lanes),
@@ -215,7 +215,6 @@ def contacts_on(path, active):
         normal=jnp.ones((2, *lanes)),
         gap=jnp.zeros(lanes),
         flank=jnp.zeros((2, *lanes)),
-        shape="line",
     )
 
 

@@ -18,7 +18,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.torsion import torsion
+from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import Roughness, lubricants, solids
@@ -64,7 +64,7 @@ def figures_and_rates(values, direction, mesh, choice):
         given, laws = design(values, mesh), models(choice)
         run = cycle(given, OPERATION, laws, nodes=3)
         load = jnp.full_like(run.phase, OPERATION.load)
-        at = torsion(given.mesh, given.solids, laws.compliance, load, run.phase, run.state.contacts)
+        at = wind_up(given.mesh, given.solids, laws.compliance, load, run.phase, run.state.contacts)
         (first, later, _), (near, far, _) = at.stiffness, at.wind_up
         return jnp.log(jnp.stack([run.mean_efficiency, first, near, later, far]))
 
@@ -77,7 +77,7 @@ def nearest_and_rates(deflection, mesh, angle):
 
     def nearest(deflection):
         line = dataclasses.replace(mesh.line, deflection=deflection)
-        return dataclasses.replace(mesh, line=line).touching(angle)
+        return dataclasses.replace(mesh, line=line).nearest(angle)
 
     return jax.jvp(nearest, (deflection,), (jnp.ones(()),))
 

@@ -36,7 +36,8 @@ GOOD: dict[str, Any] = {
     "family": "cylindrical",
     "driver": "gear 1",
     "loaded": "gear 2",
-    "motion": {"gear 1": 1.0, "gear 2": -0.5},
+    "members": ["gear 1", "gear 2"],
+    "motion": [1.0, -0.5],
     "period": 0.1,
     "averaging": "path",
     "plastic": False,
@@ -384,7 +385,13 @@ def test_a_case_is_made_again_from_its_record(odd: dict[str, Any], tmp_path: Pat
 
 @pytest.mark.parametrize(
     "case",
-    ["tian2024", "zhao2022", EXAMPLES / "strain_wave.toml", EXAMPLES / "helical_resonance.toml"],
+    [
+        "tian2024",
+        "zhao2022",
+        EXAMPLES / "strain_wave.toml",
+        EXAMPLES / "helical_resonance.toml",
+        EXAMPLES / "ball_on_disc.toml",
+    ],
     ids=str,
 )
 def test_cases_are_made_again_from_their_records(case: str | Path, tmp_path: Path) -> None:
@@ -460,5 +467,9 @@ def test_a_record_that_was_changed(
 
 
 def test_a_driver_that_does_not_move(odd: dict[str, Any], tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="motion has no member 'gear 3'"):
-        describe(kept({**odd, "driver": "gear 3"}, tmp_path))
+    for change, words in (
+        ({"driver": "gear 3"}, "'gear 3' is none of the members"),
+        ({"motion": [1.0]}, "motion has not as many rates as there are members"),
+    ):
+        with pytest.raises(InputError, match=words):
+            describe(kept({**odd, **change}, tmp_path))

@@ -21,8 +21,10 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import CylindricalPair
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
@@ -92,9 +94,14 @@ class Built:
         return engaged(self.design, self.operation, laws_of(self)[0])
 
     @property
+    def transmits(self) -> bool:
+        """True if the loaded coordinate moves, so that power goes through; False for a test rig."""
+        return bool(self.nominal["loaded"] @ self.nominal["motion"])
+
+    @property
     def covers(self) -> dict[str, str]:
         """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
-        alone = self.design.mesh.clearances and not self.case.losses
+        alone = self.design.mesh.inner_bearing and not self.case.losses
         return {"covers": "teeth alone"} if alone else {}
 
     @property
@@ -121,6 +128,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     for temperature in (case.loss_map and case.loss_map.temperatures) or ():
         _check_temperature(temperature, record, document, "loss_map.temperatures")
     try:
+        _check_shapes(case, mesh, own)
         _check_models(case, mesh)
     except InputError as error:
         raise error.at(file=document.name) from None
@@ -132,7 +140,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         drag=tuple(_drag(loss, case, mesh) for loss in case.losses.values()),
     )
     operation = Operation(
-        load=array(case.operation.torque),
+        load=array(case.operation.load),
         speed=array(case.operation.speed),
         temperature=array(case.operation.temperature),
     )
@@ -200,9 +208,31 @@ _OF_PITCH_POINT = {
 
 
 def _applies(law: FrictionLaw, mesh: Mesh) -> bool:
-    from pitchpoint.lubrication.conditions import arguments
+    from pitchpoint.lubrication.conditions import arguments, shape_of
 
+    if shape_of(law) not in (None, mesh.shape):
+        return False
     return mesh.pitch_point or _OF_PITCH_POINT.isdisjoint(arguments(law.function)[0])
+
+
+def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
+    """InputError if a law of the case, or the user's own, holds for contacts of another shape."""
+    from pitchpoint.lubrication.conditions import Law, demand_shape
+
+    models = case.models
+    chosen: dict[str, list[Law]] = {
+        "models.friction": [FRICTION[choice.name] for choice in models.friction],
+        "models.film_thickness": [FILM_THICKNESS[models.film_thickness]],
+        "models.rolling_resistance": [ROLLING_RESISTANCE[models.rolling_resistance]],
+    }
+    for key, laws in chosen.items():
+        for law in laws:
+            try:
+                demand_shape(law, mesh.shape)
+            except InputError as error:
+                raise error.at(key=key) from None
+    if own is not None:
+        demand_shape(own, mesh.shape)
 
 
 def _check_models(case: Case, mesh: Mesh) -> None:
@@ -242,20 +272,45 @@ def _drag(loss: Loss, case: Case, mesh: Mesh) -> Drag:
         if body in members:
             between[members.index(body)] = side
     bearing = BEARING_LOSS[loss.bearing]
-    bearings = FAMILIES[type(case.gears)].bearings
     return Drag(
         between=array(between),
         bearing=bearing,
         mean_diameter=array(loss.mean_diameter or 0.0),
         factors={name: array(value) for name, value in loss.factors.items()},
         preload=array(loss.preload),
-        support=bearings.get(frozenset(loss.between)) if bearing.name != "none" else None,
+        seat=_seat(loss, case, mesh),
         seal_torque=array(loss.seal_torque),
         churning_torque=array(loss.churning_torque),
         churning_speed=array(loss.churning_speed or 1.0),
         churning_exponent=array(loss.churning_exponent),
         breakaway_torque=array(loss.breakaway_torque),
     )
+
+
+def _seat(loss: Loss, case: Case, mesh: Mesh) -> Bearing | InnerBearing | None:
+    """Where a bearing sits; None for a place without one, or between bodies that nothing holds apart."""
+    if loss.bearing == "none":
+        return None
+    if frozenset(loss.between) == mesh.inner_bearing:
+        return InnerBearing()
+    if "housing" not in loss.between:
+        return None
+    body = next(name for name in loss.between if name != "housing")
+    coordinate = case.gears.members.index(body)
+    first, *others = case.bearings_of(body).values()
+    if not others:
+        return Bearing(coordinate)
+    other = others[0] if loss is first else first
+    assert loss.position is not None and other.position is not None
+    thrust = _locates(loss, other, usual=loss is first)
+    return Bearing(coordinate, array(loss.position), array(other.position), thrust)
+
+
+def _locates(loss: Loss, other: Loss, *, usual: bool) -> bool:
+    """True if a bearing takes the thrust: as either of the two says, else the first one."""
+    if loss.locating is not None:
+        return loss.locating
+    return usual if other.locating is None else not other.locating
 
 
 def _parameters(case: Case, laws: tuple[FrictionLaw, ...]) -> dict[str, dict[str, jnp.ndarray]]:
@@ -279,7 +334,7 @@ def _built_oil(record: lubricants.LubricantRecord) -> lubricants.Lubricant:
 def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     """What the model of tooth compliance does not cover, where it is used."""
     sharing = LOAD_SHARING[case.models.load_sharing]
-    if mesh.ring is not None or (case.dynamics is None and not sharing.by_stiffness):
+    if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
     sections = _sections(mesh)
     assert sections is not None

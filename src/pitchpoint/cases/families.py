@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.cases.gear_tables import (
+    BallOnDiscRig,
     CylindricalGears,
     Deviation,
     DoubleArcTooth,
@@ -17,10 +18,12 @@ from pitchpoint.cases.gear_tables import (
     InvoluteTooth,
     StrainWaveGears,
 )
+from pitchpoint.contact.surface import Surfaces, Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
 from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.gears.strain_wave_design import (
     DOUBLE_ARCS,
@@ -29,7 +32,6 @@ from pitchpoint.gears.strain_wave_design import (
     build_strain_wave,
     check_strain_wave,
 )
-from pitchpoint.loading.deviations import Deviations
 
 __all__ = ["FAMILIES", "Family", "built_gears"]
 
@@ -46,23 +48,21 @@ class Family:
     Attributes:
         build: mesh and warnings from the table, the name of the driver and the number of slices.
         following: values that the table leaves open, as the mesh has them, by key inside the table.
-        bearings: row of `Mesh.support` of the bearing between two bodies.
-        deviations: of the teeth of both members, from the table; None where it gives none.
+        deviations: of the teeth around both members, from the table.
         drawing: dimensions of the arrays of a drawing.
         coordinates: labels along those dimensions.
     """
 
     build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
     following: Callable[[Any, Any], dict[str, Any]]
-    bearings: Mapping[frozenset[str], int] = field(default_factory=dict)
-    deviations: Callable[[Any], tuple[Deviations, Deviations] | None] = lambda gears: None
+    deviations: Callable[[Any], Surfaces] = lambda gears: ((), ())
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
 
 
 @lru_cache(maxsize=256)
 def built_gears(
-    gears: CylindricalGears | StrainWaveGears, driver: str, slices: int
+    gears: CylindricalGears | StrainWaveGears | BallOnDiscRig, driver: str, slices: int
 ) -> tuple[Mesh, tuple[str, ...]]:
     """Mesh and its warnings; a sweep that leaves the gears alone builds them once.
 
@@ -225,9 +225,7 @@ def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
     }
 
 
-def _deviations(gears: StrainWaveGears) -> tuple[Deviations, Deviations] | None:
-    if not any(gears.deviations.each.values()):
-        return None
+def _deviations(gears: StrainWaveGears) -> Surfaces:
     given = gears.deviations
     return _waves(given.flexspline), _waves(given.circular_spline)
 
@@ -236,11 +234,33 @@ WAVES = 4
 """Waves of a spline come in multiples of it, the last ones without height: few programs serve all."""
 
 
-def _waves(given: tuple[Deviation, ...]) -> Deviations:
-    rows = np.zeros((len(fields(Deviations)), max(1, ceil(len(given) / WAVES)) * WAVES))
-    for row, one in zip(rows, fields(Deviations), strict=True):
+def _waves(given: tuple[Deviation, ...]) -> tuple[Waves, ...]:
+    if not given:
+        return ()
+    rows = np.zeros((len(fields(Waves)), ceil(len(given) / WAVES) * WAVES))
+    for row, one in zip(rows, fields(Waves), strict=True):
         row[: len(given)] = [getattr(wave, one.name) for wave in given]
-    return Deviations(*map(jnp.asarray, rows))
+    return (Waves(*map(jnp.asarray, rows)),)
+
+
+def _ball_on_disc(rig: BallOnDiscRig, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+    across = rig.transverse_radius or rig.ball_radius
+    mesh = BallOnDisc(
+        radius=array([rig.ball_radius, across]),
+        track_radius=array(rig.track_radius),
+        slide_roll_ratio=array(rig.slide_roll_ratio),
+    )
+    return mesh, (NARROW,) if across < rig.ball_radius else ()
+
+
+NARROW = (
+    "The contact is narrower across the track than along it, and laws of the film on ellipses were fitted "
+    "to round and wider ones."
+)
+
+
+def _of_ball(rig: BallOnDiscRig, mesh: BallOnDisc) -> dict[str, Any]:
+    return {"transverse_radius": mesh.radius[1]}
 
 
 FAMILIES: dict[type, Family] = {
@@ -253,7 +273,6 @@ FAMILIES: dict[type, Family] = {
     StrainWaveGears: Family(
         _strain_wave,
         _of_drive,
-        bearings={frozenset(("wave generator", "flexspline")): 0},
         deviations=_deviations,
         drawing={
             "tooth": ("corner", "xy"),
@@ -266,5 +285,6 @@ FAMILIES: dict[type, Family] = {
         },
         coordinates={"gear": [1, 2], "xy": ["x", "y"]},
     ),
+    BallOnDiscRig: Family(_ball_on_disc, _of_ball),
 }
 """Families by the class of their table."""

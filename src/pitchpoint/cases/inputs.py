@@ -178,7 +178,7 @@ def _plain(value: Any) -> Any:
         return value.model_dump()
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
-    return value if isinstance(value, str | dict) else np.asarray(value, float).tolist()
+    return value if isinstance(value, str | bool | dict) else np.asarray(value, float).tolist()
 
 
 def _dimensions(built: Built) -> Iterator[Row]:

@@ -10,16 +10,11 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.deviations import (
-    Deviations,
-    KinematicError,
-    added_gap,
-    kinematic_error,
-    leaning,
-)
+from pitchpoint.loading.compliance import Compliance, compliance
+from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error
 from pitchpoint.loading.tooth_compliance import Terms
-from pitchpoint.loading.yielding import Yielding, yielding
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
@@ -35,8 +30,7 @@ TEETH = 32
 CURVES = ("geometry", "elastic mean", "under load")
 SPLINES = ("flexspline", "circular spline")
 
-Both = tuple[Deviations, Deviations]
-Over = Callable[[Both, int], np.ndarray]
+Over = Callable[[Surfaces, int], np.ndarray]
 """Errors [curve, state] by deviations of both over so many tooth periods."""
 
 
@@ -44,13 +38,12 @@ class _Period(eqx.Module):
     """One tooth period, which every tooth repeats: its contacts and how they yield at the load."""
 
     contacts: Contacts
-    leaning: Float[Array, "pair slice 1 phase"]
-    yields: Yielding
+    yields: Compliance
     loaded: Float[Array, " dof"]
 
 
 def kinematic_error_part(
-    built: Built, deviations: Both, progress: Callable[[int], None]
+    built: Built, deviations: Surfaces, progress: Callable[[int], None]
 ) -> xr.Dataset:
     """Rotation of the loaded member by deviations over one turn of the wave, at the operating torque.
 
@@ -63,13 +56,14 @@ def kinematic_error_part(
         progress: told the number of states that are done, after each group of teeth.
     """
     models, _ = laws_of(built)
-    design = built.design
-    load = jnp.full((1, 1), built.case.operation.torque)
+    design, gears = built.design, built.case.gears
+    assert hasattr(gears, "teeth")
+    load = jnp.full((1, 1), built.case.operation.load)
     period = _period(design.mesh, design.solids, models.compliance, load)
-    teeth = np.asarray(built.case.gears.teeth)
+    teeth = np.asarray(gears.teeth)
     solved: list[np.ndarray] = []
 
-    def over(own: Both, count: int) -> np.ndarray:
+    def over(own: Surfaces, count: int) -> np.ndarray:
         done, found = sum(one.shape[1] for one in solved), []
         for piece in _pieces(design.mesh, period, own, count):
             found.append(piece)
@@ -112,29 +106,28 @@ def _step(teeth: np.ndarray) -> float:
     return float(2.0 * np.pi / (teeth[1] * PHASES))
 
 
-def _alone(over: Over, deviations: Both, spline: int, teeth: np.ndarray) -> np.ndarray:
+def _alone(over: Over, deviations: Surfaces, spline: int, teeth: np.ndarray) -> np.ndarray:
     """Errors [curve, state] with deviations of one spline alone over one turn against it."""
     count = int(teeth[spline])
-    if not np.any(deviations[spline].amplitude):
+    if not deviations[spline]:
         return np.zeros((len(CURVES), count * PHASES))
-    none = Deviations(*jnp.zeros((3, deviations[1 - spline].order.size)))
-    own = (deviations[0], none) if spline == 0 else (none, deviations[1])
+    own = (deviations[0], ()) if spline == 0 else ((), deviations[1])
     return over(own, count)
 
 
 def _together(
-    over: Over, deviations: Both, alone: list[np.ndarray], teeth: np.ndarray
+    over: Over, deviations: Surfaces, alone: list[np.ndarray], teeth: np.ndarray
 ) -> np.ndarray:
     """Errors [curve, state] with both over one turn against the circular spline."""
     count = int(teeth[1])
-    given = [bool(np.any(one.amplitude)) for one in deviations]
+    given = [bool(one) for one in deviations]
     if all(given):
         return over(deviations, count)
     own = alone[given.index(True)]
     return np.take(own, np.arange(count * PHASES), axis=1, mode="wrap")
 
 
-def _pieces(mesh: Mesh, period: _Period, deviations: Both, count: int) -> Iterator[np.ndarray]:
+def _pieces(mesh: Mesh, period: _Period, deviations: Surfaces, count: int) -> Iterator[np.ndarray]:
     for start in range(0, count, TEETH):
         # A wave generator that turns on meets teeth of growing angle, and phases fall.
         phase = -(start + np.arange(TEETH)[:, None] + np.arange(PHASES) / PHASES)
@@ -154,17 +147,15 @@ def _amplitudes(errors: np.ndarray, orders: int) -> np.ndarray:
 @program
 def _period(mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Array) -> _Period:
     contacts = mesh.contacts(-jnp.arange(PHASES)[None] / PHASES)
-    yields = yielding(mesh, contacts, solids, terms, load)
-    return _Period(contacts, leaning(mesh, contacts), yields, mesh.loaded)
+    yields = compliance(mesh, contacts, solids, terms, load)
+    return _Period(contacts, yields, mesh.loaded)
 
 
 @program
 def _added(
-    mesh: Mesh, period: _Period, deviations: Both, phase: Float[Array, "tooth phase"]
+    mesh: Mesh, period: _Period, deviations: Surfaces, phase: Float[Array, "tooth phase"]
 ) -> Float[Array, "pair slice tooth phase"]:
-    place = mesh.places(period.contacts, phase)
-    assert place is not None  # or there would be no deviations
-    return added_gap(deviations, place) * period.leaning
+    return added_gap(deviations, mesh.spots(period.contacts, phase))
 
 
 @program

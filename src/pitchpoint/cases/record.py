@@ -179,7 +179,8 @@ class Manifest(_Kept):
     Attributes:
         surroundings: versions of the packages that computed it, and of what else decides its last bits.
         own: name of a friction law of the user's own that took the place of those of the case, or empty.
-        motion: nominal rates of the members for one radian of the driver, by member.
+        members: body of each coordinate.
+        motion: nominal rate of each coordinate for one radian of the driver.
         period: driver angle after which the mesh repeats [rad].
     """
 
@@ -198,7 +199,8 @@ class Manifest(_Kept):
     family: str
     driver: str
     loaded: str
-    motion: dict[str, float]
+    members: list[str]
+    motion: list[float]
     period: float
     averaging: str
     plastic: bool
@@ -211,9 +213,11 @@ class Manifest(_Kept):
 
     @model_validator(mode="after")
     def _moving(self) -> Self:
-        for member in (self.driver, self.loaded):
-            if member not in self.motion:
-                raise ValueError(f"motion has no member '{shorten(member)}'")
+        if len(self.motion) != len(self.members):
+            raise ValueError("motion has not as many rates as there are members")
+        for body in (self.driver, self.loaded):
+            if body not in self.members:
+                raise ValueError(f"'{shorten(body)}' is none of the members")
         return self
 
     @property

@@ -1,6 +1,6 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import inf
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -51,6 +51,7 @@ COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
 FORCE = Quantity("force", 0.0, 1e7, "N")
+PLACE = Quantity("length", -10.0, 10.0, "mm")
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
@@ -76,6 +77,12 @@ def _places(value: Any) -> tuple[Any, ...]:
     if not 1 <= len(several) <= 12:
         raise InputError(f"{len(several)} places were given; allowed are 1 to 12")
     return tuple(several)
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(f"{shown(value)} was given; allowed are true and false")
+    return value
 
 
 def _reductions() -> list[str]:
@@ -135,7 +142,7 @@ def _rollings() -> list[str]:
 def _films() -> list[str]:
     from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 
-    return [name for name, law in FILM_THICKNESS.items() if law.shape == "line"]
+    return list(FILM_THICKNESS)
 
 
 def _oils() -> list[str]:
@@ -168,7 +175,10 @@ SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]
 
 
 class Materials(Table):
-    """Materials of both gears, by name or by value; of a strain wave gear, gear 1 is the flexspline."""
+    """Materials of both gears, by name or by value.
+
+    Gear 1 of a strain wave gear is the flexspline, that of a ball on disc the disc.
+    """
 
     gear_1: SolidValues | SolidName = "steel"
     gear_2: SolidValues | SolidName = "steel"
@@ -239,13 +249,20 @@ class Surface(Table):
 class Operating(Table):
     """Torque on the driven member, speed of the driving one, temperature of the oil.
 
-    The driver, where it is not given, is the first member of the gears that is not fixed.
+    The driver, where it is not given, is the first member of the gears that is not fixed. Test rigs
+    take the normal force in place of the torque.
     """
 
-    torque: Annotated[float, TORQUE]
+    torque: Annotated[float, TORQUE] | None = None
+    force: Annotated[float, FORCE] | None = None
     speed: Annotated[float, SPEED]
     temperature: Annotated[float, TEMPERATURE]
     driver: Text = ""
+
+    @property
+    def load(self) -> float:
+        """Torque or force, whichever the case has [N m or N]."""
+        return (self.torque if self.force is None else self.force) or 0.0
 
 
 class FrictionChoice(BaseModel):
@@ -341,8 +358,11 @@ class Housing(Table):
 class Loss(Table):
     """A place beside the teeth where two bodies brake each other, or one of them and the housing.
 
-    Torques are those between the two bodies. A bearing between wave generator and flexspline bears the
-    radial load of the teeth beside its preload.
+    Torques are those between the two bodies. A bearing between a body and the housing bears, beside its
+    preload, what the teeth put on that body: all of it where it stands for all bearings of the body, its
+    part where two are given with their positions along the axis, counted from the middle of the face
+    towards the end that a contact line reaches last. The one that is locating takes the axial force. A
+    bearing between wave generator and flexspline bears the radial load of the teeth in both zones.
     """
 
     between: tuple[Text, Text]
@@ -351,6 +371,8 @@ class Loss(Table):
     f0: Annotated[float, BEARING_FACTOR] | None = None
     f1: Annotated[float, BEARING_FACTOR] | None = None
     preload: Annotated[float, FORCE] = 0.0
+    position: Annotated[float, PLACE] | None = None
+    locating: Annotated[bool, BeforeValidator(_flag)] | None = None
     seal_torque: Annotated[float, TORQUE] = 0.0
     churning_torque: Annotated[float, TORQUE] = 0.0
     churning_speed: Annotated[float, SPEED] | None = None
@@ -379,7 +401,8 @@ class Loss(Table):
             raise InputError(
                 "is missing; churning_torque is that at this speed", key="churning_speed"
             )
-        alone = {"preload": "a bearing"} if self.bearing == "none" else {}
+        of_bearing = dict.fromkeys(("preload", "position", "locating"), "a bearing")
+        alone = of_bearing if self.bearing == "none" else {}
         if not _given(self, "churning_torque"):
             alone |= dict.fromkeys(("churning_speed", "churning_exponent"), "churning_torque")
         for name in (key for key in alone if _given(self, key)):
@@ -558,6 +581,14 @@ class Case(Table):
     targets: Annotated[tuple[Target, ...], Field(max_length=2000)] = ()
     issues: Annotated[tuple[Issue, ...], Field(max_length=500)] = ()
 
+    def bearings_of(self, body: str) -> dict[str, Loss]:
+        """Bearings between a body and the housing, by name of their loss."""
+        return {
+            name: loss
+            for name, loss in self.losses.items()
+            if loss.bearing != "none" and {*loss.between} == {body, "housing"}
+        }
+
     @model_validator(mode="after")
     def _aimed(self) -> "Case":
         for position, target in enumerate(self.targets):
@@ -577,7 +608,10 @@ class Case(Table):
     @model_validator(mode="after")
     def _of_family(self) -> "Case":
         """What is not given stands as is usual for the family; bodies are those that it has."""
+        _check_load(self)
         _check_bodies(self)
+        for body in self.gears.members:
+            _check_span(body, self.bearings_of(body))
         _check_meant(self)
         _check_driver(self)
         operation, models = self.operation, self.models
@@ -585,6 +619,7 @@ class Case(Table):
         usual: dict[str, Any] = {
             "friction": (FrictionChoice(name=self.gears.friction),),
             "load_sharing": self.gears.load_sharing,
+            "film_thickness": self.gears.film_thickness,
         }
         left = {name: value for name, value in usual.items() if not _given(models, name)}
         return self.model_copy(
@@ -613,6 +648,30 @@ def _given(table: Table, key: str) -> bool:
     return key in table.model_fields_set
 
 
+def _check_load(case: Case) -> None:
+    """InputError unless the load is given that the driven member takes, and no table asks for the other."""
+    point, wanted = case.operation, case.gears.load
+    other = "force" if wanted == "torque" else "torque"
+    if getattr(point, other) is not None:
+        told = f"{_CARRIED[wanted]}; give {wanted} in place of {other}"
+        raise InputError(told, key=f"operation.{other}")
+    if getattr(point, wanted) is None:
+        missing = f"is missing{_needed(('operation', wanted))}"
+        raise InputError(missing, key=f"operation.{wanted}")
+    if wanted == "force" and case.loss_map is not None:
+        raise InputError(
+            "a loss map runs over the torque of an output, which a test rig does not have; leave this "
+            "table out",
+            key="loss_map",
+        )
+
+
+_CARRIED = {
+    "torque": "gears carry a torque",
+    "force": "a test rig is loaded by a normal force",
+}
+
+
 def _check_meant(case: Case) -> None:
     """InputError if a model is chosen that means nothing for the gears."""
     for key, why in case.gears.meaningless.items():
@@ -626,7 +685,10 @@ def _check_driver(case: Case) -> None:
     """InputError if the member that is to drive is fixed, or none of these gears."""
     driver, gears = case.operation.driver, case.gears
     if _given(case.operation, "driver") and driver not in gears.drivers:
-        why = "is fixed and cannot drive" if driver in gears.members else "is not in this drive"
+        fixed = (
+            "is fixed and cannot drive" if driver == getattr(gears, "fixed", "") else "cannot drive"
+        )
+        why = fixed if driver in gears.members else "is not in this drive"
         raise InputError(
             f"{shown(driver)} {why}; use {' or '.join(gears.drivers)}",
             key="operation.driver",
@@ -642,10 +704,51 @@ def _check_bodies(case: Case) -> None:
         told = (
             f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
             if strange is not None
-            else f"{shown(first)} was given twice; name two bodies of {', '.join(known)}"
+            else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
         )
         if strange is not None or first == second:
             raise InputError(told, key=f"losses.{name}.between")
+
+
+def _check_span(body: str, bearings: Mapping[str, Loss]) -> None:
+    """InputError if the loads on the bearings of a body do not follow from their places."""
+    placed = [name for name, one in bearings.items() if one.position is not None]
+    for name, one in bearings.items():
+        wrong = _out_of_place(body, one, [other for other in bearings.values() if other is not one])
+        if wrong is not None:
+            raise InputError(wrong[1], key=f"losses.{name}.{wrong[0]}")
+        if placed and one.position is None:
+            told = (
+                f"is missing; {placed[0]} has one, and the load of two bearings on {body} follows"
+            )
+            raise InputError(f"{told} from the places of both", key=f"losses.{name}.position")
+
+
+def _out_of_place(body: str, one: Loss, others: Sequence[Loss]) -> tuple[str, str] | None:
+    """Key and sentence on a bearing whose load does not follow from its place and those of the others."""
+    if len(others) > 1:
+        count = f"{len(others) + 1} bearings hold {body}"
+        return "between", f"{count}; the loads of more than two do not follow from their places"
+    for key in ("position", "locating"):
+        if not others and getattr(one, key) is not None:
+            told = f"was given for the only bearing of {body}, which takes all load"
+            return key, f"{told}; give the second bearing too, or leave it out"
+    if others and one.position is None and others[0].position is None:
+        return "position", (
+            f"is missing; the load of two bearings on {body} follows from the places of both: give "
+            "position to each, or one bearing alone that stands for both"
+        )
+    if others and one.position == others[0].position:
+        return "position", (
+            f"{PLACE.show(one.position or 0.0)} is where the other bearing of {body} sits too; two "
+            "bearings need a span between them"
+        )
+    if others and one.locating is not None and one.locating == others[0].locating:
+        return (
+            "locating",
+            f"is {str(one.locating).lower()} for both bearings of {body}; one is locating",
+        )
+    return None
 
 
 def validate(document: Document) -> Case:

@@ -19,6 +19,7 @@ from pitchpoint.cases.laws import CASE_LAWS, limits_words
 from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import (
+    FORCE,
     SPEED,
     TEMPERATURE,
     TORQUE,
@@ -27,11 +28,12 @@ from pitchpoint.cases.schema import (
     quantity_at,
     validate,
 )
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError, shorten
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -50,6 +52,9 @@ _TOLD = ("targets", "issues", "studies")
 
 SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
+
+AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "sliding_velocity")
+"""Figures of a test rig, whose contact stays as it is."""
 
 _SHOWN = 3
 
@@ -176,8 +181,14 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     yield Job("cycle", "mesh cycle", (lambda _: _cycle(built),))
     yield Job("operation", "operating point", (lambda _: _operation(built),))
     yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
-    yield from _wind_up(built) if mesh.clearances else _yielding(built)
+    yield from _yielding(built)
     yield from studies
+    if built.transmits:
+        yield from _of_power(variant, built)
+
+
+def _of_power(variant: Variant, built: Built) -> Iterator[Job]:
+    """Parts on the power that goes through."""
     yield from _running(variant, built)
     models, chosen = laws_of(built)
     titles = [models.friction[law].title for law in chosen]
@@ -186,14 +197,8 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
 
 
-def _wind_up(built: Built) -> Iterator[Job]:
-    """Parts on teeth with clearances, which come to mesh under load."""
-    from pitchpoint.cases import torsion
-
-    yield Job("torsion", "torsion", (lambda _: torsion.torsion_part(built),))
-    deviations = built.family.deviations(built.case.gears)
-    if deviations is None:
-        return
+def _deviating(built: Built, deviations: Surfaces) -> Iterator[Job]:
+    """What deviations around the gears do to their motion."""
     from pitchpoint.cases import kinematic_error
 
     def compute(told: Progress) -> xr.Dataset:
@@ -215,9 +220,17 @@ def _running(variant: Variant, built: Built) -> Iterator[Job]:
 
 
 def _yielding(built: Built) -> Iterator[Job]:
-    """Parts on stiffness and vibration; what they import is not needed without them."""
-    dynamics = built.case.dynamics
-    if dynamics is None and not LOAD_SHARING[built.case.models.load_sharing].by_stiffness:
+    """Parts on how teeth yield, and what follows; what they import is not needed without them."""
+    dynamics, deviations = built.case.dynamics, built.family.deviations(built.case.gears)
+    shares = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
+    if not shares and dynamics is None and built.design.mesh.touching and not any(deviations):
+        return
+    from pitchpoint.cases import torsion
+
+    yield Job("torsion", "torsion", (lambda _: torsion.torsion_part(built),))
+    if any(deviations):
+        yield from _deviating(built, deviations)
+    if built.design.mesh.line_of_action is None:
         return
     from pitchpoint.cases import vibration
 
@@ -285,8 +298,8 @@ def _cycle(built: Built) -> xr.Dataset:
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )
-    if built.design.mesh.clearances:
-        data["path"].attrs.update(long_name="angle from the long axis, in turns", symbol="p/2π")
+    long_name, symbol = PATHS[built.design.mesh.counts]
+    data["path"].attrs.update(long_name=long_name, symbol=symbol)
     filled = built.design.mesh.filled
     return data if filled is None else data.isel(pair=filled)
 
@@ -314,7 +327,11 @@ def _jammed(
 
 def _operation(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
-    extra = {**_vibrations([built], len(chosen)), **_temperatures([built], len(chosen))}
+    extra = {
+        **_vibrations([built], len(chosen)),
+        **_temperatures([built], len(chosen)),
+        **_at_contact([built], models, chosen),
+    }
     return _summaries([built], models, chosen, extra, title="operating point")
 
 
@@ -404,6 +421,7 @@ def _points(
             **axis,
             **_vibrations(points, len(chosen)),
             **_temperatures(points, len(chosen)),
+            **_at_contact(points, models, chosen),
             **readings_of(points, len(chosen)),
         }
         data = _summaries(points, models, chosen, extra, progress, title=title)
@@ -484,10 +502,24 @@ def _backwards(variant: Variant, built: Built) -> Built:
     return variant.built(
         {
             "operation.driver": built.loaded,
-            "operation.torque": SIValue(point.torque / step),
+            "operation.torque": SIValue(point.load / step),
             "operation.speed": SIValue(point.speed / step),
         }
     )
+
+
+def _at_contact(points: Sequence[Built], models: Models, laws: Sequence[int]) -> dict[str, Any]:
+    """Pressure, film and speeds at the one contact of a rig, which transmits nothing."""
+    if points[0].transmits:
+        return {}
+    runs = [_profiles(point, models, laws) for point in points]
+    return {
+        name: (
+            ("law", "point"),
+            np.array([[run[name][0, 0, 0] for run in each] for each in runs]).T,
+        )
+        for name in AT_CONTACT
+    }
 
 
 def _temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
@@ -541,7 +573,7 @@ def _summaries(
     out = {name: values for name, values in out.items() if not name.endswith("_path")}
     out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
     out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
-    if points[0].design.mesh.clearances:
+    if not points[0].design.mesh.touching:
         del out["loss_factor"]  # of the shares of one load: no figure of the gears alone
     else:
         out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
@@ -555,13 +587,23 @@ def _summaries(
         for law, locked in zip(laws, out["locked"], strict=True):
             warnings += _lock_warning(models.friction[law], locked)
     data = dataset(
-        {**{name: (("law", "point"), values) for name, values in out.items()}, **extra},
-        {"law": _names(models, laws)},
+        {**{name: (_FIGURE[: values.ndim], values) for name, values in out.items()}, **extra},
+        {"law": _names(models, laws), **_named_places(points[0])},
         title=title,
         warnings=warnings,
     )
     data["mean_efficiency"].attrs.update(points[0].covers)
+    if not points[0].transmits:
+        data["mean_efficiency"].attrs["note"] = "undefined (NaN): no power goes through a test rig"
     return data
+
+
+_FIGURE = ("law", "point", "place")
+
+
+def _named_places(built: Built) -> dict[str, list[str]]:
+    """Places beside the teeth where power is lost; none without any."""
+    return {"place": [*built.case.losses]} if built.case.losses else {}
 
 
 def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -597,13 +639,16 @@ def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[st
 def _in_groups(
     points: Sequence[Built], compute: Callable[[Sequence[Built]], dict[str, np.ndarray]]
 ) -> dict[str, np.ndarray]:
-    """Results [point] in order, from computations of points of equal static structure."""
+    """Results [point ...] in order, from computations of points of equal static structure."""
     groups: dict[Any, list[int]] = {}
     for position, point in enumerate(points):
         shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(point.design))
         groups.setdefault((jax.tree.structure(point.design), shapes), []).append(position)
     parts = [(where, compute([points[i] for i in where])) for where in groups.values()]
-    result = {name: np.empty(len(points), values.dtype) for name, values in parts[0][1].items()}
+    result = {
+        name: np.empty((len(points), *values.shape[1:]), values.dtype)
+        for name, values in parts[0][1].items()
+    }
     for where, values in parts:
         for name in result:
             result[name][where] = values[name]
@@ -674,12 +719,15 @@ def jamming_words(acting: float, limit: float) -> str:
     return f"friction {acting:.3g} reaches the {limit:.3g} at which this mesh locks"
 
 
+_LOADS = {"torque": TORQUE, "force": FORCE}
+
+
 def _where(built: Built) -> str:
     point = built.case.operation
     return ", ".join(
         f"{name} {kind.show(value)}"
         for name, kind, value in (
-            ("at torque", TORQUE, point.torque),
+            (f"at {built.case.gears.load}", _LOADS[built.case.gears.load], point.load),
             ("speed", SPEED, point.speed),
             ("temperature", TEMPERATURE, point.temperature),
         )

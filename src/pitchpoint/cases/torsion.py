@@ -1,18 +1,22 @@
-"""Wind-up of a drive whose teeth come to mesh under load, as a dataset of a case."""
+"""Wind-up of a drive under load, as a dataset of a case."""
 
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.schema import TORQUE
-from pitchpoint.efficiency.quasi_static import Models, coupling
+from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.efficiency.quasi_static import Models, coupling, engagement
 from pitchpoint.efficiency.summary import engaged, summarise
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.torsion import hysteresis, wound_up
+from pitchpoint.gears.mesh import PATHS, Mesh
+from pitchpoint.loading.equilibrium import touch
+from pitchpoint.loading.wind_up import hysteresis, wound_up
+from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 
 __all__ = ["torsion_part"]
@@ -25,11 +29,14 @@ SHOWN = 3
 def torsion_part(built: Built) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
     models, chosen = laws_of(built)
-    torques = np.linspace(0.0, 2.0 * built.case.operation.torque or 1.0, TORQUES)
+    torques = np.linspace(0.0, 2.0 * built.case.operation.load or 1.0, TORQUES)
     friction = _mean_friction(built, models, chosen)
     found = _torsion(built, models, torques, friction)
     dims = {
-        "tooth_angle": ("phase", "pair"),
+        "path": ("phase", "pair"),
+        "lost_motion": (),
+        "angular_transmission_error": ("torque", "phase"),
+        "mesh_torsional_stiffness": ("torque", "phase"),
         "tooth_force": ("torque", "phase", "pair"),
         "zone_load": ("torque", "zone"),
         "loading_torque": ("law", "torque"),
@@ -37,7 +44,7 @@ def torsion_part(built: Built) -> xr.Dataset:
     }
     phase = found.pop("phase")
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
-    yields, rigid = _yielding(built.design.mesh)
+    yields, rigid = built.design.mesh.yielding
     whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
@@ -50,17 +57,10 @@ def torsion_part(built: Built) -> xr.Dataset:
         note=f"{yields} yield; {rigid} are not in it",
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
-    return whole.isel(pair=built.design.mesh.filled)
-
-
-def _yielding(mesh: Mesh) -> tuple[str, str]:
-    """What yields, and what is left out, in words."""
-    if mesh.ring is None or np.isinf(mesh.ring.support_stiffness):
-        return "teeth, ring and cup of the flexspline", "bearings, shafts, flange and joints"
-    return (
-        "teeth, ring and cup of the flexspline and the bearing inside it",
-        "the clearance of that bearing, shafts, flange and joints",
-    )
+    mesh = built.design.mesh
+    long_name, symbol = PATHS[mesh.counts]
+    whole["path"].attrs.update(long_name=long_name, symbol=symbol)
+    return whole if mesh.filled is None else whole.isel(pair=mesh.filled)
 
 
 def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
@@ -78,7 +78,7 @@ def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
 def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     """Why a loop of torque over wind-up has no width, or is not there."""
     models, chosen = laws_of(built)
-    if built.case.operation.torque == 0.0:
+    if built.case.operation.load == 0.0:
         return [
             "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
             "as zero and the torque loop has no width."
@@ -104,7 +104,8 @@ def _torsion(
     """Wind-up at every torque, and the load on every tooth there."""
     design = built.design
     known = engaged(design, built.operation, models)
-    assert known is not None  # or there would be no clearances
+    if known is None:
+        known = engagement(design, built.operation.load, models)
     body = coupling(design, known.contacts) if known.body is None else known.body
     given = design.mesh, design.solids, models.compliance
     each = [
@@ -114,15 +115,36 @@ def _torsion(
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
     loop: Any = hysteresis(found, friction[:, None, None])
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
+    approach = found.wind_up + found.touch
     return {
         "phase": phase[::SHOWN],
+        "lost_motion": np.asarray(_lost_motion(design.mesh, known.contacts, known.phase)) @ weight,
+        "angular_transmission_error": approach[:, ::SHOWN],
+        "angular_transmission_error_range": np.ptp(approach, axis=-1),
+        "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
         "wind_up": found.wind_up @ weight,
         "wind_up_range": np.ptp(found.wind_up, axis=-1),
         "torsional_stiffness": found.stiffness @ weight,
         "loaded_pairs": found.loaded_pairs @ weight,
-        "zone_load": found.radial_load @ weight,
-        "tooth_angle": 2.0 * np.pi * path[:, 0, ::SHOWN].T,
+        **_zone_load(found.inner_load @ weight),
+        "path": path.mean(axis=1)[:, ::SHOWN].T,
         "tooth_force": np.moveaxis(found.force.sum(axis=2), 1, 2)[:, ::SHOWN],
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
     }
+
+
+def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
+    """Load on the bearing inside the drive at each torque; nothing where there is none."""
+    return {"zone_load": loads} if loads.shape[1] else {}
+
+
+@program
+def _lost_motion(mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"]) -> Array:
+    """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
+    other = mesh.other_flanks
+    both = (mesh, contacts), (other, contacts if other is mesh else other.contacts(phase))
+    return sum(
+        (touch(at.gap, jnp.abs(along(at.normal, one.loaded)), at.active) for one, at in both),
+        jnp.zeros(()),
+    )

@@ -33,6 +33,10 @@ class Contacts(eqx.Module):
         gap: separation of the unloaded flanks [m]; zero where rigid teeth touch.
         flank: arc length on each profile [m], growing along the path on one member and falling on the other
             or growing on both, as they roll.
+        point: where it lies in the frame of the mesh [m].
+        direction: unit normal there, out of member 0 towards member 1: the force on member 1 acts along it.
+        tangent: unit vector along which `surface` counts, at right angles to the normal and to a contact
+            line.
         shape: a line contact or an elliptic one; a line is not the limit of an ellipse.
     """
 
@@ -45,6 +49,9 @@ class Contacts(eqx.Module):
     normal: Float[Array, "dof pair slice *b"]
     gap: Float[Array, "pair slice *b"]
     flank: Float[Array, "member pair slice *b"]
+    point: Float[Array, "3 pair slice *b"]
+    direction: Float[Array, "3 pair slice *b"]
+    tangent: Float[Array, "3 pair slice *b"]
     shape: Shape = eqx.field(static=True)
 
     @property

@@ -7,13 +7,14 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, total
+from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, BearingLoss
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.materials._leaves import as_array
 
-__all__ = ["Drag", "at_rest", "resistance"]
+__all__ = ["Drag", "at_rest", "bearing_loads", "resistance"]
 
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
@@ -35,7 +36,7 @@ class Drag(eqx.Module):
         factors: of the bearing model by name; for Palmgren's `f0` and `f1`.
         preload: load on the bearing without load on the teeth, as from a wave generator that keeps a
             ring deformed [N].
-        support: row of `Mesh.support` that loads it by the teeth, or None; static.
+        seat: where the bearing sits, which says how the teeth load it; None where they do not.
         seal_torque: of sliding seals, the same at every speed [N m].
         churning_torque: of the lubricant that is displaced, at `churning_speed` [N m].
         churning_speed: relative speed at which that is its torque [rad/s].
@@ -54,7 +55,7 @@ class Drag(eqx.Module):
         default_factory=dict,
     )
     preload: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
-    support: int | None = eqx.field(static=True, default=None)
+    seat: Bearing | InnerBearing | None = None
     seal_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
     churning_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
     churning_speed: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
@@ -119,29 +120,32 @@ def resistance(
     Returns:
         Function of the normal force of each slice [N] that gives the torque on every coordinate [N m];
         its power at the rates of the mesh is the power lost, never negative.
-
-    Raises:
-        InputError: a place names a row of `Mesh.support` that the mesh does not have.
     """
-    support = mesh.support(contacts)
-    rows = 0 if support is None else support.shape[0]
-    for drag in drags:
-        if drag.support is not None and drag.support >= rows:
-            raise InputError(f"this mesh loads {rows} bearings, there is no row {drag.support}")
-
-    def pressed(drag: Drag, load: Lanes) -> Each:
-        if support is None or drag.support is None:
-            return drag.preload
-        return drag.preload + total(support[drag.support] * load)
 
     def torques(load: Lanes) -> Float[Array, "dof *b"]:
+        pressed = bearing_loads(drags, mesh, contacts, load)
         every = [
-            _on_bodies(drag, mesh.motion, speed, pressed(drag, load), kinematic_viscosity)
-            for drag in drags
+            _on_bodies(drag, mesh.motion, speed, held, kinematic_viscosity)
+            for drag, held in zip(drags, pressed, strict=True)
         ]
         return jnp.stack([sum(one[k] for one in every) for k in range(mesh.motion.shape[0])])
 
     return torques
+
+
+def bearing_loads(drags: Sequence[Drag], mesh: Mesh, contacts: Contacts, load: Lanes) -> list[Each]:
+    """Load on the bearing of each place, preload included [N].
+
+    Args:
+        drags: places.
+        mesh: any family.
+        contacts: of the mesh.
+        load: normal force of each slice [N].
+    """
+    return [
+        drag.preload if drag.seat is None else drag.preload + drag.seat.load(mesh, contacts, load)
+        for drag in drags
+    ]
 
 
 def _on_bodies(

@@ -17,10 +17,10 @@ from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
 from pitchpoint.loading.balance import Drag as TorqueOnBodies
+from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.sharing import LoadSharing, from_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
-from pitchpoint.loading.torsion import wound_up
-from pitchpoint.loading.yielding import body_compliance, yielding
+from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import RollingResistance
@@ -47,8 +47,8 @@ Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
 Coupling = Float[Array, "lane lane *b"]
 
-FEWEST = 16
-"""Pairs at each end of the long axis that are kept of many; more are twice as many, and so on."""
+FEWEST = 32
+"""Pairs that are kept of many; more are twice as many, and so on."""
 
 ROUNDING = 1e-13
 """Output over input power up to which no power is transmitted: an idle drive has rounding alone."""
@@ -118,7 +118,7 @@ class Models(eqx.Module):
         """Friction coefficient at every contact by the chosen law."""
 
         def branch(law: FrictionLaw) -> Callable[[Conditions], Lanes]:
-            return lambda at: evaluate(law.function, at, self.parameters.get(law.name))
+            return lambda at: evaluate(law, at, self.parameters.get(law.name))
 
         if len(self.friction) == 1:
             return branch(self.friction[0])(conditions)
@@ -140,7 +140,7 @@ class Models(eqx.Module):
         """
         mesh, yields = design.mesh, None
         if self.sharing.by_stiffness:
-            yields = yielding(mesh, contacts, design.solids, self.compliance, load, body)
+            yields = compliance(mesh, contacts, design.solids, self.compliance, load, body)
         return self.sharing.function(contacts, mesh, yields)
 
 
@@ -164,18 +164,16 @@ class Engagement(eqx.Module):
     nodes: int = eqx.field(static=True)
 
     def loaded(self) -> "Engagement":
-        """Only the pairs that carry at some node, the same at both ends of the long axis.
+        """Only the pairs that carry at some node.
 
         Losses and torques come from these alone. Their number doubles where it must grow, so that few
         programs serve all loads; the compliance of the bodies is left out.
         """
-        half = self.share.shape[0] // 2
-        carries = np.any(np.asarray(self.share) > 0.0, axis=(1, 2)).reshape(2, half).any(axis=0)
+        carries = np.any(np.asarray(self.share) > 0.0, axis=(1, 2))
         count = FEWEST
         while count < carries.sum():
             count *= 2
-        kept = np.sort(np.argsort(~carries, kind="stable")[: min(count, half)])
-        pairs = np.concatenate([kept, kept + half])
+        pairs = np.sort(np.argsort(~carries, kind="stable")[:count])
 
         def of_them(leaf: Array) -> np.ndarray:
             return np.asarray(leaf)[..., pairs, :, :]
@@ -202,8 +200,8 @@ def engagement(
 ) -> Engagement:
     """Contacts and shares for one load, in programs that serve all later ones.
 
-    Worth it for meshes with many pairs and clearances, whose contacts and shares take most of the
-    work; a cycle without it computes them itself.
+    Worth it for meshes whose pairs have gaps: contacts and shares take most of the work there. A cycle
+    without it computes them itself.
 
     Args:
         design: mesh and materials.
@@ -245,8 +243,8 @@ def _contacts(mesh: Mesh, phase: Each) -> Contacts:
 
 @program
 def coupling(design: Design, contacts: Contacts) -> Coupling | None:
-    """How far a unit force on one lane moves another, see `body_compliance`; one program for all drives."""
-    return body_compliance(design.mesh, contacts, design.solids)
+    """How far a unit force on one lane moves another; one program for all drives."""
+    return design.mesh.body_compliance(contacts, design.solids)
 
 
 @program
@@ -266,7 +264,8 @@ class State(eqx.Module):
         sliding_loss, rolling_loss: power lost at each slice [W].
         drag_loss: power lost beside the teeth [W].
         input_torque: torque of the driver in its direction of motion [N m].
-        output_power: power taken from all coordinates but the driver [W].
+        input_power: power put in at all coordinates but the loaded one [W].
+        output_power: power taken at the loaded coordinate [W]; zero where it stands still.
     """
 
     contacts: Contacts
@@ -276,17 +275,13 @@ class State(eqx.Module):
     rolling_loss: Lanes
     drag_loss: Each
     input_torque: Each
+    input_power: Each
     output_power: Each
 
     @property
     def loss(self) -> Each:
         """Power lost in all contacts and beside the teeth [W]."""
         return total(self.sliding_loss + self.rolling_loss) + self.drag_loss
-
-    @property
-    def input_power(self) -> Each:
-        """Power of the driver, from the balance of torques [W]."""
-        return self.input_torque * self.conditions.speed
 
     @property
     def efficiency(self) -> Each:
@@ -364,7 +359,7 @@ def state(
     balanced = balance(**_in_balance(given, models), guess=guess)
     at_contact = replace(unloaded, load=balanced.load)
     driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
-    others = (1.0 - mesh.driver) * mesh.motion
+    putting, taking = (1.0 - mesh.loaded) * mesh.motion, mesh.loaded * mesh.motion
     return State(
         contacts=contacts,
         conditions=at_contact,
@@ -373,7 +368,8 @@ def state(
         rolling_loss=2.0 * balanced.rolling * as_array(at_contact.entrainment),
         drag_loss=along(balanced.drag, mesh.motion) * operation.speed,
         input_torque=along(balanced.torque, driver),
-        output_power=-along(balanced.torque, others) * operation.speed,
+        input_power=along(balanced.torque, putting) * operation.speed,
+        output_power=-along(balanced.torque, taking) * operation.speed,
     )
 
 
@@ -389,7 +385,7 @@ def _in_balance(given: _Given, models: Models) -> dict[str, Any]:
 
     def rolling(load: Lanes) -> Lanes:
         at = replace(unloaded, load=load)
-        return evaluate(models.rolling.function, at) * contacts.weight
+        return evaluate(models.rolling, at) * contacts.weight
 
     return {
         "contacts": contacts,
@@ -459,7 +455,7 @@ class Cycle(eqx.Module):
 
         A polynomial through the nodes of each segment is read at points between them, and at its
         vertex beside a point where it is level: jumps lie at the ends of segments, where there are
-        nodes. Where pairs with clearances come and go between the events, values have kinks that no
+        nodes. Where pairs with gaps come and go between the events, values have kinks that no
         polynomial follows, and the nodes alone are read. Values that are undefined at a node have none.
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
@@ -555,7 +551,7 @@ def cycle(
         temperature=operation.temperature[..., None],
     )
     found = state(design, points, phase, models, engaged=engaged)
-    return Cycle(phase, weight, found, nodes, smooth=not design.mesh.clearances)
+    return Cycle(phase, weight, found, nodes, smooth=design.mesh.touching)
 
 
 def cycle_nodes(

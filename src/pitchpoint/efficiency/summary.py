@@ -11,6 +11,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
+from pitchpoint.efficiency.drag import bearing_loads
 from pitchpoint.efficiency.quasi_static import (
     Cycle,
     Design,
@@ -21,6 +22,8 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_nodes,
     engagement,
 )
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.reactions import radial_and_axial
 from pitchpoint.loading.sharing import equal
 from pitchpoint.programs import program
 
@@ -37,13 +40,13 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
     """Loss factor H_V: P_loss = P_in mu H_V to first order in mu.
 
     Mean over one pitch of the sliding arms over the driver's arm; for an involute pair with equal
-    load sharing it is Ohlendorf's closed form. Pairs with clearances cannot share equally: they take
-    their shares of one load.
+    load sharing it is Ohlendorf's closed form. Pairs with gaps cannot share equally: they take their
+    shares of one load. NaN where the driver presses no contact, as in a test rig.
 
     Args:
         design: mesh.
         models: for the nodes of the cycle.
-        engaged: contacts and shares of a mesh with clearances; equal shares by default.
+        engaged: contacts and shares of a mesh with gaps; equal shares by default.
     """
     mesh = design.mesh
     if engaged is None:
@@ -54,7 +57,10 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
         weight, contacts, share = engaged.weight, engaged.contacts, engaged.share
     sliding = jnp.abs(along(contacts.slip_arm, mesh.motion))
     arm = jnp.abs(along(contacts.normal, mesh.driver))
-    return total(share * sliding / arm) @ weight
+    presses = jnp.any(arm > 0.0)
+    return jnp.where(
+        presses, total(share * sliding / jnp.where(presses, arm, 1.0)) @ weight, jnp.nan
+    )
 
 
 def summary(
@@ -98,6 +104,8 @@ def summary(
         "nearest_friction": acting,
         "nearest_jamming_coefficient": limit,
         "largest_contact_force_ratio": jnp.max(state.contact_force_ratio, axis=-1),
+        **_by_gear(_reactions(design.mesh, result)),
+        **_bearing_loads(design, result),
         **_at_pitch_point(result),
     }
 
@@ -112,6 +120,22 @@ def _at_pitch_point(result: Cycle) -> dict[str, Array]:
         "pitch_sum_speed": result.mean(at.reference_sum_speed),
         "pitch_radius": at.reference_radius,
     }
+
+
+def _reactions(mesh: Mesh, result: Cycle) -> dict[str, Array]:
+    """Mean load of the teeth on the bearings of each member, across its axis and along it [N]."""
+    held = radial_and_axial(mesh, result.state.contacts, result.state.balance.load)
+    return dict(zip(("radial_reaction", "axial_reaction"), result.mean(held), strict=True))
+
+
+def _bearing_loads(design: Design, result: Cycle) -> dict[str, Array]:
+    """Mean load on the bearing of each place beside the teeth [place] [N]; nothing without places."""
+    if not design.drag:
+        return {}
+    state, nodes = result.state, result.phase.shape
+    loads = bearing_loads(design.drag, design.mesh, state.contacts, state.balance.load)
+    means = [result.mean(jnp.broadcast_to(load, nodes)) for load in loads]
+    return {"bearing_load": jnp.stack(means)}
 
 
 def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:
@@ -178,14 +202,14 @@ def engaged(
     nodes: int = 24,
     like: Engagement | None = None,
 ) -> Engagement | None:
-    """Contacts and shares of a mesh with clearances at one load; None for others, which are quick.
+    """Contacts and shares of a mesh with gaps at one load; None for others, which are quick.
 
     Args:
         design, operation, models: of one point.
         nodes: in each segment between events.
         like: of the same mesh, solids and nodes under another load.
     """
-    if not design.mesh.clearances:
+    if design.mesh.touching:
         return None
     for known in _LAST:
         if like is None and known.serves(design, models, nodes):

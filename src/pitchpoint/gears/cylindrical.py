@@ -10,8 +10,10 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Offset, Spot, Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import (
     InvoluteGear,
     base_helix,
@@ -19,7 +21,8 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
-from pitchpoint.gears.mesh import Mesh, Reference, StandardPair
+from pitchpoint.gears.members import CYLINDRICAL
+from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.programs import program
 from pitchpoint.roots import hypot, root
@@ -210,9 +213,12 @@ class CylindricalPair(Mesh):
         internal: True if gear 2 is a ring; static.
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
+        surfaces: how the flanks of both gears differ from involutes.
     """
 
     pitch_point: ClassVar[bool] = True
+    toothed: ClassVar[bool] = True
+    counts: ClassVar[Path] = "action"
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
@@ -237,6 +243,7 @@ class CylindricalPair(Mesh):
     internal: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
     slices: int = eqx.field(static=True)
+    surfaces: Surfaces = ((), ())
 
     def completed(self) -> Self:
         """The pair with centre distance and tip alterations as they follow from the rest."""
@@ -253,11 +260,6 @@ class CylindricalPair(Mesh):
     def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
         """Both gears for themselves."""
         return self._gear(0), self._gear(1)
-
-    @property
-    def toothed(self) -> bool:
-        """Both gears have teeth."""
-        return True
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -427,6 +429,16 @@ class CylindricalPair(Mesh):
             pitch_line_speed=speed,
         )
 
+    @property
+    def coordinates(self) -> tuple[Coordinate, Coordinate]:
+        """Both gears: the origin on the axis of gear 1, x towards the pitch point, z as `width`."""
+        places = jnp.zeros((2, 3)).at[1, 0].set(self.line.distance)
+        first, second = (
+            Coordinate(name, place, jnp.asarray(AXIAL), member)
+            for member, (name, place) in enumerate(zip(CYLINDRICAL, places, strict=True))
+        )
+        return first, second
+
     def events(self) -> Float[Array, " event"]:
         """Phases of entry, exit and pitch point.
 
@@ -440,7 +452,7 @@ class CylindricalPair(Mesh):
             found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
@@ -464,8 +476,36 @@ class CylindricalPair(Mesh):
             normal=jnp.stack([jnp.broadcast_to(arm, lanes) for arm in arms]),
             gap=none,
             flank=jnp.stack([rolling[k] ** 2 / (2.0 * jnp.abs(base[k])) for k in (0, 1)]),
+            **self._frame(line, position, self.face_width * (across - 0.5) + none),
             shape="line",
         )
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same gears on their other flanks, which lie back by the backlash."""
+        first, second = self.surfaces
+        surfaces = ((*first, Offset(self.normal_backlash)), second)
+        return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
+
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
+        lanes = contacts.path.shape
+        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+        entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
+        found = []
+        for member, teeth in enumerate(jnp.abs(self.teeth)):
+            # A tooth that enters later lies behind those before it.
+            sense = -self._side * (1.0 if member == 0 else -jnp.sign(self.teeth[1]))
+            found.append(
+                Spot(
+                    flank=contacts.flank[member],
+                    across=contacts.width,
+                    angle=jnp.broadcast_to(sense * phase * 2.0 * jnp.pi / teeth, lanes),
+                    tooth=jnp.mod(sense * entered, teeth).astype(int),
+                    leaning=jnp.ones(lanes),
+                )
+            )
+        return found[0], found[1]
 
     @property
     def standard(self) -> StandardPair:
@@ -538,6 +578,24 @@ class CylindricalPair(Mesh):
             "specific_sliding_A": self.specific_sliding(self.limits[0]),
             "specific_sliding_E": self.specific_sliding(self.limits[1]),
             **self.dimensions(),
+        }
+
+    def _frame(
+        self, line: LineOfAction, position: Array, width: Array
+    ) -> dict[str, Float[Array, "3 pair slice *b"]]:
+        """Points on the plane of action and the directions there, the same at all of them."""
+        cosine, sine, side = line.cosine, line.sine, self._side
+        none, tilt = jnp.zeros(()), jnp.sin(self.base_helix_angle)
+        start = line.base_radii[0] * jnp.stack([cosine, -side * sine])
+        along = jnp.stack([sine, side * cosine])
+
+        def everywhere(parts: list[Array]) -> Array:
+            return jnp.stack([jnp.broadcast_to(part, position.shape) for part in parts])
+
+        return {
+            "point": jnp.stack([start[k] + position * along[k] for k in (0, 1)] + [width]),
+            "direction": everywhere([*(line.slope * along), tilt]),
+            "tangent": everywhere([-cosine, side * sine, none]),
         }
 
     @property

@@ -1,19 +1,32 @@
 """What every gear family answers."""
 
 import abc
+from collections.abc import Mapping
 from math import inf
-from typing import ClassVar, Self
+from typing import ClassVar, Literal, Self
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts
-from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
+from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
+from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.materials.solids import Solid
 
-__all__ = ["Mesh", "Reference", "StandardPair"]
+__all__ = ["PATHS", "Mesh", "Reference", "StandardPair"]
+
+
+Path = Literal["action", "wave", "turn"]
+
+PATHS: Mapping[Path, tuple[str, str]] = {
+    "action": ("position on the path of contact from A, in base pitches", "x/p_b"),
+    "wave": ("angle from the long axis, in turns", "p/2π"),
+    "turn": ("turns of the driver", "θ/2π"),
+}
+"""Long name and symbol of what `Contacts.path` counts."""
 
 
 class Reference(eqx.Module):
@@ -69,9 +82,20 @@ class Mesh(eqx.Module):
 
     Attributes:
         pitch_point: of the class; True if `reference` is not None.
+        shape: of the class; that of all its contacts.
+        toothed: of the class; True if `sections` holds teeth that yield.
+        couples: of the class; True if bodies under the teeth couple them, see `body_compliance`.
+        counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
+        inner_bearing: of the class; the two bodies between which a bearing sits inside the drive, by name;
+            empty without one.
     """
 
     pitch_point: ClassVar[bool] = False
+    shape: ClassVar[Shape] = "line"
+    toothed: ClassVar[bool] = False
+    couples: ClassVar[bool] = False
+    counts: ClassVar[Path] = "turn"
+    inner_bearing: ClassVar[frozenset[str]] = frozenset()
 
     def completed(self) -> Self:
         """The same mesh with dimensions that follow from others computed from them again.
@@ -94,23 +118,19 @@ class Mesh(eqx.Module):
         return None
 
     @property
-    def toothed(self) -> bool:
-        """True if the members have teeth that yield: `sections` holds them."""
-        return False
-
-    @property
     def sections(self) -> tuple[ToothSection, ToothSection] | None:
-        """Teeth of the two members as they yield, or None where there are no teeth."""
+        """Teeth of the two members as they yield; None where there are none, see `toothed`."""
         return None
 
     @property
-    def clearances(self) -> bool:
-        """True if rigid teeth do not all touch: pairs have a gap, and `path` is an angle [turns].
+    def surfaces(self) -> Surfaces:
+        """How all flanks of each member differ from those of `rigid_contacts`."""
+        return (), ()
 
-        The angle is counted from the long axis of a wave generator. Such pairs come to carry only
-        as others yield.
-        """
-        return False
+    @property
+    def touching(self) -> bool:
+        """True if all rigid flanks in mesh touch; else pairs have a gap, and load makes them carry."""
+        return not any(self.surfaces)
 
     @property
     def filled(self) -> np.ndarray | None:
@@ -126,31 +146,45 @@ class Mesh(eqx.Module):
         return jnp.asarray(inf)
 
     @property
-    def ring(self) -> FlexibleRing | None:
-        """Thin ring that carries the teeth of member 0, or None where bodies are solid."""
+    def yielding(self) -> tuple[str, str]:
+        """What yields under load, and what is left out, in words."""
+        return "teeth and the bodies under them", "shafts, bearings and housing"
+
+    def body_compliance(
+        self, contacts: Contacts, solids: tuple[Solid, Solid]
+    ) -> Float[Array, "lane lane *b"] | None:
+        """How far a unit force on one lane moves another through the body under the teeth [m/N].
+
+        Lanes are pairs and slices, flattened; both ends along their normals. It does not depend on the
+        load. None for bodies that do not couple their teeth.
+
+        Args:
+            contacts: of the mesh.
+            solids: material of each member.
+        """
         return None
 
-    def ring_loads(self, contacts: Contacts) -> RingLoads | None:
-        """How a unit normal force at each contact acts on the ring, or None without one."""
-        return None
+    @property
+    def other_flanks(self) -> Self:
+        """The same mesh where its other flanks carry; gaps are counted from the same position."""
+        return self
 
-    def places(
-        self, contacts: Contacts, phase: Float[Array, "*b"]
-    ) -> Float[Array, "member pair slice *b"] | None:
-        """Angles around each member at which its teeth touch [rad]; None where nothing asks for them.
+    @abc.abstractmethod
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Where contacts lie on both members.
 
         Args:
             contacts: of the mesh.
             phase: at which they were taken, counted on beyond one period [periods].
         """
-        return None
 
-    def support(self, contacts: Contacts) -> Float[Array, "bearing pair slice *b"] | None:
-        """Radial load on each bearing of the mesh for a unit normal force at each contact, or None.
+    def inner_load(self, contacts: Contacts) -> Float[Array, "zone pair slice *b"]:
+        """Load on the bearing inside the drive for a unit normal force at each contact, not negative.
 
-        Rows are not negative; losses beside the teeth name the row of the bearing that they stand for.
+        Forces that press on it from all around are no reaction, in which they cancel: it bears their sum.
+        One row for each zone in which they press; none without such a bearing, see `inner_bearing`.
         """
-        return None
+        return jnp.zeros((0, *contacts.weight.shape))
 
     @property
     def standard(self) -> StandardPair | None:
@@ -173,9 +207,21 @@ class Mesh(eqx.Module):
         """What a drawing of the teeth to scale needs; empty where there is none."""
         return {}
 
+    @property
     @abc.abstractmethod
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The bodies and their axes, in the order of `motion`."""
+
     def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
-        """Contacts at any phase [periods]."""
+        """Contacts at any phase [periods], with the surfaces that the flanks have."""
+        rigid = self.rigid_contacts(phase)
+        if not any(self.surfaces):
+            return rigid
+        return with_surfaces(rigid, self.surfaces, self.spots(rigid, phase))
+
+    @abc.abstractmethod
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+        """Contacts of rigid flanks as designed, at any phase [periods]."""
 
     @abc.abstractmethod
     def events(self) -> Float[Array, " event"]:

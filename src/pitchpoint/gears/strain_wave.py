@@ -1,7 +1,7 @@
 """Strain wave gear: wave generator, flexspline and circular spline, and the many contacts between them."""
 
 import dataclasses
-from typing import Self
+from typing import ClassVar, Self
 
 import equinox as eqx
 import numpy as np
@@ -9,13 +9,18 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.surface import Spot
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.groove import Groove, swept
-from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.gears.mesh import Mesh, Path, Reference
+from pitchpoint.gears.ring_compliance import ring_compliance
 from pitchpoint.gears.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.gears.wave_generator import NeutralLine
+from pitchpoint.materials.solids import Solid
 from pitchpoint.roots import hypot, root
 
 __all__ = [
@@ -130,6 +135,11 @@ class StrainWave(Mesh):
             static.
     """
 
+    toothed: ClassVar[bool] = True
+    couples: ClassVar[bool] = True
+    counts: ClassVar[Path] = "wave"
+    inner_bearing: ClassVar[frozenset[str]] = frozenset(MEMBERS[:2])
+
     teeth: Float[Array, "2"]
     module: Float[Array, ""]
     face_width: Float[Array, ""]
@@ -212,24 +222,14 @@ class StrainWave(Mesh):
         return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
 
     @property
-    def clearances(self) -> bool:
+    def touching(self) -> bool:
         """Most teeth of a zone have a clearance that load must close."""
-        return True
+        return False
 
     @property
     def largest_radius(self) -> Float[Array, ""]:
         """Flatter contacts would be wider under load than the flank is high."""
         return _FLATTEST * self.module
-
-    @property
-    def ring(self) -> FlexibleRing:
-        """The flexspline's rim carries the teeth of member 0."""
-        return self.rim
-
-    @property
-    def toothed(self) -> bool:
-        """Both splines have teeth."""
-        return True
 
     @property
     def reference(self) -> Reference | None:
@@ -261,7 +261,7 @@ class StrainWave(Mesh):
         zone, number = np.divmod(np.arange(2 * self.lanes), self.lanes)
         return zone, number
 
-    def touching(self, angle: Float[Array, "*b"]) -> Touching:
+    def nearest(self, angle: Float[Array, "*b"]) -> Touching:
         """Nearest points of the flank and its groove for teeth at angles from the long axis [rad]."""
         return nearest_points(self.tooth_motion, self.groove, angle, self.backlash)
 
@@ -273,7 +273,7 @@ class StrainWave(Mesh):
         start = jnp.ceil(WINDOW[0] / self.tooth_angle)
         return (start + number + moved) * self.tooth_angle
 
-    def contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of the pairs of both zones; one period is one pitch of the flexspline."""
         raw = self.raw_contacts(phase)
         # Teeth that carry only because others yield do not close on the nominal motion. In a steady
@@ -303,6 +303,9 @@ class StrainWave(Mesh):
         local = jnp.exp(-1j * at.direction) * velocity
         first = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
+        # The space that a tooth meets lies at its angle around the circular spline.
+        zone = _as_lanes(self._place[0], jnp.asarray(phase))
+        turned = jnp.exp(1j * (given * self.teeth[0] / self.teeth[1] + jnp.pi * zone))
         return Contacts(
             active=active,
             path=given / (2.0 * jnp.pi),
@@ -313,6 +316,9 @@ class StrainWave(Mesh):
             normal=jnp.imag(local),
             gap=jnp.maximum(found.clearance, 0.0) + play,
             flank=jnp.stack([found.along, self.groove.depth(jnp.real(at.place))]),
+            point=_vector(turned * at.place),
+            direction=_vector(1j * turned * jnp.exp(1j * at.direction)),
+            tangent=_vector(turned * jnp.exp(1j * at.direction)),
             shape="line",
         )
 
@@ -326,15 +332,58 @@ class StrainWave(Mesh):
             height=jnp.real(self.flank.place(contacts.flank[0])),
         )
 
-    def places(
-        self, contacts: Contacts, phase: Float[Array, "*b"]
-    ) -> Float[Array, "member pair slice *b"]:
-        """Angles around flexspline and circular spline at which their teeth touch [rad]."""
-        return places(contacts, phase, self.teeth)
+    @property
+    def yielding(self) -> tuple[str, str]:
+        """Teeth and the ring that carries them; the bearing inside unless it is rigid."""
+        if np.isinf(self.rim.support_stiffness):
+            return "teeth, ring and cup of the flexspline", "bearings, shafts, flange and joints"
+        return (
+            "teeth, ring and cup of the flexspline and the bearing inside it",
+            "the clearance of that bearing, shafts, flange and joints",
+        )
 
-    def support(self, contacts: Contacts) -> Float[Array, "1 pair slice *b"]:
-        """Radial load on the wave generator's bearing by a unit force at each contact."""
-        return -self.ring_loads(contacts).radial[None]
+    def body_compliance(
+        self, contacts: Contacts, solids: tuple[Solid, Solid]
+    ) -> Float[Array, "lane lane *b"]:
+        """The flexspline's rim couples all its teeth."""
+        return ring_compliance(self.rim, solids[0], self.ring_loads(contacts))
+
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Angles are those of the teeth, which stand as they are while they touch.
+
+        A tooth that lies behind its place moves along the circumference; the normals of roundings at root
+        and tip lean to the radius.
+        """
+        around = places(contacts, phase, self.teeth)
+        across = jnp.where(contacts.active, jnp.abs(self.ring_loads(contacts).tangential), 0.0)
+        leaning = across / jnp.max(across)
+        first, second = (
+            Spot(
+                flank=contacts.flank[member],
+                across=contacts.width,
+                angle=around[member],
+                tooth=jnp.mod(jnp.round(around[member] / (2.0 * jnp.pi / z)), z).astype(int),
+                leaning=leaning,
+            )
+            for member, z in enumerate(self.teeth)
+        )
+        return first, second
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """The three bodies on their common axis, x along the long axis of the wave generator."""
+        flanks, rigid = (None, 0, 1), (True, False, True)
+        centre, axis = jnp.zeros(3), jnp.asarray(AXIAL)
+        return tuple(
+            Coordinate(name, centre, axis, member, rigid=stiff)
+            for name, member, stiff in zip(MEMBERS, flanks, rigid, strict=True)
+        )
+
+    def inner_load(self, contacts: Contacts) -> Float[Array, "2 pair slice *b"]:
+        """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones."""
+        zone = _as_lanes(self._place[0], contacts.path[0, 0])
+        pressed = -self.ring_loads(contacts).radial
+        return jnp.stack([jnp.where(zone == end, pressed, 0.0) for end in (0, 1)])
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -406,6 +455,11 @@ class StrainWave(Mesh):
         """Flexspline tooth from root to root over its tip."""
         flank = self.flank.place(jnp.linspace(0.0, 1.0, 81) * self.flank.length)
         return jnp.concatenate([jnp.conj(flank), flank[::-1]])
+
+
+def _vector(place: Array) -> Float[Array, "3 pair slice *b"]:
+    """Vector of a place in the plane across the axis."""
+    return jnp.stack([jnp.real(place), jnp.imag(place), jnp.zeros(place.shape)])
 
 
 def lanes_for(held: int) -> int:

@@ -10,8 +10,8 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.clearances import shared_load
-from pitchpoint.loading.yielding import Yielding
+from pitchpoint.loading.compliance import Compliance
+from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.programs import program
 from pitchpoint.registry import Registry
 
@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 Share = Float[Array, "pair slice *b"]
-Flanks = Literal["any", "touching", "apart"]
+Flanks = Literal["any", "touching", "wave"]
 
 _XU_END = jnp.pi / 8.0
 _ZHAO_END = jnp.pi / 5.0
@@ -45,15 +45,15 @@ class LoadSharing:
         ratio_range: contact ratios for which it holds, exclusive.
         straight: True if it holds only for contact lines parallel to the axes.
         by_stiffness: True if the function asks how the pairs yield.
-        flanks: "touching" if it holds only where all rigid flanks in mesh touch, "apart" only for
-            strain-wave teeth, most of which have a clearance, or "any".
+        flanks: "touching" if it holds only where all rigid flanks in mesh touch, "wave" only for teeth
+            that a wave presses into mesh, or "any".
         hand_over: phases, beside entry and exit, at which the share jumps or bends.
         note: caution for the user.
     """
 
     name: str
     title: str
-    function: Callable[[Contacts, Mesh, Yielding | None], Share]
+    function: Callable[[Contacts, Mesh, Compliance | None], Share]
     sources: tuple[str, ...]
     ratio_range: tuple[float, float] = (0.0, float("inf"))
     straight: bool = False
@@ -79,11 +79,9 @@ class LoadSharing:
         low, high = self.ratio_range
         if self.by_stiffness and not mesh.toothed:
             return "needs teeth that yield, and this mesh has none"
-        if self.flanks == "touching" and mesh.clearances:
-            return (
-                "holds where all flanks in mesh touch, and most strain-wave teeth have a clearance"
-            )
-        if self.flanks == "apart" and not mesh.clearances:
+        if self.flanks == "touching" and not mesh.touching:
+            return "holds where all rigid flanks in mesh touch, and some of these have a gap"
+        if self.flanks == "wave" and mesh.counts != "wave":
             return "holds for strain-wave gears, and these are not"
         whole, overlap = map(float, _ratios(mesh))
         if self.straight and overlap > 0.0:
@@ -100,7 +98,7 @@ def _ratios(mesh: Mesh) -> tuple[Float[Array, ""], Float[Array, ""]]:
     return mesh.contact_ratio, mesh.overlap_ratio
 
 
-def equal(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
+def equal(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -> Share:
     """Equal load per length of contact line in mesh.
 
     Args:
@@ -110,7 +108,7 @@ def equal(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> S
     return _normalised(jnp.where(contacts.active, contacts.weight, 0.0))
 
 
-def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Yielding | None) -> Share:
+def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Compliance | None) -> Share:
     """Load by stiffness: all slices yield by the same approach of the gears, less their clearance.
 
     Where all rigid flanks touch and no body couples the slices, load is in proportion to stiffness.
@@ -124,10 +122,11 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Yielding | None) ->
         Shares; NaN where the equilibrium was not found.
     """
     assert yielding is not None
-    if yielding.body is None and not mesh.clearances:
+    if yielding.body is None and mesh.touching:
         return _normalised(jnp.where(contacts.active, yielding.stiffness * contacts.weight, 0.0))
-    return shared_load(
-        yielding.compliance(contacts),
+    return equilibrium(
+        yielding.of_teeth(contacts),
+        yielding.body,
         gap=contacts.gap,
         arm=jnp.abs(along(contacts.normal, mesh.loaded)),
         active=contacts.active,
@@ -135,7 +134,7 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Yielding | None) ->
     ).share
 
 
-def single(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
+def single(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -> Share:
     """Whole load on the pair nearest to the middle of the path of contact.
 
     Args:
@@ -149,7 +148,7 @@ def single(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> 
     return _normalised(jnp.where(nearest & contacts.active, contacts.weight, 0.0))
 
 
-def sanchez_2017(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
+def sanchez_2017(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -> Share:
     """Linear form of the load sharing ratio of spur gears with Hertz stiffness, 1 < eps < 2.
 
     A pair carries 0.36 of the load at entry and exit, rising linearly to 0.64 next to the zone of
@@ -169,7 +168,7 @@ def sanchez_2017(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = Non
     return _normalised(jnp.where(contacts.active, share, 0.0))
 
 
-def xu_2021_cosine(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
+def xu_2021_cosine(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -> Share:
     """Tooth force as cos(4 phi) within 22.5 degrees of the long axis, at both of its ends.
 
     Args:
@@ -182,7 +181,7 @@ def xu_2021_cosine(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = N
     return _half_wave(contacts, _XU_END)
 
 
-def zhao_2022_cosine(contacts: Contacts, mesh: Mesh, yielding: Yielding | None = None) -> Share:
+def zhao_2022_cosine(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -> Share:
     """Tooth force as cos(pi phi/72 deg) within 36 degrees of the long axis, at both of its ends.
 
     Args:
@@ -248,7 +247,7 @@ LOAD_SHARING = Registry(
         "cosine over 22.5 degrees on both sides of the long axis",
         xu_2021_cosine,
         ("xu_2021",),
-        flanks="apart",
+        flanks="wave",
         note="A law for a strain-wave gear at its rated load: clearances and load do not enter.",
     ),
     LoadSharing(
@@ -256,7 +255,7 @@ LOAD_SHARING = Registry(
         "cosine over 36 degrees on both sides of the long axis",
         zhao_2022_cosine,
         ("zhao_2022",),
-        flanks="apart",
+        flanks="wave",
         note="A law for a strain-wave gear at its rated load: clearances and load do not enter.",
     ),
 )

@@ -45,6 +45,10 @@ def _power(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "W", "W", "power")
 
 
+def _force(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "N", "N", "force")
+
+
 def _angle(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "rad", "deg", "angle")
 
@@ -263,7 +267,30 @@ VARIABLES: dict[str, Variable] = {
     ),
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
-    "tooth_angle": _angle("angle of the tooth from its end of the long axis", "p"),
+    "lost_motion": Variable(
+        "play of the loaded member between its flanks without load",
+        "Δθ_0",
+        "rad",
+        "arcmin",
+        "angle",
+    ),
+    "angular_transmission_error": Variable(
+        "rotation of the loaded member under load", "θ_e", "rad", "arcmin", "angle"
+    ),
+    "angular_transmission_error_range": Variable(
+        "static transmission error at the loaded member, peak to peak",
+        "Δθ_e",
+        "rad",
+        "arcsec",
+        "angle",
+    ),
+    "mesh_torsional_stiffness": Variable(
+        "torsional stiffness over the mesh cycle",
+        "K(φ)",
+        "N m/rad",
+        "kN m/rad",
+        "torsional stiffness",
+    ),
     "tooth_force": Variable("normal force of the tooth", "F", "N", "N", "force"),
     "loading_torque": _torque("torque while the wind-up grows", "T"),
     "unloading_torque": _torque("torque while the wind-up shrinks", "T"),
@@ -273,6 +300,11 @@ VARIABLES: dict[str, Variable] = {
     "engagement_depth": _length("depth by which the teeth reach into each other", "h_e"),
     "loss_factor": Variable("loss factor, equal sharing where all flanks touch", "H_V", "1"),
     "mean_loss": _power("mean power loss", "P_loss"),
+    "radial_reaction_1": _force("mean radial load of the teeth on the bearings of gear 1", "F_r1"),
+    "radial_reaction_2": _force("mean radial load of the teeth on the bearings of gear 2", "F_r2"),
+    "axial_reaction_1": _force("mean axial load of the teeth on the bearings of gear 1", "F_a1"),
+    "axial_reaction_2": _force("mean axial load of the teeth on the bearings of gear 2", "F_a2"),
+    "bearing_load": _force("mean load on the bearing", "F_B"),
     "mean_drag_loss": _power("mean power loss beside the teeth", "P_drag mean"),
     "mean_efficiency": _percent("mean efficiency", "η mean"),
     "min_efficiency": _percent("smallest efficiency", "η min"),

@@ -142,8 +142,8 @@ def wave(outcome: Outcome) -> Wave:
     """Facts of a result whose teeth are carried by a wave."""
     z1, z2 = (round(float(z)) for z in outcome.parts["teeth"]["teeth"].values)
     driver, loaded = (str(outcome.manifest[key]) for key in ("driver", "loaded"))
-    motion: dict[str, float] = outcome.manifest["motion"]
-    generator, first, second = (motion.get(name, 0.0) for name in MEMBERS)
+    motion = dict(zip(outcome.manifest["members"], outcome.manifest["motion"], strict=True))
+    generator, first, second = (float(motion.get(name, 0.0)) for name in MEMBERS)
     return Wave(
         **_period(outcome),
         teeth=(z1, z2),

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pitchpoint.cases.catalogue import CONTACT, of_contact
 from pitchpoint.cases.comparison import Row, counts
 from pitchpoint.cases.inputs import OIL
 from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.studies import jamming_words
 from pitchpoint.results.store import write_text
+from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel, cycle_pitch, loss_places, path_panel
 from pitchpoint.views.design_chart import design_charts
@@ -25,7 +27,7 @@ from pitchpoint.views.inputs import input_rows, set_for_run, words
 from pitchpoint.views.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.maps import efficiency_panel, map_panel
 from pitchpoint.views.plane_of_action import plane_of_action
-from pitchpoint.views.running import drag_answer, drag_panel, starting_answer
+from pitchpoint.views.running import bearing_answer, drag_answer, drag_panel, starting_answer
 from pitchpoint.views.sliding import sliding_figure
 from pitchpoint.views.stiffness import (
     outside_standard,
@@ -242,12 +244,13 @@ def _payload(panels: Iterable[Panel]) -> str:
 def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
+    single = of_contact(parts.get("operation", ()))
     return {
         "name": name,
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
-        "sharing": manifest["models"][0]["title"],
-        "averaging": _averaging(outcome),
+        "sharing": "" if single else manifest["models"][0]["title"],
+        "averaging": "" if single else _averaging(outcome),
         "operation": _operation(outcome),
         "laws": manifest["laws"],
         "warnings": _warnings(outcome),
@@ -286,11 +289,12 @@ def _oil_note(outcome: Outcome) -> str:
 
 def _operation(outcome: Outcome) -> str:
     """The operating point in words."""
-    speed, torque, temperature = (
-        show.pretty(words(outcome, "operation", key)) for key in ("speed", "torque", "temperature")
+    speed, torque, force, temperature = (
+        show.pretty(words(outcome, "operation", key))
+        for key in ("speed", "torque", "force", "temperature")
     )
     driver, loaded = outcome.manifest["driver"], outcome.manifest["loaded"]
-    return f"{driver} drives at {speed}, {loaded} carries {torque}, oil at {temperature}"
+    return f"{driver} drives at {speed}, {loaded} carries {torque or force}, oil at {temperature}"
 
 
 def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str, Any]:
@@ -315,9 +319,19 @@ def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str
         "locked": bool(data["locked"].values[position, 0]),
         "jamming": _jamming(data, position),
         "back": _back_driving(outcome, law),
+        "contact": [
+            (VARIABLES[name].long_name, show.quantity(name, value(name)))
+            for name in _at_contact(data)
+        ],
         "drag": drag_answer(outcome, position),
+        "bearings": bearing_answer(outcome, position),
         "starting": starting_answer(outcome, law),
     }
+
+
+def _at_contact(data: Any) -> tuple[str, ...]:
+    """Names of the figures of a test rig; none of a drive."""
+    return CONTACT if of_contact(data) else ()
 
 
 def _range(name: str, value: Callable[[str], float]) -> str:

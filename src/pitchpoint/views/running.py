@@ -29,7 +29,7 @@ from pitchpoint.views.figures import (
     text,
 )
 
-__all__ = ["drag_answer", "drag_panel", "starting_answer"]
+__all__ = ["bearing_answer", "drag_answer", "drag_panel", "starting_answer"]
 
 _TEETH = Key("in the teeth", PALETTE[5], "")
 _BESIDE = Key("beside the teeth", "#9aa5ad", "")
@@ -56,6 +56,28 @@ def drag_answer(outcome: Outcome, law: int) -> str:
         return ""
     teeth, beside = (show.quantity("mean_loss", value) for value in found)
     return f"{teeth} in the teeth, {beside} beside them"
+
+
+def bearing_answer(outcome: Outcome, law: int) -> list[tuple[str, str]]:
+    """What the teeth put on the shafts, and each bearing beside them bears: names and words."""
+    data = outcome.parts["operation"]
+    found = []
+    for words, name in (
+        ("radial load on the shafts", "radial"),
+        ("axial load on the shafts", "axial"),
+    ):
+        both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
+        if any(both):
+            shown = dict.fromkeys(show.quantity(f"{name}_reaction_1", value) for value in both)
+            found.append((words, " and ".join(shown)))
+    if "bearing_load" in data:
+        loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
+        found += [
+            (f"load on {place}", show.quantity("bearing_load", load))
+            for place, load in loads
+            if load > 0.0
+        ]
+    return found
 
 
 def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:

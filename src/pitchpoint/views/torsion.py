@@ -78,7 +78,7 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
             f"{name}_stiffness", "torsional_stiffness", "Torsional stiffness", data, _STIFFNESS
         ),
         _against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS),
-        _bearing(f"{name}_bearing", data),
+        *([_bearing(f"{name}_bearing", data)] if "zone_load" in data else []),
     ]
     return Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
 
@@ -87,8 +87,10 @@ def _distribution(name: str, data: xr.Dataset) -> Figure:
     """Force on every tooth at one end of the long axis at several torques, all phases together."""
     force = display("tooth_force", data["tooth_force"])
     torques = display("torque", data["torque"])
-    half = data.sizes["pair"] // 2
-    angle = np.degrees(data["tooth_angle"].values[:, :half]).ravel()
+    zones = data.sizes.get("zone", 1)
+    half = data.sizes["pair"] // zones
+    place = data["path"].values[:, :half].ravel()
+    angle = 360.0 * place if zones > 1 else place
     order = np.argsort(angle, kind="stable")
     chosen = np.unique(np.linspace(0, torques.size - 1, len(_SHADES) + 1).round().astype(int))
     chosen = chosen[torques[chosen] > 0.0]
@@ -105,16 +107,16 @@ def _distribution(name: str, data: xr.Dataset) -> Figure:
     edge = 0.06 * (ends[1] - ends[0])
     return Figure(
         name,
-        "Load on the teeth at one end of the long axis",
+        "Load on the teeth at one end of the long axis" if zones > 1 else "Load on the teeth",
         traces,
         layout(
-            ANGLE,
+            ANGLE if zones > 1 else f"{data['path'].attrs['long_name']}",
             short_axis("tooth_force"),
             xaxis={"range": [ends[0] - edge, ends[1] + edge]},
             yaxis={"rangemode": "tozero"},
         ),
-        "Without friction. Every line is the way of a tooth through the zone; the teeth stand one "
-        "pitch apart on it. The other end of the long axis carries alike.",
+        "Without friction. Every line is the way of a tooth through the zone; the teeth stand one pitch "
+        f"apart on it.{' The other end of the long axis carries alike.' if zones > 1 else ''}",
         tuple(keys),
         missing="No tooth carries.",
     )

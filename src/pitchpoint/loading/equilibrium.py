@@ -1,4 +1,4 @@
-"""Load over many pairs with clearances: which of them carry, and how far the loaded body moves."""
+"""Equilibrium of contacts that only push: which of them carry a load, and how far the loaded body moves."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["Shared", "shared_load"]
+__all__ = ["Equilibrium", "equilibrium", "touch"]
 
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
@@ -32,7 +32,7 @@ LIGHTEST = 1e-9
 """Least elastic deflection over the largest clearance: what lighter loads do is its limit."""
 
 
-class Shared(eqx.Module):
+class Equilibrium(eqx.Module):
     """Equilibrium of pairs that only push.
 
     Attributes:
@@ -57,13 +57,23 @@ class Shared(eqx.Module):
 
 
 class _Problem(NamedTuple):
-    """C f + g - a d >= 0, f >= 0, f (C f + g - a d) = 0, sum of a f = load; all of order one."""
+    """C f + g - a d >= 0, f >= 0, f (C f + g - a d) = 0, sum of a f = load; all of order one.
 
-    compliance: Float[Array, "*b lane lane"]
+    C is the matrix, or `own` on its diagonal where nothing couples the lanes.
+    """
+
+    own: Rows
+    matrix: Float[Array, "*b lane lane"] | None
     gap: Rows
     arm: Rows
     active: Bool[Array, "*b lane"]
     load: Each
+
+    def moved(self, force: Rows) -> Rows:
+        """Displacements C f."""
+        if self.matrix is None:
+            return self.own * force
+        return jnp.squeeze(self.matrix @ force[..., None], axis=-1)
 
 
 class _Solution(NamedTuple):
@@ -82,25 +92,28 @@ class _Scale(NamedTuple):
     touch: Each
 
 
-def shared_load(
-    compliance: Float[Array, "lane lane *b"],
+def equilibrium(
+    teeth: Lanes,
+    body: Float[Array, "lane lane *b"] | None,
     *,
     gap: Lanes,
     arm: Lanes,
     active: Bool[Array, "pair slice *b"],
     load: Each,
-) -> Shared:
-    """Forces between pairs with clearances that share a load.
+) -> Equilibrium:
+    """Forces of the contacts of any mesh that share a load.
 
     Forces f >= 0 and one approach d: C f + gap - arm d is zero where a lane carries and not negative
-    elsewhere, and the sum of arm f is the load. The set of loaded lanes is found by exchanging all
-    wrong ones at once; where that does not lead to fewer of them, by steps that each lessen the
-    energy, of which there are finitely many for a positive definite C. The last solution on that
-    set carries the first derivatives. They jump where a pair comes to carry.
+    elsewhere, and the sum of arm f is the load. Without a body that couples them lanes come to carry one
+    after the other as the load grows, so the set follows from their order. Else the set of loaded lanes
+    is found by exchanging all wrong ones at once; where that does not lead to fewer of them, by steps that
+    each lessen the energy, of which there are finitely many for a positive definite C. The last solution
+    on that set carries the first derivatives. They jump where a pair comes to carry.
 
     Args:
-        compliance: displacement of each lane (pair and slice, flattened) for a unit force on
-            another, along the normals [m/N]; symmetric positive definite.
+        teeth: displacement of each lane (pair and slice) along its normal for a unit force on it [m/N].
+        body: what is added to that for a unit force on another lane, lanes flattened [m/N]; symmetric
+            positive semidefinite; None where nothing couples them.
         gap: separation of the unloaded flanks; any sign, only differences over `arm` matter to the
             forces [m].
         arm: closing for a unit of approach, positive; lanes with none never carry [m or 1].
@@ -110,8 +123,16 @@ def shared_load(
     Returns:
         Forces and approach, broadcast over all batch axes; NaN where no equilibrium was found. A
         load of zero gives the first pair that touches.
+
+    Example:
+        >>> import jax.numpy as jnp
+        >>> springs, gaps = jnp.full((2, 1), 1e-8), jnp.asarray([[0.0], [1e-6]])
+        >>> all_touch = {"arm": jnp.ones((2, 1)), "active": jnp.ones((2, 1), bool)}
+        >>> found = equilibrium(springs, None, gap=gaps, load=jnp.asarray(300.0), **all_touch)
+        >>> [round(float(force)) for force in found.force[:, 0]]
+        [200, 100]
     """
-    problem, scale = _normalised(compliance, gap, arm, active, load)
+    problem, scale = _normalised(teeth, body, gap, arm, active, load)
     loaded, iterations = _loaded(jax.lax.stop_gradient(problem))
     found = _solve(problem, loaded)
     residual = jax.lax.stop_gradient(_residual(problem, loaded, found))
@@ -122,7 +143,7 @@ def shared_load(
 
     force = jnp.where(loaded, found.force, 0.0)
     moved = scale.compliance * scale.force * found.approach / scale.arm
-    return Shared(
+    return Equilibrium(
         force=_where(solved, lanes(force) * scale.force),
         share=_where(solved, lanes(force / jnp.sum(force, axis=-1, keepdims=True))),
         approach=_where(solved, scale.touch + moved),
@@ -133,12 +154,19 @@ def shared_load(
     )
 
 
+def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *b"]) -> Each:
+    """Approach at which the first of rigid contacts touches [rad or m]; arguments as in `equilibrium`."""
+    touches = active & (arm > 0.0)
+    return jnp.min(jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf), axis=(0, 1))
+
+
 def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Array, "..."]:
     return jnp.where(solved, values, jnp.nan)
 
 
 def _normalised(
-    compliance: Float[Array, "lane lane *b"],
+    teeth: Lanes,
+    body: Float[Array, "lane lane *b"] | None,
     gap: Lanes,
     arm: Lanes,
     active: Bool[Array, "pair slice *b"],
@@ -148,15 +176,19 @@ def _normalised(
 
     Scales are constants to a derivative: the solution does not depend on them.
     """
-    batch = jnp.broadcast_shapes(compliance.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
+    coupled = () if body is None else body.shape[2:]
+    each = (teeth.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
+    batch = jnp.broadcast_shapes(coupled, *each)
 
     def rows(lanes: Array) -> Array:
         flat = jnp.moveaxis(lanes.reshape(-1, *lanes.shape[2:]), 0, -1)
         return jnp.broadcast_to(flat, (*batch, flat.shape[-1]))
 
     may = rows(active) & (rows(arm) > 0.0)
-    own = jnp.moveaxis(compliance, (0, 1), (-2, -1))
-    own = jnp.broadcast_to(own, (*batch, *own.shape[-2:]))
+    matrix, own = None, rows(teeth)
+    if body is not None:
+        matrix = jnp.moveaxis(body, (0, 1), (-2, -1)) + jnp.eye(own.shape[-1]) * own[..., None]
+        own = jnp.diagonal(matrix, axis1=-2, axis2=-1)
     arms, gaps = jnp.where(may, rows(arm), 0.0), rows(gap)
     constant = jax.lax.stop_gradient
     safe_arms = jnp.where(may, arms, 1.0)
@@ -166,13 +198,14 @@ def _normalised(
     # By differences of the approach the first pair to touch is left with none at all, whatever rounds.
     gaps = jnp.where(may, arms * (approach - touch[..., None]), 0.0)
     mean_arm = constant(_mean(arms, may))
-    mean_compliance = constant(_mean(jnp.diagonal(own, axis1=-2, axis2=-1), may))
+    mean_compliance = constant(_mean(own, may))
     force = jnp.broadcast_to(load, batch) / mean_arm
     least = LIGHTEST * constant(jnp.max(gaps, axis=-1)) / mean_compliance
     light = (force < least) | (force <= 0.0)
     reference = jnp.where(light, jnp.where(least > 0.0, least, 1.0), constant(force))
     problem = _Problem(
-        compliance=_masked(own / mean_compliance[..., None, None], may),
+        own=jnp.where(may, own / mean_compliance[..., None], 1.0),
+        matrix=None if matrix is None else _masked(matrix / mean_compliance[..., None, None], may),
         gap=gaps / (mean_compliance * reference)[..., None],
         arm=arms / mean_arm[..., None],
         active=may,
@@ -220,6 +253,8 @@ class _Search(NamedTuple):
 def _loaded(problem: _Problem) -> tuple[Bool[Array, "*b lane"], Int[Array, ""]]:
     """Lanes that carry, and the number of sets that were tried."""
     start = _as_if_alone(problem)
+    if problem.matrix is None:
+        return start, jnp.asarray(1)
     batch, lanes = start.shape[:-1], start.shape[-1]
     begin = _Search(
         loaded=start,
@@ -288,26 +323,25 @@ def _only(lane: Int[Array, "*b"], like: Bool[Array, "*b lane"]) -> Bool[Array, "
 
 def _as_if_alone(problem: _Problem) -> Bool[Array, "*b lane"]:
     """Lanes that would carry if none moved another: they touch one after the other."""
-    own = jnp.diagonal(problem.compliance, axis1=-2, axis2=-1)
-    touch = problem.gap / jnp.where(problem.active, problem.arm, 1.0)
-    touch = jnp.where(problem.active, touch, jnp.inf)
-    order = jnp.argsort(touch, axis=-1)
+    first = problem.gap / jnp.where(problem.active, problem.arm, 1.0)
+    first = jnp.where(problem.active, first, jnp.inf)
+    order = jnp.argsort(first, axis=-1)
 
     def until(values: Rows) -> Rows:
         return jnp.cumsum(jnp.take_along_axis(values, order, axis=-1), axis=-1)
 
-    stiffness = until(problem.arm**2 / own)
-    lost = until(problem.arm * problem.gap / own)
+    stiffness = until(problem.arm**2 / problem.own)
+    lost = until(problem.arm * problem.gap / problem.own)
     approach = (problem.load[..., None] + lost) / jnp.where(stiffness > 0.0, stiffness, 1.0)
     # As many touch as lie before the approach that they take together: its least value.
     least = jnp.min(jnp.where(stiffness > 0.0, approach, jnp.inf), axis=-1, keepdims=True)
-    return problem.active & (touch < least)
+    return problem.active & (first < least)
 
 
 def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
     """Forces on these lanes and the approach, as if all of them could pull."""
     sides = jnp.stack([problem.arm, problem.gap], axis=-1) * loaded[..., None]
-    solved = _divided(_masked(problem.compliance, loaded), sides)
+    solved = _divided(problem, loaded, sides)
     stiffness = jnp.sum(sides[..., 0] * solved[..., 0], axis=-1)
     carries = stiffness > 0.0
     carried = problem.load + jnp.sum(sides[..., 0] * solved[..., 1], axis=-1)
@@ -315,19 +349,21 @@ def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
     far = FAR * (1.0 + jnp.max(problem.gap, axis=-1))
     approach = jnp.where(carries, carried / jnp.where(carries, stiffness, 1.0), far)
     force = solved[..., 0] * approach[..., None] - solved[..., 1]
-    moved = jnp.squeeze(problem.compliance @ force[..., None], axis=-1)
-    slack = moved + problem.gap - problem.arm * approach[..., None]
+    slack = problem.moved(force) + problem.gap - problem.arm * approach[..., None]
     return _Solution(force, approach, stiffness, slack)
 
 
 def _divided(
-    matrix: Float[Array, "*b lane lane"], by: Float[Array, "*b lane side"]
+    problem: _Problem, loaded: Bool[Array, "*b lane"], by: Float[Array, "*b lane side"]
 ) -> Float[Array, "*b lane side"]:
-    """Solution of positive definite systems; two last steps from it carry two orders of derivatives.
+    """Solution of C x = b on the loaded lanes; two last steps from it carry two orders of derivatives.
 
     Factors are not differentiated: that would solve for a whole matrix. The systems are taken one
     after the other: batches of them wait for threads of the pool that they run on (`_jax`).
     """
+    if problem.matrix is None:
+        return by / problem.own[..., None]
+    matrix = _masked(problem.matrix, loaded)
     matrix = jnp.broadcast_to(matrix, (*by.shape[:-2], *matrix.shape[-2:]))
     flat = matrix.reshape(-1, *matrix.shape[-2:])
     root = jax.lax.map(jnp.linalg.cholesky, jax.lax.stop_gradient(flat))

@@ -1,24 +1,27 @@
 """Wind-up of strain-wave gears, hysteresis by friction of the teeth, kinematic error by deviations."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import equinox as eqx
 import numpy as np
 import pytest
+from bare_contacts import line_contacts
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts, along
-from pitchpoint.errors import InputError
+from pitchpoint.contact.contacts import along
+from pitchpoint.contact.surface import Spot, Waves
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
-from pitchpoint.gears.flexible_ring import RingLoads
 from pitchpoint.gears.strain_wave import places
 from pitchpoint.gears.strain_wave_design import build_strain_wave
-from pitchpoint.loading import torsion as module
+from pitchpoint.loading import wind_up as module
 from pitchpoint.loading.balance import balance
-from pitchpoint.loading.deviations import Deviations, added_gap, kinematic_error, leaning
+from pitchpoint.loading.compliance import Compliance
+from pitchpoint.loading.equilibrium import touch
+from pitchpoint.loading.kinematic_error import added_gap, kinematic_error
+from pitchpoint.loading.mesh_stiffness import mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.loading.torsion import hysteresis, torsion
-from pitchpoint.loading.yielding import Yielding
+from pitchpoint.loading.wind_up import hysteresis, wind_up
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
@@ -33,7 +36,7 @@ def contacts(path, gap=0.0, slip=0.0):
     path = jnp.asarray(path)
     none = jnp.zeros(path.shape)
     surface = jnp.zeros((2, 3, *path.shape)).at[0, 2].set(none + slip)
-    return Contacts(
+    return line_contacts(
         active=jnp.ones(path.shape, bool),
         path=path,
         width=none,
@@ -43,7 +46,6 @@ def contacts(path, gap=0.0, slip=0.0):
         normal=jnp.stack([none, none, none - ARM]),
         gap=none + gap,
         flank=jnp.stack([none, none]),
-        shape="line",
     )
 
 
@@ -60,26 +62,26 @@ SPRING = 1e9 * 0.01
 def springs(monkeypatch):
     """Three equal pairs at each end of the axis, the second and the third of them with a clearance."""
 
-    def yielding(mesh, contacts, solids, terms, load, body):
-        return Yielding(jnp.full(contacts.path.shape, 1e9), None, load)
+    def compliance(mesh, contacts, solids, terms, load, body):
+        return Compliance(jnp.full(contacts.path.shape, 1e9), None, load)
 
     at = contacts(np.zeros((6, 1, 1)), GAPS + ARM * 3e-5, SLIPS)
-    radial = jnp.asarray([-0.1, -0.2, -0.3, -0.4, -0.5, -0.6]).reshape(6, 1, 1)
-    monkeypatch.setattr(module, "yielding", yielding)
+    pressed = jnp.asarray([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]).reshape(6, 1, 1)
+    zones = jnp.repeat(jnp.eye(2), 3, axis=1).reshape(2, 6, 1, 1)
+    monkeypatch.setattr(module, "compliance", compliance)
     return SimpleNamespace(
         contacts=lambda phase: at,
-        ring=object(),
-        ring_loads=lambda contacts: RingLoads(radial, -radial, radial, radial),
+        inner_load=lambda contacts: zones * pressed,
         loaded=LOADED,
     )
 
 
 def test_springs_that_come_to_carry_one_after_the_other(springs):
-    wind_up = np.linspace(0.0, 1.013e-3, 41)
-    force = SPRING * np.maximum(ARM * wind_up - GAPS, 0.0)
+    turned = np.linspace(0.0, 1.013e-3, 41)
+    force = SPRING * np.maximum(ARM * turned - GAPS, 0.0)
     load = (ARM * force).sum(axis=(0, 1))
-    found = torsion(springs, (STEEL, STEEL), TERMS, jnp.asarray(load), jnp.zeros(1))
-    np.testing.assert_allclose(found.wind_up, wind_up, rtol=1e-10, atol=1e-15)
+    found = wind_up(springs, (STEEL, STEEL), TERMS, jnp.asarray(load), jnp.zeros(1))
+    np.testing.assert_allclose(found.wind_up, turned, rtol=1e-10, atol=1e-15)
     np.testing.assert_allclose(found.touch, 3e-5, rtol=1e-12)
     np.testing.assert_allclose(found.force, force, rtol=1e-9, atol=1e-9)
     carry = np.maximum((force > 0.0).sum(axis=(0, 1)), 2)
@@ -87,7 +89,7 @@ def test_springs_that_come_to_carry_one_after_the_other(springs):
     np.testing.assert_allclose(found.stiffness, carry * SPRING * ARM**2, rtol=1e-10)
     inward = force[:, 0] * np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])[:, None]
     expected = [inward[:3].sum(axis=0), inward[3:].sum(axis=0)]
-    np.testing.assert_allclose(found.radial_load, expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(found.inner_load, expected, rtol=1e-9, atol=1e-9)
     loop = hysteresis(found, 0.1)
     held = 0.1 * (force * np.abs(SLIPS)).sum(axis=(0, 1))
     np.testing.assert_allclose(loop.loading, load + held, rtol=1e-10)
@@ -98,14 +100,14 @@ def test_springs_that_come_to_carry_one_after_the_other(springs):
 
 
 @eqx.filter_jit
-def _torsion(mesh, load, phase):
-    return torsion(mesh, (STEEL, STEEL), TERMS, load, phase)
+def _wind_up(mesh, load, phase):
+    return wind_up(mesh, (STEEL, STEEL), TERMS, load, phase)
 
 
 def wound_up(mesh, loads):
     """Of any loads at all phases, by one compiled program."""
     load, phase = np.meshgrid(np.resize(loads, LOADS.size), PHASES, indexing="ij")
-    found = _torsion(mesh, load, phase)
+    found = _wind_up(mesh, load, phase)
     return jax.tree.map(lambda x: np.asarray(x)[..., : len(loads), :] if x.ndim else x, found)
 
 
@@ -140,8 +142,8 @@ def test_torque_is_carried_alike_at_both_ends_of_the_axis(found, drive, at):
     arm = np.abs(np.asarray(along(at.normal, drive.loaded)))
     torque = (found.force * arm[:, :, None]).sum(axis=(0, 1))
     np.testing.assert_allclose(torque, found.load, rtol=1e-11)
-    np.testing.assert_allclose(found.radial_load[0], found.radial_load[1], rtol=1e-9)
-    assert np.all(found.radial_load[0] > 0.0)
+    np.testing.assert_allclose(found.inner_load[0], found.inner_load[1], rtol=1e-9)
+    assert np.all(found.inner_load[0] > 0.0)
 
 
 def test_stiffness_is_the_slope_of_the_torque(drive):
@@ -187,14 +189,39 @@ def test_branches_are_in_balance_with_friction(found, drive, at):
     assert np.all(loop.loading > 1.01 * loop.unloading)
 
 
-def test_only_a_ring_winds_up():
-    pair = build_cylindrical_pair(
-        teeth=(20, 30), module=2e-3, pressure_angle=np.deg2rad(20.0), face_width=0.02
+SPUR = build_cylindrical_pair(
+    teeth=(20, 30), module=2e-3, pressure_angle=np.deg2rad(20.0), face_width=0.02
+)
+
+
+@eqx.filter_jit
+def of_pair(mesh, load):
+    stiffness = mesh_stiffness(mesh, (STEEL, STEEL), TERMS, load)
+    at = stiffness.phase.ravel()
+    found = wind_up(mesh, (STEEL, STEEL), TERMS, load, at)
+    other = mesh.other_flanks.contacts(at)
+    arm = jnp.abs(along(other.normal, mesh.loaded))
+    return stiffness.total.ravel(), found, touch(other.gap, arm, other.active)
+
+
+def test_a_spur_pair_winds_up_by_its_load_over_the_mesh_stiffness():
+    stiffness, found, _ = jax.tree.map(np.asarray, of_pair(SPUR, jnp.asarray(80.0)))
+    radius = float(SPUR.base_radii[1])
+    np.testing.assert_allclose(found.wind_up, 80.0 / (stiffness * radius**2), rtol=1e-10)
+    np.testing.assert_array_equal(found.touch, 0.0)
+    # The contact of the teeth stiffens with the load, so the slope is steeper than the secant.
+    assert np.all(found.stiffness > stiffness * radius**2)
+
+
+def test_between_its_flanks_a_pair_has_its_backlash():
+    wide = dataclasses.replace(
+        SPUR, centre_distance=SPUR.centre_distance * 1.002, follows=(False, True)
     )
-    with pytest.raises(InputError, match="asks for a strain-wave gear"):
-        torsion(pair, (STEEL, STEEL), TERMS, jnp.ones(1), jnp.zeros(1))
-    with pytest.raises(InputError, match="ask for a strain-wave gear"):
-        leaning(pair, pair.contacts(jnp.zeros(1)))
+    _, found, free = jax.tree.map(np.asarray, of_pair(wide, jnp.asarray(0.0)))
+    play = float(wide.backlash / wide.working_radii[1])
+    assert play > 1e-4
+    np.testing.assert_allclose(found.touch + free, play, rtol=1e-12)
+    np.testing.assert_array_equal(found.wind_up, 0.0)
 
 
 # ------------------------------------------------------------------ kinematic error
@@ -204,7 +231,7 @@ PAIRS = 8
 TURNS = 10  # of the wave generator: after ten all teeth meet as at first
 SAMPLES = TURNS * 22 * 4
 PHASE = np.arange(SAMPLES) / SAMPLES * TURNS * 22
-NONE = Deviations(*jnp.zeros((3, 1)))
+NONE = Waves(*jnp.zeros((3, 1)))
 CLEARANCES = np.array([4e-7, 0.0, 1e-6, 3e-6] * 2).reshape(PAIRS, 1, 1)
 
 
@@ -215,7 +242,15 @@ def two_zones(gap=0.0):
 
 
 def one(order, amplitude=1e-8, phase=0.4):
-    return Deviations(*(jnp.asarray([float(value)]) for value in (order, amplitude, phase)))
+    return Waves(*(jnp.asarray([float(value)]) for value in (order, amplitude, phase)))
+
+
+def spots(at):
+    """Contacts on both members, all of which stand upright."""
+    return tuple(
+        Spot(flank, at.width, angle, jnp.zeros(angle.shape, int), jnp.ones(angle.shape))
+        for flank, angle in zip(at.flank, places(at, PHASE, TEETH), strict=True)
+    )
 
 
 def errors(deviations, load, gap=0.0):
@@ -225,8 +260,8 @@ def errors(deviations, load, gap=0.0):
 @jax.jit
 def _errors(deviations, load, gap):
     at = two_zones(gap)
-    added = added_gap(deviations, places(at, PHASE, TEETH))
-    yields = Yielding(jnp.full(at.path.shape, 1e9), None, jnp.full(SAMPLES, load))
+    added = added_gap(tuple((one,) for one in deviations), spots(at))
+    yields = Compliance(jnp.full(at.path.shape, 1e9), None, jnp.full(SAMPLES, load))
     return kinematic_error(at, yields, LOADED, added)
 
 
@@ -270,8 +305,7 @@ def test_under_load_small_deviations_add_up_to_their_elastic_mean():
 def test_without_load_the_pair_that_stands_out_leads():
     """Teeth do not yield then: the rotation is that at which the first flank touches."""
     both = one(2, 1e-6), one(3, 1e-6)
-    place = places(two_zones(), PHASE, TEETH)
-    added = np.asarray(added_gap(both, place))
+    added = np.asarray(added_gap(tuple((one,) for one in both), spots(two_zones())))
     found = errors(both, 0.0)
     leads = added.min(axis=(0, 1)) / ARM
     np.testing.assert_allclose(found.under_load, leads, rtol=1e-9, atol=1e-12)
@@ -283,7 +317,7 @@ def test_pairs_with_a_clearance_lead_only_if_they_stand_out_further():
     """Rigid teeth: the least of clearance and deviation together, less the least clearance, over the arm."""
     both = one(2, 1e-6), one(3, 1e-6)
     gap = CLEARANCES
-    added = np.asarray(added_gap(both, places(two_zones(), PHASE, TEETH)))
+    added = np.asarray(added_gap(tuple((one,) for one in both), spots(two_zones())))
     leads = (gap + added).min(axis=(0, 1)) / ARM
     found = errors(both, 0.0, gap)
     np.testing.assert_allclose(found.geometric, leads, rtol=1e-9, atol=1e-15)
@@ -293,7 +327,7 @@ def test_pairs_with_a_clearance_lead_only_if_they_stand_out_further():
 
 def test_roundings_lean_to_the_radius(drive, at):
     """There the displacement of a tooth along the circumference moves the flanks apart by less."""
-    part = np.asarray(leaning(drive, at))
+    part = np.asarray(drive.spots(at, PHASES)[0].leaning)
     across = np.abs(np.asarray(drive.ring_loads(at).tangential))
     active = np.asarray(at.active)
     assert part[active].max() == 1.0

@@ -1,4 +1,4 @@
-"""Wind-up of a strain-wave gear under torque, its stiffness, and hysteresis by friction of the teeth."""
+"""Wind-up of a mesh under load, its stiffness, and hysteresis by friction of the teeth."""
 
 import equinox as eqx
 import numpy as np
@@ -6,34 +6,34 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.clearances import Shared, shared_load
+from pitchpoint.loading.compliance import compliance
+from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
 from pitchpoint.loading.tooth_compliance import Terms
-from pitchpoint.loading.yielding import yielding
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 
-__all__ = ["Hysteresis", "Torsion", "hysteresis", "torsion", "wound_up"]
+__all__ = ["Hysteresis", "WindUp", "hysteresis", "wind_up", "wound_up"]
 
 Each = Float[Array, "*b"]
 
 
-class Torsion(eqx.Module):
-    """Equilibrium at rest at torques and phases `*b`, without friction.
+class WindUp(eqx.Module):
+    """Equilibrium at rest at loads and phases `*b`, without friction.
 
     Attributes:
-        load: torque of the loaded member [N m].
-        wind_up: rotation of that member from first touch, the others held [rad].
-        touch: rotation up to first touch: its play on this flank at this phase [rad].
-        stiffness: slope of the load over the wind-up [N m/rad]; steps up where a pair comes to carry.
+        load: that the driven coordinate carries [N m or N].
+        wind_up: movement of that coordinate from first touch, the others held [rad or m].
+        touch: movement up to first touch: its play on this flank at this phase [rad or m].
+        stiffness: slope of the load over the wind-up [N m/rad or N/m]; steps up where a pair comes to
+            carry.
         loaded_pairs: number of pairs that carry.
         force: normal force of each slice [N].
         share: part of the sum of all forces; without load the limit for a vanishing one.
-        radial_load: inward force of the teeth on the ring at each end of the long axis [N].
+        inner_load: on the bearing inside the drive in each zone, see `Mesh.inner_load` [N].
         slip_torque: sum of forces times their sliding arms: what a friction coefficient of one would
-            hold at the loaded member [N m].
-        residual: of the equilibrium, see `Shared`.
+            hold at the driven coordinate [N m or N].
+        residual: of the equilibrium, see `Equilibrium`.
         iterations: common to all states.
     """
 
@@ -44,7 +44,7 @@ class Torsion(eqx.Module):
     loaded_pairs: Int[Array, "*b"]
     force: Float[Array, "pair slice *b"]
     share: Float[Array, "pair slice *b"]
-    radial_load: Float[Array, "2 *b"]
+    inner_load: Float[Array, "zone *b"]
     slip_torque: Each
     residual: Each
     iterations: Int[Array, ""]
@@ -63,7 +63,7 @@ class Hysteresis(eqx.Module):
     unloading: Each
 
 
-def torsion(
+def wind_up(
     mesh: Mesh,
     solids: tuple[Solid, Solid],
     terms: Terms,
@@ -71,56 +71,44 @@ def torsion(
     phase: Each,
     contacts: Contacts | None = None,
     body: Float[Array, "lane lane *b"] | None = None,
-) -> Torsion:
-    """Wind-up of the loaded member at torques and phases, with the pairs that come to carry.
+) -> WindUp:
+    """Movement of the driven coordinate at loads and phases, with the pairs that come to carry.
 
     Args:
-        mesh: a family whose member 0 is a thin ring; the first half of its pairs lies at one end of
-            the long axis, the second at the other.
+        mesh: a family with teeth.
         solids: material of each member.
         terms: of the model of tooth compliance.
-        load: torques of the loaded member, not negative, broadcast against the phases [N m].
+        load: of the driven coordinate, not negative, broadcast against the phases [N m or N].
         phase: of the mesh [periods], as many axes as `load`.
         contacts: at these phases, where they are known already.
-        body: see `body_compliance`, where it is known already.
+        body: see `Mesh.body_compliance`, where it is known already.
 
     Returns:
-        NaN where no equilibrium was found. Teeth, ring and cup yield, and the bearing inside the ring
-        by its support stiffness; its clearance, shafts, joints and the flange are not in it.
-
-    Raises:
-        InputError: the mesh has no ring.
+        NaN where no equilibrium was found. What yields is what `Mesh.yielding` says.
     """
     contacts = mesh.contacts(phase) if contacts is None else contacts
-    loads = mesh.ring_loads(contacts)
-    if mesh.ring is None or loads is None:
-        raise InputError("wind-up over pairs with clearances asks for a strain-wave gear")
     arm = jnp.abs(along(contacts.normal, mesh.loaded))
     load = jnp.broadcast_to(load, jnp.broadcast_shapes(jnp.shape(load), jnp.shape(phase)))
+    given = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
 
-    def approach(torque: Each) -> tuple[Each, Shared]:
-        compliance = yielding(mesh, contacts, solids, terms, torque, body).compliance(contacts)
-        given = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
-        found = shared_load(compliance, **given, load=torque)
+    def approach(torque: Each) -> tuple[Each, Equilibrium]:
+        yields = compliance(mesh, contacts, solids, terms, torque, body)
+        found = equilibrium(yields.of_teeth(contacts), yields.body, **given, load=torque)
         return found.approach, found
 
     # The springs themselves depend on the load where the contact of the teeth does.
     moved, slope, found = jax.jvp(approach, (load,), (jnp.ones_like(load),), has_aux=True)
-    touches = contacts.active & (arm > 0.0)
-    each = jnp.where(touches, contacts.gap / jnp.where(touches, arm, 1.0), jnp.inf)
-    touch = jnp.broadcast_to(jnp.min(each, axis=(0, 1)), moved.shape)
-    half = contacts.path.shape[0] // 2
-    inward = -found.force * loads.radial
+    free = jnp.broadcast_to(touch(**given), moved.shape)
     slip = jnp.abs(along(contacts.slip_arm, mesh.loaded))
-    return Torsion(
+    return WindUp(
         load=load,
-        wind_up=moved - touch,
-        touch=touch,
+        wind_up=moved - free,
+        touch=free,
         stiffness=1.0 / slope,
         loaded_pairs=jnp.sum(jnp.any(found.loaded, axis=1), axis=0),
         force=found.force,
         share=found.share,
-        radial_load=jnp.stack([total(inward[:half]), total(inward[half:])]),
+        inner_load=jnp.sum(mesh.inner_load(contacts) * found.force, axis=(1, 2)),
         slip_torque=total(found.force * slip),
         residual=found.residual,
         iterations=found.iterations,
@@ -135,16 +123,16 @@ def wound_up(
     load: Float[Array, ""],
     contacts: Contacts,
     body: Float[Array, "lane lane *b"] | None,
-) -> Torsion:
+) -> WindUp:
     """Wind-up at one torque at all phases of known contacts: one program for every torque and part of a run.
 
-    Arguments and result as in `torsion`.
+    Arguments and result as in `wind_up`.
     """
     loads = jnp.broadcast_to(load, contacts.path.shape[2:])
-    return torsion(mesh, solids, terms, loads, loads, contacts, body)
+    return wind_up(mesh, solids, terms, loads, loads, contacts, body)
 
 
-def hysteresis(found: Torsion, friction: float | Float[Array | np.ndarray, "..."]) -> Hysteresis:
+def hysteresis(found: WindUp, friction: float | Float[Array | np.ndarray, "..."]) -> Hysteresis:
     """Loop of torque over wind-up by Coulomb friction on the teeth while the drive stands still.
 
     On loading, friction adds mu times the sum of forces times sliding arms to the torque that the

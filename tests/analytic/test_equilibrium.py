@@ -7,23 +7,25 @@ from typing import ClassVar
 import equinox as eqx
 import numpy as np
 import pytest
+from bare_contacts import line_contacts
 from scipy.optimize import nnls
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading import clearances
-from pitchpoint.loading.clearances import shared_load
+from pitchpoint.loading import equilibrium as module
+from pitchpoint.loading.compliance import Compliance
+from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.yielding import Yielding
 
 LANES, STATES = 40, 60
 
 
-@jax.jit
-def solve(compliance, gap, arm, active, load):
-    return shared_load(compliance, gap=gap, arm=arm, active=active, load=load)
+def coupled(compliance, gap, arm, active, load):
+    """Equilibrium of lanes that a body alone couples."""
+    return equilibrium(jnp.zeros(()), compliance, gap=gap, arm=arm, active=active, load=load)
+
+
+solve = jax.jit(coupled)
 
 
 def solved(*given):
@@ -190,11 +192,9 @@ def test_what_has_no_equilibrium_is_not_a_number(monkeypatch):
     assert np.isnan(nothing.approach).all()
     assert np.isnan(nothing.force).all()
     assert np.isnan(springs([-1.0]).force).all()
-    monkeypatch.setattr(clearances, "MOST", 0)
+    monkeypatch.setattr(module, "MOST", 0)
     given = problems(ring_like)
-    found = shared_load(
-        given[0], **dict(zip(("gap", "arm", "active", "load"), given[1:], strict=True))
-    )
+    found = jax.jit(lambda *anew: coupled(*anew))(*given)
     assert found.iterations == 0
     missed = np.asarray(found.residual) > 1e-10
     assert missed.any()
@@ -214,7 +214,7 @@ def test_derivatives_equal_differences():
         c, g, a, t = (
             x + step * dx for x, dx in zip((compliance, gap, arm, load), along, strict=True)
         )
-        found = shared_load(c, gap=g, arm=a, active=active, load=t)
+        found = coupled(c, g, a, active, t)
         parts = (jnp.sum(weight * found.force, axis=(0, 1)), found.approach, found.stiffness)
         return jnp.stack([*parts, jnp.sum(weight * found.share, axis=(0, 1))])
 
@@ -241,7 +241,7 @@ def test_stiffness_is_the_slope_of_the_load():
 def contacts(path, gap=0.0, active=True):
     path = np.asarray(path, float).reshape(-1, 1, 1)
     none = jnp.zeros(path.shape)
-    return Contacts(
+    return line_contacts(
         active=jnp.broadcast_to(jnp.asarray(active), path.shape),
         path=jnp.asarray(path),
         width=none,
@@ -251,17 +251,17 @@ def contacts(path, gap=0.0, active=True):
         normal=jnp.stack([none, none, none - 0.02]),
         gap=none + gap,
         flank=jnp.stack([none, none]),
-        shape="line",
     )
 
 
 def mesh(separate):
     """As much of a mesh as the models look at."""
-    return _Looked(separate)
+    return _Looked(not separate, "wave" if separate else "action")
 
 
 class _Looked(eqx.Module):
-    clearances: bool = eqx.field(static=True)
+    touching: bool = eqx.field(static=True)
+    counts: str = eqx.field(static=True)
     toothed: ClassVar[bool] = True
     overlap_ratio: ClassVar[float] = 0.0
     contact_ratio: ClassVar[float] = 1.5
@@ -279,7 +279,7 @@ def by_stiffness(contacts, yields, *, separate):
 
 def test_shares_by_stiffness_with_and_without_clearances():
     stiffness = jnp.asarray([1e9, 2e9, 3e9, 4e9]).reshape(4, 1, 1)
-    yields = Yielding(stiffness, None, jnp.asarray([0.5]))
+    yields = Compliance(stiffness, None, jnp.asarray([0.5]))
     touching = contacts([0.0, 0.01, 0.02, 0.03])
     plain = by_stiffness(touching, yields, separate=False)
     np.testing.assert_array_equal(plain, np.array([1e9, 2e9, 3e9, 4e9]) / 1e10)
@@ -288,7 +288,7 @@ def test_shares_by_stiffness_with_and_without_clearances():
     apart = contacts([0.0, 0.01, 0.02, 0.03], gap=np.reshape([0.0, 1e-6, 0.0, 1.0], (4, 1, 1)))
     share = by_stiffness(apart, yields, separate=True)
     np.testing.assert_allclose(share, [0.25, 0.0, 0.75, 0.0], atol=1e-12)
-    heavy = Yielding(stiffness, None, jnp.asarray([0.02 * 1e7 * 6.0 * 1e-5]))
+    heavy = Compliance(stiffness, None, jnp.asarray([0.02 * 1e7 * 6.0 * 1e-5]))
     force = np.array([1.0, 2.0, 3.0]) * 1e7
     approach = (6e2 + force[1] * 1e-6) / force.sum()
     force = force * (approach - np.array([0.0, 1e-6, 0.0]))
@@ -300,7 +300,7 @@ def test_a_body_that_couples_pairs_evens_out_their_loads():
     """Two of three pairs that sit on one soft body carry less than the one beside it."""
     body = np.zeros((3, 3, 1))
     body[:2, :2] = 1e-7
-    yields = Yielding(jnp.full((3, 1, 1), 1e9), jnp.asarray(body), jnp.asarray([2.0]))
+    yields = Compliance(jnp.full((3, 1, 1), 1e9), jnp.asarray(body), jnp.asarray([2.0]))
     share = by_stiffness(contacts([0.0] * 3), yields, separate=False)
     # 1/k = 1e-7: the two move by (1e-7 + 2e-7) f, the third by 1e-7 f.
     np.testing.assert_allclose(share, [0.2, 0.2, 0.6], rtol=1e-12)
@@ -325,8 +325,43 @@ def test_models_say_where_they_hold():
     )
     assert separate == {"from_stiffness", *cosines}
     assert touching == set(LOAD_SHARING) - cosines
-    with pytest.raises(InputError, match=r"'equal' holds where all flanks .* clearance; choose"):
+    with pytest.raises(InputError, match=r"'equal' holds where all rigid flanks .* gap; choose"):
         LOAD_SHARING["equal"].check(mesh(True))
     with pytest.raises(InputError, match=r"strain-wave gears, and these are not; choose one of"):
         LOAD_SHARING["xu_2021_cosine"].check(mesh(False))
-    assert Mesh.clearances.fget(None) is False
+
+
+# ------------------------------------------------------------------ without a body
+
+
+@jax.jit
+def both_ways(teeth, gap, arm, active, load):
+    """Equilibrium of springs side by side, by their order and as a matrix that couples nothing."""
+    given = {"gap": gap, "arm": arm, "active": active, "load": load}
+    none = jnp.zeros((gap.shape[0] * gap.shape[1],) * 2 + gap.shape[2:])
+    return equilibrium(teeth, None, **given), equilibrium(teeth, none, **given)
+
+
+@pytest.mark.parametrize("load", [0.0, 0.3, 40.0])
+def test_springs_side_by_side_are_a_matrix_that_couples_nothing(load):
+    rng = np.random.default_rng(3)
+    lanes = (5, 4, 30)
+    teeth, arm = (jnp.asarray(rng.uniform(0.5, 2.0, lanes)) for _ in range(2))
+    gap = jnp.asarray(rng.normal(size=lanes) * 3.0)
+    active = jnp.asarray(rng.uniform(size=lanes) > 0.2)
+    loads = load * jnp.asarray(rng.uniform(0.2, 1.0, 30))
+    alone, coupled_ = jax.tree.map(np.asarray, both_ways(teeth, gap, arm, active, loads))
+    np.testing.assert_array_equal(alone.loaded, coupled_.loaded)
+    for name in ("force", "share", "approach", "stiffness"):
+        one, other = getattr(alone, name), getattr(coupled_, name)
+        np.testing.assert_allclose(one, other, rtol=1e-10, atol=1e-12 * np.abs(other).max())
+    assert alone.residual.max() < 1e-12
+    assert alone.loaded.sum() >= {0.0: 30, 0.3: 33, 40.0: 60}[load]
+
+
+def test_slices_of_helical_teeth_need_no_matrix():
+    """288 lanes as a matrix would take a factorisation each; their order takes a sort."""
+    lanes = (24, 12, 8)
+    given = (jnp.ones(lanes), jnp.zeros(lanes), jnp.ones(lanes), jnp.ones(lanes, bool), jnp.ones(8))
+    text = jax.jit(lambda t, g, a, on, f: equilibrium(t, None, gap=g, arm=a, active=on, load=f))
+    assert "cholesky" not in text.lower(*given).as_text()

@@ -1,0 +1,128 @@
+"""Surfaces of flanks: by how much they lie below their design, and how that changes gap and curvature."""
+
+import abc
+from dataclasses import replace
+
+import equinox as eqx
+from jaxtyping import Array, Float, Int
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import Contacts
+
+__all__ = ["Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
+
+Lanes = Float[Array, "pair slice *b"]
+
+
+class Spot(eqx.Module):
+    """Where contacts lie on one member.
+
+    Attributes:
+        flank: arc length on the profile, see `Contacts.flank` [m].
+        across: position across the face from its middle [m].
+        angle: around the member, growing in the sense of positive rotation [rad].
+        tooth: number of the tooth, counted in the same sense.
+        leaning: part of a tooth's displacement along the circumference that counts along the normal,
+            one where that part is largest.
+    """
+
+    flank: Lanes
+    across: Lanes
+    angle: Lanes
+    tooth: Int[Array, "pair slice *b"]
+    leaning: Lanes
+
+
+class Surface(eqx.Module):
+    """One way in which flanks of a member differ from their design; those of a member add up."""
+
+    @abc.abstractmethod
+    def missing(self, spot: Spot) -> Lanes:
+        """Height that is missing along the normal [m]; negative where there is more material.
+
+        Args:
+            spot: where on the member.
+        """
+
+
+Surfaces = tuple[tuple[Surface, ...], tuple[Surface, ...]]
+"""Of both members."""
+
+
+class Offset(Surface):
+    """Flanks that lie deeper all over.
+
+    Attributes:
+        depth: along the normal [m].
+    """
+
+    depth: Float[Array, ""]
+
+    def missing(self, spot: Spot) -> Lanes:
+        """The same everywhere."""
+        return jnp.broadcast_to(self.depth, spot.flank.shape)
+
+
+class Waves(Surface):
+    """Teeth that lie behind their places, as waves around the member.
+
+    Attributes:
+        order: waves around the member; 1 is an eccentricity.
+        amplitude: along the normal of the flank, where it stands upright most [m].
+        phase: angle of each wave where the member's angle is zero [rad].
+    """
+
+    order: Float[Array, " wave"]
+    amplitude: Float[Array, " wave"]
+    phase: Float[Array, " wave"]
+
+    def missing(self, spot: Spot) -> Lanes:
+        """Sum of the waves at the angle of each contact."""
+        turn = self.order * spot.angle[..., None] + self.phase
+        return jnp.sum(self.amplitude * jnp.cos(turn), axis=-1) * spot.leaning
+
+
+def missing(surfaces: tuple[Surface, ...], spot: Spot) -> Lanes:
+    """Height that is missing from the flank of one member [m].
+
+    Args:
+        surfaces: of the member.
+        spot: where on it.
+    """
+    return sum((one.missing(spot) for one in surfaces), jnp.zeros_like(spot.flank))
+
+
+def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spot]) -> Contacts:
+    """Contacts of flanks that differ from their design.
+
+    Missing height adds to the gap, its second derivatives along the flank and across it to the curvatures.
+
+    Args:
+        contacts: of the flanks as designed.
+        surfaces: of both members.
+        spots: where the contacts lie on them.
+    """
+    gap, curvature = contacts.gap, contacts.curvature
+    for member, (own, spot) in enumerate(zip(surfaces, spots, strict=True)):
+        if own:
+            gap = gap + missing(own, spot)
+            curvature = curvature.at[member].add(_bend(own, spot))
+    return replace(contacts, gap=gap, curvature=curvature)
+
+
+def _bend(surfaces: tuple[Surface, ...], spot: Spot) -> Float[Array, "2 pair slice *b"]:
+    """Second derivatives of the missing height along the flank and across it [1/m]."""
+
+    def second(name: str) -> Lanes:
+        def height(place: Lanes) -> Lanes:
+            return missing(surfaces, replace(spot, **{name: place}))
+
+        def slope(place: Lanes) -> Lanes:
+            tangent: Lanes = jax.jvp(height, (place,), (jnp.ones_like(place),))[1]
+            return tangent
+
+        place = getattr(spot, name)
+        found: Lanes = jax.jvp(slope, (place,), (jnp.ones_like(place),))[1]
+        return found
+
+    return jnp.stack([second("flank"), second("across")])
