@@ -124,7 +124,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
             name: VARIABLES[name].unit
             for name in (
                 *(*MAIN, *CONTACT, *REACTIONS, "bearing_load"),
-                *(*VIBRATION, *TEMPERATURES, *WIND_UP, "kinematic_error_range"),
+                *(*VIBRATION, *TEMPERATURES, *WIND_UP, "lost_motion", "kinematic_error_range"),
             )
         },
         "operation": _by_law(outcome.parts["operation"], main_figures(outcome.parts["operation"])),
@@ -136,6 +136,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
         },
         "vibration": _by_torque(outcome, "vibration", VIBRATION),
         "torsion": _by_torque(outcome, "torsion", WIND_UP),
+        "lost_motion": _lost_motion(outcome),
         "kinematic_error_range": {
             curve: dict(zip(causes, _numbers(values), strict=True))
             for curve, causes, values in _ranges(outcome)
@@ -296,11 +297,17 @@ def _loads(data: Any, law: int) -> list[tuple[str, float]]:
     return [(str(place), loads[law, k]) for k, place in enumerate(data["place"].values) if bears[k]]
 
 
-WIND_UP = ("wind_up", "torsional_stiffness", "loaded_pairs")
+WIND_UP = ("wind_up", "angular_transmission_error_range", "torsional_stiffness", "loaded_pairs")
+
+
+def _lost_motion(outcome: Outcome) -> float | None:
+    """Play of the loaded member between its flanks [rad]; None where it is not known."""
+    data = outcome.parts.get("torsion")
+    return None if data is None else float(data["lost_motion"])
 
 
 def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
-    """Rows and columns: wind-up and stiffness at some torques, none for teeth without clearances."""
+    """Rows and columns: wind-up, transmission error and stiffness at some torques; none without them."""
     data = outcome.parts.get("torsion")
     if data is None:
         return [], ()
