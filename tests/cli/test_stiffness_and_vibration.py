@@ -19,6 +19,7 @@ from pitchpoint.cases.vibration import _excited, stiffness_part, vibrating_of, v
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.errors import InputError
+from pitchpoint.views.inputs import input_rows
 from pitchpoint.views.report import write_report
 
 ASKED = ["models.load_sharing=from_stiffness", "dynamics.damping_ratio=0.1"]
@@ -298,7 +299,7 @@ def test_warm_wheel_is_softer_and_says_so(file: Callable[[str], str]) -> None:
     (sentence,) = (text for text in manifest["warnings"] if text.startswith("The teeth of gear 2"))
     assert f"{warm.solids[1].temperature - 273.15:.1f}".rstrip("0").rstrip(".") in sentence
     assert "POM-H: its modulus is known from -40 degC to 100 degC, interpolated" in sentence
-    notes = {row["key"]: row["note"] for row in manifest["inputs"]}
+    notes = {row["key"]: row["note"] for row in input_rows(manifest)}
     assert notes["gear 2, Young's modulus"] == sentence
     (manifest,) = describe(path, settings=WARM)
     assert not any("The teeth of gear 2" in text for text in manifest["warnings"])
