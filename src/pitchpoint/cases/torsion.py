@@ -1,16 +1,15 @@
 """Wind-up of a drive whose teeth come to mesh under load, as a dataset of a case."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import TORQUE
-from pitchpoint.efficiency.quasi_static import Models, coupling
-from pitchpoint.efficiency.summary import engaged, summarise
+from pitchpoint.efficiency.quasi_static import coupling
+from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.torsion import hysteresis, wound_up
 from pitchpoint.results.store import dataset
@@ -24,10 +23,9 @@ SHOWN = 3
 
 def torsion_part(built: Built) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
-    models, chosen = laws_of(built)
     torques = np.linspace(0.0, 2.0 * built.case.operation.torque or 1.0, TORQUES)
-    friction = _mean_friction(built, models, chosen)
-    found = _torsion(built, models, torques, friction)
+    friction = _mean_friction(built)
+    found = _torsion(built, torques, friction)
     dims = {
         "tooth_angle": ("phase", "pair"),
         "tooth_force": ("torque", "phase", "pair"),
@@ -41,7 +39,7 @@ def torsion_part(built: Built) -> xr.Dataset:
     whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
-            "law": [models.friction[law].name for law in chosen],
+            "law": built.law_names,
             "torque": ("torque", torques),
             "phase": ("phase", phase),
         },
@@ -77,36 +75,33 @@ def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
 
 def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     """Why a loop of torque over wind-up has no width, or is not there."""
-    models, chosen = laws_of(built)
     if built.case.operation.torque == 0.0:
         return [
             "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
             "as zero and the torque loop has no width."
         ]
     return [
-        f"Wind-up: {models.friction[law].title}: friction locks the drive at the operating point; there is "
+        f"Wind-up: {models.law.title}: friction locks the drive at the operating point; there is "
         "no torque loop."
-        for law, value in zip(chosen, friction, strict=True)
+        for models, value in zip(built.models, friction, strict=True)
         if np.isnan(value)
     ]
 
 
-def _mean_friction(built: Built, models: Models, laws: tuple[int, ...]) -> np.ndarray:
+def _mean_friction(built: Built) -> np.ndarray:
     """Coefficient at the operating point by each law, as for sliding that begins anew."""
     point = [(built.design, built.operation)]
-    runs = [summarise(point, replace(models, choice=jnp.asarray(law))) for law in laws]
+    runs = [summarise(point, models) for models in built.models]
     return np.array([run["mean_friction"][0] for run in runs])
 
 
-def _torsion(
-    built: Built, models: Models, torques: np.ndarray, friction: np.ndarray
-) -> dict[str, np.ndarray]:
+def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[str, np.ndarray]:
     """Wind-up at every torque, and the load on every tooth there."""
     design = built.design
-    known = engaged(design, built.operation, models)
+    known = built.engaged
     assert known is not None  # or there would be no clearances
     body = coupling(design, known.contacts) if known.body is None else known.body
-    given = design.mesh, design.solids, models.compliance
+    given = design.mesh, design.solids, built.terms
     each = [
         jax.device_get(wound_up(*given, jnp.asarray(torque), known.contacts, body))
         for torque in torques

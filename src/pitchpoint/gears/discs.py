@@ -1,10 +1,13 @@
 """Two test rigs with closed forms everywhere: twin disc and ball on disc."""
 
+from typing import Self
+
 import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh, Reference
 
 __all__ = ["BallOnDisc", "TwinDisc"]
@@ -32,6 +35,12 @@ class _Rig(Mesh):
     def loaded(self) -> Float[Array, "3"]:
         """The load presses along the normal."""
         return jnp.array([0.0, 0.0, 1.0])
+
+    def driven_by(self, member: str | int) -> Self:
+        """The rig as it is, driven by body 0; its load presses and does not drive."""
+        if member != 0:
+            raise InputError("body 0 of a test rig sets the speed, and nothing else drives it")
+        return self
 
     @property
     def period(self) -> Float[Array, ""]:
