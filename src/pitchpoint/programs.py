@@ -50,13 +50,8 @@ QUICK: Mapping[str, bool | int] = {
     "xla_backend_optimization_level": 0,
     "xla_llvm_disable_expensive_passes": True,
     "xla_cpu_use_fusion_emitters": False,
-    "xla_cpu_parallel_codegen_split_count": 1,
 }
-"""Options for programs whose numbers take milliseconds: they compile in a third of the time.
-
-Generated code is not divided among threads: of a program that compiles in a second the parts cost a sixth
-more than the whole.
-"""
+"""Options for programs whose numbers take milliseconds: they compile in a third of the time."""
 
 
 _CUSTOM = [

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,7 @@ from pitchpoint.efficiency.quasi_static import (
     cycle,
     cycle_nodes,
 )
-from pitchpoint.efficiency.summary import engaged
+from pitchpoint.efficiency.summary import engaged, summarise
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
@@ -139,16 +139,30 @@ def _map(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
     moving = np.where(speeds > 0.0, speeds, 1.0)  # at rest nothing is lost, whatever the laws say
-    compute = _figures if speeds.size * degrees.size < MANY else _figures_of_many
-    parts = []
-    for start in range(0, speeds.size, together):
-        part = moving[start : start + together]
-        filled = np.concatenate([part, np.full(together - part.size, part[-1])])
-        found = compute(design, array(torque), array(filled), array(degrees), models, known)
-        parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
-    loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
+    few = speeds.size * degrees.size < MANY
+    if few and known is None:
+        loss, efficiency, locked = _by_point(design, torque, moving, degrees, models)
+    else:
+        compute = partial(_figures if few else _figures_of_many, design, array(torque))
+        parts = []
+        for start in range(0, speeds.size, together):
+            part = moving[start : start + together]
+            filled = np.concatenate([part, np.full(together - part.size, part[-1])])
+            found = compute(array(filled), array(degrees), models, known)
+            parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
+        loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
     turns = (speeds > 0.0)[:, None]
     return np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
+
+
+def _by_point(
+    design: Design, torque: float, speeds: np.ndarray, degrees: np.ndarray, models: Models
+) -> list[np.ndarray]:
+    """Loss, efficiency and locking by the program of operating points, which other parts ask for anyway."""
+    grid = [(speed, degree) for speed in speeds for degree in degrees]
+    points = [(design, Operation(*map(array, (torque, *place)))) for place in grid]
+    found = summarise(points, models)
+    return [found[name].reshape(speeds.size, degrees.size) for name in _NAMES]
 
 
 @program
