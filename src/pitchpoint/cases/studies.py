@@ -274,8 +274,7 @@ def _profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarra
     """The mesh cycle under each of some models."""
     film = FILM_THICKNESS[built.case.models.film_thickness]
     point = built.design, built.operation
-    runs = (profile(*point, models, film, engaged=built.engaged) for models in under)
-    return [jax.device_get(run) for run in runs]
+    return [profile(*point, models, film, engaged=built.engaged) for models in under]
 
 
 def _jammed(

@@ -19,15 +19,15 @@ from pitchpoint.efficiency.quasi_static import (
     Operation,
     cycle,
     cycle_nodes,
+    cycle_of,
     engagement,
 )
+from pitchpoint.efficiency.rows import CHUNK, Row, balances, engagements, stacked
+from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.sharing import equal
 from pitchpoint.programs import program
 
-__all__ = ["CHUNK", "engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
-
-CHUNK = 8
-"""Cycles computed together: one compiled program serves any number of them."""
+__all__ = ["engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
 
 Point = tuple[Design, Operation]
 Prepared = tuple[Design, Operation, Engagement | None]
@@ -57,18 +57,14 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
     return total(share * sliding / arm) @ weight
 
 
-def summary(
-    design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
-) -> dict[str, Array]:
+def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
     """Figures of one cycle; powers in W, torques in N m, the rest dimensionless.
 
     Args:
         design: mesh, materials, oil, surfaces.
-        operation: one operating point.
-        models: laws.
-        engaged: contacts and shares, where they are known already.
+        result: its cycle at one operating point.
+        factor: loss factor.
     """
-    result = cycle(design, operation, models, engaged=engaged)
     state = result.state
     low, high = result.extremes(state.efficiency)
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
@@ -78,7 +74,7 @@ def summary(
     return {
         **_by_gear(design.mesh.dimensions()),
         "contact_ratio": design.mesh.contact_ratio,
-        "loss_factor": loss_factor(design, models, engaged),
+        "loss_factor": factor,
         "mean_loss": result.mean_loss,
         "mean_loss_path": result.path_mean(state.loss),
         "mean_drag_loss": result.mean(state.drag_loss),
@@ -145,7 +141,17 @@ def summarise(
         progress: told the number of finished points after each chunk.
     """
     prepared = list(_prepared(points, models))
-    return in_chunks(lambda chunk: _summaries(chunk, models), prepared, progress=progress)
+    return in_chunks(lambda chunk: _figures(chunk, models), prepared, progress=progress)
+
+
+def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
+    """Summaries of stacked points: programs without a law before and after that of their balances."""
+    design, operation, known = chunk
+    alone = models.without_friction
+    if known is None:
+        known = engagements(design, operation.load, alone)
+    rows = design, operation, known
+    return _summaries(rows, balances(rows, models), alone)
 
 
 def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
@@ -243,10 +249,14 @@ def in_chunks(
 
 
 @program
-def _summaries(points: Prepared, models: Models) -> dict[str, Array]:
-    result: dict[str, Array] = eqx.filter_vmap(
-        lambda design, operation, known: summary(design, operation, models, known)
-    )(*points)
+def _summaries(rows: Row, found: Balance, models: Models) -> dict[str, Array]:
+    def one(
+        design: Design, operation: Operation, known: Engagement, found: Balance
+    ) -> dict[str, Array]:
+        factor = loss_factor(design, models, known if design.mesh.clearances else None)
+        return summary(design, cycle_of(design, operation, known, found), factor)
+
+    result: dict[str, Array] = eqx.filter_vmap(one)(*rows, found)
     return result
 
 
@@ -255,7 +265,7 @@ def _chunks(points: Sequence[Any], size: int) -> Iterator[tuple[Any, int]]:
     for start in range(0, len(points), size):
         part = list(points[start : start + size])
         padded = part + [part[-1]] * (size - len(part))
-        yield jax.tree.map(lambda *leaves: np.stack(leaves), *padded), len(part)
+        yield stacked(padded), len(part)
 
 
 def _mean_friction(result: Cycle) -> Array:
