@@ -203,9 +203,11 @@ def test_a_drive_driven_by_another_member_is_the_one_that_the_file_would_give(fi
         mesh.driven_by(fixed)
 
 
-@pytest.mark.parametrize("teeth", [[23, 61], [20, -70]])
-def test_a_pair_driven_by_its_wheel_is_the_one_that_the_file_would_give(teeth: list[int]) -> None:
-    short = {"gears.teeth": teeth, "gears.addendum": [1.0, 0.8]}
+@pytest.mark.parametrize(("teeth", "addendum"), [([23, 61], 1.0), ([20, -70], [1.0, 0.8])])
+def test_a_pair_driven_by_its_wheel_is_the_one_that_the_file_would_give(
+    teeth: list[int], addendum: float | list[float]
+) -> None:
+    short = {"gears.teeth": teeth, "gears.addendum": addendum}
     pair = Variant(PAIR, "pair.toml", "default", short)
     wheel = pair.built({"operation.driver": "gear 2"}).design.mesh
     demand_same(pair.built({}).design.mesh.driven_by("gear 2"), wheel)
