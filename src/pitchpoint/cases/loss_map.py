@@ -18,7 +18,7 @@ from pitchpoint.efficiency.quasi_static import (
     cycle,
     cycle_nodes,
 )
-from pitchpoint.efficiency.summary import engaged, summarise
+from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
@@ -159,9 +159,9 @@ def _by_point(
     design: Design, torque: float, speeds: np.ndarray, degrees: np.ndarray, models: Models
 ) -> list[np.ndarray]:
     """Loss, efficiency and locking by the program of operating points, which other parts ask for anyway."""
-    grid = [(speed, degree) for speed in speeds for degree in degrees]
-    points = [(design, Operation(*map(array, (torque, *place)))) for place in grid]
-    found = summarise(points, models)
+    speed, degree = (values.ravel() for values in np.meshgrid(speeds, degrees, indexing="ij"))
+    points = Operation(*map(array, (np.full(speed.size, torque), speed, degree)))
+    found = at_points(design, points, models)
     return [found[name].reshape(speeds.size, degrees.size) for name in _NAMES]
 
 

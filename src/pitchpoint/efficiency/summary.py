@@ -9,7 +9,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import along, total
 from pitchpoint.efficiency.quasi_static import (
     Cycle,
@@ -27,7 +27,7 @@ from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.sharing import equal
 from pitchpoint.programs import program
 
-__all__ = ["engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
+__all__ = ["at_points", "engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
 
 Point = tuple[Design, Operation]
 Prepared = tuple[Design, Operation, Engagement | None]
@@ -142,6 +142,32 @@ def summarise(
     """
     prepared = list(_prepared(points, models))
     return in_chunks(lambda chunk: _figures(chunk, models), prepared, progress=progress)
+
+
+def at_points(design: Design, operation: Operation, models: Models) -> dict[str, np.ndarray]:
+    """Summaries of one design at several operating points of one load, each quantity [point].
+
+    Their contacts and shares are the same and are found once.
+
+    Args:
+        design: with few contacts, without clearances.
+        operation: operating points [point].
+        models: laws.
+    """
+    alone, designs = models.without_friction, stacked([design] * CHUNK)
+    known = engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
+    count = operation.load.shape[0]
+
+    def some(start: int) -> dict[str, np.ndarray]:
+        taken = np.minimum(np.arange(start, start + CHUNK), count - 1)
+        rows = designs, jax.tree.map(lambda values: np.asarray(values)[taken], operation), known
+        found: dict[str, np.ndarray] = jax.device_get(
+            _summaries(rows, balances(rows, models), alone)
+        )
+        return found
+
+    chunks = [some(start) for start in range(0, count, CHUNK)]
+    return {name: np.concatenate([one[name] for one in chunks])[:count] for name in chunks[0]}
 
 
 def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
