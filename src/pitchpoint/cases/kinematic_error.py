@@ -8,7 +8,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.mesh import Mesh
@@ -55,11 +55,10 @@ def kinematic_error_part(
         deviations: of flexspline and circular spline.
         progress: told the number of states that are done, after each group of teeth.
     """
-    models, _ = laws_of(built)
     design, gears = built.design, built.case.gears
     assert hasattr(gears, "teeth")
     load = jnp.full((1, 1), built.case.operation.load)
-    period = _period(design.mesh, design.solids, models.compliance, load)
+    period = _period(design.mesh, design.solids, built.terms, load)
     teeth = np.asarray(gears.teeth)
     solved: list[np.ndarray] = []
 

@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
@@ -25,12 +25,12 @@ from pitchpoint.dynamics.vibration import (
     steady,
     transmission_figures,
 )
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import InputError
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -85,8 +85,7 @@ def separating(built: Built) -> bool:
 
 def stiffness_part(built: Built) -> xr.Dataset:
     """Stiffness of each pair and of the mesh over one period, with the estimate of ISO 6336."""
-    models, _ = laws_of(built)
-    found = jax.device_get(_stiffness(built.design, built.operation, models))
+    found = jax.device_get(_stiffness(built.design, built.operation, built.terms))
     lanes = ("pair", "node")
     data = {
         name: (lanes if np.ndim(values) == 2 else ("node",)[: np.ndim(values)], values)
@@ -104,9 +103,9 @@ def stiffness_part(built: Built) -> xr.Dataset:
 
 
 @program
-def _stiffness(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
+def _stiffness(design: Design, operation: Operation, terms: Terms) -> dict[str, Array]:
     mesh, load = design.mesh, operation.load
-    found = mesh_stiffness(mesh, design.solids, models.compliance, load)
+    found = mesh_stiffness(mesh, design.solids, terms, load)
     contacts = mesh.contacts(found.phase)
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
     entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
@@ -164,11 +163,10 @@ def resonance_part(built: Built) -> xr.Dataset:
     asked = built.case.dynamics.speeds
     assert asked is not None
     speeds = np.linspace(asked.start, asked.stop, int(asked.count))
-    models = laws_of(built)[0]
     slowest = replace(built.operation, speed=jnp.asarray(speeds[0]))
     points = [replace(slowest, load=load.load) for load in _loads(built)]
     own = vibrating_of(built)
-    parts = [(*_excited(built.design, point, models, own), own.backlash) for point in points]
+    parts = [(*_excited(built.design, point, built.terms, own), own.backlash) for point in points]
     grid = _grid(parts, own.orders, "dynamics.speeds.start")
     periods = built.design.mesh.period / jnp.asarray(speeds)
     runs = [
@@ -236,8 +234,8 @@ Excited = tuple[MeshStiffness, System, Excitation, Array]
 
 def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str, np.ndarray]:
     """What is read from the steady vibration of every input, solved in chunks of one size."""
-    models = laws_of(built)[0]
-    parts = [(*_excited(design, point, models, own), own.backlash) for design, point, own in inputs]
+    terms = built.terms
+    parts = [(*_excited(design, point, terms, own), own.backlash) for design, point, own in inputs]
     grid = _grid(parts, inputs[0][2].orders)
     parting = separating(built)
     return in_chunks(lambda chunk: _read(chunk, grid, parting, reading), parts, size=TOGETHER)
