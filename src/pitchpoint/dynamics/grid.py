@@ -47,6 +47,7 @@ class Grid:
             Grid with 4, 6, 8, 12, 16... elements, so that few are ever compiled.
 
         Example:
+            >>> from pitchpoint.dynamics.grid import Grid
             >>> Grid.resolving(90.0).elements
             32
         """

@@ -57,7 +57,8 @@ def reduced_mass(inertia: Float[Array, " body"], arm: Float[Array, " body"]) -> 
     (2011), whose print swaps the indices.
 
     Example:
-        >>> float(reduced_mass(jnp.asarray([2.0, 3.0]), jnp.asarray([1.0, 1.0])))
+        >>> import jax.numpy as jnp
+        >>> round(float(reduced_mass(jnp.asarray([2.0, 3.0]), jnp.asarray([1.0, 1.0]))), 3)
         1.2
     """
     return 1.0 / jnp.sum(arm**2 / inertia)

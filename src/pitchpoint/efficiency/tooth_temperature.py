@@ -182,8 +182,8 @@ def modulus_at(record: SolidRecord, temperature: float) -> ModulusInUse:
 
     Example:
         >>> from pitchpoint.materials import solids
-        >>> modulus_at(solids.find("PEEK"), 353.15).status
-        'PEEK: its modulus is known at 23 degC only, the same value is used at 80 degC'
+        >>> modulus_at(solids.find("POM-H"), 333.15).status
+        'POM-H: its modulus is known from -40 degC to 100 degC, interpolated at 60 degC (values assumed)'
     """
     young = record.build(temperature).young
     if not record.young_at:
