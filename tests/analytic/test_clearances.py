@@ -260,11 +260,16 @@ def mesh(separate):
     return _Looked(separate)
 
 
-class _Looked(eqx.Module):
-    clearances: bool = eqx.field(static=True)
+class _Looked(Mesh):
+    separate: bool = eqx.field(static=True)
     toothed: ClassVar[bool] = True
-    overlap_ratio: ClassVar[float] = 0.0
-    contact_ratio: ClassVar[float] = 1.5
+    overlap_ratio: ClassVar[jax.Array] = jnp.asarray(0.0)
+    contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
+    contacts = events = motion = driver = period = reference = None
+
+    @property
+    def clearances(self):
+        return self.separate
 
     @property
     def loaded(self):

@@ -1,6 +1,6 @@
 """Wind-up of strain-wave gears, hysteresis by friction of the teeth, kinematic error by deviations."""
 
-from types import SimpleNamespace
+from unittest.mock import Mock
 
 import equinox as eqx
 import numpy as np
@@ -11,6 +11,7 @@ from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.gears.flexible_ring import RingLoads
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave import places
 from pitchpoint.gears.strain_wave_design import build_strain_wave
 from pitchpoint.loading import torsion as module
@@ -66,7 +67,8 @@ def springs(monkeypatch):
     at = contacts(np.zeros((6, 1, 1)), GAPS + ARM * 3e-5, SLIPS)
     radial = jnp.asarray([-0.1, -0.2, -0.3, -0.4, -0.5, -0.6]).reshape(6, 1, 1)
     monkeypatch.setattr(module, "yielding", yielding)
-    return SimpleNamespace(
+    return Mock(
+        spec=Mesh,
         contacts=lambda phase: at,
         ring=object(),
         ring_loads=lambda contacts: RingLoads(radial, -radial, radial, radial),

@@ -1,16 +1,16 @@
 """Hertz pressure of line and elliptic contacts."""
 
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import root
+from pitchpoint.factored import Numbers, root
 
 __all__ = ["elliptic_pressure", "line_half_width", "line_pressure"]
 
+Each = Float[Numbers, "*#b"]
 
-def line_half_width(
-    *, line_load: Float[Array, "*b"], radius: Float[Array, "*b"], modulus: Float[Array, "*b"]
-) -> Float[Array, "*b"]:
+
+def line_half_width(*, line_load: Each, radius: Each, modulus: Each) -> Each:
     """Half-width of a line contact [m]: b = sqrt(8 w R / (pi E')).
 
     Args:
@@ -20,13 +20,11 @@ def line_half_width(
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.43 (there E* = E'/2).
     """
-    found: Float[Array, "*b"] = root(8.0 * line_load * radius / (jnp.pi * modulus))
+    found: Each = root(8.0 * line_load * radius / (jnp.pi * modulus))
     return found
 
 
-def line_pressure(
-    *, line_load: Float[Array, "*b"], radius: Float[Array, "*b"], modulus: Float[Array, "*b"]
-) -> Float[Array, "*b"]:
+def line_pressure(*, line_load: Each, radius: Each, modulus: Each) -> Each:
     """Largest pressure of a line contact [Pa]: p_H = sqrt(w E' / (2 pi R)).
 
     Args:
@@ -36,17 +34,17 @@ def line_pressure(
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.45 (there E* = E'/2).
     """
-    found: Float[Array, "*b"] = root(line_load * modulus / (2.0 * jnp.pi * radius))
+    found: Each = root(line_load * modulus / (2.0 * jnp.pi * radius))
     return found
 
 
 def elliptic_pressure(
     *,
-    load: Float[Array, "*b"],
-    radius: Float[Array, "*b"],
-    transverse_radius: Float[Array, "*b"],
-    modulus: Float[Array, "*b"],
-) -> Float[Array, "*b"]:
+    load: Each,
+    radius: Each,
+    transverse_radius: Each,
+    modulus: Each,
+) -> Each:
     """Largest pressure of an elliptic contact [Pa], exact for a circle, within 3 % of Hertz otherwise.
 
     Args:

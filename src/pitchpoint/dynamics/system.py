@@ -4,6 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Numbers
 
 __all__ = ["System", "modal_damping", "reduced_mass", "reduced_system", "relative_motion"]
 
@@ -46,7 +47,9 @@ def modal_damping(mass: Matrix, mean_stiffness: Matrix, ratio: Float[Array, ""] 
     return 2.0 * ratio * _congruent(root, (modes * frequency) @ modes.T)
 
 
-def reduced_mass(inertia: Float[Array, " body"], arm: Float[Array, " body"]) -> Float[Array, ""]:
+def reduced_mass(
+    inertia: Float[Numbers, " body"], arm: Float[Numbers, " body"]
+) -> Float[Array, ""]:
     """Mass that vibrates along a contact between free bodies, m_e = 1/sum(n^2/J).
 
     Args:
@@ -65,7 +68,7 @@ def reduced_mass(inertia: Float[Array, " body"], arm: Float[Array, " body"]) -> 
 
 
 def relative_motion(
-    inertia: Float[Array, " body"], arm: Float[Array, " body"]
+    inertia: Float[Numbers, " body"], arm: Float[Numbers, " body"]
 ) -> Float[Array, "body 1"]:
     """Motion of each body for a unit of closure along the contact, without rigid motion.
 
@@ -79,9 +82,9 @@ def relative_motion(
 
 
 def reduced_system(
-    mass: Float[Array, "body body"],
-    basis: Float[Array, "body coordinate"],
-    torque: Float[Array, " body"],
+    mass: Float[Numbers, "body body"],
+    basis: Float[Numbers, "body coordinate"],
+    torque: Float[Numbers, " body"],
 ) -> tuple[Matrix, Vector]:
     """Mass and load on reduced coordinates, for a motion `basis` times coordinates.
 

@@ -10,13 +10,14 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, total
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, BearingLoss
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials._leaves import as_array
 
 __all__ = ["Drag", "at_rest", "resistance"]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Numbers, "*#b"]
 
 ROUNDING = 1e-13
 """Relative rate, over the rates of the bodies, up to which two bodies turn together."""
@@ -106,7 +107,7 @@ def resistance(
     *,
     speed: Each,
     kinematic_viscosity: Each,
-) -> Callable[[Lanes], Float[Array, "dof *b"]]:
+) -> Callable[[Lanes], Float[Array, "dof *#b"]]:
     """External torques that overcome the losses beside the teeth, from the loads on the teeth.
 
     Args:
@@ -134,7 +135,7 @@ def resistance(
             return drag.preload
         return drag.preload + total(support[drag.support] * load)
 
-    def torques(load: Lanes) -> Float[Array, "dof *b"]:
+    def torques(load: Lanes) -> Float[Array, "dof *#b"]:
         every = [
             _on_bodies(drag, mesh.motion, speed, pressed(drag, load), kinematic_viscosity)
             for drag in drags

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.efficiency.drag import Drag, resistance
-from pitchpoint.factored import as_array
+from pitchpoint.factored import Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
@@ -43,8 +43,8 @@ __all__ = [
     "state",
 ]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Numbers, "*#b"]
 Coupling = Float[Array, "lane lane *b"]
 
 FEWEST = 16

@@ -5,10 +5,11 @@ from typing import Self
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Num
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.factored import Numbers
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.groove import Groove, swept
@@ -58,6 +59,7 @@ _ALONG = np.unique(np.round(_ALONG, 12))  # no two that differ by rounding alone
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
+Each = Float[Array, "*b"]
 
 
 class Touching(eqx.Module):
@@ -71,11 +73,11 @@ class Touching(eqx.Module):
         held: True where the nearest point is an end of the flank and does not roll.
     """
 
-    along: Lanes
+    along: Each
     at: Passing
-    clearance: Lanes
-    mate: Lanes
-    held: Lanes
+    clearance: Each
+    mate: Each
+    held: Bool[Array, "*b"]
 
 
 class Survey(eqx.Module):
@@ -246,7 +248,7 @@ class StrainWave(Mesh):
         """Mean number of pairs that touch without load, to a thousandth of the module."""
         return self.pairs
 
-    def overlaps(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
+    def overlaps(self, angle: Float[Array, "*b"]) -> Bool[Array, "*b"]:
         """True where a tooth reaches into the circular spline's teeth."""
         return _overlaps(self.tooth_motion, self.groove, angle)
 
@@ -454,13 +456,15 @@ def _overlaps(motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"]) ->
     return jnp.asarray(jnp.real(tip) > groove.low)
 
 
-def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Float[Array, "pair 1 *b"]:
+def _as_lanes(
+    each: Array | np.ndarray, phase: Float[Array, "*b"]
+) -> Num[Array | np.ndarray, "pair 1 ..."]:
     """Values of the pairs, broadcast over slices and phases."""
     return jnp.reshape(each, (-1, *(1 for _ in range(phase.ndim + 1))))
 
 
 def places(
-    contacts: Contacts, phase: Float[Array, "*b"], teeth: Float[Array, "2"]
+    contacts: Contacts, phase: Float[Numbers, "*#b"], teeth: Float[Array, "2"]
 ) -> Float[Array, "member pair slice *b"]:
     """Angles around flexspline and circular spline at which their teeth touch [rad].
 

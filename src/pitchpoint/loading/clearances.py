@@ -3,14 +3,16 @@
 from typing import NamedTuple
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.factored import Numbers
 
 __all__ = ["Shared", "shared_load"]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Numbers, "*#b"]
 Rows = Float[Array, "*b lane"]
 
 MOST = 200
@@ -83,11 +85,11 @@ class _Scale(NamedTuple):
 
 
 def shared_load(
-    compliance: Float[Array, "lane lane *b"],
+    compliance: Float[Numbers, "lane lane *#b"],
     *,
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array, "pair slice *b"],
+    active: Bool[Array | np.ndarray, "pair slice *#b"],
     load: Each,
 ) -> Shared:
     """Forces between pairs with clearances that share a load.
@@ -138,10 +140,10 @@ def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Arra
 
 
 def _normalised(
-    compliance: Float[Array, "lane lane *b"],
+    compliance: Float[Numbers, "lane lane *#b"],
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array, "pair slice *b"],
+    active: Bool[Array | np.ndarray, "pair slice *#b"],
     load: Each,
 ) -> tuple[_Problem, _Scale]:
     """The problem counted from first touch, with mean compliance, arm and load of one.
@@ -150,7 +152,7 @@ def _normalised(
     """
     batch = jnp.broadcast_shapes(compliance.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
 
-    def rows(lanes: Array) -> Array:
+    def rows(lanes: Array | np.ndarray) -> Array:
         flat = jnp.moveaxis(lanes.reshape(-1, *lanes.shape[2:]), 0, -1)
         return jnp.broadcast_to(flat, (*batch, flat.shape[-1]))
 

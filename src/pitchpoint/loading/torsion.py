@@ -7,6 +7,7 @@ from jaxtyping import Array, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.clearances import Shared, shared_load
 from pitchpoint.loading.tooth_compliance import Terms
@@ -16,7 +17,7 @@ from pitchpoint.programs import program
 
 __all__ = ["Hysteresis", "Torsion", "hysteresis", "torsion", "wound_up"]
 
-Each = Float[Array, "*b"]
+Each = Float[Numbers, "*#b"]
 
 
 class Torsion(eqx.Module):
@@ -144,7 +145,7 @@ def wound_up(
     return torsion(mesh, solids, terms, loads, loads, contacts, body)
 
 
-def hysteresis(found: Torsion, friction: float | Float[Array | np.ndarray, "..."]) -> Hysteresis:
+def hysteresis(found: Torsion, friction: float | Float[Array | np.ndarray, "*#b"]) -> Hysteresis:
     """Loop of torque over wind-up by Coulomb friction on the teeth while the drive stands still.
 
     On loading, friction adds mu times the sum of forces times sliding arms to the torque that the

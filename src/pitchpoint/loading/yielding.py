@@ -24,9 +24,9 @@ class Yielding(eqx.Module):
         load: that the driven coordinate carries [N m or N].
     """
 
-    stiffness: Float[Array, "pair slice *b"]
-    body: Float[Array, "lane lane *b"] | None
-    load: Float[Array, "*b"]
+    stiffness: Float[Array, "pair slice *#b"]
+    body: Float[Array, "lane lane *#b"] | None
+    load: Float[Array, "*#b"]
 
     def compliance(self, contacts: Contacts) -> Float[Array, "lane lane *b"]:
         """Compliance of all lanes, teeth and body together [m/N]; symmetric positive definite.
@@ -47,8 +47,8 @@ def yielding(
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
-    load: Float[Array, "*b"],
-    body: Float[Array, "lane lane *b"] | None = None,
+    load: Float[Array, "*#b"],
+    body: Float[Array, "lane lane *#b"] | None = None,
 ) -> Yielding:
     """How the pairs of a mesh yield under a load.
 

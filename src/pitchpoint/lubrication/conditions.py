@@ -12,13 +12,13 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
-from pitchpoint.factored import as_array, product
+from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference
 
 __all__ = ["Conditions", "arguments", "evaluate"]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Numbers, "*#b"]
 
 
 class Conditions(eqx.Module):

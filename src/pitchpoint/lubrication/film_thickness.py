@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
+from pitchpoint.factored import Numbers
 from pitchpoint.registry import Registry
 
 __all__ = [
@@ -16,7 +17,7 @@ __all__ = [
     "hamrock_dowson_1977",
 ]
 
-Each = Float[Array, "*b"]
+Each = Float[Numbers, "*#b"]
 
 
 @dataclass(frozen=True, eq=False)

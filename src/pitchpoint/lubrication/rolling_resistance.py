@@ -3,14 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Numbers
 from pitchpoint.registry import Registry
 
 __all__ = ["ROLLING_RESISTANCE", "RollingResistance", "none", "wu_cheng_1991"]
 
-Each = Float[Array, "*b"]
+Each = Float[Numbers, "*#b"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,7 @@ def wu_cheng_1991(
     return jnp.where(positive, 4.318 * jnp.exp(exponent) * radius / pressure_viscosity, 0.0)
 
 
-def _log(value: Each, positive: Each) -> Each:
+def _log(value: Each, positive: Bool[Array, "*#b"]) -> Each:
     return jnp.log(jnp.where(positive, value, 1.0))
 
 
