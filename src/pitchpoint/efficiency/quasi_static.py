@@ -45,7 +45,7 @@ __all__ = [
 
 Lanes = Float[Numbers, "pair slice *#b"]
 Each = Float[Numbers, "*#b"]
-Coupling = Float[Array, "lane lane *b"]
+Coupling = Float[Array, "lane lane *#b"]
 
 FEWEST = 16
 """Pairs at each end of the long axis that are kept of many; more are twice as many, and so on."""
@@ -159,7 +159,7 @@ class Engagement(eqx.Module):
     phase: Float[Array, " node"]
     weight: Float[Array, " node"]
     contacts: Contacts
-    share: Float[Array, "pair slice node"]
+    share: Float[Numbers, "pair slice node"]
     body: Float[Array, "lane lane node"] | None
     nodes: int = eqx.field(static=True)
 

@@ -12,8 +12,8 @@ from pitchpoint.loading.yielding import Yielding
 
 __all__ = ["Deviations", "KinematicError", "added_gap", "kinematic_error", "leaning"]
 
-Each = Float[Array, "*b"]
-Lanes = Float[Array, "pair slice *b"]
+Each = Float[Array, "*#b"]
+Lanes = Float[Array, "pair slice *#b"]
 
 
 class Deviations(eqx.Module):

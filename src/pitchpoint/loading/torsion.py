@@ -71,7 +71,7 @@ def torsion(
     load: Each,
     phase: Each,
     contacts: Contacts | None = None,
-    body: Float[Array, "lane lane *b"] | None = None,
+    body: Float[Array, "lane lane *#b"] | None = None,
 ) -> Torsion:
     """Wind-up of the loaded member at torques and phases, with the pairs that come to carry.
 
@@ -135,7 +135,7 @@ def wound_up(
     terms: Terms,
     load: Float[Array, ""],
     contacts: Contacts,
-    body: Float[Array, "lane lane *b"] | None,
+    body: Float[Array, "lane lane *#b"] | None,
 ) -> Torsion:
     """Wind-up at one torque at all phases of known contacts: one program for every torque and part of a run.
 

@@ -2,14 +2,15 @@
 
 from functools import partial
 
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw, xu_2007
 
 __all__ = ["LAWS", "method_1", "method_2"]
 
-Each = Float[Array, "*b"]
+Each = Float[Numbers, "*#b"]
 
 
 def method_1(
