@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import jnp
 
-__all__ = ["Factored", "Numbers", "as_array", "log", "product", "root", "scaled"]
+__all__ = ["Arrays", "Factored", "Numbers", "as_array", "log", "product", "root", "scaled"]
 
 
 class Factored(eqx.Module):
@@ -102,11 +102,13 @@ for _name in [*_OPERATORS.split(), *_QUESTIONS.split()]:
     setattr(Factored, f"__{_name}__", _on_value(f"__{_name}__"))
 
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # which need not tell them apart
+    Arrays = Array
     Numbers = Array
 else:
-    Numbers = Array | np.ndarray | float | Factored
-"""What a formula takes: anything that calculates as an array does, which is what it says to type checkers."""
+    Arrays = Array | np.ndarray
+    Numbers = Arrays | float | Factored
+"""`Arrays` of JAX or, outside of programs, of NumPy; `Numbers` are all that calculates as they do."""
 
 
 def scaled(value: Factored | ArrayLike, by: float) -> Any:

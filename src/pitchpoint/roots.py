@@ -5,7 +5,7 @@ from collections.abc import Callable
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays
 
 __all__ = ["TOLERANCE", "hypot", "quotient", "root", "third_order_step"]
 
@@ -18,7 +18,7 @@ NEAR = 1e-2
 MOST = 60
 """Largest number of steps: enough for bisection alone."""
 
-Each = Float[Numbers, "*#b"]
+Each = Float[Arrays, "*#b"]
 Carry = tuple[Each, Each, Each, Each, Array]
 
 

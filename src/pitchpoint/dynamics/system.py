@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays
 
 __all__ = ["System", "modal_damping", "reduced_mass", "reduced_system", "relative_motion"]
 
@@ -47,9 +47,7 @@ def modal_damping(mass: Matrix, mean_stiffness: Matrix, ratio: Float[Array, ""] 
     return 2.0 * ratio * _congruent(root, (modes * frequency) @ modes.T)
 
 
-def reduced_mass(
-    inertia: Float[Numbers, " body"], arm: Float[Numbers, " body"]
-) -> Float[Array, ""]:
+def reduced_mass(inertia: Float[Arrays, " body"], arm: Float[Arrays, " body"]) -> Float[Array, ""]:
     """Mass that vibrates along a contact between free bodies, m_e = 1/sum(n^2/J).
 
     Args:
@@ -68,7 +66,7 @@ def reduced_mass(
 
 
 def relative_motion(
-    inertia: Float[Numbers, " body"], arm: Float[Numbers, " body"]
+    inertia: Float[Arrays, " body"], arm: Float[Arrays, " body"]
 ) -> Float[Array, "body 1"]:
     """Motion of each body for a unit of closure along the contact, without rigid motion.
 
@@ -82,9 +80,9 @@ def relative_motion(
 
 
 def reduced_system(
-    mass: Float[Numbers, "body body"],
-    basis: Float[Numbers, "body coordinate"],
-    torque: Float[Numbers, " body"],
+    mass: Float[Arrays, "body body"],
+    basis: Float[Arrays, "body coordinate"],
+    torque: Float[Arrays, " body"],
 ) -> tuple[Matrix, Vector]:
     """Mass and load on reduced coordinates, for a motion `basis` times coordinates.
 

@@ -10,13 +10,13 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, total
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, BearingLoss
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials._leaves import as_array
 
 __all__ = ["Drag", "at_rest", "resistance"]
 
-Lanes = Float[Numbers, "pair slice *#b"]
+Lanes = Float[Arrays, "pair slice *#b"]
 Each = Float[Numbers, "*#b"]
 
 ROUNDING = 1e-13

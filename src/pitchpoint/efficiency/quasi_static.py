@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.efficiency.drag import Drag, resistance
-from pitchpoint.factored import Numbers, as_array
+from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
@@ -44,7 +44,7 @@ __all__ = [
 ]
 
 Lanes = Float[Numbers, "pair slice *#b"]
-Each = Float[Numbers, "*#b"]
+Each = Float[Arrays, "*#b"]
 Coupling = Float[Array, "lane lane *#b"]
 
 FEWEST = 16
@@ -159,7 +159,7 @@ class Engagement(eqx.Module):
     phase: Float[Array, " node"]
     weight: Float[Array, " node"]
     contacts: Contacts
-    share: Float[Numbers, "pair slice node"]
+    share: Float[Arrays, "pair slice node"]
     body: Float[Array, "lane lane node"] | None
     nodes: int = eqx.field(static=True)
 

@@ -6,12 +6,12 @@ import equinox as eqx
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.involute import involute
 
 __all__ = ["ArcChain", "DoubleArcFlank", "Flank", "InvoluteFlank"]
 
-Along = Float[Numbers, "*#b"]
+Along = Float[Arrays, "*#b"]
 Place = Complex[Array, "*#b"]
 
 STEEPEST = 1.4

@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float, Num
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.groove import Groove, swept
@@ -254,7 +254,7 @@ class StrainWave(Mesh):
 
     @property
     def filled(self) -> np.ndarray:
-        """Numbers of the places for pairs that hold one."""
+        """Arrays of the places for pairs that hold one."""
         return np.flatnonzero(self._place[1] < float(self.held))
 
     @property
@@ -456,15 +456,13 @@ def _overlaps(motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"]) ->
     return jnp.asarray(jnp.real(tip) > groove.low)
 
 
-def _as_lanes(
-    each: Array | np.ndarray, phase: Float[Array, "*b"]
-) -> Num[Array | np.ndarray, "pair 1 ..."]:
+def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Num[Arrays, "pair 1 ..."]:
     """Values of the pairs, broadcast over slices and phases."""
     return jnp.reshape(each, (-1, *(1 for _ in range(phase.ndim + 1))))
 
 
 def places(
-    contacts: Contacts, phase: Float[Numbers, "*#b"], teeth: Float[Array, "2"]
+    contacts: Contacts, phase: Float[Arrays, "*#b"], teeth: Float[Array, "2"]
 ) -> Float[Array, "member pair slice *b"]:
     """Angles around flexspline and circular spline at which their teeth touch [rad].
 

@@ -8,13 +8,13 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.factored import Numbers, product
+from pitchpoint.factored import Arrays, Numbers, product
 from pitchpoint.roots import quotient, root, third_order_step
 
 __all__ = ["Balance", "balance", "first_guess", "tooth_load"]
 
 Lanes = Float[Numbers, "pair slice *#b"]
-Each = Float[Numbers, "*#b"]
+Each = Float[Arrays, "*#b"]
 Drag = Callable[[Lanes], Float[Array, "dof *#b"]]
 Friction = Callable[[Lanes], Lanes]
 Torques = list[Each]

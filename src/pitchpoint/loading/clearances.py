@@ -3,16 +3,15 @@
 from typing import NamedTuple
 
 import equinox as eqx
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays
 
 __all__ = ["Shared", "shared_load"]
 
-Lanes = Float[Numbers, "pair slice *#b"]
-Each = Float[Numbers, "*#b"]
+Lanes = Float[Arrays, "pair slice *#b"]
+Each = Float[Arrays, "*#b"]
 Rows = Float[Array, "*b lane"]
 
 MOST = 200
@@ -85,11 +84,11 @@ class _Scale(NamedTuple):
 
 
 def shared_load(
-    compliance: Float[Numbers, "lane lane *#b"],
+    compliance: Float[Arrays, "lane lane *#b"],
     *,
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array | np.ndarray, "pair slice *#b"],
+    active: Bool[Arrays, "pair slice *#b"],
     load: Each,
 ) -> Shared:
     """Forces between pairs with clearances that share a load.
@@ -140,10 +139,10 @@ def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Arra
 
 
 def _normalised(
-    compliance: Float[Numbers, "lane lane *#b"],
+    compliance: Float[Arrays, "lane lane *#b"],
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array | np.ndarray, "pair slice *#b"],
+    active: Bool[Arrays, "pair slice *#b"],
     load: Each,
 ) -> tuple[_Problem, _Scale]:
     """The problem counted from first touch, with mean compliance, arm and load of one.
@@ -152,7 +151,7 @@ def _normalised(
     """
     batch = jnp.broadcast_shapes(compliance.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
 
-    def rows(lanes: Array | np.ndarray) -> Array:
+    def rows(lanes: Arrays) -> Array:
         flat = jnp.moveaxis(lanes.reshape(-1, *lanes.shape[2:]), 0, -1)
         return jnp.broadcast_to(flat, (*batch, flat.shape[-1]))
 

@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
 from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
@@ -39,17 +39,17 @@ class MeshStiffness(eqx.Module):
     error: Float[Array, "pair segment node"]
 
     @property
-    def along_action(self) -> Float[Numbers, "pair segment node"]:
+    def along_action(self) -> Float[Arrays, "pair segment node"]:
         """Stiffness of each pair against transmission error, along the line of action [N/m]."""
         return self.single * self.arm**2
 
     @property
-    def total(self) -> Float[Numbers, "segment node"]:
+    def total(self) -> Float[Arrays, "segment node"]:
         """Stiffness of the mesh against transmission error [N/m]."""
         return jnp.sum(self.along_action, axis=0)
 
     @property
-    def mean(self) -> Float[Numbers, ""]:
+    def mean(self) -> Float[Arrays, ""]:
         """Mean over the period [N/m]."""
         return jnp.sum(self.total * self.weight)
 

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.clearances import Shared, shared_load
 from pitchpoint.loading.tooth_compliance import Terms
@@ -17,7 +17,7 @@ from pitchpoint.programs import program
 
 __all__ = ["Hysteresis", "Torsion", "hysteresis", "torsion", "wound_up"]
 
-Each = Float[Numbers, "*#b"]
+Each = Float[Arrays, "*#b"]
 
 
 class Torsion(eqx.Module):
