@@ -19,6 +19,11 @@ def line_half_width(*, line_load: Each, radius: Each, modulus: Each) -> Each:
         modulus: E' [Pa] with 2/E' = sum of (1 - nu^2)/E over both members.
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.43 (there E* = E'/2).
+
+    Example:
+        >>> half_width = line_half_width(line_load=1e5, radius=0.01, modulus=226.4e9)
+        >>> round(float(half_width) * 1e6)
+        106
     """
     found: Each = root(8.0 * line_load * radius / (jnp.pi * modulus))
     return found
@@ -33,6 +38,11 @@ def line_pressure(*, line_load: Each, radius: Each, modulus: Each) -> Each:
         modulus: E' [Pa] with 2/E' = sum of (1 - nu^2)/E over both members.
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.45 (there E* = E'/2).
+
+    Example:
+        >>> pressure = line_pressure(line_load=1e5, radius=0.01, modulus=226.4e9)
+        >>> round(float(pressure) / 1e6)
+        600
     """
     found: Each = root(line_load * modulus / (2.0 * jnp.pi * radius))
     return found
@@ -54,6 +64,14 @@ def elliptic_pressure(
         modulus: E' [Pa] with 2/E' = sum of (1 - nu^2)/E over both members.
 
     Valid for 0.01 <= R_y/R_x <= 100. Source: Hamrock and Brewe (1983), eqs. 1-8.
+
+    Example: a steel ball of 19 mm on a disc.
+
+        >>> pressure = elliptic_pressure(
+        ...     load=30.0, radius=9.5e-3, transverse_radius=9.5e-3, modulus=226.4e9
+        ... )
+        >>> round(float(pressure) / 1e6)
+        938
     """
     slender = jnp.maximum(transverse_radius / radius, radius / transverse_radius)
     small = jnp.minimum(radius, transverse_radius)

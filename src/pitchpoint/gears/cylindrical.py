@@ -669,6 +669,14 @@ def build_cylindrical_pair(
 
     Raises:
         InputError: the flanks cannot meet at all; `check_cylindrical` says what else is wrong.
+
+    Example:
+        >>> from math import radians
+        >>> pair = build_cylindrical_pair(
+        ...     teeth=(18, 36), module=3e-3, pressure_angle=radians(20.0), face_width=0.02
+        ... )
+        >>> round(float(pair.centre_distance), 6)
+        0.081
     """
     helical = bool(helix_angle != 0.0)
     pair = CylindricalPair(

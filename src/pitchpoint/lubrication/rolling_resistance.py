@@ -54,6 +54,14 @@ def wu_cheng_1991(
     Valid where the film is thick and the contact not starved; a converged EHL solution differs by
     -5 to +22 % for Hertz pressures of 0.5 to 1.5 GPa. Source: Goksem and Hargreaves (1978), in the
     form used by Wu and Cheng (1991).
+
+    Example:
+        >>> resistance = wu_cheng_1991(
+        ...     line_load=1e5, entrainment=5.0, viscosity=0.05, pressure_viscosity=2e-8, radius=0.01,
+        ...     modulus=226.4e9,
+        ... )
+        >>> round(float(resistance))
+        136
     """
     material = pressure_viscosity * modulus
     speed = viscosity * entrainment / (modulus * radius)
