@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.registry import Registry
 
 __all__ = ["ROLLING_RESISTANCE", "RollingResistance", "none", "wu_cheng_1991"]
@@ -71,7 +71,7 @@ def wu_cheng_1991(
     return jnp.where(positive, 4.318 * jnp.exp(exponent) * radius / pressure_viscosity, 0.0)
 
 
-def _log(value: Each, positive: Bool[Array, "*#b"]) -> Each:
+def _log(value: Each, positive: Bool[Arrays, "*#b"] | bool) -> Each:
     return jnp.log(jnp.where(positive, value, 1.0))
 
 
