@@ -121,7 +121,7 @@ def product(*factors: ArrayLike) -> Any:
     return Factored(factors)
 
 
-def as_array(value: Factored | ArrayLike) -> Any:
+def as_array(value: Any) -> Any:
     """The value itself, or the array that a product stands for."""
     return value.value if isinstance(value, Factored) else value
 
@@ -137,7 +137,7 @@ def log(value: Factored | ArrayLike, least: float) -> Float[Array, "..."]:
     return jnp.maximum(sum(map(_log, merged)), natural_logarithm(least))
 
 
-def _log(value: Array) -> Array:
+def _log(value: Numbers) -> Array:
     tiny = float(np.finfo(jnp.result_type(value, jnp.float32)).tiny)
     return jnp.log(jnp.where(value > tiny, value, tiny))
 

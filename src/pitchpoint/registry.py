@@ -3,7 +3,7 @@
 import difflib
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Protocol, TypeVar, runtime_checkable
+from typing import Protocol, TypeVar
 
 from pitchpoint.errors import InputError, shorten
 
@@ -12,7 +12,6 @@ __all__ = ["Registry", "alike", "listed", "nearest", "unknown_name"]
 _MOST = 24  # names in one sentence
 
 
-@runtime_checkable
 class Named(Protocol):
     """Anything with a name."""
 

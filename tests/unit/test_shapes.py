@@ -8,10 +8,10 @@ import shapes
 from jaxtyping import TypeCheckError
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.contact import hertz
 from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.factored import product
 from pitchpoint.gears.flexible_ring import FlexibleRing
-from pitchpoint.loading.clearances import Shared, shared_load
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959
 
 STEEL = 2.26e11
@@ -45,11 +45,9 @@ def test_fields_of_a_module_are_checked():
 
 
 def test_results_are_checked(monkeypatch):
-    flat = {name: jnp.zeros(()) for name in Shared.__dataclass_fields__}
-    monkeypatch.setattr("pitchpoint.loading.clearances.Shared", lambda **_: flat)
-    lane = np.ones((1, 1))
+    monkeypatch.setattr(hertz, "root", lambda _: np.ones(2))
     with pytest.raises(TypeCheckError, match="return value"):
-        shared_load(lane, gap=lane, arm=lane, active=lane > 0.0, load=np.ones(()))
+        hertz.line_pressure(line_load=np.ones(3), radius=0.01, modulus=STEEL)
 
 
 @pytest.mark.parametrize("room", shapes.rooms())
