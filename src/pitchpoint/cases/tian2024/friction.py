@@ -20,7 +20,7 @@ def method_1(
     reference_radius: Each,
     viscosity: Each,
     roughness_ra: Each,
-    factor: float = 2.0,
+    factor: Each | float = 2.0,
 ) -> Each:
     """Eq. 12 with the load of each contact instead of that of the mesh, X_L = (F/b)^-0.0651.
 
