@@ -1,7 +1,7 @@
 """Types and array shapes are checked while the tests run, as far as they say so in their annotations.
 
 A program is checked as it is traced. One that an earlier run of the same sources left on disk is not traced
-again: what is in it was checked by the run that kept it.
+again, so what is in it was checked then; where it matters, start with an empty cache, as CI does.
 """
 
 from importlib.util import find_spec
