@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pitchpoint._jax import jax
+from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.quantities import SIValue
@@ -286,7 +286,7 @@ def test_conformal_contacts_that_carry_are_told() -> None:
 def test_a_groove_that_was_not_found_whole_is_told() -> None:
     mesh = drive().built({}).design.mesh
     assert check_strain_wave(mesh) == ()
-    lost = replace(mesh, groove=replace(mesh.groove, unsolved=np.asarray(3.0)))
+    lost = replace(mesh, groove=replace(mesh.groove, unsolved=jnp.asarray(3.0)))
     (told,) = check_strain_wave(lost)
     assert "could not be found at 3 of 640 heights" in told
 

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.efficiency.drag import Drag, resistance
-from pitchpoint.factored import as_array
+from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
@@ -46,9 +46,9 @@ __all__ = [
     "state",
 ]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
-Coupling = Float[Array, "lane lane *b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Arrays, "*#b"]
+Coupling = Float[Array, "lane lane *#b"]
 
 FEWEST = 32
 """Pairs that are kept of many; more are twice as many, and so on."""
@@ -222,7 +222,7 @@ class Engagement(eqx.Module):
     phase: Float[Array, " node"]
     weight: Float[Array, " node"]
     contacts: Contacts
-    share: Float[Array, "pair slice node"]
+    share: Float[Arrays, "pair slice node"]
     body: Float[Array, "lane lane node"] | None
     nodes: int = eqx.field(static=True)
 

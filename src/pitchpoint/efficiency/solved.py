@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array
 
 from pitchpoint._jax import array, jax
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation, cycle
@@ -104,7 +104,7 @@ def _cycle(
     models: Models,
     engaged: Engagement | None,
     wanted: tuple[str, ...],
-) -> tuple[Cycle, dict[str, Float[Array, "..."]]]:
+) -> tuple[Cycle, dict[str, Array]]:
     found = cycle(design, operation, models, engaged=engaged)
     at: Conditions = found.state.conditions
     carries = found.state.contacts.active & (found.state.balance.load > 0.0)

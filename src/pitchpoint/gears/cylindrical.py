@@ -12,6 +12,7 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Offset, Spot, Surfaces
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import (
@@ -492,7 +493,7 @@ class CylindricalPair(Mesh):
         surfaces = ((*first, Offset(self.normal_backlash)), second)
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
 
-    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
         lanes = contacts.path.shape
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
@@ -732,6 +733,14 @@ def build_cylindrical_pair(
 
     Raises:
         InputError: the flanks cannot meet at all; `check_cylindrical` says what else is wrong.
+
+    Example:
+        >>> from math import radians
+        >>> pair = build_cylindrical_pair(
+        ...     teeth=(18, 36), module=3e-3, pressure_angle=radians(20.0), face_width=0.02
+        ... )
+        >>> round(float(pair.centre_distance), 6)
+        0.081
     """
     helical = bool(helix_angle != 0.0)
     pair = CylindricalPair(

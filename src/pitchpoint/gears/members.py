@@ -23,6 +23,7 @@ def number_of(member: str | int, names: tuple[str, ...]) -> int:
         InputError: there is no such body.
 
     Example:
+        >>> from pitchpoint.gears.members import CYLINDRICAL
         >>> number_of("gear 2", CYLINDRICAL)
         1
     """

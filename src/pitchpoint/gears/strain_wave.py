@@ -5,12 +5,13 @@ from typing import ClassVar, Self
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Num
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.contact.surface import Spot
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
@@ -66,6 +67,7 @@ _ALONG = np.unique(np.round(_ALONG, 12))  # no two that differ by rounding alone
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
+Each = Float[Array, "*b"]
 
 
 class Touching(eqx.Module):
@@ -79,11 +81,11 @@ class Touching(eqx.Module):
         held: True where the nearest point is an end of the flank and does not roll.
     """
 
-    along: Lanes
+    along: Each
     at: Passing
-    clearance: Lanes
-    mate: Lanes
-    held: Lanes
+    clearance: Each
+    mate: Each
+    held: Bool[Array, "*b"]
 
 
 class Survey(eqx.Module):
@@ -258,13 +260,13 @@ class StrainWave(Mesh):
         """Mean number of pairs that touch without load, to a thousandth of the module."""
         return self.pairs
 
-    def overlaps(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
+    def overlaps(self, angle: Float[Array, "*b"]) -> Bool[Array, "*b"]:
         """True where a tooth reaches into the circular spline's teeth."""
         return _overlaps(self.tooth_motion, self.groove, angle)
 
     @property
     def filled(self) -> np.ndarray:
-        """Numbers of the places for pairs that hold one."""
+        """Arrays of the places for pairs that hold one."""
         return np.flatnonzero(self._place[1] < float(self.held))
 
     @property
@@ -360,7 +362,7 @@ class StrainWave(Mesh):
         """The flexspline's rim couples all its teeth."""
         return ring_compliance(self.rim, solids[0], self.ring_loads(contacts))
 
-    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the teeth, which stand as they are while they touch.
 
         A tooth that lies behind its place moves along the circumference; the normals of roundings at root
@@ -490,6 +492,7 @@ def rates(
     Source: z2 q_C = z1 q_F + (z2 - z1) q_W; torques are in proportion to these factors.
 
     Example:
+        >>> import numpy as np
         >>> rates(np.array([200.0, 202.0]), fixed=2, drives=0)[0]
         array([ 1.  , -0.01,  0.  ])
     """
@@ -547,13 +550,13 @@ def _overlaps(motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"]) ->
     return jnp.asarray(jnp.real(tip) > groove.low)
 
 
-def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Float[Array, "pair 1 *b"]:
+def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Num[Arrays, "pair 1 ..."]:
     """Values of the pairs, broadcast over slices and phases."""
     return jnp.reshape(each, (-1, *(1 for _ in range(phase.ndim + 1))))
 
 
 def places(
-    contacts: Contacts, phase: Float[Array, "*b"], teeth: Float[Array, "2"]
+    contacts: Contacts, phase: Float[Arrays, "*#b"], teeth: Float[Array, "2"]
 ) -> Float[Array, "member pair slice *b"]:
     """Angles around flexspline and circular spline at which their teeth touch [rad].
 

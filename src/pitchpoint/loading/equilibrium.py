@@ -6,12 +6,13 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.factored import Arrays
 from pitchpoint.status import Code, Status
 
 __all__ = ["Equilibrium", "equilibrium", "touch"]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Arrays, "pair slice *#b"]
+Each = Float[Arrays, "*#b"]
 Rows = Float[Array, "*b lane"]
 
 MOST = 200
@@ -101,12 +102,12 @@ class _Scale(NamedTuple):
 
 
 def equilibrium(
-    teeth: Lanes,
-    body: Float[Array, "lane lane *b"] | None,
+    teeth: Float[Arrays, "..."],
+    body: Float[Arrays, "lane lane *#b"] | None,
     *,
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array, "pair slice *b"],
+    active: Bool[Arrays, "pair slice *#b"],
     load: Each,
 ) -> Equilibrium:
     """Forces of the contacts of any mesh that share a load.
@@ -173,11 +174,11 @@ def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Arra
 
 
 def _normalised(
-    teeth: Lanes,
-    body: Float[Array, "lane lane *b"] | None,
+    teeth: Float[Arrays, "..."],
+    body: Float[Arrays, "lane lane *#b"] | None,
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array, "pair slice *b"],
+    active: Bool[Arrays, "pair slice *#b"],
     load: Each,
 ) -> tuple[_Problem, _Scale]:
     """The problem counted from first touch, with mean compliance, arm and load of one.
@@ -188,7 +189,7 @@ def _normalised(
     each = (teeth.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
     batch = jnp.broadcast_shapes(coupled, *each)
 
-    def rows(lanes: Array) -> Array:
+    def rows(lanes: Arrays) -> Array:
         flat = jnp.moveaxis(lanes.reshape(-1, *lanes.shape[2:]), 0, -1)
         return jnp.broadcast_to(flat, (*batch, flat.shape[-1]))
 

@@ -5,6 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
 from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
@@ -12,7 +13,7 @@ from pitchpoint.materials.solids import Solid
 
 __all__ = ["MeshStiffness", "mean_line_load", "mesh_stiffness", "slice_stiffness"]
 
-Lanes = Float[Array, "pair slice *b"]
+Lanes = Float[Array, "pair slice *#b"]
 
 
 class MeshStiffness(eqx.Module):
@@ -38,22 +39,24 @@ class MeshStiffness(eqx.Module):
     error: Float[Array, "pair segment node"]
 
     @property
-    def along_action(self) -> Float[Array, "pair segment node"]:
+    def along_action(self) -> Float[Arrays, "pair segment node"]:
         """Stiffness of each pair against transmission error, along the line of action [N/m]."""
         return self.single * self.arm**2
 
     @property
-    def total(self) -> Float[Array, "segment node"]:
+    def total(self) -> Float[Arrays, "segment node"]:
         """Stiffness of the mesh against transmission error [N/m]."""
         return jnp.sum(self.along_action, axis=0)
 
     @property
-    def mean(self) -> Float[Array, ""]:
+    def mean(self) -> Float[Arrays, ""]:
         """Mean over the period [N/m]."""
         return jnp.sum(self.total * self.weight)
 
 
-def mean_line_load(mesh: Mesh, contacts: Contacts, load: Float[Array, "*b"]) -> Float[Array, "*b"]:
+def mean_line_load(
+    mesh: Mesh, contacts: Contacts, load: Float[Array, "*#b"]
+) -> Float[Array, "*#b"]:
     """Load per length if all contact lines carried the same [N/m].
 
     Args:
@@ -70,7 +73,7 @@ def slice_stiffness(
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
-    load: Float[Array, "*b"],
+    load: Float[Array, "*#b"],
 ) -> Lanes:
     """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
 

@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -12,7 +12,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.errors import InputError
-from pitchpoint.factored import as_array, product
+from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference
 
 __all__ = [
@@ -25,8 +25,8 @@ __all__ = [
     "shape_of",
 ]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Numbers, "*#b"]
 
 
 class Conditions(eqx.Module):
@@ -214,6 +214,7 @@ _KINDS: Mapping[Shape, str] = {"line": "line contacts", "ellipse": "elliptic con
 _TOUCH: Mapping[Shape, str] = {"line": "along lines", "ellipse": "in an ellipse"}
 
 
+@runtime_checkable
 class Law(Protocol):
     """A published law: a function of conditions with what a user needs to choose it."""
 

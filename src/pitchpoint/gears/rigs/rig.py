@@ -9,6 +9,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, Reference
 
@@ -69,7 +70,7 @@ class Rig(Mesh):
         """Nothing enters or leaves."""
         return jnp.zeros(1)
 
-    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Both bodies turn on under the contact."""
         lanes = contacts.path.shape
         first, second = (
