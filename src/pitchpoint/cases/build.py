@@ -13,6 +13,7 @@ from pitchpoint.cases.families import FAMILIES, Family, built_gears
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Surface
 from pitchpoint.cases.solids import SolidInUse, datum, failures, heated, solids_in_use
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
@@ -86,6 +87,11 @@ class Built:
     def following(self) -> dict[str, Any]:
         """Values that the table of the gears leaves open, by key inside it."""
         return self.family.following(self.case.gears, self.design.mesh)
+
+    @cached_property
+    def deviations(self) -> Surfaces:
+        """Deviations of the teeth around both members, which make the kinematic error."""
+        return self.family.deviations(self.case.gears, self.design.mesh)
 
     @cached_property
     def engaged(self) -> Engagement | None:

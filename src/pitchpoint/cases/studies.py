@@ -194,7 +194,7 @@ def _running(variant: Variant, built: Built) -> Iterator[Job]:
 
 def _yielding(built: Built) -> Iterator[Job]:
     """Parts on how teeth yield, and what follows; what they import is not needed without them."""
-    dynamics, deviations = built.case.dynamics, built.family.deviations(built.case.gears)
+    dynamics, deviations = built.case.dynamics, built.deviations
     shares = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
     if not shares and dynamics is None and built.design.mesh.touching and not any(deviations):
         return

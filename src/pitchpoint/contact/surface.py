@@ -9,7 +9,7 @@ from jaxtyping import Array, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
 
-__all__ = ["Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
+__all__ = ["Lanes", "Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
 
 Lanes = Float[Array, "pair slice *b"]
 

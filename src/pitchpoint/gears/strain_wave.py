@@ -222,6 +222,11 @@ class StrainWave(Mesh):
         return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
 
     @property
+    def onward(self) -> Float[Array, ""]:
+        """A wave generator that turns on meets teeth of growing angle, and phases fall."""
+        return -jnp.ones(())
+
+    @property
     def touching(self) -> bool:
         """Most teeth of a zone have a clearance that load must close."""
         return False
