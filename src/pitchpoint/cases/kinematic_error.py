@@ -82,7 +82,8 @@ def kinematic_error_part(
     under_load = np.concatenate([one[-1] for one in solved])
     lost = int(np.isnan(under_load).sum())
     told = [f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states."]
-    members = [one.name for one in design.mesh.coordinates if one.member is not None]
+    bodies = eqx.filter_eval_shape(lambda mesh: mesh.coordinates, design.mesh)
+    members = [one.body for one in bodies if one.member is not None]
     whole = dataset(
         {
             "turn_angle": (("state",), np.arange(states[most]) * 2.0 * np.pi / states[most]),

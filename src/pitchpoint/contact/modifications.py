@@ -1,4 +1,4 @@
-"""Modifications that all teeth of a gear have: relief of tip and root, end relief, crowning, slope of the lead."""
+"""Modifications that all teeth of a gear have: reliefs of the profile and of the ends, crowning, lead slope."""
 
 import equinox as eqx
 from jaxtyping import Array, Float

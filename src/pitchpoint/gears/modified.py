@@ -1,6 +1,7 @@
 """Modifications and deviations of the flanks of a cylindrical pair, from what a drawing says of them."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Array, Float
@@ -60,7 +61,7 @@ class Modifications:
         """
         overlap, end = (float(value) for value in _usual_lengths(pair))
         usual = {"tip_relief": overlap, "root_relief": overlap, "end_relief": end}
-        lengths = {
+        lengths: dict[str, Any] = {
             f"{name}_length": (length, length)
             for name, length in usual.items()
             if getattr(self, name) is not None and getattr(self, f"{name}_length") is None
@@ -109,9 +110,9 @@ def _of_gear(
         (given.root_relief, given.root_relief_length, root, inwards),
     ):
         if amounts is not None and lengths is not None:
-            ends = (end + sense * lengths[member], end)
-            arc = [array(roll**2 / arcs) for roll in ends]
-            found.append(Relief(array(amounts[member]), *arc, given.relief_power))
+            start = end + sense * lengths[member]
+            places = array(start**2 / arcs), array(end**2 / arcs)
+            found.append(Relief(array(amounts[member]), *places, power=given.relief_power))
     width = pair.face_width
     if given.crowning is not None:
         found.append(Crowning(array(given.crowning[member]), width))
