@@ -263,6 +263,7 @@ def _cycle(built: Built) -> xr.Dataset:
     ]
     warnings += _conformal_warning(built.design.mesh, runs[0])
     warnings += _pressure_warning(built, runs)
+    warnings += _face_warning(built, runs[0])
     data = dataset(
         {**common, **each},
         {"law": names},
@@ -693,6 +694,37 @@ def _conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     return [
         f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
         f"radius is cut at {largest:.3g} m, and pressure and film there say little."
+    ]
+
+
+LEAST_FACE = 2
+"""Slices of a contact line in contact up to which it is nearly a point, not a line."""
+
+
+def _face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
+    """Part of the contact lines that gets no load; refused where hardly any of them gets some."""
+    mesh, active = built.design.mesh, np.asarray(run["active"])
+    carries = np.asarray(run["load"]) > 0.0
+    pairs = carries.any(axis=2, keepdims=True)
+    across = active.shape[2]
+    if mesh.touching or across == 1 or not pairs.any():
+        return []
+    most = int(carries.sum(axis=2).max())
+    torque = TORQUE.show(built.case.operation.torque)
+    if most <= LEAST_FACE:
+        raise InputError(
+            f"at {torque} only {most} of {across} slices of a contact line get load, nearly a point in "
+            "place of a line; less crowning, end relief or misalignment, a higher torque or more slices "
+            "leave a line of contact",
+            key="gears",
+        )
+    share = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]))
+    share /= float(np.sum((active & pairs).sum(axis=(1, 2)) * run["weight"]))
+    if share > 1.0 - 1e-9:
+        return []
+    return [
+        f"Of the contact lines that carry, {100.0 * (1.0 - share):.2g} % get no load at {torque}: there "
+        "flanks do not touch."
     ]
 
 

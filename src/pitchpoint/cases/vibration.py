@@ -11,6 +11,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.contact.contacts import along
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
@@ -28,6 +29,8 @@ from pitchpoint.dynamics.vibration import (
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import InputError
+from pitchpoint.loading.compliance import compliance
+from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
@@ -83,7 +86,10 @@ def separating(built: Built) -> bool:
 
 
 def stiffness_part(built: Built) -> xr.Dataset:
-    """Stiffness of each pair and of the mesh over one period, with the estimate of ISO 6336."""
+    """Stiffness of each pair and of the mesh over one period, with the estimate of ISO 6336.
+
+    Where flanks have gaps only the springs that carry count.
+    """
     models, _ = laws_of(built)
     found = jax.device_get(_stiffness(built.design, built.operation, models))
     lanes = ("pair", "node")
@@ -112,15 +118,25 @@ def _stiffness(design: Design, operation: Operation, models: Models) -> dict[str
     total = found.total
     action = mesh.line_of_action
     assert action is not None
-    lanes = {"entered": entered, "pair_stiffness": found.along_action, "line_length": length}
-    mean = {
-        "mean_stiffness": found.mean,
-        "stiffness_variation": (jnp.max(total) - jnp.min(total)) / found.mean,
+    radius = jnp.abs(action @ mesh.loaded)
+    single, error = found.along_action, load / radius / total
+    if not mesh.touching:
+        yields = compliance(mesh, contacts, design.solids, models.compliance, load)
+        teeth, arm = yields.of_teeth(contacts), jnp.abs(along(contacts.normal, mesh.loaded))
+        at = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
+        state = equilibrium(teeth, yields.body, **at, load=jnp.broadcast_to(load, total.shape))
+        single = jnp.sum(jnp.where(state.loaded, 1.0 / teeth, 0.0), axis=1) * found.arm**2
+        total, error = state.stiffness / radius**2, state.approach * radius
+    mean = jnp.sum(total * found.weight)
+    lanes = {"entered": entered, "pair_stiffness": single, "line_length": length}
+    whole = {
+        "mean_stiffness": mean,
+        "stiffness_variation": (jnp.max(total) - jnp.min(total)) / mean,
     }
     nodal = {"phase": found.phase, "weight": found.weight, "mesh_stiffness": total}
-    nodal["static_transmission_error"] = load / jnp.abs(action @ mesh.loaded) / total
+    nodal["static_transmission_error"] = error
     flat = {name: values.reshape(values.shape[0], -1) for name, values in lanes.items()}
-    return flat | {name: values.ravel() for name, values in nodal.items()} | mean
+    return flat | {name: values.ravel() for name, values in nodal.items()} | whole
 
 
 def vibration_part(built: Built) -> xr.Dataset:

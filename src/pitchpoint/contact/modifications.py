@@ -1,4 +1,4 @@
-"""Modifications that all teeth of a gear have: reliefs of the profile and of the ends, crowning, lead slope."""
+"""Modifications that all teeth of a gear have: reliefs of profile and ends, crowning, slope of the lead."""
 
 import equinox as eqx
 from jaxtyping import Array, Float

@@ -483,7 +483,9 @@ class CylindricalPair(Mesh):
         entered = jnp.mod(phase, 1.0) + number
         line, side = self.line, self._side
         across, share = self._lines(entered, line)
-        path = entered - line.overlap_ratio * across if self.helical else entered
+        path = jnp.broadcast_to(entered, jnp.shape(across))
+        if self.helical:
+            path = entered - line.overlap_ratio * across
         active = jnp.broadcast_to(entered <= line.contact_ratio, jnp.shape(path))
         position = jnp.where(active, line.limits[0] + path * line.base_pitch, line.pitch_position)
         rolling = jnp.stack([position, line.tangent_length - position])
@@ -514,7 +516,7 @@ class CylindricalPair(Mesh):
 
     def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
         """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
-        lanes = contacts.path.shape
+        lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
         found = []
@@ -523,8 +525,8 @@ class CylindricalPair(Mesh):
             sense = -self._side * (1.0 if member == 0 else -jnp.sign(self.teeth[1]))
             found.append(
                 Spot(
-                    flank=contacts.flank[member],
-                    across=contacts.width,
+                    flank=jnp.broadcast_to(contacts.flank[member], lanes),
+                    across=jnp.broadcast_to(contacts.width, lanes),
                     angle=jnp.broadcast_to(sense * phase * 2.0 * jnp.pi / teeth, lanes),
                     tooth=jnp.mod(sense * entered, teeth).astype(int),
                     leaning=jnp.ones(lanes),
