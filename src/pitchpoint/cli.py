@@ -378,6 +378,7 @@ def _summary(name: str, outcome: "Outcome") -> None:
     from pitchpoint.cases.catalogue import (
         bearing_table,
         kinematic_error_table,
+        of_contact,
         summary_table,
         sweep_tables,
         vibration_table,
@@ -386,7 +387,9 @@ def _summary(name: str, outcome: "Outcome") -> None:
 
     manifest = outcome.manifest
     _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
-    _console().print(_plain(f"Oil: {manifest['oil']}. Averages over: {manifest['averaging']}."))
+    averages = f" Averages over: {manifest['averaging']}."
+    single = of_contact(outcome.parts["operation"])
+    _console().print(_plain(f"Oil: {manifest['oil']}.{'' if single else averages}"))
     rows, columns, note = summary_table(outcome)
     _table(rows, columns)
     _console().print(_plain(note))

@@ -15,7 +15,7 @@ from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
-from pitchpoint.gears.discs import TwinDisc
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS

@@ -7,8 +7,8 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, state
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
-from pitchpoint.gears.discs import TwinDisc
 from pitchpoint.gears.period import nodes
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw, xu_2007
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE, wu_cheng_1991

@@ -17,8 +17,9 @@ from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
-from pitchpoint.gears.discs import BallOnDisc, TwinDisc
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -55,7 +56,10 @@ RING = {"fillet_radius": (0.38, 0.2), "profile_shift": (0.3, 0.2)}
 FAMILIES: Mapping[str, Callable[[], Mesh]] = {
     "twin disc": lambda: TwinDisc(*map(jnp.asarray, ([0.02, 0.035], 0.008, 0.8))),
     "twin disc, faster follower": lambda: TwinDisc(*map(jnp.asarray, ([0.03, 0.02], 0.01, 1.3))),
-    "ball on disc": lambda: BallOnDisc(*map(jnp.asarray, (0.0095, 0.04, 0.7))),
+    "ball on disc": lambda: BallOnDisc(*map(jnp.asarray, ([0.0095, 0.0095], 0.04, 0.35))),
+    "barrel on disc, faster barrel": lambda: BallOnDisc(
+        *map(jnp.asarray, ([0.01, 0.03], 0.035, -0.2))
+    ),
     "18/36": lambda: spur((18, 36)),
     "18/36, right flank": lambda: spur((18, 36), right_flank=True),
     "18/36, wheel drives": lambda: spur((18, 36), driver=2),
@@ -262,6 +266,10 @@ def test_active_contacts_keep_touching_on_the_nominal_motion(family):
     size = dot(np.abs(family.told.motion), np.abs(family.at.normal)) + 1e-300
     assert family.at.active.any(axis=(0, 1)).all()
     assert np.max(np.abs(closing / np.maximum(size, 1e-6))[family.at.active]) < 1e-14
+
+
+def test_contacts_have_the_shape_of_the_family(family):
+    assert family.at.shape == family.mesh.shape
 
 
 def test_sliding_is_the_difference_of_the_surface_speeds(family):
@@ -486,7 +494,7 @@ def test_curvature_is_the_second_derivative_of_the_gap(family):
         check_involute_curvature(family)
         return
     first, second = principal_radii(family.mesh)
-    step = 0.02 * min(first[0], second[0])
+    step = 0.02 * min(*first, *second)
     across = STEPS * step
     for direction in (0, 1):
         each = [circle(r[direction], across) for r in (first, second)]
@@ -502,7 +510,7 @@ def principal_radii(mesh):
     flat = 1e30
     if isinstance(mesh, TwinDisc):
         return tuple((float(r), flat) for r in mesh.radii)
-    return (float(mesh.ball_radius),) * 2, (flat, flat)
+    return (flat, flat), tuple(map(float, mesh.radius))
 
 
 def active_lanes(family):
@@ -551,7 +559,7 @@ def test_arms_are_the_velocities_of_the_turning_flanks(family):
         # Discs side by side: equal senses of rotation move the touching surfaces apart.
         arms = np.diag(np.asarray(family.mesh.radii) * [1.0, -1.0])
     else:
-        arms = np.diag([float(family.mesh.ball_radius), float(family.mesh.track_radius)])
+        arms = np.diag([float(family.mesh.track_radius), float(family.mesh.radius[0])])
     np.testing.assert_allclose(turning, np.broadcast_to(arms, turning.shape), rtol=1e-15)
     np.testing.assert_array_equal(family.at.normal[:2], 0.0)
 
@@ -659,8 +667,9 @@ def test_batch_equals_loop(family):
         if not family.mesh.touching
         else {"rtol": 1e-14, "atol": 1e-17}
     )
-    # Places across the face are counted from its middle and rounded like its half.
-    rounded = {"width": 2e-15 * np.abs(family.at.width).max()}
+    # Places across the face are counted from its middle and rounded like its half; places in the frame
+    # of the mesh, of which one component vanishes at the pitch point, like the whole radius.
+    rounded = {name: 2e-15 * np.abs(getattr(family.at, name)).max() for name in ("width", "point")}
     for name, values in leaves_of(family.at).items():
         near = close | {"atol": max(close["atol"], rounded.get(name, 0.0)), "err_msg": name}
         for other in (alone, mapped):

@@ -156,12 +156,26 @@ INVOLUTE["gears"]["clearance"] = 0.35
 INVOLUTE["gears"]["tooth"] = {"form": "involute", "profile_shift": 3.32}
 INVOLUTE["gears"]["circular_spline"] = {"form": "involute", "profile_shift": 3.6}
 
-BASES = {"cylindrical": BASE, "strain wave": STRAIN_WAVE, "involute": INVOLUTE}
+RIG = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads("""
+[gears]
+family = "ball_on_disc"
+ball_radius = "10 mm"
+transverse_radius = "20 mm"
+track_radius = "40 mm"
+
+[operation]
+force = "50 N"
+speed = "200 rpm"
+temperature = "60 degC"
+""")
+
+BASES = {"cylindrical": BASE, "strain wave": STRAIN_WAVE, "involute": INVOLUTE, "rig": RIG}
 WALKS = [
     ("cylindrical", schema.Case, ()),
     ("strain wave", gear_tables.StrainWaveGears, ("gears",)),
     ("involute", gear_tables.InvoluteTooth, ("gears", "tooth")),
     ("involute", gear_tables.InvoluteGroove, ("gears", "circular_spline")),
+    ("rig", gear_tables.BallOnDiscRig, ("gears",)),
 ]
 """Sound case, table and its place: together every table of the schema."""
 
@@ -327,6 +341,10 @@ def named_list(site: Site) -> list[str] | None:
     return str(caught.value).partition("known are ")[2].split(", ")
 
 
+def takes_flag(site: Site) -> bool:
+    return any(bool in get_args(option) for option in get_args(site.annotation))
+
+
 def bads_at(site: Site) -> Iterator[Bad]:
     quantity, pair, known = site.mark(Quantity), site.mark(Pair), named_list(site)
     if pair is not None:
@@ -347,6 +365,10 @@ def bads_at(site: Site) -> Iterator[Bad]:
         options = get_args(site.annotation)
         for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
             yield Bad(name, site.path, value, (shown, *options), site.key)
+    elif takes_flag(site):
+        for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
+            if not isinstance(value, bool):
+                yield Bad(name, site.path, value, (shown, "true and false"), site.key)
     elif site.annotation is str:
         for name, (value, shown) in NAMES.items():
             yield Bad(name, site.path, value, (shown, "text"), site.key)
@@ -545,7 +567,7 @@ REQUIRED = [
     for model, base, path in TABLES
     for name, info in model.model_fields.items()
     if info.is_required()
-]
+] + [("cylindrical", ("operation", "torque")), ("rig", ("operation", "force"))]
 
 
 # ---- writing and running

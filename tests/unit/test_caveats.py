@@ -83,7 +83,8 @@ def test_rolling_that_is_counted_twice_is_told_with_its_share() -> None:
 def test_limits_of_laws_are_listed() -> None:
     ranges = {row["name"]: row["range"] for row in entries()}
     assert ranges["xu_2007"] == (
-        "each contact; viscosity at least 1 mPa s; film at least Rq; coefficient at most 0.2"
+        "each contact; any shape of contact; viscosity at least 1 mPa s; film at least Rq; coefficient "
+        "at most 0.2"
     )
     assert limits_words("pressure", (1e9, 2e9)) == "1e+09 Pa to 2e+09 Pa"
     assert limits_words("slide_roll_ratio", (-inf, 2.0)) == "at most 2"

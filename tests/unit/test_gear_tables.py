@@ -15,6 +15,7 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.schema import Case, quantity_at, validate
 from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, check_strain_wave
 from pitchpoint.loading.reactions import InnerBearing
@@ -53,6 +54,7 @@ def test_what_is_left_open_is_as_usual_for_the_family() -> None:
     assert (pair.models.load_sharing, wave.models.load_sharing) == ("equal", "from_stiffness")
     names = [one.models.friction[0].name for one in (pair, wave)]
     assert names == ["iso_tr_14179_2", "constant"]
+    assert {one.models.film_thickness for one in (pair, wave)} == {"dowson_higginson_1959"}
     given = case({**DRIVE, "models": {"load_sharing": "xu_2021_cosine"}})
     assert given.models.load_sharing == "xu_2021_cosine"
 
@@ -120,7 +122,7 @@ def test_another_form_leaves_the_values_of_the_former() -> None:
     ("changes", "words"),
     [
         ({"models.friction": "iso_tr_14179_2"}, "models.friction: 'iso_tr_14179_2' is a law for a"),
-        ({"models.load_sharing": "equal"}, "models.load_sharing: 'equal' holds where all flanks"),
+        ({"models.load_sharing": "equal"}, "models.load_sharing: 'equal' holds where all rigid"),
         ({"models.tooth_temperature": "vdi_2736_2"}, "models.tooth_temperature: 'vdi_2736_2' asks"),
         ({"dynamics.damping_ratio": 0.1}, "dynamics: vibration is computed along a line of action"),
         ({"gears.teeth": [200, 203]}, "gears.teeth: 200 and 203 teeth were given"),
@@ -233,14 +235,13 @@ def test_deviations_are_read_and_shown() -> None:
     assert rows["deviations.flexspline"]["value"] == told
     assert rows["deviations.flexspline"]["status"] == "set"
     assert rows["deviations.circular_spline"]["value"] == "none"
-    given = built.family.deviations(built.case.gears)
-    assert given is not None
-    first, second = given
+    (first,), second = built.family.deviations(built.case.gears)
+    assert isinstance(first, Waves)
     np.testing.assert_allclose(first.amplitude[:2], [5e-6, 3e-6])
     np.testing.assert_allclose(first.phase[:2], [np.pi / 6.0, 0.0])
     assert not np.any(first.amplitude[2:])  # places that are filled up to a step
-    assert not np.any(second.amplitude)
-    assert built.family.deviations(drive().built({}).case.gears) is None
+    assert second == ()
+    assert built.family.deviations(drive().built({}).case.gears) == ((), ())
     order = quantity_at("gears.deviations.flexspline.order")
     assert order is not None
     assert order.whole

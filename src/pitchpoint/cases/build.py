@@ -25,6 +25,7 @@ from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
@@ -99,6 +100,11 @@ class Built:
         return engaged(self.design, self.operation, laws_of(self)[0])
 
     @property
+    def transmits(self) -> bool:
+        """True if the loaded coordinate moves, so that power goes through; False for a test rig."""
+        return bool(self.nominal["loaded"] @ self.nominal["motion"])
+
+    @property
     def covers(self) -> dict[str, str]:
         """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
         alone = self.design.mesh.inner_bearing and not self.case.losses
@@ -128,6 +134,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     for temperature in (case.loss_map and case.loss_map.temperatures) or ():
         _check_temperature(temperature, record, document, "loss_map.temperatures")
     try:
+        _check_shapes(case, mesh, own)
         _check_models(case, mesh)
     except InputError as error:
         raise error.at(file=document.name) from None
@@ -139,7 +146,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         drag=tuple(_drag(loss, case, mesh) for loss in case.losses.values()),
     )
     operation = Operation(
-        load=array(case.operation.torque),
+        load=array(case.operation.load),
         speed=array(case.operation.speed),
         temperature=array(case.operation.temperature),
     )
@@ -207,9 +214,31 @@ _OF_PITCH_POINT = {
 
 
 def _applies(law: FrictionLaw, mesh: Mesh) -> bool:
-    from pitchpoint.lubrication.conditions import arguments
+    from pitchpoint.lubrication.conditions import arguments, shape_of
 
+    if shape_of(law) not in (None, mesh.shape):
+        return False
     return mesh.pitch_point or _OF_PITCH_POINT.isdisjoint(arguments(law.function)[0])
+
+
+def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
+    """InputError if a law of the case, or the user's own, holds for contacts of another shape."""
+    from pitchpoint.lubrication.conditions import Law, demand_shape
+
+    models = case.models
+    chosen: dict[str, list[Law]] = {
+        "models.friction": [FRICTION[choice.name] for choice in models.friction],
+        "models.film_thickness": [FILM_THICKNESS[models.film_thickness]],
+        "models.rolling_resistance": [ROLLING_RESISTANCE[models.rolling_resistance]],
+    }
+    for key, laws in chosen.items():
+        for law in laws:
+            try:
+                demand_shape(law, mesh.shape)
+            except InputError as error:
+                raise error.at(key=key) from None
+    if own is not None:
+        demand_shape(own, mesh.shape)
 
 
 def _check_models(case: Case, mesh: Mesh) -> None:

@@ -12,12 +12,14 @@ from pitchpoint import units
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION, limits_words
 from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.studies import AT_CONTACT
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.gears.wave_generator import WAVE_SHAPES
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.lubrication.conditions import Law, shape_of
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -26,9 +28,11 @@ from pitchpoint.materials._leaves import Datum
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = [
+    "CONTACT",
     "entries",
     "figures",
     "kinematic_error_table",
+    "of_contact",
     "summary_table",
     "sweep_tables",
     "vibration_table",
@@ -45,6 +49,19 @@ MAIN = (
     "mean_friction",
 )
 
+CONTACT = (*AT_CONTACT, "mean_friction", "mean_loss", "mean_input_torque")
+"""Main figures of a test rig, which transmits nothing."""
+
+
+def of_contact(data: Any) -> bool:
+    """True for an operating point or a study of a test rig, whose figures are those of its contact."""
+    return AT_CONTACT[0] in data
+
+
+def main_figures(data: Any) -> tuple[str, ...]:
+    """Names of the figures that are shown first of an operating point, or of a study."""
+    return CONTACT if of_contact(data) else MAIN
+
 
 def entries() -> list[dict[str, str]]:
     """Every law, oil and material that a case file may name."""
@@ -53,9 +70,11 @@ def entries() -> list[dict[str, str]]:
         _entry("load_sharing", model, _ratio_range(model.ratio_range))
         for model in LOAD_SHARING.values()
     ]
-    rows += [_entry("rolling_resistance", model, "") for model in ROLLING_RESISTANCE.values()]
     rows += [
-        _entry("film_thickness", law, f"{law.shape} contacts, {law.place} film")
+        _entry("rolling_resistance", model, _shape(model)) for model in ROLLING_RESISTANCE.values()
+    ]
+    rows += [
+        _entry("film_thickness", law, f"{_shape(law)}, {law.place} film")
         for law in FILM_THICKNESS.values()
     ]
     rows += [
@@ -95,7 +114,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
     """Main figures of one variant in SI, by law; None where a quantity is undefined."""
     manifest = outcome.manifest
     studies = {
-        name.removeprefix("study_"): _by_law(data, MAIN)
+        name.removeprefix("study_"): _by_law(data, main_figures(data))
         for name, data in outcome.parts.items()
         if name.startswith("study_")
     }
@@ -104,11 +123,11 @@ def figures(outcome: Outcome) -> dict[str, Any]:
         "units": {
             name: VARIABLES[name].unit
             for name in (
-                *(*MAIN, *REACTIONS, "bearing_load"),
-                *(*VIBRATION, *TEMPERATURES, *WIND_UP, "kinematic_error_range"),
+                *(*MAIN, *CONTACT, *REACTIONS, "bearing_load"),
+                *(*VIBRATION, *TEMPERATURES, *WIND_UP, "lost_motion", "kinematic_error_range"),
             )
         },
-        "operation": _by_law(outcome.parts["operation"], MAIN),
+        "operation": _by_law(outcome.parts["operation"], main_figures(outcome.parts["operation"])),
         "efficiency_of": _covers(outcome),
         "reactions": _by_law(outcome.parts["operation"], REACTIONS),
         "bearing_load": {
@@ -117,19 +136,25 @@ def figures(outcome: Outcome) -> dict[str, Any]:
         },
         "vibration": _by_torque(outcome, "vibration", VIBRATION),
         "torsion": _by_torque(outcome, "torsion", WIND_UP),
+        "lost_motion": _lost_motion(outcome),
         "kinematic_error_range": {
             curve: dict(zip(causes, _numbers(values), strict=True))
             for curve, causes, values in _ranges(outcome)
         },
         "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
         "friction_laws_out_of_range": out_of_range(outcome),
-        "back_driving": _by_law(
-            outcome.parts["back_driving"], ("mean_efficiency", "locked", "jamming_coefficient")
-        ),
+        "back_driving": _back_driving(outcome),
         "studies": studies,
         "warnings": manifest["warnings"],
         "rows": manifest["rows"],
     }
+
+
+def _back_driving(outcome: Outcome) -> dict[str, Any]:
+    """Figures by law with the loaded member driving; none where nothing is transmitted."""
+    data = outcome.parts.get("back_driving")
+    names = ("mean_efficiency", "locked", "jamming_coefficient")
+    return {} if data is None else _by_law(data, names)
 
 
 _LOCKS = "locks from μ"
@@ -138,18 +163,29 @@ _LOCKS = "locks from μ"
 def summary_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...], str]:
     """Rows, columns and a note: the operating point by law, and how far the laws disagree."""
     data = outcome.parts["operation"]
-    back = outcome.parts["back_driving"]
-    rows = []
-    for position, law in enumerate(data["law"].values):
-        row = {"friction law": str(law)}
-        row.update({_head(name): _cell(data, name, position) for name in MAIN})
-        row["η of"] = _covers(outcome)
-        row[_LOCKS] = _cell(data, "jamming_coefficient", position)
-        locked = bool(back["locked"].values[position, 0])
-        row["back-driving"] = "locked" if locked else _cell(back, "mean_efficiency", position)
-        row[f"back-driving {_LOCKS}"] = _cell(back, "jamming_coefficient", position)
-        rows.append(row)
+    rows = [
+        {
+            "friction law": str(law),
+            **{_head(name): _cell(data, name, position) for name in main_figures(data)},
+            **_of_power(outcome, position),
+        }
+        for position, law in enumerate(data["law"].values)
+    ]
     return rows, tuple(rows[0]), spread_sentence(outcome)
+
+
+def _of_power(outcome: Outcome, position: int) -> dict[str, str]:
+    """Cells on the power that goes through, for the law at a position; none where nothing does."""
+    data, back = outcome.parts["operation"], outcome.parts.get("back_driving")
+    if back is None:
+        return {}
+    locked = bool(back["locked"].values[position, 0])
+    return {
+        "η of": _covers(outcome),
+        _LOCKS: _cell(data, "jamming_coefficient", position),
+        "back-driving": "locked" if locked else _cell(back, "mean_efficiency", position),
+        f"back-driving {_LOCKS}": _cell(back, "jamming_coefficient", position),
+    }
 
 
 def _covers(outcome: Outcome) -> str:
@@ -261,11 +297,17 @@ def _loads(data: Any, law: int) -> list[tuple[str, float]]:
     return [(str(place), loads[law, k]) for k, place in enumerate(data["place"].values) if bears[k]]
 
 
-WIND_UP = ("wind_up", "torsional_stiffness", "loaded_pairs")
+WIND_UP = ("wind_up", "angular_transmission_error_range", "torsional_stiffness", "loaded_pairs")
+
+
+def _lost_motion(outcome: Outcome) -> float | None:
+    """Play of the loaded member between its flanks [rad]; None where it is not known."""
+    data = outcome.parts.get("torsion")
+    return None if data is None else float(data["lost_motion"])
 
 
 def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
-    """Rows and columns: wind-up and stiffness at some torques, none for teeth without clearances."""
+    """Rows and columns: wind-up, transmission error and stiffness at some torques; none without them."""
     data = outcome.parts.get("torsion")
     if data is None:
         return [], ()
@@ -324,7 +366,8 @@ def sweep_tables(outcome: Outcome) -> list[tuple[str, list[dict[str, str]]]]:
 def _swept(data: Any, law: int, point: int) -> dict[str, str]:
     key = data.attrs["sweep_key"]
     place = {key: _place(data["axis"].values[point], key)}
-    shown = {_head(n): _shown(n, float(data[n].values[law, point])) for n in SWEPT if n in data}
+    names = CONTACT if of_contact(data) else SWEPT
+    shown = {_head(n): _shown(n, float(data[n].values[law, point])) for n in names if n in data}
     return {**place, "friction law": str(data["law"].values[law]), **shown}
 
 
@@ -384,6 +427,13 @@ def _sources(record: Any) -> str:
     return ", ".join(dict.fromkeys(found))
 
 
+_SHAPES = {"line": "line contacts", "ellipse": "elliptic contacts", None: "any shape of contact"}
+
+
+def _shape(law: Law) -> str:
+    return _SHAPES[shape_of(law)]
+
+
 def _friction_range(law: FrictionLaw) -> str:
     limits = [
         f"{name.replace('_', ' ')} {limits_words(name, ends)}" for name, ends in law.ranges.items()
@@ -392,7 +442,7 @@ def _friction_range(law: FrictionLaw) -> str:
     limits += [f"coefficient at most {law.largest:g}"] if law.largest < inf else []
     place = "each contact" if law.local else "whole mesh"
     own = "; only for its case" if law in CASE_LAWS else ""
-    return "; ".join([place + own, *limits])
+    return "; ".join([place + own, _shape(law), *limits])
 
 
 def _ratio_range(limits: tuple[float, float]) -> str:

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.cases.gear_tables import (
+    BallOnDiscRig,
     CylindricalGears,
     Deviation,
     DoubleArcTooth,
@@ -23,6 +24,7 @@ from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.modified import Modifications, class_deviations, modified
+from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
 from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.gears.strain_wave_design import (
     DOUBLE_ARCS,
@@ -85,7 +87,7 @@ class Family:
 
 @lru_cache(maxsize=256)
 def built_gears(
-    gears: CylindricalGears | StrainWaveGears, driver: str, slices: int
+    gears: CylindricalGears | StrainWaveGears | BallOnDiscRig, driver: str, slices: int
 ) -> tuple[Mesh, tuple[str, ...]]:
     """Mesh and its warnings; a sweep that leaves the gears alone builds them once.
 
@@ -311,6 +313,26 @@ def _waves(given: tuple[Deviation, ...]) -> tuple[Waves, ...]:
     return (Waves(*map(jnp.asarray, rows)),)
 
 
+def _ball_on_disc(rig: BallOnDiscRig, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+    across = rig.transverse_radius or rig.ball_radius
+    mesh = BallOnDisc(
+        radius=array([rig.ball_radius, across]),
+        track_radius=array(rig.track_radius),
+        slide_roll_ratio=array(rig.slide_roll_ratio),
+    )
+    return mesh, (NARROW,) if across < rig.ball_radius else ()
+
+
+NARROW = (
+    "The contact is narrower across the track than along it, and laws of the film on ellipses were fitted "
+    "to round and wider ones."
+)
+
+
+def _of_ball(rig: BallOnDiscRig, mesh: BallOnDisc) -> dict[str, Any]:
+    return {"transverse_radius": mesh.radius[1]}
+
+
 FAMILIES: dict[type, Family] = {
     CylindricalGears: Family(
         _cylindrical,
@@ -343,5 +365,6 @@ FAMILIES: dict[type, Family] = {
         },
         coordinates={"gear": [1, 2], "xy": ["x", "y"]},
     ),
+    BallOnDiscRig: Family(_ball_on_disc, _of_ball),
 }
 """Families by the class of their table."""

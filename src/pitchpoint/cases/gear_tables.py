@@ -1,4 +1,4 @@
-"""The table [gears] of a case file, one class for each family of gears."""
+"""The table [gears] of a case file, one class for each family of gears and test rigs."""
 
 from collections.abc import Mapping
 from math import pi
@@ -9,9 +9,9 @@ from pydantic import AfterValidator, BeforeValidator, Field, Tag, model_validato
 from pitchpoint.cases.quantities import Pair, Quantity, named
 from pitchpoint.cases.tables import Table, by
 from pitchpoint.errors import InputError
-from pitchpoint.gears.members import CYLINDRICAL, STRAIN_WAVE
+from pitchpoint.gears.members import BALL_ON_DISC, CYLINDRICAL, STRAIN_WAVE
 
-__all__ = ["CylindricalGears", "Gears", "StrainWaveGears"]
+__all__ = ["BallOnDiscRig", "CylindricalGears", "Gears", "StrainWaveGears"]
 
 TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
 MODULE = Quantity("length", 1e-5, 0.1, "mm")
@@ -47,6 +47,11 @@ RELIEF_LENGTH = Quantity("length", 0.0, 1.0, "mm", open_low=True)
 MISALIGNMENT = Quantity("length", -1e-2, 1e-2, "um")
 TOLERANCE_CLASS = Quantity("dimensionless", 1, 11, whole=True)
 SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
+BALL = Quantity("length", 1e-4, 1.0, "mm")
+TRACK = Quantity("length", 1e-3, 10.0, "mm")
+SLIDE_ROLL = Quantity("dimensionless", -1.9, 2.0)
+
+Load = Literal["torque", "force"]
 
 FEWEST_TEETH = 2
 FEWEST_RING_TEETH = 10
@@ -139,7 +144,9 @@ class CylindricalGears(Table):
     """
 
     members: ClassVar[tuple[str, ...]] = CYLINDRICAL
+    load: ClassVar[Load] = "torque"
     friction: ClassVar[str] = "iso_tr_14179_2"
+    film_thickness: ClassVar[str] = "dowson_higginson_1959"
     meaningless: ClassVar[Mapping[str, str]] = {}
 
     family: Literal["cylindrical"] = "cylindrical"
@@ -341,8 +348,10 @@ class StrainWaveGears(Table):
     """
 
     members: ClassVar[tuple[str, ...]] = STRAIN_WAVE
+    load: ClassVar[Load] = "torque"
     friction: ClassVar[str] = "constant"
     load_sharing: ClassVar[str] = "from_stiffness"
+    film_thickness: ClassVar[str] = "dowson_higginson_1959"
     meaningless: ClassVar[Mapping[str, str]] = {
         "slices": "contacts of strain-wave teeth are not divided into slices",
         "averaging": "the path of one pair does not stand for strain-wave teeth, many of which touch at "
@@ -394,8 +403,34 @@ def _check_waves(waves: tuple[Deviation, ...], key: str, teeth: float, module: f
         )
 
 
+class BallOnDiscRig(Table):
+    """A test rig: a ball, or a barrel of two radii, pressed on the flat face of a disc; both are driven.
+
+    Gear 1 is the disc, gear 2 the ball, in the tables of materials and roughness. The slide-roll ratio
+    is positive where the disc is the faster one, 2 with the ball at rest.
+    """
+
+    members: ClassVar[tuple[str, ...]] = BALL_ON_DISC
+    load: ClassVar[Load] = "force"
+    drivers: ClassVar[tuple[str, ...]] = ("disc",)
+    friction: ClassVar[str] = "constant"
+    load_sharing: ClassVar[str] = "equal"
+    film_thickness: ClassVar[str] = "hamrock_dowson_1977"
+    meaningless: ClassVar[Mapping[str, str]] = {
+        "slices": "the contact of a ball is not divided into slices",
+        "averaging": "the contact of a ball does not travel along a path",
+    }
+
+    family: Literal["ball_on_disc"] = "ball_on_disc"
+    ball_radius: Annotated[float, BALL]
+    transverse_radius: Annotated[float, BALL] | None = None
+    track_radius: Annotated[float, TRACK]
+    slide_roll_ratio: Annotated[float, SLIDE_ROLL] = 0.0
+
+
 Gears = Annotated[
     Annotated[CylindricalGears, Tag("cylindrical")]
-    | Annotated[StrainWaveGears, Tag("strain_wave")],
-    Field(discriminator=by("family", CylindricalGears, StrainWaveGears)),
+    | Annotated[StrainWaveGears, Tag("strain_wave")]
+    | Annotated[BallOnDiscRig, Tag("ball_on_disc")],
+    Field(discriminator=by("family", CylindricalGears, StrainWaveGears, BallOnDiscRig)),
 ]

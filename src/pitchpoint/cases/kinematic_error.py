@@ -59,11 +59,12 @@ def kinematic_error_part(
         progress: told the number of states that are done, after each group of teeth.
     """
     models, _ = laws_of(built)
-    design = built.design
-    load = jnp.full((1, 1), built.case.operation.torque)
+    design, gears = built.design, built.case.gears
+    assert hasattr(gears, "teeth")
+    load = jnp.full((1, 1), built.case.operation.load)
     phases = PHASES if design.mesh.couples else FEW_PAIRS
     period = _period(design.mesh, design.solids, models.compliance, load, phases)
-    teeth = np.abs(np.asarray(built.case.gears.teeth))
+    teeth = np.abs(np.asarray(gears.teeth))
     solved: list[np.ndarray] = []
 
     def over(own: Surfaces, count: int) -> np.ndarray:

@@ -53,7 +53,7 @@ def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Torques [N m], speeds [rad/s] and temperatures [K]."""
     asked, point = built.case.loss_map, built.case.operation
     count = int(asked.count) if asked else 9
-    torque = (asked and asked.torque) or 1.5 * point.torque or 1.0
+    torque = (asked and asked.torque) or 1.5 * point.load or 1.0
     speed = (asked and asked.speed) or 1.5 * point.speed
     oil = built.lubricant
     around = point.temperature + np.array([-20.0, 0.0, 20.0])

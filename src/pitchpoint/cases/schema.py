@@ -142,7 +142,7 @@ def _rollings() -> list[str]:
 def _films() -> list[str]:
     from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 
-    return [name for name, law in FILM_THICKNESS.items() if law.shape == "line"]
+    return list(FILM_THICKNESS)
 
 
 def _oils() -> list[str]:
@@ -175,7 +175,10 @@ SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]
 
 
 class Materials(Table):
-    """Materials of both gears, by name or by value; of a strain wave gear, gear 1 is the flexspline."""
+    """Materials of both gears, by name or by value.
+
+    Gear 1 of a strain wave gear is the flexspline, that of a ball on disc the disc.
+    """
 
     gear_1: SolidValues | SolidName = "steel"
     gear_2: SolidValues | SolidName = "steel"
@@ -246,13 +249,20 @@ class Surface(Table):
 class Operating(Table):
     """Torque on the driven member, speed of the driving one, temperature of the oil.
 
-    The driver, where it is not given, is the first member of the gears that is not fixed.
+    The driver, where it is not given, is the first member of the gears that is not fixed. Test rigs
+    take the normal force in place of the torque.
     """
 
-    torque: Annotated[float, TORQUE]
+    torque: Annotated[float, TORQUE] | None = None
+    force: Annotated[float, FORCE] | None = None
     speed: Annotated[float, SPEED]
     temperature: Annotated[float, TEMPERATURE]
     driver: Text = ""
+
+    @property
+    def load(self) -> float:
+        """Torque or force, whichever the case has [N m or N]."""
+        return (self.torque if self.force is None else self.force) or 0.0
 
 
 class FrictionChoice(BaseModel):
@@ -598,6 +608,7 @@ class Case(Table):
     @model_validator(mode="after")
     def _of_family(self) -> "Case":
         """What is not given stands as is usual for the family; bodies are those that it has."""
+        _check_load(self)
         _check_bodies(self)
         for body in self.gears.members:
             _check_span(body, self.bearings_of(body))
@@ -608,6 +619,7 @@ class Case(Table):
         usual: dict[str, Any] = {
             "friction": (FrictionChoice(name=self.gears.friction),),
             "load_sharing": self.gears.load_sharing,
+            "film_thickness": self.gears.film_thickness,
         }
         left = {name: value for name, value in usual.items() if not _given(models, name)}
         return self.model_copy(
@@ -636,6 +648,30 @@ def _given(table: Table, key: str) -> bool:
     return key in table.model_fields_set
 
 
+def _check_load(case: Case) -> None:
+    """InputError unless the load is given that the driven member takes, and no table asks for the other."""
+    point, wanted = case.operation, case.gears.load
+    other = "force" if wanted == "torque" else "torque"
+    if getattr(point, other) is not None:
+        told = f"{_CARRIED[wanted]}; give {wanted} in place of {other}"
+        raise InputError(told, key=f"operation.{other}")
+    if getattr(point, wanted) is None:
+        missing = f"is missing{_needed(('operation', wanted))}"
+        raise InputError(missing, key=f"operation.{wanted}")
+    if wanted == "force" and case.loss_map is not None:
+        raise InputError(
+            "a loss map runs over the torque of an output, which a test rig does not have; leave this "
+            "table out",
+            key="loss_map",
+        )
+
+
+_CARRIED = {
+    "torque": "gears carry a torque",
+    "force": "a test rig is loaded by a normal force",
+}
+
+
 def _check_meant(case: Case) -> None:
     """InputError if a model is chosen that means nothing for the gears."""
     for key, why in case.gears.meaningless.items():
@@ -649,7 +685,10 @@ def _check_driver(case: Case) -> None:
     """InputError if the member that is to drive is fixed, or none of these gears."""
     driver, gears = case.operation.driver, case.gears
     if _given(case.operation, "driver") and driver not in gears.drivers:
-        why = "is fixed and cannot drive" if driver in gears.members else "is not in this drive"
+        fixed = (
+            "is fixed and cannot drive" if driver == getattr(gears, "fixed", "") else "cannot drive"
+        )
+        why = fixed if driver in gears.members else "is not in this drive"
         raise InputError(
             f"{shown(driver)} {why}; use {' or '.join(gears.drivers)}",
             key="operation.driver",
@@ -665,7 +704,7 @@ def _check_bodies(case: Case) -> None:
         told = (
             f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
             if strange is not None
-            else f"{shown(first)} was given twice; name two bodies of {', '.join(known)}"
+            else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
         )
         if strange is not None or first == second:
             raise InputError(told, key=f"losses.{name}.between")

@@ -128,17 +128,17 @@ def _warm(
     found: Mapping[str, float],
     document: Document,
 ) -> SolidInUse:
-    pair, point = mesh.reference, case.operation
-    assert pair is not None
+    pair, point, gears = mesh.reference, case.operation, case.gears
+    assert pair is not None and hasattr(gears, "teeth") and hasattr(gears, "module")
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(
         ambient=point.temperature,
-        power=point.torque * abs(float(mesh.loaded @ mesh.motion)) * point.speed,
+        power=point.load * abs(float(mesh.loaded @ mesh.motion)) * point.speed,
         friction=found["mean_friction"],
         loss_factor=found["loss_factor"],
         face_width=pair.width,
-        teeth=abs(case.gears.teeth[gear]),
+        teeth=abs(gears.teeth[gear]),
         pitch_speed=pair.pitch_line_speed * point.speed,
-        normal_module=case.gears.module,
+        normal_module=gears.module,
         mate="plastic" if used[1 - gear].plastic else "steel",
         housing_resistance=case.housing.thermal_resistance or None,
         housing_area=case.housing.area,

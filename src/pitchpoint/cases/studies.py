@@ -19,6 +19,7 @@ from pitchpoint.cases.laws import CASE_LAWS, limits_words
 from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import (
+    FORCE,
     SPEED,
     TEMPERATURE,
     TORQUE,
@@ -51,6 +52,9 @@ _TOLD = ("targets", "issues", "studies")
 
 SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
+
+AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "sliding_velocity")
+"""Figures of a test rig, whose contact stays as it is."""
 
 _SHOWN = 3
 
@@ -162,6 +166,12 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     yield Job("laws", "spread of the friction laws", (lambda _: _laws(built),))
     yield from _yielding(built)
     yield from studies
+    if built.transmits:
+        yield from _of_power(variant, built)
+
+
+def _of_power(variant: Variant, built: Built) -> Iterator[Job]:
+    """Parts on the power that goes through."""
     yield from _running(variant, built)
     models, chosen = laws_of(built)
     titles = [models.friction[law].title for law in chosen]
@@ -301,7 +311,11 @@ def _jammed(
 
 def _operation(built: Built) -> xr.Dataset:
     models, chosen = laws_of(built)
-    extra = {**_vibrations([built], len(chosen)), **_temperatures([built], len(chosen))}
+    extra = {
+        **_vibrations([built], len(chosen)),
+        **_temperatures([built], len(chosen)),
+        **_at_contact([built], models, chosen),
+    }
     return _summaries([built], models, chosen, extra, title="operating point")
 
 
@@ -391,6 +405,7 @@ def _points(
             **axis,
             **_vibrations(points, len(chosen)),
             **_temperatures(points, len(chosen)),
+            **_at_contact(points, models, chosen),
             **readings_of(points, len(chosen)),
         }
         data = _summaries(points, models, chosen, extra, progress, title=title)
@@ -471,10 +486,24 @@ def _backwards(variant: Variant, built: Built) -> Built:
     return variant.built(
         {
             "operation.driver": built.loaded,
-            "operation.torque": SIValue(point.torque / step),
+            "operation.torque": SIValue(point.load / step),
             "operation.speed": SIValue(point.speed / step),
         }
     )
+
+
+def _at_contact(points: Sequence[Built], models: Models, laws: Sequence[int]) -> dict[str, Any]:
+    """Pressure, film and speeds at the one contact of a rig, which transmits nothing."""
+    if points[0].transmits:
+        return {}
+    runs = [_profiles(point, models, laws) for point in points]
+    return {
+        name: (
+            ("law", "point"),
+            np.array([[run[name][0, 0, 0] for run in each] for each in runs]).T,
+        )
+        for name in AT_CONTACT
+    }
 
 
 def _temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
@@ -548,6 +577,8 @@ def _summaries(
         warnings=warnings,
     )
     data["mean_efficiency"].attrs.update(points[0].covers)
+    if not points[0].transmits:
+        data["mean_efficiency"].attrs["note"] = "undefined (NaN): no power goes through a test rig"
     return data
 
 
@@ -672,12 +703,15 @@ def jamming_words(acting: float, limit: float) -> str:
     return f"friction {acting:.3g} reaches the {limit:.3g} at which this mesh locks"
 
 
+_LOADS = {"torque": TORQUE, "force": FORCE}
+
+
 def _where(built: Built) -> str:
     point = built.case.operation
     return ", ".join(
         f"{name} {kind.show(value)}"
         for name, kind, value in (
-            ("at torque", TORQUE, point.torque),
+            (f"at {built.case.gears.load}", _LOADS[built.case.gears.load], point.load),
             ("speed", SPEED, point.speed),
             ("temperature", TEMPERATURE, point.temperature),
         )
@@ -710,11 +744,12 @@ def _face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
     if mesh.touching or across == 1 or not pairs.any():
         return []
     most = int(carries.sum(axis=2).max())
-    torque = TORQUE.show(built.case.operation.torque)
+    gears = built.case.gears
+    load = _LOADS[gears.load].show(built.case.operation.load)
     if most <= LEAST_FACE:
         raise InputError(
-            f"at {torque} only {most} of {across} slices of a contact line get load, nearly a point in "
-            "place of a line; less crowning, end relief or misalignment, a higher torque or more slices "
+            f"at {load} only {most} of {across} slices of a contact line get load, nearly a point in "
+            "place of a line; less crowning, end relief or misalignment, a higher load or more slices "
             "leave a line of contact",
             key="gears",
         )
@@ -723,7 +758,7 @@ def _face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
     if share > 1.0 - 1e-9:
         return []
     return [
-        f"Of the contact lines that carry, {100.0 * (1.0 - share):.2g} % get no load at {torque}: there "
+        f"Of the contact lines that carry, {100.0 * (1.0 - share):.2g} % get no load at {load}: there "
         "flanks do not touch."
     ]
 

@@ -29,7 +29,7 @@ SHOWN = 3
 def torsion_part(built: Built) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
     models, chosen = laws_of(built)
-    torques = np.linspace(0.0, 2.0 * built.case.operation.torque or 1.0, TORQUES)
+    torques = np.linspace(0.0, 2.0 * built.case.operation.load or 1.0, TORQUES)
     friction = _mean_friction(built, models, chosen)
     found = _torsion(built, models, torques, friction)
     dims = {
@@ -78,7 +78,7 @@ def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
 def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     """Why a loop of torque over wind-up has no width, or is not there."""
     models, chosen = laws_of(built)
-    if built.case.operation.torque == 0.0:
+    if built.case.operation.load == 0.0:
         return [
             "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
             "as zero and the torque loop has no width."

@@ -280,7 +280,7 @@ def _loads(built: Built) -> list[Operation]:
 
 def _torques(built: Built) -> list[float]:
     assert built.case.dynamics is not None
-    return list(built.case.dynamics.torques or (built.case.operation.torque,))
+    return list(built.case.dynamics.torques or (built.case.operation.load,))
 
 
 def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
@@ -301,7 +301,7 @@ def _moduli(built: Built) -> list[str]:
     asked = built.case.dynamics
     if built.case.models.tooth_temperature == "isothermal" or asked is None:
         return []
-    if asked.speeds is None and set(_torques(built)) <= {built.case.operation.torque}:
+    if asked.speeds is None and set(_torques(built)) <= {built.case.operation.load}:
         return []
     return [
         "The moduli are those at the operating point, for all torques and speeds of the vibration; a "

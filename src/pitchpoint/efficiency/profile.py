@@ -41,7 +41,7 @@ def profile(
     state = result.state
     at, contacts = state.conditions, state.contacts
     carries = state.balance.force > 0.0
-    thickness = jnp.where(carries, evaluate(film.function, at), jnp.nan)
+    thickness = jnp.where(carries, evaluate(film, at), jnp.nan)
     mesh = {
         "phase": result.phase,
         "weight": result.weight,

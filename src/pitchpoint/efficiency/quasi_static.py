@@ -118,7 +118,7 @@ class Models(eqx.Module):
         """Friction coefficient at every contact by the chosen law."""
 
         def branch(law: FrictionLaw) -> Callable[[Conditions], Lanes]:
-            return lambda at: evaluate(law.function, at, self.parameters.get(law.name))
+            return lambda at: evaluate(law, at, self.parameters.get(law.name))
 
         if len(self.friction) == 1:
             return branch(self.friction[0])(conditions)
@@ -264,7 +264,8 @@ class State(eqx.Module):
         sliding_loss, rolling_loss: power lost at each slice [W].
         drag_loss: power lost beside the teeth [W].
         input_torque: torque of the driver in its direction of motion [N m].
-        output_power: power taken from all coordinates but the driver [W].
+        input_power: power put in at all coordinates but the loaded one [W].
+        output_power: power taken at the loaded coordinate [W]; zero where it stands still.
     """
 
     contacts: Contacts
@@ -274,17 +275,13 @@ class State(eqx.Module):
     rolling_loss: Lanes
     drag_loss: Each
     input_torque: Each
+    input_power: Each
     output_power: Each
 
     @property
     def loss(self) -> Each:
         """Power lost in all contacts and beside the teeth [W]."""
         return total(self.sliding_loss + self.rolling_loss) + self.drag_loss
-
-    @property
-    def input_power(self) -> Each:
-        """Power of the driver, from the balance of torques [W]."""
-        return self.input_torque * self.conditions.speed
 
     @property
     def efficiency(self) -> Each:
@@ -362,7 +359,7 @@ def state(
     balanced = balance(**_in_balance(given, models), guess=guess)
     at_contact = replace(unloaded, load=balanced.load)
     driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
-    others = (1.0 - mesh.driver) * mesh.motion
+    putting, taking = (1.0 - mesh.loaded) * mesh.motion, mesh.loaded * mesh.motion
     return State(
         contacts=contacts,
         conditions=at_contact,
@@ -371,7 +368,8 @@ def state(
         rolling_loss=2.0 * balanced.rolling * as_array(at_contact.entrainment),
         drag_loss=along(balanced.drag, mesh.motion) * operation.speed,
         input_torque=along(balanced.torque, driver),
-        output_power=-along(balanced.torque, others) * operation.speed,
+        input_power=along(balanced.torque, putting) * operation.speed,
+        output_power=-along(balanced.torque, taking) * operation.speed,
     )
 
 
@@ -387,7 +385,7 @@ def _in_balance(given: _Given, models: Models) -> dict[str, Any]:
 
     def rolling(load: Lanes) -> Lanes:
         at = replace(unloaded, load=load)
-        return evaluate(models.rolling.function, at) * contacts.weight
+        return evaluate(models.rolling, at) * contacts.weight
 
     return {
         "contacts": contacts,

@@ -41,7 +41,7 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
 
     Mean over one pitch of the sliding arms over the driver's arm; for an involute pair with equal
     load sharing it is Ohlendorf's closed form. Pairs with gaps cannot share equally: they take their
-    shares of one load.
+    shares of one load. NaN where the driver presses no contact, as in a test rig.
 
     Args:
         design: mesh.
@@ -57,7 +57,10 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
         weight, contacts, share = engaged.weight, engaged.contacts, engaged.share
     sliding = jnp.abs(along(contacts.slip_arm, mesh.motion))
     arm = jnp.abs(along(contacts.normal, mesh.driver))
-    return total(share * sliding / arm) @ weight
+    presses = jnp.any(arm > 0.0)
+    return jnp.where(
+        presses, total(share * sliding / jnp.where(presses, arm, 1.0)) @ weight, jnp.nan
+    )
 
 
 def summary(

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.tooth_section import ToothSection
@@ -82,6 +82,7 @@ class Mesh(eqx.Module):
 
     Attributes:
         pitch_point: of the class; True if `reference` is not None.
+        shape: of the class; that of all its contacts.
         toothed: of the class; True if `sections` holds teeth that yield.
         couples: of the class; True if bodies under the teeth couple them, see `body_compliance`.
         counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
@@ -90,6 +91,7 @@ class Mesh(eqx.Module):
     """
 
     pitch_point: ClassVar[bool] = False
+    shape: ClassVar[Shape] = "line"
     toothed: ClassVar[bool] = False
     couples: ClassVar[bool] = False
     counts: ClassVar[Path] = "turn"

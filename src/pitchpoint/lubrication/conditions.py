@@ -1,21 +1,21 @@
 """Conditions at each contact under the names by which the laws of friction and film ask for them."""
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, Protocol
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.errors import InputError
 from pitchpoint.factored import as_array, product
 from pitchpoint.gears.mesh import Reference
 
-__all__ = ["Conditions", "arguments", "evaluate"]
+__all__ = ["Conditions", "Law", "arguments", "demand_shape", "evaluate", "shape_of"]
 
 Lanes = Float[Array, "pair slice *b"]
 Each = Float[Array, "*b"]
@@ -55,8 +55,14 @@ class Conditions(eqx.Module):
     reference: Reference | None
 
     @property
+    def shape(self) -> Shape:
+        """Whether the contacts are lines or ellipses."""
+        return self.contacts.shape
+
+    @property
     def line_load(self) -> Lanes:
-        """Normal load per length of contact line [N/m]."""
+        """Normal load per length of contact line [N/m]; of line contacts."""
+        self._demand("line", "load per length")
         return self.load / self.contacts.weight
 
     @property
@@ -95,12 +101,13 @@ class Conditions(eqx.Module):
     @property
     def transverse_radius(self) -> Lanes:
         """Relative radius of curvature across the rolling direction [m]; of elliptic contacts."""
+        self._demand("ellipse", "radius across the rolling direction")
         return 1.0 / self.contacts.relative_curvature[1]
 
     @property
     def pressure(self) -> Lanes:
         """Largest Hertz pressure [Pa]."""
-        if self.contacts.shape == "ellipse":
+        if self.shape == "ellipse":
             return hertz.elliptic_pressure(
                 load=as_array(self.load),
                 radius=self.radius,
@@ -113,7 +120,8 @@ class Conditions(eqx.Module):
 
     @property
     def half_width(self) -> Lanes:
-        """Half-width of a line contact [m]."""
+        """Half-width of a line contact [m]; of line contacts."""
+        self._demand("line", "half-width")
         return hertz.line_half_width(
             line_load=self.line_load, radius=self.radius, modulus=self.modulus
         )
@@ -142,6 +150,11 @@ class Conditions(eqx.Module):
     def pitch_line_speed(self) -> Each:
         """Speed of the pitch circles [m/s]."""
         return self.speed * self._pitch_point.pitch_line_speed
+
+    def _demand(self, shape: Shape, what: str) -> None:
+        """InputError if the contacts have no such quantity."""
+        if self.shape != shape:
+            raise InputError(f"{_KINDS[shape]} have a {what}, and these touch {_TOUCH[self.shape]}")
 
     @property
     def _pitch_point(self) -> Reference:
@@ -180,6 +193,88 @@ UNITS: Mapping[str, str] = {
 }
 
 
+_OF_SHAPE: Mapping[str, Shape] = {
+    "line_load": "line",
+    "half_width": "line",
+    "reference_line_load": "line",
+    "load": "ellipse",
+    "transverse_radius": "ellipse",
+}
+"""Conditions that mean something for one shape of contact; a line carries its load per length."""
+
+_KINDS: Mapping[Shape, str] = {"line": "line contacts", "ellipse": "elliptic contacts"}
+_TOUCH: Mapping[Shape, str] = {"line": "along lines", "ellipse": "in an ellipse"}
+
+
+class Law(Protocol):
+    """A published law: a function of conditions with what a user needs to choose it."""
+
+    @property
+    def name(self) -> str:
+        """Name by which it is chosen."""
+        ...
+
+    @property
+    def function(self) -> Callable[..., Array]:
+        """The law; keyword-only, SI in and out."""
+        ...
+
+    @property
+    def shape(self) -> Shape | None:
+        """Shape of contact for which it holds; None where only what it asks for says that."""
+        ...
+
+    @property
+    def rivals(self) -> "Iterable[Law]":
+        """Laws of the library for the same effect."""
+        ...
+
+
+def shape_of(law: Law | Callable[..., Array]) -> Shape | None:
+    """Shape of contact for which a law holds: as its record states, else by what it asks for.
+
+    Args:
+        law: a record of the library, or a function.
+
+    Returns:
+        None for a law that holds for every shape.
+
+    Example:
+        >>> shape_of(lambda *, transverse_radius: 0.05)
+        'ellipse'
+    """
+    stated: Shape | None = getattr(law, "shape", None)
+    return stated or _asked(_function(law))
+
+
+def demand_shape(law: Law | Callable[..., Array], shape: Shape) -> None:
+    """InputError if a law does not hold for contacts of this shape.
+
+    Args:
+        law: a record of the library, or a function.
+        shape: of the contacts.
+    """
+    own = shape_of(law)
+    if own in (None, shape):
+        return
+    assert own is not None
+    name = getattr(law, "name", getattr(law, "__name__", "the law"))
+    fitting = [one.name for one in getattr(law, "rivals", ()) if shape_of(one) in (None, shape)]
+    choose = f"; choose one of {', '.join(fitting)}" if fitting else ""
+    raise InputError(f"'{name}' holds for {_KINDS[own]}, and these touch {_TOUCH[shape]}{choose}")
+
+
+def _function(law: Law | Callable[..., Array]) -> Callable[..., Array]:
+    return law if callable(law) else law.function
+
+
+@lru_cache(maxsize=256)
+def _asked(function: Callable[..., Array]) -> Shape | None:
+    """Shape that alone has what a law asks for; None if every contact has it."""
+    wanted, _ = arguments(function)
+    return next((_OF_SHAPE[name] for name in wanted if name in _OF_SHAPE), None)
+
+
 def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     """Conditions that a law asks for, and its own parameters with their defaults.
 
@@ -201,18 +296,26 @@ def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
 
 
 def evaluate(
-    law: Callable[..., Array], conditions: Conditions, parameters: Mapping[str, Any] | None = None
+    law: Law | Callable[..., Array],
+    conditions: Conditions,
+    parameters: Mapping[str, Any] | None = None,
 ) -> Lanes:
     """Value of a law at every contact.
 
     Args:
-        law: function with keyword arguments named as in `UNITS`; others are its parameters.
+        law: a record of the library, or a function with keyword arguments named as in `UNITS`; others
+            are its parameters.
         conditions: at the contacts.
         parameters: values of its parameters where they differ from the defaults.
+
+    Raises:
+        InputError: the law holds for contacts of another shape.
     """
-    wanted, _ = arguments(law)
+    demand_shape(law, conditions.shape)
+    function = _function(law)
+    wanted, _ = arguments(function)
     values = {name: getattr(conditions, name) for name in wanted}
-    found = _once(law)(**values, **(parameters or {}))
+    found = _once(function)(**values, **(parameters or {}))
     return jnp.broadcast_to(found, conditions.load.shape).astype(conditions.load.dtype)
 
 

@@ -1,6 +1,6 @@
 """Film thickness of EHL contacts by published regressions."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from jaxtyping import Array, Float
@@ -21,7 +21,10 @@ Each = Float[Array, "*b"]
 
 @dataclass(frozen=True, eq=False)
 class FilmThickness:
-    """A named film law; `function` gives metres, `place` says minimum or central film."""
+    """A named film law; `function` gives metres, `place` says minimum or central film.
+
+    It holds for contacts of one `shape`.
+    """
 
     name: str
     title: str
@@ -30,6 +33,11 @@ class FilmThickness:
     place: str
     shape: Shape = "line"
     note: str = ""
+
+    @property
+    def rivals(self) -> "Iterable[FilmThickness]":
+        """Film laws of the library."""
+        return FILM_THICKNESS.values()
 
 
 def dowson_higginson_1959(
@@ -78,7 +86,7 @@ def hamrock_dowson_1977(
         transverse_radius: R_y [m].
         modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
 
-    W = F/(E' R_x^2), k = (R_y/R_x)^(2/pi). Source: Hamrock and Dowson (1977).
+    W = F/(E' R_x^2), k = (R_y/R_x)^(2/pi), fitted from 1 (a ball) to 8. Source: Hamrock and Dowson (1977).
     """
     groups = (
         load / (modulus * radius**2),
@@ -127,5 +135,6 @@ FILM_THICKNESS = Registry(
         ("hamrock_dowson_1977",),
         "minimum",
         "ellipse",
+        "Fitted to contacts as wide across the rolling direction as along it, or wider, up to a ratio of 8.",
     ),
 )

@@ -9,7 +9,7 @@ not depend on each other.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import reduce
 from operator import or_
@@ -19,6 +19,7 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import as_array, log, scaled
 
 __all__ = [
@@ -66,6 +67,7 @@ class FrictionLaw:
         note: what it was fitted on, and cautions.
         full_film: True if it describes contacts that a film separates.
         check: arguments in SI and the value computed from the printed formula in printed units.
+        shape: of the contacts for which it holds; None where what it asks for says that.
     """
 
     name: str
@@ -79,6 +81,12 @@ class FrictionLaw:
     full_film: bool = False
     largest: float = math.inf
     whole: bool = False
+    shape: Shape | None = None
+
+    @property
+    def rivals(self) -> "Iterable[FrictionLaw]":
+        """Laws of the library."""
+        return LAWS
 
 
 def _power_product(*factors: tuple[ArrayLike, float], exponent: ArrayLike = 0.0) -> Array:
@@ -256,6 +264,7 @@ LAWS: Final[tuple[FrictionLaw, ...]] = (
             " oils, about 0.6 to 1. No range of the fit was found: the limits are those of its form,"
             " by which flanks without roughness have no friction, and of steel in oil."
         ),
+        shape="line",
         ranges={"roughness_ra": (1e-8, math.inf)},
         largest=BOUNDARY,
         whole=True,

@@ -1,11 +1,12 @@
 """Rolling resistance of lubricated contacts: the pressure of the inlet film works against both surfaces."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Shape
 from pitchpoint.registry import Registry
 
 __all__ = ["ROLLING_RESISTANCE", "RollingResistance", "none", "wu_cheng_1991"]
@@ -15,13 +16,22 @@ Each = Float[Array, "*b"]
 
 @dataclass(frozen=True, eq=False)
 class RollingResistance:
-    """A named model of rolling resistance; `function` gives N per metre of contact line and surface."""
+    """A named model of rolling resistance; `function` gives N per metre of contact line and surface.
+
+    It holds for contacts of one `shape`, or of any (None).
+    """
 
     name: str
     title: str
     function: Callable[..., Array]
     sources: tuple[str, ...] = ()
     note: str = ""
+    shape: Shape | None = None
+
+    @property
+    def rivals(self) -> "Iterable[RollingResistance]":
+        """Models of the library."""
+        return ROLLING_RESISTANCE.values()
 
 
 def none() -> Each:
@@ -75,5 +85,6 @@ ROLLING_RESISTANCE = Registry(
         wu_cheng_1991,
         ("goksem_hargreaves_1978", "wu_cheng_1991"),
         "Fully flooded line contacts; force per length and surface, it brakes both.",
+        "line",
     ),
 )

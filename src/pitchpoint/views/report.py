@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pitchpoint.cases.catalogue import CONTACT, of_contact
 from pitchpoint.cases.comparison import Row, counts
 from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.studies import jamming_words
 from pitchpoint.results.store import write_text
+from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel, cycle_pitch, loss_places, path_panel
 from pitchpoint.views.design_chart import design_charts
@@ -240,12 +242,13 @@ def _payload(panels: Iterable[Panel]) -> str:
 def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
     """What the top of the page says about one variant."""
     manifest, parts = outcome.manifest, outcome.parts
+    single = of_contact(parts.get("operation", ()))
     return {
         "name": name,
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
-        "sharing": manifest["models"][0]["title"],
-        "averaging": _averaging(outcome),
+        "sharing": "" if single else manifest["models"][0]["title"],
+        "averaging": "" if single else _averaging(outcome),
         "operation": _operation(outcome),
         "laws": manifest["laws"],
         "warnings": _warnings(outcome),
@@ -287,12 +290,12 @@ def _operation(outcome: Outcome) -> str:
     other = "gear 1" if value["driver"] == "gear 2" else "gear 2"
     driven = outcome.manifest.get("loaded", other)
     return (
-        f"{value['driver']} drives at {value['speed']}, {driven} carries {value['torque']}, "
-        f"oil at {value['temperature']}"
+        f"{value['driver']} drives at {value['speed']}, {driven} carries "
+        f"{value['torque'] or value['force']}, oil at {value['temperature']}"
     )
 
 
-_POINT = ("driver", "speed", "torque", "temperature")
+_POINT = ("driver", "speed", "torque", "force", "temperature")
 
 
 def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str, Any]:
@@ -317,10 +320,19 @@ def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str
         "locked": bool(data["locked"].values[position, 0]),
         "jamming": _jamming(data, position),
         "back": _back_driving(outcome, law),
+        "contact": [
+            (VARIABLES[name].long_name, show.quantity(name, value(name)))
+            for name in _at_contact(data)
+        ],
         "drag": drag_answer(outcome, position),
         "bearings": bearing_answer(outcome, position),
         "starting": starting_answer(outcome, law),
     }
+
+
+def _at_contact(data: Any) -> tuple[str, ...]:
+    """Names of the figures of a test rig; none of a drive."""
+    return CONTACT if of_contact(data) else ()
 
 
 def _range(name: str, value: Callable[[str], float]) -> str:

@@ -62,11 +62,14 @@ def bearing_answer(outcome: Outcome, law: int) -> list[tuple[str, str]]:
     """What the teeth put on the shafts, and each bearing beside them bears: names and words."""
     data = outcome.parts["operation"]
     found = []
-    for words, name in (("across the shafts", "radial"), ("along the shafts", "axial")):
+    for words, name in (
+        ("radial load on the shafts", "radial"),
+        ("axial load on the shafts", "axial"),
+    ):
         both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
         if any(both):
             shown = dict.fromkeys(show.quantity(f"{name}_reaction_1", value) for value in both)
-            found.append((f"{words}", " and ".join(shown)))
+            found.append((words, " and ".join(shown)))
     if "bearing_load" in data:
         loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
         found += [

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
+from pitchpoint.cases.catalogue import CONTACT, of_contact
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
@@ -44,6 +45,7 @@ _TABLE = (
 
 _WORDS = {
     "operation.torque": "output torque",
+    "operation.force": "normal force",
     "operation.speed": "driver speed",
     "operation.temperature": "oil temperature",
     "roughness.ra": "roughness Ra",
@@ -91,6 +93,8 @@ def _studies(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[s
 def _columns(seen: Seen) -> list[str]:
     """Quantities of the table of a study of a single point."""
     more = ["mean_stiffness", "stiffness_variation", *_MOVING[1:]]
+    if of_contact(seen[0][1]):
+        return [*CONTACT]
     return [*_TABLE, *(name for name in more if any(name in data for _, data, _ in seen))]
 
 
@@ -115,7 +119,8 @@ def _panel(name: str, seen: Seen) -> Panel:
     chart = is_design_chart(data)
     axes = [_swept, _ratio] if _ratio_varies(data) and not chart else [_swept]
     more = _MOVING[2:] if chart else _MOVING
-    shown = [*_SHOWN, *(name for name in more if any(name in data for _, data, _ in seen))]
+    first = CONTACT if of_contact(data) else _SHOWN
+    shown = [*first, *(name for name in more if any(name in data for _, data, _ in seen))]
     figures = [_figure(f"{name}_{variable}", variable, seen, axes[-1]) for variable in shown]
     choices = []
     if len(axes) > 1:
@@ -149,7 +154,7 @@ def _trace(curve: Curve, data: xr.Dataset, law: int, variable: str, axis: Any, u
 
 
 def _choice(axis: Any, figures: list[Figure], seen: Seen) -> Choice:
-    x = [_trace(curve, data, law, _SHOWN[0], axis, "")["x"] for curve, data, law in seen]
+    x = [_trace(curve, data, law, "mean_loss", axis, "")["x"] for curve, data, law in seen]
     title = axis(seen[0][1])[1]
     change: list[Any] = [{"x": x}, {"xaxis.title.text": text(title)}]
     return Choice(title, {figure.name: change for figure in figures})

@@ -34,6 +34,7 @@ _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 
 _ELASTIC = Key("without friction", INK, "dash")
 _STIFFNESS = Key("slope of the torque over the wind-up", PALETTE[0])
+_RANGE = Key("largest less smallest rotation over the mesh cycle", PALETTE[3])
 _PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
 _ENDS = (Key("one end of the long axis", PALETTE[0]), Key("the other end", PALETTE[1], "dash"))
 
@@ -65,8 +66,16 @@ def torsion_answer(outcome: Outcome) -> str:
     return (
         f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
         f"{told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in the mean"
+        + _free(float(data["lost_motion"]))
         + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
     )
+
+
+def _free(lost_motion: float) -> str:
+    """Play between the flanks in words; empty without any."""
+    if not lost_motion > 0.0:
+        return ""
+    return f"; without load it is free to turn by {level('lost_motion', lost_motion)} between its flanks"
 
 
 def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
@@ -78,6 +87,14 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
             f"{name}_stiffness", "torsional_stiffness", "Torsional stiffness", data, _STIFFNESS
         ),
         _against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS),
+        _over_cycle(f"{name}_error", data),
+        _against(
+            f"{name}_range",
+            "angular_transmission_error_range",
+            "Static transmission error, peak to peak,",
+            data,
+            _RANGE,
+        ),
         *([_bearing(f"{name}_bearing", data)] if "zone_load" in data else []),
     ]
     return Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
@@ -86,22 +103,13 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
 def _distribution(name: str, data: xr.Dataset) -> Figure:
     """Force on every tooth at one end of the long axis at several torques, all phases together."""
     force = display("tooth_force", data["tooth_force"])
-    torques = display("torque", data["torque"])
     zones = data.sizes.get("zone", 1)
     half = data.sizes["pair"] // zones
     place = data["path"].values[:, :half].ravel()
     angle = 360.0 * place if zones > 1 else place
     order = np.argsort(angle, kind="stable")
-    chosen = np.unique(np.linspace(0, torques.size - 1, len(_SHADES) + 1).round().astype(int))
-    chosen = chosen[torques[chosen] > 0.0]
-    keys = [
-        Key(level("torque", float(data["torque"].values[k])), shade)
-        for k, shade in zip(chosen, _SHADES, strict=False)
-    ]
-    traces = [
-        _course(key, angle[order], force[k, :, :half].ravel()[order])
-        for k, key in zip(chosen, keys, strict=False)
-    ]
+    drawn = _shades(data)
+    traces = [_course(key, angle[order], force[k, :, :half].ravel()[order]) for k, key in drawn]
     touched = [x for trace in traces for x, y in zip(trace["x"], trace["y"], strict=True) if y]
     ends = [min(touched, default=-20.0), max(touched, default=20.0)]
     edge = 0.06 * (ends[1] - ends[0])
@@ -117,8 +125,35 @@ def _distribution(name: str, data: xr.Dataset) -> Figure:
         ),
         "Without friction. Every line is the way of a tooth through the zone; the teeth stand one pitch "
         f"apart on it.{' The other end of the long axis carries alike.' if zones > 1 else ''}",
-        tuple(keys),
+        tuple(key for _, key in drawn),
         missing="No tooth carries.",
+    )
+
+
+def _shades(data: xr.Dataset) -> list[tuple[int, Key]]:
+    """Some torques, by place, and how they are drawn."""
+    torques = data["torque"].values
+    chosen = np.unique(np.linspace(0, torques.size - 1, len(_SHADES) + 1).round().astype(int))
+    chosen = chosen[torques[chosen] > 0.0]
+    return [
+        (int(k), Key(level("torque", float(torques[k])), shade))
+        for k, shade in zip(chosen, _SHADES, strict=False)
+    ]
+
+
+def _over_cycle(name: str, data: xr.Dataset) -> Figure:
+    """Rotation of the loaded member under load over one mesh cycle, at several torques."""
+    variable = "angular_transmission_error"
+    values, unit = display(variable, data[variable]), show.unit(VARIABLES[variable].display)
+    drawn = _shades(data)
+    return Figure(
+        name,
+        "Static transmission error over the mesh cycle",
+        [plain(key, data["phase"].values, values[k], unit) for k, key in drawn],
+        layout("phase of the mesh cycle", short_axis(variable), yaxis={"rangemode": "tozero"}),
+        "Rotation of the loaded member against its place without load and without gaps between the "
+        "flanks as designed.",
+        tuple(key for _, key in drawn),
     )
 
 

@@ -310,7 +310,7 @@ def _of_base_circles(
     return {
         "base_radius_flexspline": radii[0],
         "base_radius_circular_spline": radii[1],
-        **_loads(gears, radii, operation.torque),
+        **_loads(gears, radii, operation.load),
         **_curvatures(gears, radii, deflection),
         **_speeds(gears, radii, deflection, operation.speed),
     }

@@ -136,7 +136,7 @@ def readings(built: Built) -> dict[str, float]:
     gears, mesh = built.case.gears, built.design.mesh
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)
-    torque = built.case.operation.torque
+    torque = built.case.operation.load
     diameter = gears.module * (gears.teeth[0] - ENGAGED_HEIGHT)
     zone = {"half_zone": HALF_ZONE, "diameter": diameter, "face_width": gears.face_width}
     load = largest_tangential_load(torque=torque, **zone)

@@ -1,0 +1,119 @@
+"""What test rigs have in common: one contact that stays where it is."""
+
+import abc
+
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Spot
+from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.gears.mesh import Mesh, Reference
+
+__all__ = ["Rig"]
+
+
+class Rig(Mesh):
+    """One contact that stays where it is. Coordinates: rotation of each body, approach along the normal.
+
+    The load acts on the approach, which stands still: nothing is transmitted. Phase counts turns of
+    body 0.
+    """
+
+    @property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """One contact, always."""
+        return jnp.asarray(1.0)
+
+    @property
+    def driver(self) -> Float[Array, "3"]:
+        """Body 0 sets the speed."""
+        return jnp.array([1.0, 0.0, 0.0])
+
+    @property
+    def loaded(self) -> Float[Array, "3"]:
+        """The load presses along the normal."""
+        return jnp.array([0.0, 0.0, 1.0])
+
+    @property
+    def period(self) -> Float[Array, ""]:
+        """One turn of body 0."""
+        return jnp.asarray(2.0 * jnp.pi)
+
+    @property
+    def reference(self) -> Reference | None:
+        """A rig has no pitch point."""
+        return None
+
+    @property
+    def _approach(self) -> Coordinate:
+        """The way along which the load presses body 1 on body 0."""
+        return Coordinate("load", self._frame[0], -self._frame[1], 1, turns=False)
+
+    @property
+    @abc.abstractmethod
+    def _frame(self) -> Float[Array, "3 3"]:
+        """Place of the contact, normal out of body 0, and tangent."""
+
+    def events(self) -> Float[Array, "1"]:
+        """Nothing enters or leaves."""
+        return jnp.zeros(1)
+
+    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+        """Both bodies turn on under the contact."""
+        lanes = contacts.path.shape
+        first, second = (
+            Spot(
+                flank=flank,
+                across=contacts.width,
+                angle=jnp.broadcast_to(-rate * self.period * phase, lanes),
+                tooth=jnp.zeros(lanes, int),
+                leaning=jnp.ones(lanes),
+            )
+            for flank, rate in zip(contacts.flank, self.motion[:2], strict=True)
+        )
+        return first, second
+
+    def _contacts(
+        self,
+        phase: Float[Array, "*b"],
+        curvature: Float[Array, "2 2"],
+        arms: tuple[Float[Array, ""], Float[Array, ""]],
+        length: Float[Array, ""],
+    ) -> Contacts:
+        """The one contact at any phase.
+
+        Args:
+            phase: [periods].
+            curvature: of each body along and across the rolling direction [1/m].
+            arms: surface velocity of each body for a unit rate of its rotation [m/rad].
+            length: of the contact line [m]; one for an ellipse, which carries as a whole.
+        """
+        lanes = (1, 1, *jnp.shape(phase))
+        zero = jnp.zeros(lanes)
+        point, direction, tangent = _everywhere(self._frame, lanes)
+        turn = jnp.mod(phase, 1.0)[None, None]
+        surface = jnp.zeros((2, 3)).at[0, 0].set(arms[0]).at[1, 1].set(arms[1])
+        speeds = surface @ self.motion
+        return Contacts(
+            active=jnp.ones(lanes, bool),
+            path=turn,
+            width=zero,
+            weight=jnp.broadcast_to(length, lanes),
+            curvature=_everywhere(curvature, lanes),
+            surface=_everywhere(surface, lanes),
+            normal=_everywhere(self.loaded, lanes),
+            gap=zero,
+            flank=_everywhere(speeds * self.period, lanes) * turn,
+            point=point,
+            direction=direction,
+            tangent=tangent,
+            shape=self.shape,
+        )
+
+
+def _everywhere(values: Float[Array, "..."], lanes: tuple[int, ...]) -> Float[Array, "..."]:
+    """The same values [structure] at every contact [structure pair slice *b]."""
+    return jnp.broadcast_to(
+        values.reshape(*values.shape, *(1 for _ in lanes)), (*values.shape, *lanes)
+    )

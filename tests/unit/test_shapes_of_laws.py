@@ -1,0 +1,161 @@
+"""Laws hold for one shape of contact, and say so where they are asked about another."""
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from pitchpoint._jax import array
+from pitchpoint.cases.laws import FRICTION
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.hertz import elliptic_pressure
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.conditions import Conditions, arguments, evaluate, shape_of
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+
+LAWS = (*FRICTION.values(), *FILM_THICKNESS.values(), *ROLLING_RESISTANCE.values())
+LINES = {"line_load", "half_width", "reference_line_load"}
+ELLIPSES = {"load", "transverse_radius"}
+
+
+def conditions(shape):
+    """A steel contact of 50 N, 9.525 mm both ways."""
+    one = array(np.ones((1, 1)))
+    curvature = array(np.array([[0.0, 0.0], [1.0, 1.0]])[..., None, None] / 9.525e-3)
+    contacts = Contacts(
+        active=array(np.ones((1, 1), bool)),
+        path=one,
+        width=one,
+        weight=one,
+        curvature=curvature,
+        surface=array(np.ones((2, 3, 1, 1))),
+        normal=array(np.ones((3, 1, 1))),
+        gap=one,
+        flank=array(np.ones((2, 1, 1))),
+        **dict.fromkeys(("point", "direction", "tangent"), array(np.ones((3, 1, 1)))),
+        shape=shape,
+    )
+    scalars = dict.fromkeys(
+        ("nominal_load", "speed", "viscosity", "kinematic_viscosity", "pressure_viscosity"),
+        array(1.0),
+    )
+    scalars |= dict.fromkeys(("lubricant_factor", "roughness_ra", "roughness_rq"), array(1.0))
+    return Conditions(
+        contacts=contacts,
+        load=array(np.full((1, 1), 50.0)),
+        slip=one,
+        roll=one,
+        modulus=array(226e9),
+        reference=None,
+        **scalars,
+    )
+
+
+def test_what_a_law_states_fits_what_it_asks_for():
+    for law in LAWS:
+        asked = set(arguments(law.function)[0])
+        assert shape_of(law) != "line" or not asked & ELLIPSES, law.name
+        assert shape_of(law) != "ellipse" or not asked & LINES, law.name
+        assert shape_of(law) is not None or not asked & (LINES | ELLIPSES), law.name
+
+
+def test_shapes_of_the_library():
+    assert {law.name: shape_of(law) for law in LAWS if not law.name.startswith("tian")} == {
+        "constant": None,
+        "frictionless": None,
+        "iso_tr_14179_2": "line",
+        "xu_2007": None,
+        "dowson_higginson_1959": "line",
+        "hamrock_dowson_1977": "ellipse",
+        "none": None,
+        "wu_cheng_1991": "line",
+    }
+
+
+@pytest.mark.parametrize(
+    ("law", "shape", "told"),
+    [
+        (
+            FILM_THICKNESS["dowson_higginson_1959"],
+            "ellipse",
+            "'dowson_higginson_1959' holds for line contacts, and these touch in an ellipse; choose one "
+            "of hamrock_dowson_1977",
+        ),
+        (
+            FILM_THICKNESS["hamrock_dowson_1977"],
+            "line",
+            "'hamrock_dowson_1977' holds for elliptic contacts, and these touch along lines; choose one "
+            "of dowson_higginson_1959",
+        ),
+        (
+            FILM_THICKNESS["dowson_higginson_1959"].function,
+            "ellipse",
+            "'dowson_higginson_1959' holds for line contacts, and these touch in an ellipse",
+        ),
+        (
+            FRICTION["iso_tr_14179_2"],
+            "ellipse",
+            "'iso_tr_14179_2' holds for line contacts, and these touch in an ellipse; choose one of "
+            "constant, frictionless, xu_2007",
+        ),
+        (
+            ROLLING_RESISTANCE["wu_cheng_1991"],
+            "ellipse",
+            "'wu_cheng_1991' holds for line contacts, and these touch in an ellipse; choose one of none",
+        ),
+    ],
+    ids=["film of a line", "film of an ellipse", "function alone", "friction", "rolling"],
+)
+def test_a_law_of_another_shape_is_refused(law, shape, told):
+    with pytest.raises(InputError) as error:
+        evaluate(law, conditions(shape))
+    assert str(error.value) == told
+
+
+def test_a_law_of_ones_own_that_asks_for_the_load_of_an_ellipse_is_refused_on_a_line():
+    def my_law(*, load):
+        return 0.01 * load
+
+    with pytest.raises(
+        InputError, match="'my_law' holds for elliptic contacts, and these touch along"
+    ):
+        evaluate(my_law, conditions("line"))
+    assert float(evaluate(my_law, conditions("ellipse"))[0, 0]) == pytest.approx(0.5, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "told"),
+    [
+        (
+            "line_load",
+            "ellipse",
+            "line contacts have a load per length, and these touch in an ellipse",
+        ),
+        ("half_width", "ellipse", "line contacts have a half-width, and these touch in an ellipse"),
+        (
+            "transverse_radius",
+            "line",
+            "elliptic contacts have a radius across the rolling direction, and these touch along lines",
+        ),
+    ],
+)
+def test_what_a_contact_does_not_have_is_no_number(name, shape, told):
+    with pytest.raises(InputError) as error:
+        getattr(conditions(shape), name)
+    assert str(error.value) == told
+
+
+def test_pressure_takes_the_form_of_the_shape():
+    line, ellipse = (float(conditions(shape).pressure[0, 0]) for shape in ("line", "ellipse"))
+    assert line == pytest.approx(np.sqrt(50.0 * 226e9 / (2.0 * np.pi * 9.525e-3)), rel=1e-14)
+    of_circle = np.cbrt(6.0 * 50.0 * (226e9 / 2.0) ** 2 / (np.pi**3 * 9.525e-3**2))
+    assert ellipse == pytest.approx(of_circle, rel=1e-14)
+    given = {"load": 50.0, "radius": 9.525e-3, "transverse_radius": 9.525e-3, "modulus": 226e9}
+    assert ellipse == float(elliptic_pressure(**{name: array(v) for name, v in given.items()}))
+
+
+def test_a_refusal_comes_out_of_a_compiled_program_too():
+    law = FILM_THICKNESS["dowson_higginson_1959"]
+    with pytest.raises(InputError, match="holds for line contacts"):
+        eqx.filter_eval_shape(lambda at: evaluate(law, at), conditions("ellipse"))
+    assert eqx.filter_eval_shape(lambda at: evaluate(law, at), conditions("line")).shape == (1, 1)
