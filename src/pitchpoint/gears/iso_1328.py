@@ -84,10 +84,13 @@ def flank_tolerances(
     return FlankTolerances(*(1e-6 * _rounded(step * limit) for limit in in_um))
 
 
+_TIE = 1e-9  # what lies half way is rounded up, whatever binary numbers make of it
+
+
 def _rounded(micrometres: float) -> float:
     """To whole micrometres above 10, to halves above 5, else to tenths."""
     parts = 1 if micrometres > 10.0 else 2 if micrometres >= 5.0 else 10
-    return floor(parts * micrometres + 0.5) / parts
+    return floor(parts * micrometres + 0.5 + _TIE) / parts
 
 
 def out_of_scope(
