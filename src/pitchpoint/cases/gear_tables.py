@@ -174,6 +174,13 @@ class CylindricalGears(Table):
         return self.members
 
     @property
+    def sources(self) -> tuple[str, ...]:
+        """Keys of the bibliography for what is given."""
+        modified = self.modifications is not None or self.misalignment is not None
+        by_class = self.deviations is not None and self.deviations.iso_class is not None
+        return ("iso_21771_2007",) * modified + ("iso_1328_1_2013",) * by_class
+
+    @property
     def load_sharing(self) -> str:
         """Flanks with modifications share the load as they yield."""
         modified = self.modifications is not None and self.modifications.amounts
@@ -349,6 +356,7 @@ class StrainWaveGears(Table):
 
     members: ClassVar[tuple[str, ...]] = STRAIN_WAVE
     load: ClassVar[Load] = "torque"
+    sources: ClassVar[tuple[str, ...]] = ()
     friction: ClassVar[str] = "constant"
     load_sharing: ClassVar[str] = "from_stiffness"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
@@ -412,6 +420,7 @@ class BallOnDiscRig(Table):
 
     members: ClassVar[tuple[str, ...]] = BALL_ON_DISC
     load: ClassVar[Load] = "force"
+    sources: ClassVar[tuple[str, ...]] = ()
     drivers: ClassVar[tuple[str, ...]] = ("disc",)
     friction: ClassVar[str] = "constant"
     load_sharing: ClassVar[str] = "equal"

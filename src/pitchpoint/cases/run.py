@@ -394,6 +394,7 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
     laws = [models.friction[index] for index in chosen]
     others = _models(built)
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
+    keys += case.gears.sources
     keys += [datum.source for datum in built.lubricant.data().values() if datum.source]
     keys += [
         one.source for used in built.solids for one in used.record.data().values() if one.source
