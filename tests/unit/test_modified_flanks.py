@@ -291,3 +291,31 @@ def test_a_class_enters_the_motion_and_not_the_cycle() -> None:
         jax.tree.leaves(again), jax.tree.leaves(deviating.deviations), strict=True
     ):
         np.testing.assert_array_equal(one, other)
+
+
+def test_over_the_path_stands_what_the_highest_load_makes_of_the_face() -> None:
+    """Straight teeth in slices touch at one place of the path, and differently over the face."""
+    from types import SimpleNamespace
+
+    import xarray as xr
+
+    from pitchpoint.views.cycle import along
+
+    load = np.array([[[1.0, 3.0, 2.0]], [[0.0, 4.0, 9.0]]])
+    lanes = ("node", "pair", "slice")
+    data = xr.Dataset(
+        {
+            "phase": ("node", np.array([0.2, 0.6])),
+            "active": (lanes, np.ones((2, 1, 3), bool)),
+            "path": (lanes, np.broadcast_to(np.array([0.2, 0.6]).reshape(2, 1, 1), (2, 1, 3))),
+            "load": (("law", *lanes), load[None]),
+            "pressure": (("law", *lanes), 10.0 * load[None]),
+        }
+    )
+    fact: Any = SimpleNamespace(
+        helical=False, contact_ratio=1.6, transverse_ratio=1.6, overlap_ratio=0.0
+    )
+    place, pressure = along(data, "pressure", 0, fact)
+    shown = np.isfinite(pressure)
+    np.testing.assert_allclose(place[shown], [0.2, 0.6])
+    np.testing.assert_allclose(pressure[shown], [30.0, 90.0])
