@@ -217,9 +217,7 @@ def test_part_of_the_face_without_load_is_told_and_nearly_all_of_it_refused() ->
     assert told.startswith("Of the contact lines that carry, 25 % get no load at 50 N m")
     assert _face_warning(built, run_with(12)) == []
     assert _face_warning(built, run_with(0)) == []  # nothing is loaded at all
-    with pytest.raises(
-        InputError, match="at 50 N m only 2 of 12 slices of a contact line get load"
-    ):
+    with pytest.raises(InputError, match="at 50 N m only 2 of 12 slices of a contact line get"):
         _face_warning(built, run_with(2))
     assert _face_warning(pair().built({}), run_with(2)) == []
 

@@ -731,34 +731,31 @@ def _conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     ]
 
 
-LEAST_FACE = 2
-"""Slices of a contact line in contact up to which it is nearly a point, not a line."""
+LEAST_FACE = 3.0
+"""Mean number of slices of a contact line below which it is nearly a point, not a line."""
 
 
 def _face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
     """Part of the contact lines that gets no load; refused where hardly any of them gets some."""
     mesh, active = built.design.mesh, np.asarray(run["active"])
     carries = np.asarray(run["load"]) > 0.0
-    pairs = carries.any(axis=2, keepdims=True)
-    across = active.shape[2]
-    if mesh.touching or across == 1 or not pairs.any():
+    pairs, slices = carries.any(axis=2), active.shape[2]
+    if mesh.touching or slices == 1 or not pairs.any():
         return []
-    most = int(carries.sum(axis=2).max())
-    gears = built.case.gears
-    load = _LOADS[gears.load].show(built.case.operation.load)
-    if most <= LEAST_FACE:
+    lines = np.sum(pairs.sum(axis=1) * run["weight"])
+    mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
+    load = _LOADS[built.case.gears.load].show(built.case.operation.load)
+    if mean < LEAST_FACE:
         raise InputError(
-            f"at {load} only {most} of {across} slices of a contact line get load, nearly a point in "
-            "place of a line; less crowning, end relief or misalignment, a higher load or more slices "
-            "leave a line of contact",
+            f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "
+            "point in place of a line; less crowning, end relief or misalignment, a higher load or more "
+            "slices leave a line of contact",
             key="gears",
         )
-    share = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]))
-    share /= float(np.sum((active & pairs).sum(axis=(1, 2)) * run["weight"]))
-    if share > 1.0 - 1e-9:
+    if mean > slices * (1.0 - 1e-9):
         return []
     return [
-        f"Of the contact lines that carry, {100.0 * (1.0 - share):.2g} % get no load at {load}: there "
+        f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: there "
         "flanks do not touch."
     ]
 
