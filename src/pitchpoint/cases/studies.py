@@ -755,8 +755,8 @@ def _face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
     if mean > slices * (1.0 - 1e-9):
         return []
     return [
-        f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: there "
-        "flanks do not touch."
+        f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: "
+        "there flanks do not touch."
     ]
 
 
