@@ -120,7 +120,7 @@ def figures(stiffness: MeshStiffness, moved: System, found: Response) -> Figures
         "mean": found.mean(error),
         "peak_to_peak": found.peak_to_peak(error),
         "dynamic_factor": jnp.max(found.extremes(factor)[1]),
-        "status": found.status,
+        "status": found.status.code,
     }
 
 

@@ -1,4 +1,4 @@
-"""Hostile case files and command lines, thousands of them: each must be shown or refused in one sentence.
+"""Hostile case files, records and command lines, thousands: each is shown or refused in one sentence.
 
 Run beside the suite: `python tests/fuzz_inputs.py --seconds 300 --seed 1`. A seed repeats its files.
 Prints how they ended; whatever ends in a traceback, in several sentences or in signs that steer a terminal
@@ -27,11 +27,14 @@ import jax
 from pitchpoint import cli
 from pitchpoint.cases.document import read
 from pitchpoint.cases.library import names, path_of
+from pitchpoint.cases.run import describe
 from pitchpoint.cases.schema import keys
+from pitchpoint.results.store import without_nan
 
 ROOT = Path(__file__).parents[1]
 SEEDS = [read(path) for path in sorted(ROOT.glob("examples/*.toml"))]
 SEEDS += [read(path_of(name)) for name in names()]
+RECORDED = ("pair_23_61", "helical_resonance", "strain_wave")
 KEYS = [
     *keys(),
     "losses.a.bearing",
@@ -39,6 +42,9 @@ KEYS = [
     "studies.a.sweep",
     "studies.a.change.gears",
 ]
+
+RECORDS = 0.25
+"""Part of the files that are records of results."""
 
 NUMBERS = (0, -0.0, 1, -1, 2, 3.5, 1e-300, 1e308, -1e308, math.inf, -math.inf, math.nan, 10**30)
 UNITS = (
@@ -228,15 +234,21 @@ def main() -> int:
     parser.add_argument("--keep", type=Path, default=Path(tempfile.mkdtemp(prefix="hostile-")))
     given = parser.parse_args()
     given.keep.mkdir(parents=True, exist_ok=True)
-    path, counts, slow = given.keep / "case.toml", Counter[str](), (0.0, -1)
+    counts, slow = Counter[str](), (0.0, -1)
+    records = [describe(str(ROOT / "examples" / f"{name}.toml"))[0] for name in RECORDED]
     start = time.process_time()
     while time.process_time() - start < given.seconds:
         seed = given.seed + counts.total()
         hostile, began = Hostile(seed), time.process_time()
-        tree = hostile.random.choice(SEEDS)
+        is_record = hostile.random.random() < RECORDS
+        tree = hostile.random.choice(records if is_record else SEEDS)
         kind = hostile.random.choice(("unusual", "unusual", "changed", "broken", "command line"))
         changed = {"unusual": hostile.unusual, "changed": hostile.changed}.get(kind, dict)(tree)
-        content = "".join(f"{json.dumps(k)} = {toml(v)}\n" for k, v in changed.items()).encode()
+        path = given.keep / f"case.{'json' if is_record else 'toml'}"
+        if is_record:
+            content = json.dumps(without_nan(changed), default=str).encode()
+        else:
+            content = "".join(f"{json.dumps(k)} = {toml(v)}\n" for k, v in changed.items()).encode()
         path.write_bytes(hostile.broken(content) if kind == "broken" else content)
         arguments = ["show", str(path), *(hostile.arguments() if kind == "command line" else [])]
         try:
@@ -244,7 +256,7 @@ def main() -> int:
         except Exception as error:
             name = f"{type(error).__name__}: {str(error)[:80]!a}"
             counts[name] += 1
-            (given.keep / f"{seed}.toml").write_bytes(path.read_bytes())
+            (given.keep / f"{seed}{path.suffix}").write_bytes(path.read_bytes())
             told = json.dumps(arguments) + "\n" + traceback.format_exc()
             (given.keep / f"{seed}.txt").write_text(told, "utf-8", "backslashreplace")
         slow = max(slow, (time.process_time() - began, seed))

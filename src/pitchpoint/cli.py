@@ -33,12 +33,12 @@ _SWEEP = re.compile(r"([^=]{0,500})=([^:]*):([^:]*):\s*([1-9][0-9]{0,4}|100000)\
 
 
 def _cases_from(incomplete: str) -> list[str]:
-    """Shipped cases and TOML files that begin so, for the completion of a shell."""
+    """Shipped cases, TOML files and manifests that begin so, for the completion of a shell."""
     from pitchpoint.cases.library import names
 
     shipped = [name for name in names() if name.startswith(incomplete)]
     found = sorted(glob(f"{glob_escape(incomplete)}*"))
-    files = [path for path in found if path.endswith(".toml")]
+    files = [path for path in found if path.endswith((".toml", "manifest.json"))]
     return [*shipped, *files, *(f"{path}/" for path in found if Path(path).is_dir())]
 
 
@@ -64,7 +64,9 @@ def _keys_from(incomplete: str) -> list[str]:
 CaseName = Annotated[
     str,
     typer.Argument(
-        metavar="CASE", help="A shipped case, or a TOML file.", autocompletion=_cases_from
+        metavar="CASE",
+        help="A shipped case, a TOML file, or the manifest.json of a result, which repeats it.",
+        autocompletion=_cases_from,
     ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON to stdout instead of tables.")]
@@ -165,10 +167,12 @@ def show(
     if json_:
         _emit(manifests)
         return
+    from pitchpoint.views.inputs import input_rows
+
     for manifest in manifests:
         _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({manifest['variant']})")
         columns = ("table", "key", "value", "status", "where", "note")
-        _table(manifest["inputs"], columns)
+        _table(input_rows(manifest), columns)
         _warn(manifest["warnings"])
     for issue in manifests[0]["issues"]:
         _console().print(f"- {_plain(issue['where'])}: {_plain(issue['issue'])}. ", end="")

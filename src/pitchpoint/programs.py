@@ -10,6 +10,7 @@ import hashlib
 import json
 import logging
 import os
+import platform
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -37,14 +38,15 @@ __all__ = [
     "forget",
     "package_state",
     "program",
+    "surroundings",
 ]
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 _LOG = logging.getLogger(__name__)
-_TRACED = ("pitchpoint", "jax", "jaxlib", "equinox", "diffrax")
-"""Packages whose code is in a program."""
+_TRACED = ("pitchpoint", "jax", "jaxlib", "equinox", "diffrax", "numpy")
+"""Packages whose code is in a program or makes its numbers."""
 
 QUICK: Mapping[str, bool | int] = {
     "xla_backend_optimization_level": 0,
@@ -134,7 +136,7 @@ class Program(Generic[P, R]):
         folder = kept_folder()
         if folder is None:
             raise _NamelessError
-        told = [_surroundings(), _name(self.function), sorted(self.options.items()), _text(given)]
+        told = [surroundings(), _name(self.function), sorted(self.options.items()), _text(given)]
         digest = hashlib.sha256(json.dumps(told).encode()).hexdigest()
         return folder / "programs" / digest[:40]
 
@@ -250,12 +252,15 @@ def _module(outline: Any, leaves: Iterator[Any]) -> Any:
     return made
 
 
-def _surroundings() -> list[Any]:
-    """What decides about every program beside its own arguments."""
-    flags = os.environ.get("XLA_FLAGS", "")
+def surroundings() -> dict[str, str]:
+    """What decides about every program beside its own arguments, and so about the last bits of results."""
     device = jax.devices()[0]
-    versions = [version(name) for name in _TRACED]
-    return [package_state(), versions, device.platform, device.device_kind, flags]
+    return {
+        **{name: version(name) for name in _TRACED},
+        "code": package_state()[:16],
+        "device": f"{platform.machine()} {device.platform} {device.device_kind}",
+        "XLA_FLAGS": os.environ.get("XLA_FLAGS", ""),
+    }
 
 
 def _text(value: Any) -> Any:

@@ -22,7 +22,9 @@ from pitchpoint import cli
 from pitchpoint.cases import run as running
 from pitchpoint.cases import studies
 from pitchpoint.cases.run import describe, open_result
+from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.materials import lubricants
+from pitchpoint.views.report import render
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COLUMNS = ["quantity", "where", "printed", "computed", "tolerance", "kind", "verdict", "reason"]
@@ -107,6 +109,26 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
+@pytest.fixture(scope="module")
+def repeated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Results of the tiny case with a setting and a sweep, and those of their record, without the case."""
+    folder = tmp_path_factory.mktemp("repeated")
+    (case := folder / "tiny.toml").write_text(TINY)
+    sweep = Sweep(key="operation.temperature", start="50 degF", stop="60 degC", count=2)
+    running.run(
+        str(case),
+        folder=folder / "out",
+        settings={"operation.speed": "1234.5678 rpm"},
+        studies={"warm": Study(sweep=sweep)},
+    )
+    case.unlink()
+    (record := folder / "moved" / "joint.json").parent.mkdir()
+    (folder / "out" / "default" / "manifest.json").rename(record)
+    running.run(str(record), folder=folder / "again")
+    shutil.copy(record, folder / "out" / "default" / "manifest.json")
+    return folder / "out", folder / "again"
+
+
 def times(folder: Path) -> dict[str, int]:
     return {path.stem: path.stat().st_mtime_ns for path in folder.glob("default/*.nc")}
 
@@ -131,7 +153,8 @@ def test_show(pitchpoint: Callable[..., Told], tiny: Path) -> None:
     shown = pitchpoint("show", "tian2024", "--variant", "physical", "--json").json
     assert [one["variant"] for one in shown] == ["physical"]
     rows = {(row["table"], row["key"]): row for row in shown[0]["inputs"]}
-    assert rows["gears", "module"]["value"] == "3 mm"
+    assert rows["gears", "module"]["value"] == 0.003
+    assert rows["gears", "module"]["kind"] == "length"
     assert rows["gears", "module"]["status"] == "printed"
     assert rows["gears", "module"]["where"] == "Table 1"
     assert rows["gears", "flank"]["status"] == "default"
@@ -145,7 +168,7 @@ def test_show_takes_settings(pitchpoint: Callable[..., Told], tiny: Path) -> Non
     told = pitchpoint("show", tiny, "--set", "operation.torque=77 N m", "--json")
     (manifest,) = json.loads(told.out)
     row = next(row for row in manifest["inputs"] if row["key"] == "torque")
-    assert (row["value"], row["status"]) == ("77 N m", "set")
+    assert (row["value"], row["status"]) == (77.0, "set")
     wrong = pitchpoint("show", tiny, "--set", "operation.torqe=7 N m")
     assert (wrong.status, wrong.out) == (2, "")
     assert "operation.torqe: is not a known key" in wrong.err
@@ -198,6 +221,37 @@ def test_run_leaves_results_that_are_not_computed_twice(
     assert other["studies"]["sweep_operation_torque"]["axis"]["values"] == [10.0, 50.0]
     changed = times(tmp_path / "results" / "tiny")
     assert changed["operation"] != made["operation"]
+
+
+def test_a_record_repeats_its_result_bit_for_bit(repeated: tuple[Path, Path]) -> None:
+    first, again = (folder / "default" for folder in repeated)
+    files = {path.name for path in first.iterdir()}
+    assert files == {path.name for path in again.iterdir()}
+    assert files > {"cycle.nc", "loss_map.nc", "study_smooth.nc", "study_warm.nc", "manifest.json"}
+    for name in files:
+        assert (first / name).read_bytes() == (again / name).read_bytes(), name
+    rows = json.loads((again / "manifest.json").read_text())["inputs"]
+    (row,) = (row for row in rows if (row["table"], row["key"]) == ("operation", "speed"))
+    assert row["value"] == pytest.approx(1234.5678 * np.pi / 30.0, rel=1e-15)
+
+
+def test_the_report_of_a_repeated_result_is_the_same(repeated: tuple[Path, Path]) -> None:
+    one, other = (render(open_result(folder)) for folder in repeated)
+    assert one == other
+    assert "<code>operation.speed</code> = 1234.57 rpm" in one
+
+
+def test_a_record_is_a_case_to_other_commands(
+    pitchpoint: Callable[..., Told], repeated: tuple[Path, Path]
+) -> None:
+    record = repeated[0] / "default" / "manifest.json"
+    shown = pitchpoint("show", record, "--set", "operation.torque=7 N m").out
+    assert re.search(r"operation +speed +1234.57 rpm +set", shown)
+    assert re.search(r"operation +torque +7 N m +set", shown)
+    assert "xu_2007" in pitchpoint("cite", record).out
+    assert pitchpoint("compare", record).complaint == (
+        "error: manifest.json: has no targets to compare with"
+    )
 
 
 def test_another_case_is_not_written_over(

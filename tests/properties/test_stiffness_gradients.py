@@ -9,7 +9,6 @@ from sound import pair
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.response import Status
 from pitchpoint.dynamics.vibration import Vibrating, excited, steady, transmission_figures
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -17,6 +16,7 @@ from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import Roughness, lubricants
 from pitchpoint.materials.solids import Solid
+from pitchpoint.status import Code
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 PA66 = Solid(young=3.54e9, poisson=0.35, density=1140.0)
@@ -109,7 +109,7 @@ class Moving:
         moved = moved_mesh(*map(jnp.asarray, (numbers, direction)), self.mesh)
         parts = moved_excitation(*moved, self.solids, self.point, self.vibrating)
         values, slope, status = jax.device_get(moved_figures(*parts))
-        assert int(status) == Status.CONVERGED
+        assert int(status) == Code.SOLVED
         return values, slope
 
     @property

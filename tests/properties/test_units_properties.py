@@ -4,7 +4,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from pitchpoint.units import UnitError, convert, kinds, parse, units_of
+from pitchpoint.units import UnitError, convert, kinds, parse, si_unit, units_of
 
 PAIRS = [(kind, unit) for kind in kinds() for unit in units_of(kind)]
 
@@ -30,6 +30,11 @@ def test_parse_undoes_display(pair, value):
     offset = 460.0 if kind == "temperature" else 0.0
     again = parse(f"{convert(value, unit, kind)!r} {unit}", kind)
     assert again == pytest.approx(value, rel=1e-14, abs=1e-12 * offset)
+
+
+@given(kind=st.sampled_from(kinds()), value=st.floats(0.0, 1e300))
+def test_si_comes_back_to_the_last_bit(kind, value):
+    assert parse(f"{value!r} {si_unit(kind)}", kind) == value
 
 
 @given(pair=st.sampled_from(PAIRS), value=st.floats(1e-6, 1e6))

@@ -4,6 +4,7 @@ import copy
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
+from math import radians
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, check_strain_wave
 from pitchpoint.loading.reactions import InnerBearing
+from pitchpoint.views.inputs import input_rows
 
 DRIVE = tomllib.loads("""
 [gears]
@@ -100,11 +102,12 @@ def test_with_a_case_the_keys_are_those_of_its_family() -> None:
 def test_values_of_the_set_stand_where_none_is_given() -> None:
     built = drive(gears__tooth__set="flat", gears__tooth__convex_radius=1.98).built({})
     rows = {row["key"]: row for row in resolved(built, drive().document())}
-    assert rows["tooth.convex_radius"]["value"] == "1.98"
-    assert rows["tooth.concave_radius"]["value"] == f"{DOUBLE_ARCS['flat'].concave_radius:g}"
+    assert rows["tooth.convex_radius"]["value"] == 1.98
+    assert rows["tooth.concave_radius"]["value"] == DOUBLE_ARCS["flat"].concave_radius
     assert rows["tooth.concave_radius"]["status"] == "derived"
-    assert rows["flexspline.rim_thickness"]["value"] == "0.6 mm"
-    assert rows["speed ratio"]["value"] == "100"
+    assert rows["flexspline.rim_thickness"]["value"] == pytest.approx(0.6e-3)
+    assert rows["flexspline.rim_thickness"]["kind"] == "length"
+    assert rows["speed_ratio"]["value"] == pytest.approx(100.0)
 
 
 def test_another_form_leaves_the_values_of_the_former() -> None:
@@ -230,11 +233,17 @@ WAVES = [{"order": 1, "amplitude": "5 um", "phase": "30 deg"}, {"order": 100, "a
 def test_deviations_are_read_and_shown() -> None:
     one = drive(gears__deviations__flexspline=WAVES)
     built = one.built({})
-    rows = {row["key"]: row for row in resolved(built, one.document())}
+    inputs = resolved(built, one.document())
+    rows = {row["key"]: row for row in input_rows({"inputs": inputs})}
     told = "order 1 amplitude 5 um phase 30 deg, order 100 amplitude 3 um phase 0 deg"
     assert rows["deviations.flexspline"]["value"] == told
     assert rows["deviations.flexspline"]["status"] == "set"
     assert rows["deviations.circular_spline"]["value"] == "none"
+    (row,) = (row for row in inputs if row["key"] == "deviations.flexspline")
+    assert row["kind"] == {"order": "dimensionless", "amplitude": "length", "phase": "angle"}
+    assert row["value"][0] == pytest.approx(
+        {"order": 1.0, "amplitude": 5e-6, "phase": radians(30.0)}
+    )
     (first,), second = built.deviations
     assert isinstance(first, Waves)
     np.testing.assert_allclose(first.amplitude[:2], [5e-6, 3e-6])

@@ -12,7 +12,18 @@ import pitchpoint
 
 SOURCE = Path(pitchpoint.__file__).parent
 FLOW = (
-    {"errors", "units", "citations", "registry", "roots", "_jax", "kept", "programs", "factored"},
+    {
+        "errors",
+        "units",
+        "citations",
+        "registry",
+        "roots",
+        "_jax",
+        "kept",
+        "programs",
+        "factored",
+        "status",
+    },
     {"materials"},
     {"contact"},
     {"gears"},

@@ -16,6 +16,7 @@ from pitchpoint.cases.studies import Variant, _face_warning, jobs
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.errors import InputError
 from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
+from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)
 
@@ -91,7 +92,8 @@ RELIEVED = {"gears__modifications__tip_relief": ["20 um", "15 um"]}
 def test_modifications_are_read_and_shown_with_what_follows() -> None:
     one = pair(**RELIEVED, gears__modifications__end_relief="4 um", gears__misalignment="-3 um")
     built = one.built({})
-    rows = {row["key"]: row for row in resolved(built, one.document())}
+    inputs = resolved(built, one.document())
+    rows = {row["key"]: row for row in input_rows({"inputs": inputs})}
     mesh = built.pair
     length = (float(mesh.contact_ratio) - 1.0) * float(mesh.base_pitch)
     assert rows["modifications.tip_relief"]["value"] == "20 um / 15 um"

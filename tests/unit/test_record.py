@@ -6,13 +6,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from records import entries
+from sound import PAIR
 
 from pitchpoint.cases import run as running
 from pitchpoint.cases.library import as_text, find
 from pitchpoint.cases.record import MANIFEST, RUN, Record, default_folder, owner
-from pitchpoint.cases.run import manifests, open_result
+from pitchpoint.cases.run import describe, manifests, open_result
 from pitchpoint.errors import InputError
-from pitchpoint.results.store import dataset, save, write_text
+from pitchpoint.results.store import dataset, save, without_nan, write_text
+from pitchpoint.views.inputs import input_rows, set_for_run
 
 LAW = {"name": "constant", "title": "constant", "note": ""}
 ROW = {"quantity": "q", "where": "Table 1", "printed": 1.0, "computed": None, "unit": "W"}
@@ -20,17 +23,22 @@ ROW |= {"tolerance": 0.1, "kind": "predicted", "verdict": "excluded", "reason": 
 GOOD: dict[str, Any] = {
     "case": "pair.toml",
     "variant": "default",
-    "variants": ["default"],
+    "surroundings": {"pitchpoint": "0.1.0"},
     "title": "A pair",
     "summary": "",
-    "settings": {"operation.torque": "77 N m"},
-    "inputs": [dict.fromkeys(("table", "key", "value", "status", "where", "note"), "")],
+    "source": "",
+    "inputs": entries({"operation.torque": 77.0}),
+    "targets": [],
+    "own": "",
     "warnings": ["dry"],
     "laws": [LAW],
     "models": [{**LAW, "effect": "load sharing"}],
     "family": "cylindrical",
     "driver": "gear 1",
     "loaded": "gear 2",
+    "members": ["gear 1", "gear 2"],
+    "motion": [1.0, -0.5],
+    "period": 0.1,
     "averaging": "path",
     "plastic": False,
     "oil": "an oil",
@@ -110,15 +118,21 @@ def test_a_strangers_record_is_refused(folder: Path, text: str) -> None:
 @pytest.mark.parametrize(
     ("key", "value"),
     [
-        *((key, value) for key in GOOD for value in (None, 3, {"a": [1]}, [[["deep"]]])),
+        *(
+            (key, value)
+            for key in GOOD
+            for value in (None, 3, {"a": [1]}, [[["deep"]]])
+            if (key, value) != ("period", 3)
+        ),
         ("parts", ["../../other/default/teeth"]),
         ("parts", ["/etc/passwd"]),
         ("parts", [".."]),
-        ("variants", ["../other"]),
         ("variant", "a/b"),
         ("finished", "yes"),
-        ("settings", {"a": 1}),
+        ("surroundings", {"a": 1}),
         ("inputs", [{"table": "gears"}]),
+        ("inputs", [{**GOOD["inputs"][0], "kind": "weight"}]),
+        ("inputs", [{**GOOD["inputs"][0], "key": "a" * 401}]),
         ("laws", [{**LAW, "name": 1}]),
         ("sources", [{"key": "a"}]),
         ("rows", [{**ROW, "printed": "much"}]),
@@ -278,3 +292,184 @@ def test_sources_of_a_case_or_of_its_result(folder: Path, monkeypatch: pytest.Mo
     }.items():
         with pytest.raises(InputError, match=words):
             manifests(other)
+
+
+def test_a_record_has_its_own_sources(folder: Path) -> None:
+    assert manifests(str(folder / "default" / MANIFEST)) == [GOOD]
+
+
+# ---- what a record holds, and a case from it
+
+ODD = f"""{PAIR}
+[materials]
+gear_2 = {{ value = {{ young = "3 GPa", poisson = 0.35 }}, status = "assumed", note = "a guess" }}
+[dynamics]
+[loss_map]
+temperatures = ["40 degC", "61.7 degC"]
+[studies.point]
+[studies.other.change]
+gears = {{ helix_angle = "7 deg" }}
+models = {{ friction = {{ name = "constant", coefficient = "4 %" }} }}
+[studies.several]
+title = "Several"
+sweep = {{ key = "gears.profile_shift", values = [[0.1, 0.2], [0.3, 0.1]] }}
+[studies.warm.sweep]
+key = "operation.temperature"
+start = {{ value = "50 degF", status = "fitted" }}
+stop = "60 degC"
+"""
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(scope="module")
+def odd(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Record of a case in which much is odd."""
+    path = tmp_path_factory.mktemp("odd") / "odd.toml"
+    path.write_text(ODD)
+    changes = {"operation.speed": "1234.5678 rpm", "gears.profile_shift.1": 0.37}
+    (manifest,) = describe(str(path), settings=changes)
+    return manifest
+
+
+def kept(manifest: dict[str, Any], folder: Path) -> str:
+    path = folder / "kept.json"
+    path.write_text(json.dumps(without_nan(manifest)))
+    return str(path)
+
+
+def row_of(manifest: dict[str, Any], path: str) -> dict[str, Any]:
+    (row,) = (one for one in manifest["inputs"] if f"{one['table']}.{one['key']}" == path)
+    return row
+
+
+def test_numbers_are_recorded_in_si_with_their_kind(odd: dict[str, Any]) -> None:
+    speed = row_of(odd, "operation.speed")
+    assert speed["value"] == pytest.approx(1234.5678 * 2.0 * 3.141592653589793 / 60.0, rel=1e-15)
+    assert (speed["kind"], speed["status"], speed["given"]) == ("rotational speed", "set", True)
+    assert row_of(odd, "gears.profile_shift")["value"] == [0.37, 0.0]
+    assert row_of(odd, "gears.profile_shift")["status"] == "set"
+    assert row_of(odd, "loss_map.temperatures")["value"] == [313.15, 334.85]
+    assert row_of(odd, "materials.gear_2.young")["note"] == "a guess"
+    assert row_of(odd, "studies.other.change.models.friction.coefficient")["value"] == 0.04
+    assert row_of(odd, "studies.several.sweep.values")["value"] == [[0.1, 0.2], [0.3, 0.1]]
+    start = row_of(odd, "studies.warm.sweep.start")
+    assert (start["value"], start["kind"], start["status"]) == (283.15, "temperature", "fitted")
+    followed = row_of(odd, "gears.centre_distance")
+    assert (followed["status"], followed["given"]) == ("derived", False)
+
+
+def test_views_make_words_of_it(odd: dict[str, Any]) -> None:
+    shown = {(row["table"], row["key"]): row["value"] for row in input_rows(odd)}
+    assert shown["operation", "speed"] == "1234.57 rpm"
+    assert shown["gears", "profile_shift"] == "0.37 / 0"
+    assert shown["materials", "gear_2.young"] == "3 GPa"
+    assert ("loss_map", "temperatures") not in shown
+    assert ("dynamics", "") not in shown
+    told = set_for_run(odd)
+    assert told == {"gears.profile_shift": "0.37 / 0", "operation.speed": "1234.57 rpm"}
+
+
+def test_a_number_of_another_kind_is_shown_as_what_it_is() -> None:
+    (row,) = entries({"gears.module": 3.0})
+    ((shown,), (lost,)) = (
+        input_rows({"inputs": [{**row, **change}]})
+        for change in ({"kind": "torque"}, {"value": None})
+    )
+    assert (shown["value"], lost["value"]) == ("3 N m", "undefined")
+
+
+def test_a_case_is_made_again_from_its_record(odd: dict[str, Any], tmp_path: Path) -> None:
+    (again,) = describe(kept(odd, tmp_path))
+    assert again == odd
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        "tian2024",
+        "zhao2022",
+        EXAMPLES / "strain_wave.toml",
+        EXAMPLES / "helical_resonance.toml",
+        EXAMPLES / "ball_on_disc.toml",
+    ],
+    ids=str,
+)
+def test_cases_are_made_again_from_their_records(case: str | Path, tmp_path: Path) -> None:
+    for manifest in describe(str(case)):
+        (again,) = describe(kept(manifest, tmp_path))
+        assert again == manifest
+
+
+def test_other_surroundings_are_told(odd: dict[str, Any], tmp_path: Path) -> None:
+    there = {**odd["surroundings"], "jax": "0.1", "code": "0" * 16}
+    (again,) = describe(kept({**odd, "surroundings": there}, tmp_path))
+    here = odd["surroundings"]
+    assert again["warnings"][0] == (
+        f"The record was made with jax 0.1, code {'0' * 16} and is computed with jax {here['jax']}, "
+        f"code {here['code']}: numbers may differ."
+    )
+    assert again["warnings"][1:] == odd["warnings"]
+
+
+def test_a_law_of_the_users_own_is_asked_for_again(odd: dict[str, Any], tmp_path: Path) -> None:
+    path = kept({**odd, "own": "my_law"}, tmp_path)
+    with pytest.raises(
+        InputError, match="'my_law', a friction law of the user's own, which no record"
+    ):
+        describe(path)
+    law = running._own(lambda *, pressure: pressure)
+    (variant,) = running._variants(path, own=law)
+    assert variant.own is law
+    with pytest.raises(InputError, match='"physical" is not a variant of this case'):
+        describe(kept(odd, tmp_path), ["physical"])
+
+
+MODULE = "gears.module"
+
+
+@pytest.mark.parametrize(
+    ("path", "change", "words"),
+    [
+        (MODULE, {"value": -0.002}, '"-0.002 m" is out of range; allowed is 0.01 mm to 100 mm'),
+        (MODULE, {"value": float("nan")}, "does not start with a plain finite number"),
+        (MODULE, {"value": 10**50}, "is too large"),
+        (MODULE, {"value": 3}, '"3" has no unit'),
+        (MODULE, {"value": [0.1, 0.1, 0.1]}, "was given where one value belongs"),
+        (MODULE, {"value": {"a": 0.1}}, "was given where one value belongs"),
+        (MODULE, {"kind": "torque"}, "is a torque, but a length is needed"),
+        (MODULE, {"kind": {"a": "length"}}, "has no unit"),
+        (MODULE, {"key": "modul"}, "is not a known key; did you mean module?"),
+        (MODULE, {"key": "teeth.1"}, '"teeth" is a value, not a table'),
+        (MODULE, {"table": "geers"}, "did you mean gears?"),
+        (MODULE, {"table": "", "key": ""}, "is not a known"),
+        (MODULE, {"key": ".".join("a" * 99)}, "nested more than 16 levels"),
+        (MODULE, {"status": "sure"}, "is not a status"),
+        (MODULE, {"note": "x" * 3000}, "has 3000 characters"),
+        (MODULE, {"given": False}, "is missing"),
+        ("lubricant.name", {"value": "olive"}, "is not a known lubricant"),
+        ("studies.warm.sweep.start", {"value": 1e4}, "is out of range"),
+        ("studies.warm.sweep.key", {"value": "operation.speed"}, "rotational speed is needed"),
+    ],
+    ids=lambda value: str(value)[:40],
+)
+def test_a_record_that_was_changed(
+    odd: dict[str, Any], tmp_path: Path, path: str, change: dict[str, Any], words: str
+) -> None:
+    changed = json.loads(json.dumps({**odd, "targets": [], "own": ""}))
+    row_of(changed, path).update(change)
+    (file := tmp_path / "kept.json").write_text(json.dumps(changed))
+    with pytest.raises(InputError) as caught:
+        describe(str(file))
+    (line,) = str(caught.value).splitlines()
+    assert "kept.json: " in line
+    assert words in line
+    assert len(line) < 600
+
+
+def test_a_driver_that_does_not_move(odd: dict[str, Any], tmp_path: Path) -> None:
+    for change, words in (
+        ({"driver": "gear 3"}, "'gear 3' is none of the members"),
+        ({"motion": [1.0]}, "motion has not as many rates as there are members"),
+    ):
+        with pytest.raises(InputError, match=words):
+            describe(kept({**odd, **change}, tmp_path))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from records import entries
 
 from pitchpoint.cases.catalogue import summary_table
 from pitchpoint.cases.run import Outcome, open_result, run
@@ -416,16 +417,19 @@ def shown(**changes: Any) -> Outcome:
         title="teeth",
     )
     inputs = {
-        ("operation", "driver"): f"gear {changes.get('driver', 1)}",
-        ("operation", "torque"): "5 N m",
-        ("operation", "speed"): "1800 rpm",
-        ("operation", "temperature"): "60 degC",
-        ("gears", "flank"): "right" if changes.get("right_flank") else "left",
-        ("gears", "module"): "2 mm",
-        ("gears", "profile_shift"): "0.74 / -0.05",
+        "operation.torque": 5.0,
+        "operation.speed": 60.0 * pi,
+        "operation.temperature": 333.15,
+        "gears.flank": "right" if changes.get("right_flank") else "left",
+        "gears.module": 0.002,
+        "gears.profile_shift": [0.74, -0.05],
     }
-    rows = [{"table": t, "key": k, "value": v} for (t, k), v in inputs.items()]
-    return Outcome({"inputs": rows}, {"teeth": teeth})
+    manifest = {
+        "inputs": entries(inputs),
+        "driver": f"gear {changes.get('driver', 1)}",
+        "period": float(pair.period),
+    }
+    return Outcome(manifest, {"teeth": teeth})
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from records import entries
 
 from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
@@ -145,24 +146,18 @@ def study(x: np.ndarray, tips: np.ndarray) -> xr.Dataset:
     )
 
 
-def outcome(parts: Mapping[str, xr.Dataset], **rows: str) -> Outcome:
+def outcome(parts: Mapping[str, xr.Dataset], driver: str = "gear 1") -> Outcome:
     given = {
-        "operation.driver": "gear 1",
-        "operation.torque": "5.355 N m",
-        "operation.speed": "1800 rpm",
-        "operation.temperature": "23 degC",
+        "operation.driver": driver,
+        "operation.torque": 5.355,
+        "operation.speed": 60.0 * np.pi,
+        "operation.temperature": 296.15,
         "gears.flank": "left",
-        "gears.module": "1.5 mm",
-        "gears.least_tip_thickness": "0.25",
-        "dynamics.damping_ratio": "0.16",
-        **rows,
+        "gears.module": 0.0015,
+        "gears.least_tip_thickness": 0.25,
+        "dynamics.damping_ratio": 0.16,
     }
-    entries = [
-        dict(zip(("table", "key"), name.split("."), strict=True))
-        | {"value": value, "status": "given", "where": "", "note": ""}
-        for name, value in given.items()
-    ]
-    empty: dict[str, Any] = {"laws": [], "sources": [], "issues": [], "rows": [], "settings": {}}
+    empty: dict[str, Any] = {"laws": [], "sources": [], "issues": [], "rows": []}
     manifest = {
         "case": "by hand",
         "variant": "default",
@@ -172,7 +167,10 @@ def outcome(parts: Mapping[str, xr.Dataset], **rows: str) -> Outcome:
         "averaging": "base_pitch",
         "finished": True,
         "warnings": ["of the design", BESIDE],
-        "inputs": entries,
+        "inputs": entries(given),
+        "driver": driver,
+        "loaded": "gear 1" if driver == "gear 2" else "gear 2",
+        "period": np.pi / 2.0,  # four teeth
         "models": [{"effect": "load sharing", "name": "equal", "title": "equal", "note": ""}],
         **empty,
     }
@@ -315,7 +313,7 @@ def test_orders_of_the_spectrum(whole: Outcome) -> None:
 
 
 def test_time_runs_against_the_phase_where_gear_2_drives(whole: Outcome) -> None:
-    back = outcome(whole.parts, **{"operation.driver": "gear 2"})
+    back = outcome(whole.parts, driver="gear 2")
     pages = {k: vibration_panels({"default": one}) for k, one in (("on", whole), ("back", back))}
     on, off = (figure(panels, "_error").data[0]["y"] for panels in pages.values())
     assert on == off[::-1]

@@ -69,7 +69,7 @@ class Built:
 
     @cached_property
     def nominal(self) -> dict[str, Any]:
-        """Nominal motion of the mesh, who drives, who is loaded, and its events, as plain numbers."""
+        """Nominal motion, who drives, who is loaded, period and events of the mesh, as plain numbers."""
         found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
         return found
 
@@ -358,6 +358,7 @@ def _nominal(mesh: Mesh) -> dict[str, Any]:
         "motion": mesh.motion,
         "driver": mesh.driver,
         "loaded": mesh.loaded,
+        "period": mesh.period,
         "events": mesh.events(),
     }
 

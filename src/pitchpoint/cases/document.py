@@ -12,7 +12,17 @@ from pitchpoint.cases.quantities import shown, text
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import nearest
 
-__all__ = ["Document", "Provenance", "check_name", "read", "setting", "strip"]
+__all__ = [
+    "Document",
+    "Provenance",
+    "check_name",
+    "demand_shallow",
+    "leaves",
+    "put",
+    "read",
+    "setting",
+    "strip",
+]
 
 MAX_BYTES = 1_000_000
 """Largest case file that is read; real ones have a few kilobytes."""
@@ -87,8 +97,7 @@ def read(path: Path) -> Tree:
         raise InputError(f"is not a TOML file: {error}", file=path.name) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", file=shorten(path.name)) from None
-    if _depth(tree) > MAX_DEPTH:
-        raise _too_deep(path.name)
+    demand_shallow(tree, path.name)
     try:
         _overlays(tree)
     except InputError as error:
@@ -110,6 +119,12 @@ def _text(path: Path) -> str:
 
 def _too_deep(name: str) -> InputError:
     return InputError(f"is nested more than {MAX_DEPTH} levels deep, the most allowed", file=name)
+
+
+def demand_shallow(tree: Tree, name: str) -> None:
+    """InputError if tables and lists are nested more deeply than any case needs."""
+    if _depth(tree) > MAX_DEPTH:
+        raise _too_deep(name)
 
 
 def _depth(tree: Any) -> int:
@@ -186,27 +201,41 @@ def setting(tree: Tree, key: str, value: Any, *, name: str = "--set") -> Tree:
         raise _too_deep(name).at(key=key)
     result = copy.deepcopy(tree)
     *parents, last = key.split(".")
-    node: Any = result
-    for part in parents if not last.isdecimal() else parents[:-1]:
+    try:
+        if last.isdecimal() and parents:
+            node = _table(result, parents[:-1])
+            node[parents[-1]] = _of_gear(node.get(parents[-1], 0.0), last, value)
+        else:
+            put(result, key, value)
+    except InputError as error:
+        raise error.at(file=name, key=key) from None
+    return result
+
+
+def put(tree: Tree, key: str, value: Any) -> None:
+    """Put a value at a dotted key into tables; InputError if a value stands where a table is needed."""
+    *parents, last = key.split(".")
+    _table(tree, parents)[last] = value
+
+
+def _table(tree: Tree, parents: list[str]) -> Tree:
+    node = tree
+    for part in parents:
         node = node.setdefault(part, {})
         if not isinstance(node, dict) or _marked(node):
-            raise InputError(f"{shown(part)} is a value, not a table", file=name, key=key)
-    if last.isdecimal() and parents:
-        try:
-            node[parents[-1]] = _of_gear(node.get(parents[-1], 0.0), last, value)
-        except InputError as error:
-            raise error.at(file=name, key=key) from None
-    else:
-        node[last] = value
-    return result
+            raise InputError(f"{shown(part)} is a value, not a table")
+    return node
 
 
 def strip(value: Any, provenance: dict[str, Provenance], *, name: str = "", key: str = "") -> Any:
     """Values without their marks, which go into `provenance` by dotted key."""
     if isinstance(value, dict):
         if _marked(value):
-            provenance[key] = _provenance(value, name, key)
-            return strip(value["value"], provenance, name=name, key=key)
+            mark = _provenance(value, name, key)
+            found = strip(value["value"], provenance, name=name, key=key)
+            for path in (key, *(leaf for leaf, _ in leaves({key: found}))):
+                provenance.setdefault(path, mark)  # of a table, that of its values
+            return found
         return {
             part: strip(item, provenance, name=name, key=f"{key}.{part}" if key else part)
             for part, item in value.items()
@@ -220,10 +249,10 @@ def _marked(table: Tree) -> bool:
 
 
 def leaves(tree: Tree, prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Dotted key and value of everything that is not a table."""
+    """Dotted key and value of everything that is not a table, and of tables that are empty."""
     for key, value in tree.items():
         path = f"{prefix}{key}"
-        if isinstance(value, dict):
+        if isinstance(value, dict) and value:
             yield from leaves(value, f"{path}.")
         else:
             yield path, value
@@ -260,8 +289,7 @@ def _of_gear(pair: Any, gear: str, value: Any) -> Any:
         raise InputError(f"there is no gear {shorten(gear)}; use 1 or 2")
     if isinstance(pair, dict):
         pair = pair.get("value", 0.0)
-    if isinstance(value, dict):
-        value = value["value"]
+    mark = value if isinstance(value, dict) else {"value": value}
     both = list(pair) if isinstance(pair, list | tuple) and len(pair) == 2 else [pair, pair]
-    both[int(gear) - 1] = value
-    return both
+    both[int(gear) - 1] = mark["value"]
+    return {**mark, "value": both}

@@ -1,19 +1,20 @@
-"""The inputs of a case as resolved, in the units in which people read them, with their status."""
+"""The inputs of a case as resolved: numbers in SI with kind, status and place; views make words of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
-from pitchpoint import units
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.document import Document, leaves
-from pitchpoint.cases.schema import FrictionChoice, quantity_at
-from pitchpoint.cases.solids import SolidInUse
+from pitchpoint.cases.document import Document, Provenance, leaves
+from pitchpoint.cases.schema import FrictionChoice, Study, quantity_at
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["resolved"]
+__all__ = ["DIMENSIONS", "OIL", "SOLIDS", "STUDIES", "resolved"]
+
+DIMENSIONS, SOLIDS, OIL, STUDIES = "dimensions", "solids", "oil", "studies"
+"""Tables of rows on what follows from the gears, on materials and oil as they are used, and on studies."""
 
 _TABLES = (
     "gears",
@@ -25,53 +26,10 @@ _TABLES = (
     "housing",
     "losses",
     "dynamics",
+    "loss_map",
 )
 
-_APART = ("gears", "losses")
-"""Tables whose inner tables have a row for each value."""
-
-_SOLID = {"young": "Young's modulus", "poisson": "Poisson's ratio", "density": "density"}
-
-_OIL = {
-    "nu_1": ("kinematic viscosity at the lower temperature", "mm2/s", "kinematic viscosity"),
-    "nu_2": ("kinematic viscosity at the upper temperature", "mm2/s", "kinematic viscosity"),
-    "T_1": ("lower temperature", "degC", "temperature"),
-    "T_2": ("upper temperature", "degC", "temperature"),
-    "density_15": ("density at 15 degC", "kg/m3", "density"),
-    "density_slope": ("fall of density", "kg/m3/K", "density slope"),
-    "gold_s": ("Gold's s", "1", "dimensionless"),
-    "gold_t": ("Gold's t", "1", "dimensionless"),
-    "lubricant_factor": ("lubricant factor X_L", "1", "dimensionless"),
-    "T_min": ("lowest temperature", "degC", "temperature"),
-    "T_max": ("highest temperature", "degC", "temperature"),
-}
-
-
-def resolved(built: Built, document: Document) -> list[dict[str, str]]:
-    """Rows of table, key, value, status, place and note for every input.
-
-    Args:
-        built: the case.
-        document: it came from; keys that it does not hold are defaults.
-    """
-    rows = [row for table in _TABLES for row in _rows(built, document, table)]
-    rows += _geometry(built)
-    rows += [row for gear, used in enumerate(built.solids, 1) for row in _solid(gear, used)]
-    return rows + [
-        {
-            "table": "oil as resolved",
-            "key": label,
-            "value": _shown(built.lubricant.data()[name].value, unit, kind),
-            "status": built.lubricant.data()[name].status,
-            "where": built.lubricant.data()[name].source,
-            "note": built.lubricant.data()[name].note,
-        }
-        for name, (label, unit, kind) in _OIL.items()
-    ]
-
-
-_ROUNDING = 1e-14  # lengths in metres, ratios: what differences of dimensions leave
-_GEOMETRY = (
+_DIMENSIONS = (
     "transverse_contact_ratio",
     "overlap_ratio",
     "circumferential_backlash",
@@ -83,130 +41,159 @@ _GEOMETRY = (
     "neutral_radius",
     "engagement_depth",
 )
+"""What follows from the gears and is asked for first."""
+
+_SOLID = {"young": "pressure", "poisson": "dimensionless", "density": "density"}
+
+_OIL = {
+    "nu_1": "kinematic viscosity",
+    "nu_2": "kinematic viscosity",
+    "T_1": "temperature",
+    "T_2": "temperature",
+    "density_15": "density",
+    "density_slope": "density slope",
+    "gold_s": "dimensionless",
+    "gold_t": "dimensionless",
+    "lubricant_factor": "dimensionless",
+    "T_min": "temperature",
+    "T_max": "temperature",
+}
+
+Row = dict[str, Any]
 
 
-def _geometry(built: Built) -> list[dict[str, str]]:
-    """What follows from the gears and is asked for first."""
-    found = built.dimensions
+def resolved(
+    built: Built, document: Document, studies: Mapping[str, Study] | None = None
+) -> list[Row]:
+    """Rows of table, key, value, kind, status, where and note for every input.
+
+    Values are SI numbers, texts, or lists of them or of tables; `kind` is that of the numbers, of a list
+    of tables by their keys. Rows with `given` are those that the case file holds, and enough to make the
+    case again; the others are defaults and what followed.
+
+    Args:
+        built: the case.
+        document: it came from.
+        studies: beside those of the case.
+    """
+    every = {**built.case.studies, **(studies or {})}
     return [
-        {
-            "table": "gears as computed",
-            "key": name.replace("_", " ") + (" in the normal section" if "tip" in name else ""),
-            "value": " / ".join(dict.fromkeys(_dimension(name, float(v)) for v in np.ravel(value))),
-            "status": "derived",
-            "where": "",
-            "note": "",
-        }
-        for name in _GEOMETRY
-        if (value := found.get(name)) is not None
+        *(row for table in _TABLES for row in _rows(built, document, table)),
+        *(row for name, study in every.items() for row in _of_study(name, study, document)),
+        *_dimensions(built),
+        *(row for gear in (1, 2) for row in _of_solid(built, gear)),
+        *(
+            _row(OIL, name, datum.value, kind, Provenance(datum.status, datum.source, datum.note))
+            for name, kind in _OIL.items()
+            for datum in [built.lubricant.data()[name]]
+        ),
     ]
 
 
-def _dimension(name: str, value: float) -> str:
-    value = 0.0 if abs(value) < _ROUNDING else value
-    variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
-    return _shown(value, variable.display, variable.kind)
+def _row(
+    table: str, key: str, value: Any, kind: Any, mark: Provenance, *, given: bool = False
+) -> Row:
+    return {
+        "table": table,
+        "key": key,
+        "value": _plain(value),
+        "kind": kind,
+        "status": mark.status,
+        "where": mark.where,
+        "note": mark.note,
+        "given": given,
+    }
 
 
-def _solid(gear: int, used: SolidInUse) -> list[dict[str, str]]:
-    """Values of a material at the temperature at which they are used."""
-    values = {"young": ("GPa", "pressure"), "poisson": ("1", "dimensionless")}
-    values["density"] = ("kg/m3", "density")
-    rows = []
-    for name, (unit, kind) in values.items():
-        origin = used.record.data()[name]
-        number = float(getattr(used.solid, name))
-        rows.append(
-            {
-                "table": "materials as resolved",
-                "key": f"gear {gear}, {_SOLID[name]}",
-                "value": _shown(number, unit, kind),
-                "status": origin.status,
-                "where": origin.source,
-                "note": (used.told if name == "young" else "") or origin.note,
-            }
-        )
-    return rows
-
-
-def _rows(built: Built, document: Document, table: str) -> list[dict[str, str]]:
-    rows = []
-    given = dict(leaves({table: document.tree.get(table, {})}))
+def _rows(built: Built, document: Document, table: str) -> Iterator[Row]:
+    """Rows of a table of the case file."""
+    asked = dict(leaves({table: document.tree[table]})) if table in document.tree else {}
     following = built.following if table == "gears" else {}
-    for key, left in _leaves(getattr(built.case, table), table in _APART):
-        value = _value(following.get(key) if left is None else left, f"{table}.{key}")
+    for key, left in _leaves(getattr(built.case, table)):
+        path, value = f"{table}.{key}", following.get(key) if left is None else left
         if value is None:
             continue
-        mark = document.provenance.get(f"{table}.{key}")
-        followed = "derived" if left is None else "default"
-        status = "given" if any(_inside(path, f"{table}.{key}") for path in given) else followed
-        rows.append(
-            {
-                "table": table,
-                "key": key,
-                "value": value,
-                "status": mark.status if mark else status,
-                "where": mark.where if mark else "",
-                "note": mark.note if mark else "",
-            }
-        )
-    return rows
+        if any(one == path or one.startswith(f"{path}.") for one in asked):
+            mark = document.provenance.get(path, Provenance())
+            yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
+        else:
+            mark = Provenance("derived" if left is None else "default")
+            yield _row(table, key, value, _kind(path, _plain(value)), mark)
+    for path in (one for one, value in asked.items() if value == {}):
+        yield _row(table, path[len(table) + 1 :], {}, "", Provenance(), given=True)
 
 
-def _leaves(table: Any, apart: bool) -> Iterator[tuple[str, Any]]:
-    """Keys and values of a table; of inner tables too, if they are to stand apart."""
-    if table is None:
-        return
-    inner = (
-        table.items() if isinstance(table, dict) else ((k, getattr(table, k)) for k in _keys(table))
-    )
-    for key, value in inner:
-        if apart and isinstance(value, BaseModel):
-            yield from ((f"{key}.{name}", one) for name, one in _leaves(value, apart))
+def _leaves(table: Any) -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of a table and of the tables in it; None for what is left open."""
+    for key, value in dict(table or {}).items():
+        if isinstance(value, BaseModel):
+            yield from ((f"{key}.{name}", one) for name, one in _leaves(value))
         else:
             yield key, value
 
 
-def _keys(table: BaseModel) -> list[str]:
-    return [*type(table).model_fields]
+def _of_study(name: str, study: Study, document: Document) -> Iterator[Row]:
+    """Rows of a study: its title, its changes, its sweep."""
+    for key, given in leaves({name: study.model_dump(exclude_unset=True)}):
+        path = f"{STUDIES}.{key}"
+        subject = _subject(key.removeprefix(f"{name}."), study) or path
+        value, mark = _in_si(subject, given), document.provenance.get(path, Provenance())
+        yield _row(STUDIES, key, value, _kind(subject, value), mark, given=True)
 
 
-def _inside(path: str, key: str) -> bool:
-    return path == key or path.startswith(f"{key}.")
+def _subject(key: str, study: Study) -> str:
+    """Key of the case whose value stands at a key of a study; empty if none does."""
+    if key.startswith("change."):
+        return key.removeprefix("change.")
+    if study.sweep is not None and key in ("sweep.start", "sweep.stop", "sweep.values"):
+        return study.sweep.key
+    return ""
 
 
-def _value(value: Any, key: str) -> str | None:
-    """Value in words; None for what is left open."""
-    if value is None:
-        return None
+def _in_si(key: str, value: Any) -> Any:
+    """A value as a case file has it, with its quantities as SI numbers."""
+    if isinstance(value, Mapping):
+        return {name: _in_si(f"{key}.{name}", item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_in_si(key, item) for item in value]
     quantity = quantity_at(key)
-    if quantity is not None:
-        each = [float(number) for number in np.ravel(value)]
-        shown = [quantity.show(number) for number in each]
-        alike = key != "gears.profile_shift" and len(set(shown)) == 1
-        return " / ".join(shown[:1] if alike else shown) or None
+    return value if quantity is None else quantity.si(value)
+
+
+def _kind(key: str, value: Any) -> str | dict[str, str]:
+    """Kind of the numbers at a key; by key of the tables where it holds a list of them."""
+    tables = [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
+    if tables:
+        inner = {name: quantity_at(f"{key}.{name}") for one in tables for name in one}
+        return {name: quantity.kind for name, quantity in inner.items() if quantity is not None}
+    quantity = quantity_at(key)
+    return "" if quantity is None else quantity.kind
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON has it."""
+    if isinstance(value, FrictionChoice):
+        return {"name": value.name, **value.parameters}
     if isinstance(value, BaseModel):
-        return ", ".join(_part(key, *item) for item in value.model_dump().items())
-    if isinstance(value, tuple):
-        return ", ".join(_choice(item, key) for item in value) or "none"
-    return str(value)
+        return value.model_dump()
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return value if isinstance(value, str | bool | dict) else np.asarray(value, float).tolist()
 
 
-def _part(table: str, name: str, item: Any) -> str:
-    quantity = quantity_at(f"{table}.{name}")
-    return f"{name} {quantity.show(item) if quantity else item}"
+def _dimensions(built: Built) -> Iterator[Row]:
+    for name in _DIMENSIONS:
+        if name in built.dimensions:
+            variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
+            value = built.dimensions[name]
+            yield _row(DIMENSIONS, name, value, variable.kind, Provenance("derived"))
 
 
-def _choice(item: Any, table: str) -> str:
-    if isinstance(item, str):
-        return item
-    if not isinstance(item, FrictionChoice):
-        return " ".join(_part(table, *each) for each in item.model_dump().items())
-    own = ", ".join(f"{key} {value:g}" for key, value in item.parameters.items())
-    return f"{item.name} ({own})" if own else str(item.name)
-
-
-def _shown(value: float, unit: str, kind: str) -> str:
-    if kind == "dimensionless":
-        return f"{value:.6g}"
-    return f"{units.convert(value, unit, kind):.6g} {unit}"
+def _of_solid(built: Built, gear: int) -> Iterator[Row]:
+    """Values of a material at the temperature at which they are used."""
+    used = built.solids[gear - 1]
+    for name, kind in _SOLID.items():
+        datum = used.record.data()[name]
+        note = (used.told if name == "young" else "") or datum.note
+        mark = Provenance(datum.status, datum.source, note)
+        yield _row(SOLIDS, f"gear_{gear}.{name}", getattr(used.solid, name), kind, mark)

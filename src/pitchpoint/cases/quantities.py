@@ -52,9 +52,9 @@ class Quantity:
 
     def read(self, value: Any) -> float:
         """SI value of text or number; InputError if it is not what is needed."""
+        number = self.si(value)
         if isinstance(value, SIValue):
-            return float(value)
-        number = self._parse(value)
+            return number
         below = number <= self.low if self.open_low else number < self.low
         if not math.isfinite(number) or below or number > self.high:
             raise InputError(f"{shown(value)} is out of range; {self.allowed}", value=value)
@@ -83,7 +83,10 @@ class Quantity:
             return f"{number:.6g}"
         return f"{units.convert(number, self.unit, self.kind):.6g} {self.unit}"
 
-    def _parse(self, value: Any) -> float:
+    def si(self, value: Any) -> float:
+        """SI value of text or number of this kind, in its range or not."""
+        if isinstance(value, SIValue):
+            return float(value)
         if isinstance(value, bool) or not isinstance(value, str | int | float):
             raise InputError(f"{shown(value)} was given where one value belongs; {self.allowed}")
         if isinstance(value, int) and abs(value) >= TOO_LONG:

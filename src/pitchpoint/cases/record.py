@@ -1,21 +1,34 @@
 """What a run leaves beside its datasets: whose folder it is, and a manifest of each variant.
 
-Folders travel between people: what these files hold is checked before it is believed or followed.
+A manifest is a record: it holds the inputs to the last bit, so that its result can be computed again from it
+alone. Folders travel between people: what these files hold is checked before it is believed or followed.
 """
 
 import os
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    JsonValue,
+    StringConstraints,
+    ValidationError,
+    model_validator,
+)
 
+from pitchpoint import units
 from pitchpoint.cases.comparison import Row
+from pitchpoint.cases.document import Tree, demand_shallow, put
 from pitchpoint.cases.library import as_text, names, path_of
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.programs import surroundings
 from pitchpoint.results.store import read_bytes, write_text
 
-__all__ = ["MANIFEST", "RUN", "Manifest", "Record", "default_folder", "owner"]
+__all__ = ["MANIFEST", "RUN", "Manifest", "Record", "default_folder", "is_record", "owner"]
 
 MANIFEST = "manifest.json"
 
@@ -83,15 +96,52 @@ class Record(_Kept):
             )
 
 
-class Input(_Kept):
-    """A resolved input: table, key, value, status, place, remark."""
+def _known(kind: str) -> str:
+    if kind and kind not in units.kinds():
+        raise ValueError(f"there is no kind of quantity '{shorten(kind)}'")
+    return kind
 
-    table: str
-    key: str
-    value: str
+
+Kind = Annotated[str, AfterValidator(_known)]
+Key = Annotated[str, StringConstraints(max_length=400)]
+
+
+class Input(_Kept):
+    """A resolved input.
+
+    Attributes:
+        table, key: of the case file.
+        value: SI numbers, texts, or lists of them or of tables.
+        kind: of the numbers, of `units.kinds()`; by key where the value is a list of tables.
+        status, where, note: how it was come by, its place in print, a remark.
+        given: False for a default, and for what followed from others.
+    """
+
+    table: Key
+    key: Key
+    value: JsonValue
+    kind: Kind | dict[str, Kind]
     status: str
     where: str
     note: str
+    given: bool
+
+    @property
+    def entry(self) -> dict[str, Any]:
+        """The value with its marks, as a case file has them."""
+        marks = {"status": self.status, "where": self.where, "note": self.note}
+        return {"value": _written(self.value, self.kind), **marks}
+
+
+def _written(value: Any, kind: Any) -> Any:
+    """Numbers with their SI unit: read back, they are the same to the last bit."""
+    if isinstance(value, dict):
+        kinds = kind if isinstance(kind, dict) else {}
+        return {name: _written(item, kinds.get(name, "")) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_written(item, kind) for item in value]
+    unit = units.si_unit(kind) if isinstance(kind, str) and kind else ""
+    return f"{value!r} {unit}" if unit and isinstance(value, float) else value
 
 
 class Law(_Kept):
@@ -124,21 +174,34 @@ class Doubt(_Kept):
 
 
 class Manifest(_Kept):
-    """What a variant was computed from and with, and how far it got."""
+    """What a variant was computed from and with, and how far it got.
+
+    Attributes:
+        surroundings: versions of the packages that computed it, and of what else decides its last bits.
+        own: name of a friction law of the user's own that took the place of those of the case, or empty.
+        members: body of each coordinate.
+        motion: nominal rate of each coordinate for one radian of the driver.
+        period: driver angle after which the mesh repeats [rad].
+    """
 
     case: str
     variant: Name
-    variants: list[Name]
+    surroundings: dict[str, str]
     title: str
     summary: str
-    settings: dict[str, str]
+    source: str
     inputs: list[Input]
+    targets: list[dict[str, JsonValue]]
+    own: str
     warnings: list[str]
     laws: list[Law]
     models: list[Model]
     family: str
     driver: str
     loaded: str
+    members: list[str]
+    motion: list[float]
+    period: float
     averaging: str
     plastic: bool
     oil: str
@@ -147,6 +210,51 @@ class Manifest(_Kept):
     rows: list[Row]
     parts: list[Name]
     finished: bool
+
+    @model_validator(mode="after")
+    def _moving(self) -> Self:
+        if len(self.motion) != len(self.members):
+            raise ValueError("motion has not as many rates as there are members")
+        for body in (self.driver, self.loaded):
+            if body not in self.members:
+                raise ValueError(f"'{shorten(body)}' is none of the members")
+        return self
+
+    @property
+    def tree(self) -> Tree:
+        """Tables of a case file that holds this variant alone.
+
+        Raises:
+            InputError: inputs that do not fit together.
+        """
+        made: Tree = {key: getattr(self, key) for key in ("title", "summary", "source")}
+        for one in self.inputs:
+            if one.given:
+                put(made, f"{one.table}.{one.key}".removesuffix("."), one.entry)
+        demand_shallow(made, "")
+        made["issues"] = [issue.model_dump() for issue in self.issues]
+        if self.targets:
+            made["targets"] = self.targets
+        return {"variants": {self.variant: made}}
+
+    @property
+    def warning(self) -> list[str]:
+        """That numbers may differ, where something else computes now than did then."""
+        here = surroundings()
+        others = [name for name in here if self.surroundings.get(name) != here[name]]
+        if not others:
+            return []
+        then, now = (_listed(one, others) for one in (self.surroundings, here))
+        return [f"The record was made with {then} and is computed with {now}: numbers may differ."]
+
+
+def _listed(surroundings: Mapping[str, str], names: list[str]) -> str:
+    return ", ".join(f"{name} {shorten(surroundings.get(name, '')) or '-'}" for name in names)
+
+
+def is_record(case: str) -> bool:
+    """True if a case is given by the record of a result of it, a manifest."""
+    return Path(case).suffix == Path(MANIFEST).suffix
 
 
 def owner(folder: Path) -> Record | None:

@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -15,24 +15,24 @@ import xarray as xr
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built, laws_of
 from pitchpoint.cases.comparison import Row, compare, demand_parts
-from pitchpoint.cases.document import Tree, variants
+from pitchpoint.cases.document import variants
 from pitchpoint.cases.failures import worst_first
-from pitchpoint.cases.library import find, names
-from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record
+from pitchpoint.cases.library import as_text, find, names
+from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Study, validate
 from pitchpoint.cases.studies import Job, Variant, jobs
 from pitchpoint.citations import cite
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
-from pitchpoint.errors import InputError
+from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.programs import package_state
+from pitchpoint.programs import package_state, surroundings
 from pitchpoint.registry import nearest
 from pitchpoint.results.store import (
     fingerprint,
@@ -63,7 +63,7 @@ class Outcome:
     """One variant of a case with its results.
 
     Attributes:
-        manifest: title, inputs, warnings, laws, sources, issues, printed against computed.
+        manifest: title, inputs in SI, warnings, laws, sources, issues, printed against computed.
         parts: datasets by name.
     """
 
@@ -90,7 +90,7 @@ def run(
     """Compute all parts of a case.
 
     Args:
-        case: name of a shipped case, or a file.
+        case: name of a shipped case, a file, or the manifest of a result, which repeats that result.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
         settings: values by dotted key that replace those of the file.
@@ -109,12 +109,10 @@ def run(
         ConvergenceError: a balance that was not found; what was finished is on disk.
         OSError: the disk is full, say; what was finished is on disk.
     """
-    name, tree = find(case)
-    chosen = list(only) or variants(tree)
-    own = None if friction is None else _own(friction)
-    made = [Variant(tree, name, variant, dict(settings or {}), own) for variant in chosen]
+    made = _variants(case, only, settings, None if friction is None else _own(friction))
     work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
     where = None if folder is None else Path(folder)
+    name = made[0].name
     with nullcontext() if where is None else _own_folder(where, case, name, [*work], overwrite):
         return {
             one: run_variant(
@@ -125,6 +123,39 @@ def run(
             )
             for one, prepared in work.items()
         }
+
+
+def _variants(
+    case: str,
+    only: Sequence[str] = (),
+    settings: Mapping[str, Any] | None = None,
+    own: FrictionLaw | None = None,
+) -> list[Variant]:
+    """Variants of a case, all or those that are named; of a record the one that it holds."""
+    if is_record(case):
+        held = _recorded(Path(case), own)
+    else:
+        name, tree = find(case)
+        held = Variant(tree, name, "")
+    chosen = only or variants(dict(held.tree))
+    return [replace(held, variant=one, settings=dict(settings or {}), own=own) for one in chosen]
+
+
+def _recorded(path: Path, own: FrictionLaw | None) -> Variant:
+    """The variant that a record holds."""
+    record, name = Manifest.read(path), visible(as_text(path.name))
+    if record.own and own is None:
+        raise InputError(
+            f"was computed with '{shorten(record.own)}', a friction law of the user's own, which no record "
+            "can hold; give it again, from Python as friction",
+            file=name,
+        )
+    try:
+        tree = record.tree
+    except InputError as error:
+        raise error.at(file=name) from None
+    told = tuple(record.warning)
+    return Variant(tree, name, record.variant, recorded=record.case, warnings=told)
 
 
 @contextmanager
@@ -153,9 +184,10 @@ def run_variant(
 ) -> Outcome:
     """Compute all parts of one variant; finished parts found in the folder are read."""
     built = variant.built({})
-    outcome = Outcome(_manifest(variant, built))
+    outcome = Outcome(_manifest(variant, built, studies))
     for job in work:
-        outcome.parts[job.name] = part = _part(job, variant, folder, studies, progress)
+        mark = _mark(outcome.manifest, job)
+        outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
         if not job.name.startswith("study_"):
             told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
             outcome.manifest["warnings"] = worst_first(told)
@@ -195,12 +227,14 @@ def manifests(result: str) -> list[dict[str, Any]]:
     """Manifests of a result, one for each variant, or of a case that has not been computed.
 
     Args:
-        result: folder that `run` wrote, name of a shipped case, or a file.
+        result: folder that `run` wrote, manifest in it, name of a shipped case, or a file.
 
     Raises:
         InputError: it is none of these.
     """
     folder, shipped = Path(result), result in names()
+    if is_record(result) and folder.is_file():
+        return [Manifest.read(folder).model_dump()]
     if not shipped and not os.path.exists(folder):
         hint = nearest(result, dict.fromkeys(names()))
         raise InputError(f"is neither a result nor a case of pitchpoint{hint}", file=result)
@@ -215,15 +249,14 @@ def load_case(
     """A case ready for computations of one's own: its design, operating point and inputs.
 
     Args:
-        case: name of a shipped case, or a file.
+        case: name of a shipped case, a file, or the manifest of a result.
         variant: the first one by default.
         settings: values by dotted key that replace those of the file.
 
     Raises:
         InputError: anything wrong with the input.
     """
-    name, tree = find(case)
-    return Variant(tree, name, variant or variants(tree)[0], dict(settings or {})).built({})
+    return _variants(case, [variant] if variant else [], settings)[0].built({})
 
 
 def describe(
@@ -238,12 +271,10 @@ def describe(
     Raises:
         InputError: anything wrong with the input that shows before the computation.
     """
-    name, tree = find(case)
-    named = list(only) or variants(tree)
-    made = [Variant(tree, name, variant, dict(settings or {})) for variant in named]
+    made = _variants(case, only, settings)
     for variant in made:
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
-    return [_manifest(variant, variant.built({})) for variant in made]
+    return [_manifest(variant, variant.built({}), studies or {}) for variant in made]
 
 
 def compare_case(
@@ -256,23 +287,21 @@ def compare_case(
     Raises:
         InputError: the case has no targets.
     """
-    name, tree = find(case)
-    known = variants(tree)
-    chosen = variant or ("as_published" if "as_published" in known else known[0])
-    made = Variant(tree, name, chosen)
+    known = _variants(case, [variant] if variant else [])
+    made = next((one for one in known if one.variant == "as_published"), known[0])
     built = made.built({})
     if not built.case.targets:
-        raise InputError("has no targets to compare with", file=name)
+        raise InputError("has no targets to compare with", file=made.name)
     needed = {target.reads for target in built.case.targets}
     work = list(jobs(made, {}))
-    demand_parts(built.case.targets, [job.name for job in work], name)
+    demand_parts(built.case.targets, [job.name for job in work], made.name)
     parts = {}
     with (watch or _unwatched)(None) as progress:
         for job in work:
             if job.name in needed:
-                progress.part(chosen, job.title, False)
-                parts[job.name] = _part(job, made, None, {}, progress)
-    return name, chosen, compare(built.case.targets, parts, name)
+                progress.part(made.variant, job.title, False)
+                parts[job.name] = _part(job, made, "", None, progress)
+    return made.label, made.variant, compare(built.case.targets, parts, made.name)
 
 
 @contextmanager
@@ -286,20 +315,24 @@ def _opened(path: Path) -> Outcome:
     return Outcome(manifest, parts)
 
 
-def _part(
-    job: Job,
-    variant: Variant,
-    folder: Path | None,
-    studies: Mapping[str, Study],
-    progress: Progress,
-) -> xr.Dataset:
-    extra = {name: study.model_dump() for name, study in studies.items()}
+def _mark(manifest: Mapping[str, Any], job: Job) -> str:
+    """Digest of the inputs of a part: the same for a case and for its record."""
+    study = inputs.STUDIES
+    given = [
+        [row["table"], row["key"], row["value"]]
+        for row in manifest["inputs"]
+        if row["given"]
+        and (row["table"] != study or f"study_{row['key']}.".startswith(f"{job.name}."))
+    ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
-    own = uuid4().hex if variant.own is not None else ""
-    mark = fingerprint(
-        package_state(), variant.document().tree, job.name, extra.get(job.name[6:]), own
-    )
-    labels = {"case": variant.name, "variant": variant.variant, "fingerprint": mark}
+    own = uuid4().hex if manifest["own"] else ""
+    return fingerprint(package_state(), manifest["source"], given, job.name, own)
+
+
+def _part(
+    job: Job, variant: Variant, mark: str, folder: Path | None, progress: Progress
+) -> xr.Dataset:
+    labels = {"case": variant.label, "variant": variant.variant, "fingerprint": mark}
     whole = None if folder is None else folder / f"{job.name}.nc"
     found = None if variant.own is not None else _found(whole, mark)
     progress.part(variant.variant, job.title, found is not None)
@@ -388,7 +421,7 @@ def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
     return compare(built.case.targets, parts, variant.name) if _measured(variant) else []
 
 
-def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
+def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> dict[str, Any]:
     case, document = built.case, variant.document()
     models, chosen = laws_of(built)
     laws = [models.friction[index] for index in chosen]
@@ -402,15 +435,24 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
     if case.source:
         keys.insert(0, case.source)
     return {
-        "case": variant.name,
+        "case": variant.label,
         "variant": variant.variant,
-        "variants": variants(_tree(variant)),
-        "title": case.title or variant.name,
+        "surroundings": surroundings(),
+        "title": case.title or variant.label,
         "summary": case.summary,
-        "settings": {key: str(value) for key, value in variant.settings.items()},
-        "inputs": inputs.resolved(built, document),
+        "source": case.source,
+        "inputs": inputs.resolved(built, document, studies),
+        "targets": [
+            target.model_dump(mode="json", exclude_unset=True)
+            for target in (case.targets if _measured(variant) else ())
+        ],
+        "own": "" if variant.own is None else variant.own.name,
         "warnings": worst_first(
-            [*built.warnings, *(used.told for used in built.solids if used.told)]
+            [
+                *variant.warnings,
+                *built.warnings,
+                *(used.told for used in built.solids if used.told),
+            ]
         ),
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
         "models": [
@@ -420,6 +462,9 @@ def _manifest(variant: Variant, built: Built) -> dict[str, Any]:
         "family": case.gears.family,
         "driver": case.operation.driver,
         "loaded": built.loaded,
+        "members": list(case.gears.members),
+        "motion": built.nominal["motion"].tolist(),
+        "period": float(built.nominal["period"]),
         "averaging": case.models.averaging,
         "plastic": any(used.plastic for used in built.solids),
         "oil": built.lubricant.title or built.lubricant.name,
@@ -449,7 +494,3 @@ def _models(built: Built) -> dict[str, Any]:
     if case.models.tooth_temperature != "isothermal":
         found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
     return found
-
-
-def _tree(variant: Variant) -> Tree:
-    return dict(variant.tree)

@@ -813,6 +813,8 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
             continue
         fields = [model.model_fields for model in models]
         holding = [each[part] for each in fields if part in each]
+        if not holding and FrictionChoice in models:
+            return COEFFICIENT  # a law's own parameter
         if not holding:
             known = dict.fromkeys(name for each in fields for name in each)
             raise InputError(f"there is no such key{nearest(part, known)}", key=key)
@@ -844,7 +846,7 @@ def _named_tables(info: FieldInfo) -> bool:
 
 
 def _quantity(info: FieldInfo) -> Quantity | None:
-    for mark in _marks(info):
+    for mark in (*info.metadata, *_marks(info.annotation)):
         if isinstance(mark, Pair):
             return mark.each
         if isinstance(mark, Quantity):
@@ -852,10 +854,11 @@ def _quantity(info: FieldInfo) -> Quantity | None:
     return None
 
 
-def _marks(info: FieldInfo) -> Iterator[Any]:
-    yield from info.metadata
-    for option in getattr(info.annotation, "__args__", ()):
+def _marks(annotation: Any) -> Iterator[Any]:
+    """What is said of the values that a field may hold, alone or in a list."""
+    for option in getattr(annotation, "__args__", ()):
         yield from getattr(option, "__metadata__", ())
+        yield from _marks(option)
 
 
 def _sentence(error: ValidationError, document: Document) -> InputError:

@@ -102,13 +102,30 @@ class Job:
 
 @dataclass(frozen=True)
 class Variant:
-    """A case file in one variant, with the means to build it again with changed values."""
+    """A case file in one variant, with the means to build it again with changed values.
+
+    Attributes:
+        tree: tables of the file.
+        name: of the file or of the shipped case, for messages.
+        variant: one of those in the file.
+        settings: values by dotted key that replace those of the file.
+        own: friction law of the user's own.
+        recorded: name of the case whose record the file is; empty where it is the case itself.
+        warnings: about the record.
+    """
 
     tree: Mapping[str, Any]
     name: str
     variant: str
     settings: Mapping[str, Any] = field(default_factory=dict)
     own: FrictionLaw | None = None
+    recorded: str = ""
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Name of the case in its results."""
+        return self.recorded or self.name
 
     def document(self, **changes: Any) -> Document:
         """Plain values with further settings."""
@@ -350,7 +367,7 @@ def _laws(built: Built) -> xr.Dataset:
 
 
 def _study(variant: Variant, name: str, study: Study, where: str) -> Job:
-    fixed = {key: value for key, value in leaves(study.change)}
+    fixed = {key: value for key, value in leaves(study.change) if value != {}}
     title = study.title or name
     if study.sweep is None:
         _point(variant, fixed, where)

@@ -15,7 +15,7 @@ from pitchpoint.contact.contacts import along
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.response import Response, Status
+from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.sweep import speed_sweep
 from pitchpoint.dynamics.system import System
 from pitchpoint.dynamics.vibration import (
@@ -36,6 +36,7 @@ from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
+from pitchpoint.status import Code
 
 __all__ = [
     "figures_of",
@@ -149,7 +150,7 @@ def vibration_part(built: Built) -> xr.Dataset:
     for name, values in found.items():
         own = ("torque", "node") if name in nodal else ("torque",)
         data[name] = (dims.get(name, own), values)
-    told = [Status(int(code)) for code in found["vibration_status"]]
+    told = [Code(int(code)) for code in found["vibration_status"]]
     return dataset(
         data,
         {"torque": ("torque", _torques(built)), "order": ("order", np.array(ORDERS))},
@@ -197,7 +198,7 @@ def resonance_part(built: Built) -> xr.Dataset:
         {"direction": ["rising", "falling"], "torque": _torques(built), "speed": speeds},
         title="vibration against speed",
         warnings=[*status_sentences(data["vibration_status"][1], _AT_SPEED), *_moduli(built)],
-        sentences=[status.sentence for status in Status],
+        sentences=[code.sentence for code in Code],
     )
 
 
@@ -222,7 +223,7 @@ def _sweep(
         return {
             "transmission_error_range": one.peak_to_peak(one.transmission_error),
             "largest_dynamic_factor": jnp.max(one.extremes(factors)[1]),
-            "vibration_status": one.status,
+            "vibration_status": one.status.code,
         }
 
     def alone(period: Float[Array, ""]) -> dict[str, Array]:
@@ -317,12 +318,12 @@ def status_sentences(
         told.format(
             points=f"{np.sum(codes == code)} of {codes.size} points", sentence=code.sentence
         )
-        for code in Status
+        for code in Code
         if not code.ok and np.any(codes == code)
     ]
 
 
-def _warnings(built: Built, statuses: Sequence[Status]) -> list[str]:
+def _warnings(built: Built, statuses: Sequence[Code]) -> list[str]:
     return [
         f"Vibration at {torque:.4g} N m: {status.sentence}."
         for torque, status in zip(_torques(built), statuses, strict=True)

@@ -9,8 +9,9 @@ from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.response import Response, Status, respond
+from pitchpoint.dynamics.response import Response, respond
 from pitchpoint.dynamics.system import System
+from pitchpoint.status import Code
 
 __all__ = ["harmonic_balance"]
 
@@ -55,10 +56,11 @@ def harmonic_balance(
         residual < 1e-8,
     )
     unknown = jnp.full_like(response.multipliers, jnp.nan)
-    status = jnp.where(
-        response.status == int(Status.CONVERGED), int(Status.STABILITY_UNKNOWN), response.status
+    code = response.status.code
+    code = jnp.where(code == int(Code.SOLVED), int(Code.STABILITY_UNKNOWN), code)
+    known: Response = eqx.tree_at(
+        lambda r: (r.multipliers, r.status.code), response, (unknown, code)
     )
-    known: Response = eqx.tree_at(lambda r: (r.multipliers, r.status), response, (unknown, status))
     return known
 
 

@@ -1,7 +1,6 @@
 """The steady response of a mesh: motion, forces, transmission error, spectrum and status."""
 
 from collections.abc import Sequence
-from enum import IntEnum
 
 import equinox as eqx
 import numpy as np
@@ -12,48 +11,15 @@ from pitchpoint.dynamics.contact_law import ContactLaw
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import Course
 from pitchpoint.dynamics.floquet import STABLE, multipliers
+from pitchpoint.status import Code, Status
 
-__all__ = ["Response", "Status", "respond"]
+__all__ = ["Response", "respond"]
 
 UNRESOLVED = 1e-4
 """Highest Legendre coefficients of an element, relative to the largest displacement."""
 
 Coordinates = Float[Array, "coordinate element node"]
 Pairs = Float[Array, "pair element node"]
-
-
-class Status(IntEnum):
-    """What became of a steady state; `sentence` says it."""
-
-    CONVERGED = 0
-    NOT_FINITE = 1
-    NOT_CONVERGED = 2
-    UNSTABLE = 3
-    UNRESOLVED = 4
-    SEPARATES = 5
-    STABILITY_UNKNOWN = 6
-
-    @property
-    def sentence(self) -> str:
-        """What the code means."""
-        return _SENTENCES[self]
-
-    @property
-    def ok(self) -> bool:
-        """True where the numbers are those of a steady state that is reached."""
-        return self is Status.CONVERGED
-
-
-_SENTENCES = {
-    Status.CONVERGED: "a steady state was found, and disturbances of it die out",
-    Status.NOT_FINITE: "an input is not a finite number, or the mass is not positive",
-    Status.NOT_CONVERGED: "no stable motion with the period of the mesh was found",
-    Status.UNSTABLE: "a Floquet multiplier is larger than one: disturbances grow, and the balance "
-    "cannot be reached",
-    Status.UNRESOLVED: "the grid has too few elements for the vibration; take more",
-    Status.STABILITY_UNKNOWN: "a balance was found; whether it is reached this method cannot say",
-    Status.SEPARATES: "a force is negative: the teeth would separate, which this model leaves out",
-}
 
 
 class Response(eqx.Module):
@@ -71,8 +37,7 @@ class Response(eqx.Module):
         stretch: compression of each pair: arm times displacement less profile error [m].
         force: of each pair along its normal [N].
         multipliers: Floquet multipliers of one period.
-        residual: of the end of the period from its start, relative.
-        status: code of `Status`.
+        status: what became of the search for it.
     """
 
     course: Course
@@ -82,8 +47,7 @@ class Response(eqx.Module):
     stretch: Pairs
     force: Pairs
     multipliers: Complex[Array, " multiplier"]
-    residual: Float[Array, ""]
-    status: Int[Array, ""]
+    status: Status
 
     @property
     def transmission_error(self) -> Float[Array, "element node"]:
@@ -162,6 +126,7 @@ def respond(
     residual: Float[Array, ""],
     periodic: Bool[Array, ""],
     resolved: Bool[Array, ""] | bool = True,
+    iterations: Int[Array, ""] | None = None,
 ) -> Response:
     """Response with forces and status from states without dimensions.
 
@@ -171,6 +136,7 @@ def respond(
         monodromy, residual: of one period.
         periodic: whether the period closes.
         resolved: whether the integration between the nodes is exact.
+        iterations: of the search; one for a linear system.
     """
     size = equations.load.shape[0]
     found = periodic & resolved & equations.finite & jnp.all(jnp.isfinite(states))
@@ -186,12 +152,12 @@ def respond(
     force = checked(course.stiffness * law.function(stretch, backlash)[0])
     of_period = multipliers(jax.lax.stop_gradient(monodromy))
     checks = (
-        (~equations.finite, Status.NOT_FINITE),
-        (jnp.logical_not(resolved), Status.UNRESOLVED),
-        (~found, Status.NOT_CONVERGED),
-        (jnp.max(jnp.abs(of_period)) > STABLE, Status.UNSTABLE),
-        (_coarse(course, displacement), Status.UNRESOLVED),
-        (_separated(course, stretch) & law.linear, Status.SEPARATES),
+        (~equations.finite, Code.NOT_FINITE),
+        (jnp.logical_not(resolved), Code.UNRESOLVED),
+        (~found, Code.NOT_PERIODIC),
+        (jnp.max(jnp.abs(of_period)) > STABLE, Code.UNSTABLE),
+        (_coarse(course, displacement), Code.UNRESOLVED),
+        (_separated(course, stretch) & law.linear, Code.SEPARATES),
     )
     return Response(
         course=course,
@@ -201,11 +167,14 @@ def respond(
         stretch=stretch,
         force=force,
         multipliers=jnp.where(found, of_period, jnp.nan),
-        residual=checked(residual),
-        status=jnp.select(
-            [check for check, _ in checks],
-            [jnp.asarray(int(code)) for _, code in checks],
-            int(Status.CONVERGED),
+        status=Status(
+            code=jnp.select(
+                [check for check, _ in checks],
+                [jnp.asarray(int(code)) for _, code in checks],
+                int(Code.SOLVED),
+            ),
+            residual=checked(residual),
+            iterations=jnp.asarray(1) if iterations is None else iterations,
         ),
     )
 

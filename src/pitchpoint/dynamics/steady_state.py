@@ -106,7 +106,8 @@ def respond_to(
 ) -> Response:
     """Response of the motion that a search found."""
     states = shot.nodes(course.length.shape[0])
-    return respond(course, scaled, law, backlash, states, shot.monodromy, shot.residual, shot.found)
+    given = states, shot.monodromy, shot.residual, shot.found
+    return respond(course, scaled, law, backlash, *given, iterations=shot.marched + shot.tries)
 
 
 def resting(scaled: Equations, course: Course) -> State:

@@ -174,7 +174,7 @@ def transmission_figures(
         "mesh_frequency": 1.0 / moved.period,
         "equivalent_mass": moved.mass[0, 0],
         "largest_multiplier": jnp.max(jnp.abs(found.multipliers)),
-        "vibration_status": jax.lax.stop_gradient(found.status),
+        "vibration_status": jax.lax.stop_gradient(found.status.code),
     }
 
 

@@ -76,6 +76,46 @@ class Design(eqx.Module):
         """Reduced modulus E' [Pa], 2/E' = sum of (1 - nu^2)/E over both members."""
         return reduced_modulus(*self.solids)
 
+    def conditions(
+        self,
+        contacts: Contacts,
+        operation: "Operation",
+        *,
+        load: Lanes,
+        nominal_load: Each,
+        rates: Float[Array, "dof *b"] | None = None,
+    ) -> Conditions:
+        """Conditions at the contacts, for laws of friction and film.
+
+        A vibration asks the same laws with its own forces and rates.
+
+        Args:
+            contacts: of the mesh.
+            operation: speed of the driver and temperature of the oil.
+            load: normal force of each slice [N].
+            nominal_load: normal force of the whole mesh without friction [N].
+            rates: of the coordinates [rad/s or m/s]; those of the nominal motion by default.
+        """
+        oil, temperature, mesh = self.lubricant, operation.temperature, self.mesh
+        # Per radian of the driver: laws keep the speed as a factor on axes of its own.
+        motion = mesh.motion if rates is None else rates / operation.speed
+        return Conditions(
+            contacts=contacts,
+            load=load,
+            nominal_load=nominal_load,
+            slip=along(contacts.slip_arm, motion),
+            roll=along(contacts.roll_arm, motion),
+            speed=operation.speed,
+            modulus=self.modulus,
+            viscosity=oil.viscosity(temperature),
+            kinematic_viscosity=oil.kinematic_viscosity(temperature),
+            pressure_viscosity=oil.pressure_viscosity(temperature),
+            lubricant_factor=oil.lubricant_factor,
+            roughness_ra=self.roughness.mean_ra,
+            roughness_rq=self.roughness.composite_rq,
+            reference=mesh.reference,
+        )
+
 
 class Operation(eqx.Module):
     """Operating points.
@@ -103,6 +143,8 @@ class Models(eqx.Module):
         sharing: of the load between pairs.
         rolling: rolling resistance.
         compliance: terms of the model by which teeth yield, where the sharing asks for it.
+        held: friction coefficient of each slice that was found elsewhere and takes the place of the law;
+            other values need no other program.
     """
 
     friction: tuple[FrictionLaw, ...] = eqx.field(static=True)
@@ -113,6 +155,7 @@ class Models(eqx.Module):
     compliance: Terms = eqx.field(
         default_factory=lambda: TOOTH_COMPLIANCE["beam_foundation_weber"].terms
     )
+    held: Lanes | None = None
 
     def coefficient(self, conditions: Conditions) -> Lanes:
         """Friction coefficient at every contact by the chosen law."""
@@ -120,6 +163,8 @@ class Models(eqx.Module):
         def branch(law: FrictionLaw) -> Callable[[Conditions], Lanes]:
             return lambda at: evaluate(law, at, self.parameters.get(law.name))
 
+        if self.held is not None:
+            return jnp.broadcast_to(self.held, conditions.load.shape)
         if len(self.friction) == 1:
             return branch(self.friction[0])(conditions)
         chosen: Lanes = jax.lax.switch(
@@ -334,23 +379,9 @@ def state(
     if share is None:
         share = models.share(design, contacts, operation.load)
     arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
-    unloaded = Conditions(
-        contacts=contacts,
-        load=jnp.zeros_like(share),
-        nominal_load=carried / arm,
-        slip=along(contacts.slip_arm, mesh.motion),
-        roll=along(contacts.roll_arm, mesh.motion),
-        speed=operation.speed,
-        modulus=design.modulus,
-        viscosity=oil.viscosity(temperature),
-        kinematic_viscosity=oil.kinematic_viscosity(temperature),
-        pressure_viscosity=oil.pressure_viscosity(temperature),
-        lubricant_factor=oil.lubricant_factor,
-        roughness_ra=design.roughness.mean_ra,
-        roughness_rq=design.roughness.composite_rq,
-        reference=mesh.reference,
+    unloaded = design.conditions(
+        contacts, operation, load=jnp.zeros_like(share), nominal_load=carried / arm
     )
-
     given = design, operation, contacts, share, unloaded, mesh.motion, mesh.loaded
     guess = None
     if quick:

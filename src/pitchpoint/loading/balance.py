@@ -10,6 +10,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.factored import product
 from pitchpoint.roots import quotient, root, third_order_step
+from pitchpoint.status import Code, Status
 
 __all__ = ["Balance", "balance", "first_guess", "tooth_load"]
 
@@ -68,6 +69,16 @@ class Balance(eqx.Module):
     iterations: Int[Array, ""]
     locked: Bool[Array, "*b"]
     jamming: Float[Array, "*b"]
+
+    @property
+    def status(self) -> Status:
+        """What became of the search for the contact force."""
+        taken = jnp.isinf(self.residual) & ~self.locked
+        lost = ~(self.residual <= UNSOLVED)
+        code = jnp.where(lost, int(Code.NOT_CONVERGED), int(Code.SOLVED))
+        code = jnp.where(taken, int(Code.TAKEN_ALONG), code)
+        code = jnp.where(self.locked, int(Code.LOCKED), code)
+        return Status(code, self.residual, self.iterations)
 
     @property
     def largest_friction(self) -> Float[Array, "*b"]:

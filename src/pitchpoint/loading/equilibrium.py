@@ -6,6 +6,7 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.status import Code, Status
 
 __all__ = ["Equilibrium", "equilibrium", "touch"]
 
@@ -54,6 +55,13 @@ class Equilibrium(eqx.Module):
     loaded: Bool[Array, "pair slice *b"]
     residual: Each
     iterations: Int[Array, ""]
+
+    @property
+    def status(self) -> Status:
+        """What became of the search for the contacts that carry."""
+        lost = jnp.where(jnp.isinf(self.residual), int(Code.NO_CONTACT), int(Code.NOT_CONVERGED))
+        code = jnp.where(self.residual <= UNSOLVED, int(Code.SOLVED), lost)
+        return Status(code, self.residual, self.iterations)
 
 
 class _Problem(NamedTuple):

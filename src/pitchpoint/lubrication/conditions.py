@@ -230,7 +230,7 @@ class Law(Protocol):
         ...
 
 
-def shape_of(law: Law | Callable[..., Array]) -> Shape | None:
+def shape_of(law: Law | Callable[..., Any]) -> Shape | None:
     """Shape of contact for which a law holds: as its record states, else by what it asks for.
 
     Args:
@@ -247,7 +247,7 @@ def shape_of(law: Law | Callable[..., Array]) -> Shape | None:
     return stated or _asked(_function(law))
 
 
-def demand_shape(law: Law | Callable[..., Array], shape: Shape) -> None:
+def demand_shape(law: Law | Callable[..., Any], shape: Shape) -> None:
     """InputError if a law does not hold for contacts of this shape.
 
     Args:
@@ -264,12 +264,12 @@ def demand_shape(law: Law | Callable[..., Array], shape: Shape) -> None:
     raise InputError(f"'{name}' holds for {_KINDS[own]}, and these touch {_TOUCH[shape]}{choose}")
 
 
-def _function(law: Law | Callable[..., Array]) -> Callable[..., Array]:
+def _function(law: Law | Callable[..., Any]) -> Callable[..., Any]:
     return law if callable(law) else law.function
 
 
 @lru_cache(maxsize=256)
-def _asked(function: Callable[..., Array]) -> Shape | None:
+def _asked(function: Callable[..., Any]) -> Shape | None:
     """Shape that alone has what a law asks for; None if every contact has it."""
     wanted, _ = arguments(function)
     return next((_OF_SHAPE[name] for name in wanted if name in _OF_SHAPE), None)

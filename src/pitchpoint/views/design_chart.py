@@ -9,7 +9,6 @@ import xarray as xr
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
-from pitchpoint.views.facts import given
 from pitchpoint.views.figures import (
     PALETTE,
     Figure,
@@ -20,6 +19,7 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
+from pitchpoint.views.inputs import given
 
 __all__ = ["design_charts", "is_design_chart"]
 
@@ -173,6 +173,6 @@ def _valid(variable: str, data: xr.Dataset) -> np.ndarray:
 def _least_tip(outcome: Outcome, data: xr.Dataset) -> float:
     """Least tip thickness asked for [m]; zero if none was."""
     asked = given(outcome, "gears", "least_tip_thickness")
-    if not asked or "module" not in data:
+    if asked is None or "module" not in data:
         return 0.0
-    return float(asked.split()[0]) * float(data["module"].values.ravel()[0])
+    return float(asked) * float(data["module"].values.ravel()[0])

@@ -15,7 +15,8 @@ import xarray as xr
 from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.views import show
-from pitchpoint.views.facts import given, wave
+from pitchpoint.views.facts import wave
+from pitchpoint.views.inputs import words
 
 __all__ = ["loaded_arcs", "picture", "simplified", "wave_dimensions"]
 
@@ -139,7 +140,7 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     tip = 1e3 * (float(teeth["neutral_radius"]) + float(teeth["tooth"].values[:, 1].max()))
     drives, carries = (fact.rates[MEMBERS.index(name)] for name in (fact.driver, fact.loaded))
     rows: list[tuple[str, ...]] = [("number of teeth z", *map(str, fact.teeth))]
-    module, width = (show.pretty(given(outcome, "gears", key)) for key in ("module", "face_width"))
+    module, width = (show.pretty(words(outcome, "gears", key)) for key in ("module", "face_width"))
     rows += [("module m", module)] if module else []
     rows += [("face width b", width)] if width else []
     return [

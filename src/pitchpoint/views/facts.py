@@ -1,20 +1,20 @@
 """What the figures and the page need to know about a result beside its datasets."""
 
 from dataclasses import dataclass
-from math import pi
+from typing import Any
 
 import numpy as np
 
-from pitchpoint import units
 from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.views.inputs import given, number
 
 __all__ = [
     "Facts",
     "OperatingPoint",
+    "Periodic",
     "Wave",
     "facts",
-    "given",
     "has_path",
     "has_wave",
     "operating_point",
@@ -40,7 +40,24 @@ class OperatingPoint:
 
 
 @dataclass(frozen=True)
-class Facts(OperatingPoint):
+class Periodic(OperatingPoint):
+    """Operating point of a mesh whose state repeats.
+
+    Attributes:
+        period_angle: driver angle after which it does: of one base pitch, or in which a wave moves on by one
+            tooth [rad].
+    """
+
+    period_angle: float
+
+    @property
+    def period(self) -> float:
+        """Time after which the mesh repeats [s]."""
+        return self.period_angle / self.speed
+
+
+@dataclass(frozen=True)
+class Facts(Periodic):
     """Operating point and gears of one variant.
 
     Attributes:
@@ -74,23 +91,13 @@ class Facts(OperatingPoint):
         return self.teeth[1] < 0
 
     @property
-    def period_angle(self) -> float:
-        """Driver angle of one base pitch [rad]."""
-        return 2.0 * pi / abs(self.teeth[self.driver - 1])
-
-    @property
-    def period(self) -> float:
-        """Time of one base pitch [s]."""
-        return self.period_angle / self.speed
-
-    @property
     def backwards(self) -> bool:
         """True if a pair runs from E to A: the wheel drives the same flanks."""
         return self.driver == 2
 
 
 @dataclass(frozen=True)
-class Wave(OperatingPoint):
+class Wave(Periodic):
     """Operating point and bodies of a drive whose teeth are carried by a wave.
 
     Attributes:
@@ -104,16 +111,6 @@ class Wave(OperatingPoint):
     driver: str
     loaded: str
     fixed: str
-
-    @property
-    def period_angle(self) -> float:
-        """Driver angle in which the wave moves on by one tooth of the flexspline [rad]."""
-        return 2.0 * pi / self.teeth[0] / abs(self.rates[1] - self.rates[0])
-
-    @property
-    def period(self) -> float:
-        """Time in which the wave moves on by one tooth of the flexspline [s]."""
-        return self.period_angle / self.speed
 
     @property
     def backwards(self) -> bool:
@@ -131,12 +128,6 @@ def has_wave(outcome: Outcome) -> bool:
     return "wave_weights" in outcome.parts.get("teeth", ())
 
 
-def given(outcome: Outcome, table: str, key: str) -> str:
-    """Value of an input as shown; empty if there is none."""
-    rows = outcome.manifest["inputs"]
-    return next((r["value"] for r in rows if r["table"] == table and r["key"] == key), "")
-
-
 def operating_point(outcome: Outcome) -> OperatingPoint:
     """Where a result was run, whatever its gears."""
     return OperatingPoint(**_point(outcome))
@@ -148,21 +139,15 @@ def timed(outcome: Outcome) -> Facts | Wave:
 
 
 def wave(outcome: Outcome) -> Wave:
-    """Facts of a result whose teeth are carried by a wave.
-
-    The rates obey z2 C = z1 F + (z2 - z1) W; the loaded member turns so that its teeth are pressed.
-    """
+    """Facts of a result whose teeth are carried by a wave."""
     z1, z2 = (round(float(z)) for z in outcome.parts["teeth"]["teeth"].values)
     driver, loaded = (str(outcome.manifest[key]) for key in ("driver", "loaded"))
-    law = (z2 - z1, z1, -z2)
-    drives, carries = MEMBERS.index(driver), MEMBERS.index(loaded)
-    rates = [0.0, 0.0, 0.0]
-    rates[drives] = 1.0 if law[drives] > 0 else -1.0
-    rates[carries] = -law[drives] * rates[drives] / law[carries]
+    motion = dict(zip(outcome.manifest["members"], outcome.manifest["motion"], strict=True))
+    generator, first, second = (float(motion.get(name, 0.0)) for name in MEMBERS)
     return Wave(
-        **_point(outcome),
+        **_period(outcome),
         teeth=(z1, z2),
-        rates=(rates[0], rates[1], rates[2]),
+        rates=(generator, first, second),
         driver=driver,
         loaded=loaded,
         fixed=next(name for name in MEMBERS if name not in (driver, loaded)),
@@ -177,8 +162,8 @@ def facts(outcome: Outcome) -> Facts:
     ratio = float(teeth["transverse_contact_ratio"])
     inside = {str(name): place for place, name in named if -1e-9 <= place <= ratio + 1e-9}
     return Facts(
-        **_point(outcome),
-        driver=2 if given(outcome, "operation", "driver") == "gear 2" else 1,
+        **_period(outcome),
+        driver=2 if outcome.manifest["driver"] == "gear 2" else 1,
         right_flank=given(outcome, "gears", "flank") == "right",
         teeth=(round(float(teeth["teeth"][0])), round(float(teeth["teeth"][1]))),
         points=inside,
@@ -203,12 +188,9 @@ def same_geometry(first: Outcome, second: Outcome) -> bool:
 
 
 def _point(outcome: Outcome) -> dict[str, float]:
-    return {
-        "torque": _read(outcome, "torque", "torque"),
-        "speed": _read(outcome, "speed", "rotational speed"),
-        "temperature": _read(outcome, "temperature", "temperature"),
-    }
+    names = ("torque", "speed", "temperature")
+    return {name: number(outcome, "operation", name) for name in names}
 
 
-def _read(outcome: Outcome, key: str, kind: str) -> float:
-    return units.parse(given(outcome, "operation", key), kind)
+def _period(outcome: Outcome) -> dict[str, Any]:
+    return {**_point(outcome), "period_angle": float(outcome.manifest["period"])}

@@ -18,7 +18,8 @@ import xarray as xr
 
 from pitchpoint.cases.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import Facts, facts, given
+from pitchpoint.views.facts import Facts, facts
+from pitchpoint.views.inputs import words
 
 __all__ = ["Drawing", "dimensions", "drawing", "specific_sliding"]
 
@@ -245,7 +246,7 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         return [show.quantity(name, float(teeth[name]), with_unit=False)]
 
     def input_row(title: str, key: str) -> list[tuple[str, ...]]:
-        found = given(outcome, "gears", key).replace(" deg", "°").split(" / ")
+        found = words(outcome, "gears", key).replace(" deg", "°").split(" / ")
         each = [show.pretty(one).replace("-", "−") for one in found if one]
         return [(title, *each)] if each else []
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from pitchpoint.cases.catalogue import CONTACT, of_contact
 from pitchpoint.cases.comparison import Row, counts
+from pitchpoint.cases.inputs import OIL
 from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.studies import jamming_words
 from pitchpoint.results.store import write_text
@@ -19,9 +20,10 @@ from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel, cycle_pitch, loss_places, path_panel
 from pitchpoint.views.design_chart import design_charts
 from pitchpoint.views.drive import picture, wave_dimensions
-from pitchpoint.views.facts import Facts, facts, given, has_path, has_wave, same_geometry, timed
+from pitchpoint.views.facts import Facts, facts, has_path, has_wave, same_geometry, timed
 from pitchpoint.views.figures import Curve, Curves, Panel, curves, law_title, laws
 from pitchpoint.views.geometry import dimensions, drawing
+from pitchpoint.views.inputs import input_rows, set_for_run, words
 from pitchpoint.views.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.maps import efficiency_panel, map_panel
 from pitchpoint.views.plane_of_action import plane_of_action
@@ -253,7 +255,7 @@ def _variant(name: str, outcome: Outcome, known: Curves) -> dict[str, Any]:
         "laws": manifest["laws"],
         "warnings": _warnings(outcome),
         "finished": manifest["finished"],
-        "settings": manifest["settings"],
+        "settings": set_for_run(manifest),
         "spread": _spread(outcome),
         "stiffness": stiffness_answer(outcome),
         "torsion": torsion_answer(outcome),
@@ -275,27 +277,24 @@ def _averaging(outcome: Outcome) -> str:
 
 def _oil_note(outcome: Outcome) -> str:
     """Viscosities of the oil as resolved, with their status."""
-    rows = [r for r in outcome.manifest["inputs"] if r["key"].startswith("kinematic viscosity")]
-    told = [f"{show.pretty(row['value'])} ({row['status']})" for row in rows]
-    ends = [show.pretty(given(outcome, "oil as resolved", f"{end} temperature")) for end in _ENDS]
-    return "; ".join(f"{value} at {end}" for value, end in zip(told, ends, strict=False) if end)
-
-
-_ENDS = ("lower", "upper")
+    status = {
+        row["key"]: row["status"] for row in outcome.manifest["inputs"] if row["table"] == OIL
+    }
+    return "; ".join(
+        show.pretty(f"{words(outcome, OIL, nu)} ({status[nu]}) at {words(outcome, OIL, at)}")
+        for nu, at in (("nu_1", "T_1"), ("nu_2", "T_2"))
+        if nu in status
+    )
 
 
 def _operation(outcome: Outcome) -> str:
     """The operating point in words."""
-    value = {key: show.pretty(given(outcome, "operation", key)) for key in _POINT}
-    other = "gear 1" if value["driver"] == "gear 2" else "gear 2"
-    driven = outcome.manifest.get("loaded", other)
-    return (
-        f"{value['driver']} drives at {value['speed']}, {driven} carries "
-        f"{value['torque'] or value['force']}, oil at {value['temperature']}"
+    speed, torque, force, temperature = (
+        show.pretty(words(outcome, "operation", key))
+        for key in ("speed", "torque", "force", "temperature")
     )
-
-
-_POINT = ("driver", "speed", "torque", "force", "temperature")
+    driver, loaded = outcome.manifest["driver"], outcome.manifest["loaded"]
+    return f"{driver} drives at {speed}, {loaded} carries {torque or force}, oil at {temperature}"
 
 
 def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str, Any]:
@@ -461,7 +460,7 @@ def _inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
     """Inputs by table and key; one entry where the variants agree, one for each where they do not."""
     rows: dict[tuple[str, str], dict[str, dict[str, str]]] = {}
     for variant, outcome in outcomes.items():
-        for row in outcome.manifest["inputs"]:
+        for row in input_rows(outcome.manifest):
             rows.setdefault((row["table"], row["key"]), {})[variant] = row
     tables: dict[str, list[dict[str, Any]]] = {}
     for (table, key), by_variant in rows.items():

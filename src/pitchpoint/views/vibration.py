@@ -12,7 +12,7 @@ import xarray as xr
 from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
-from pitchpoint.views.facts import Facts, facts, given
+from pitchpoint.views.facts import Facts, facts
 from pitchpoint.views.figures import (
     DASHES,
     PALETTE,
@@ -28,6 +28,7 @@ from pitchpoint.views.figures import (
     short_axis,
     text,
 )
+from pitchpoint.views.inputs import words
 from pitchpoint.views.stiffness import pair_key
 
 __all__ = ["resonance_panels", "vibration_answer", "vibration_panels", "vibration_tables"]
@@ -118,7 +119,7 @@ def _rows(outcome: Outcome) -> list[tuple[str, list[str]]]:
     data = outcome.parts["vibration"]
     count = range(data.sizes["torque"])
     rows = [(_title(name), [_cell(data, name, k) for k in count]) for name in _ROWS]
-    damping = given(outcome, "dynamics", "damping_ratio")
+    damping = words(outcome, "dynamics", "damping_ratio")
     if damping:
         rows.insert(3, ("damping ratio ξ", [damping] * len(count)))
     return rows

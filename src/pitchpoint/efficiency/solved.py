@@ -1,0 +1,111 @@
+"""A mesh cycle whose friction comes from a solver: a loop around coefficients that are held."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jax
+from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation, cycle
+from pitchpoint.factored import as_array
+from pitchpoint.lubrication.conditions import Conditions, arguments, demand_shape
+from pitchpoint.programs import program
+from pitchpoint.status import Code, Status
+
+__all__ = ["TOLERANCE", "Solver", "solved_cycle"]
+
+TOLERANCE = 1e-6
+"""Change of the coefficients between two turns, over the largest of them, at which they are found."""
+
+Solver = Callable[..., np.ndarray]
+"""Friction coefficients of contacts from conditions at them by name, all of them [contact]."""
+
+
+def solved_cycle(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    solver: Solver,
+    *,
+    engaged: Engagement | None = None,
+    tolerance: float = TOLERANCE,
+    most: int = 50,
+) -> tuple[Cycle, Status]:
+    """Mesh cycle under a friction law that is no formula, such as a solver of the film.
+
+    The balance of forces and the solver take turns: the balance with the coefficients held, the solver
+    at the conditions that follow, until they agree. Every turn runs the same program.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: one operating point.
+        models: laws; the friction law among them gives the first coefficients.
+        solver: plain Python, however slow. Its arguments are conditions by name, see
+            `lubrication.conditions.UNITS`, as NumPy arrays over the contacts that carry [contact]; its
+            result are their coefficients [contact].
+        engaged: contacts and shares, where they are known already.
+        tolerance: largest change of a coefficient between two turns, over the largest coefficient.
+        most: turns.
+
+    Returns:
+        The cycle with the last coefficients, and what became of the loop: its turns, and the change in
+        the last of them. Near the coefficient that locks the mesh the turns may not converge.
+
+    Raises:
+        InputError: the solver asks for what is no condition, or is none at these contacts.
+    """
+    wanted, _ = arguments(solver)
+    demand_shape(solver, design.mesh.shape)
+    found, at = _turn(design, operation, models, engaged, tuple(wanted))
+    held, change, turns = np.asarray(found.state.balance.friction), np.inf, 0
+    while tolerance < change and turns < most:  # a change that is not a number ends it too
+        held, before = _asked(solver, at, held), held
+        given = replace(models, friction=(), parameters={}, held=array(held))
+        found, at = _turn(design, operation, given, engaged, tuple(wanted))
+        change, turns = _change(held, before), turns + 1
+    code = Code.SOLVED if change <= tolerance else Code.NOT_CONVERGED
+    return found, Status(array(int(code)), array(change), array(turns))
+
+
+def _change(held: np.ndarray, before: np.ndarray) -> float:
+    """Largest change of a coefficient over the largest of them; zero where none is left."""
+    largest, changed = np.max(held), np.max(np.abs(held - before))
+    return float(changed / largest if largest > 0.0 else changed)
+
+
+def _asked(solver: Solver, at: dict[str, np.ndarray], before: np.ndarray) -> np.ndarray:
+    """Coefficients at the contacts that carry; elsewhere as before."""
+    carries = at.pop("carries")
+    values = {name: np.broadcast_to(value, carries.shape)[carries] for name, value in at.items()}
+    held = before.copy()
+    held[carries] = solver(**values)
+    return held
+
+
+def _turn(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    engaged: Engagement | None,
+    wanted: tuple[str, ...],
+) -> tuple[Cycle, dict[str, np.ndarray]]:
+    """Cycle and the conditions in it that a solver asks for."""
+    found, at = _cycle(design, operation, models, engaged, wanted)
+    told: Any = jax.device_get(at)
+    return found, told
+
+
+@program
+def _cycle(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    engaged: Engagement | None,
+    wanted: tuple[str, ...],
+) -> tuple[Cycle, dict[str, Float[Array, "..."]]]:
+    found = cycle(design, operation, models, engaged=engaged)
+    at: Conditions = found.state.conditions
+    carries = found.state.contacts.active & (found.state.balance.load > 0.0)
+    return found, {"carries": carries, **{name: as_array(getattr(at, name)) for name in wanted}}

@@ -1,0 +1,107 @@
+"""What became of a solve: one record for balances, equilibria, vibrations and loops around them."""
+
+from collections.abc import Iterator
+from enum import IntEnum
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float, Int
+
+__all__ = ["Code", "Status", "summary"]
+
+
+class Code(IntEnum):
+    """How a solve ended; `sentence` says it."""
+
+    SOLVED = 0
+    NOT_FINITE = 1
+    NOT_PERIODIC = 2
+    UNSTABLE = 3
+    UNRESOLVED = 4
+    SEPARATES = 5
+    STABILITY_UNKNOWN = 6
+    LOCKED = 7
+    TAKEN_ALONG = 8
+    NO_CONTACT = 9
+    NOT_CONVERGED = 10
+
+    @property
+    def sentence(self) -> str:
+        """What the code means."""
+        return _SENTENCES[self]
+
+    @property
+    def ok(self) -> bool:
+        """True where the numbers are those of a solution that is reached."""
+        return self is Code.SOLVED
+
+
+_SENTENCES = {
+    Code.SOLVED: "a solution was found",
+    Code.NOT_FINITE: "an input is not a finite number, or the mass is not positive",
+    Code.NOT_PERIODIC: "no stable motion with the period of the mesh was found",
+    Code.UNSTABLE: "a Floquet multiplier is larger than one: disturbances grow, and the balance "
+    "cannot be reached",
+    Code.UNRESOLVED: "the grid has too few elements for the vibration; take more",
+    Code.STABILITY_UNKNOWN: "a balance was found; whether it is reached this method cannot say",
+    Code.SEPARATES: "a force is negative: the teeth would separate, which this model leaves out",
+    Code.LOCKED: "friction locks the mesh: no force moves the load",
+    Code.TAKEN_ALONG: "losses beside the teeth take the loaded member along with more than its load; "
+    "its other flanks would touch",
+    Code.NO_CONTACT: "no contact can carry the load",
+    Code.NOT_CONVERGED: "the iteration ended without a solution",
+}
+
+
+class Status(eqx.Module):
+    """What became of solves `*b`.
+
+    Attributes:
+        code: of `Code`.
+        residual: relative error that is left.
+        iterations: that it took.
+    """
+
+    code: Int[Array, "*b"]
+    residual: Float[Array, "*b"]
+    iterations: Int[Array, "..."]
+
+    @property
+    def sentence(self) -> str:
+        """What the worst of the codes means."""
+        return Code(int(np.max(np.asarray(self.code)))).sentence
+
+
+def summary(status: Status) -> dict[str, Any]:
+    """Status of many solves as plain numbers and words, for a dataset.
+
+    Args:
+        status: of solves `*b`.
+
+    Example:
+        >>> import jax.numpy as jnp
+        >>> from pitchpoint.status import Code, Status, summary
+        >>> codes = jnp.array([Code.SOLVED, Code.SOLVED, Code.LOCKED])
+        >>> told = summary(Status(codes, jnp.array([1e-14, 3e-14, 0.2]), jnp.array(4)))
+        >>> told["code"], told["iterations"]
+        (7, 4)
+        >>> told["sentence"]
+        '2 of 3: a solution was found; 1 of 3: friction locks the mesh: no force moves the load'
+    """
+    codes = np.asarray(status.code)
+    residual = np.broadcast_to(np.asarray(status.residual), codes.shape)[codes == Code.SOLVED]
+    return {
+        "code": int(codes.max(initial=0)),
+        "sentence": "; ".join(_counted(codes)),
+        "residual": float(residual.max(initial=0.0)),
+        "iterations": int(np.max(status.iterations, initial=0)),
+    }
+
+
+def _counted(codes: np.ndarray) -> Iterator[str]:
+    for code in Code:
+        count = int(np.sum(codes == code))
+        if count:
+            part = "" if count == codes.size else f"{count} of {codes.size}: "
+            yield f"{part}{code.sentence}"

@@ -1,0 +1,176 @@
+"""Inputs of a result in words: what the record holds in SI, in the units in which people read it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pitchpoint import units
+from pitchpoint.cases.inputs import DIMENSIONS, OIL, SOLIDS, STUDIES
+from pitchpoint.cases.run import Outcome
+from pitchpoint.cases.schema import quantity_at
+from pitchpoint.errors import InputError
+from pitchpoint.results.variables import VARIABLES
+
+__all__ = ["given", "input_rows", "number", "set_for_run", "words"]
+
+_TABLES = {
+    DIMENSIONS: "gears as computed",
+    SOLIDS: "materials as resolved",
+    OIL: "oil as resolved",
+}
+
+_APART = (STUDIES, "loss_map")
+"""Tables that say what is computed, not from what: the results themselves show them."""
+
+_LABELS = {
+    "young": "Young's modulus",
+    "poisson": "Poisson's ratio",
+    "nu_1": "kinematic viscosity at the lower temperature",
+    "nu_2": "kinematic viscosity at the upper temperature",
+    "T_1": "lower temperature",
+    "T_2": "upper temperature",
+    "density_15": "density at 15 degC",
+    "density_slope": "fall of density",
+    "gold_s": "Gold's s",
+    "gold_t": "Gold's t",
+    "lubricant_factor": "lubricant factor X_L",
+    "T_min": "lowest temperature",
+    "T_max": "highest temperature",
+    "tip_thickness": "tip thickness in the normal section",
+}
+
+_UNITS = {
+    "angle": "deg",
+    "kinematic viscosity": "mm2/s",
+    "length": "mm",
+    "pressure": "GPa",
+    "rotational speed": "rpm",
+    "temperature": "degC",
+}
+"""In which values are shown that have no unit of their own, where it is not the SI unit."""
+
+_ROUNDING = 1e-14  # lengths in metres, ratios: what differences of dimensions leave
+
+Row = Mapping[str, Any]
+
+
+def input_rows(manifest: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Table, key, value, status, where and note of the inputs, as people read them."""
+    return [
+        {
+            "table": _TABLES.get(row["table"], row["table"]),
+            "key": _label(row),
+            "value": _words(row),
+            **{name: row[name] for name in ("status", "where", "note")},
+        }
+        for row in manifest["inputs"]
+        if row["table"] not in _APART and not _empty(row)
+    ]
+
+
+def set_for_run(manifest: Mapping[str, Any]) -> dict[str, str]:
+    """What was set for this run, in words by dotted key."""
+    return {_path(row): _words(row) for row in manifest["inputs"] if row["status"] == "set"}
+
+
+def given(outcome: Outcome, table: str, key: str) -> Any:
+    """Value of an input in SI, or text; None if there is none."""
+    row = _row(outcome, table, key)
+    return None if row is None else row["value"]
+
+
+def number(outcome: Outcome, table: str, key: str) -> float:
+    """Value of an input that is one number, in SI.
+
+    Raises:
+        InputError: it is not in the record, or no number.
+    """
+    value = given(outcome, table, key)
+    if not isinstance(value, float):
+        raise InputError("the record of the result holds no number", key=f"{table}.{key}")
+    return value
+
+
+def words(outcome: Outcome, table: str, key: str) -> str:
+    """Value of an input in words; empty if there is none."""
+    row = _row(outcome, table, key)
+    return "" if row is None else _words(row)
+
+
+def _row(outcome: Outcome, table: str, key: str) -> Row | None:
+    rows = outcome.manifest["inputs"]
+    return next((row for row in rows if row["table"] == table and row["key"] == key), None)
+
+
+def _path(row: Row) -> str:
+    return f"{row['table']}.{row['key']}"
+
+
+def _label(row: Row) -> str:
+    key = str(row["key"])
+    if row["table"] not in _TABLES:
+        return key
+    *gear, name = key.split(".")
+    told = _LABELS.get(name, name.replace("_", " "))
+    return ", ".join((*(one.replace("_", " ") for one in gear), told))
+
+
+def _empty(row: Row) -> bool:
+    """True for a table without values, and for a list without numbers."""
+    return row["value"] == {} or bool(row["value"] == [] and row["kind"])
+
+
+def _words(row: Row) -> str:
+    value = row["value"]
+    if not isinstance(value, list):
+        return _one(value, row)
+    if value and all(isinstance(one, float) for one in value):
+        shown = [_one(one, row) for one in value]
+        alike = _path(row) != "gears.profile_shift" and len(set(shown)) == 1
+        return " / ".join(shown[:1] if alike else shown)
+    return ", ".join(_item(one, row) for one in value) or "none"
+
+
+def _item(value: Any, row: Row) -> str:
+    """One of a list of names and tables."""
+    if not isinstance(value, dict):
+        return _one(value, row)
+    shown = {name: _one(one, row, name) for name, one in value.items()}
+    if _path(row) != "models.friction":
+        return " ".join(f"{name} {one}" for name, one in shown.items())
+    law = shown.pop("name", "")
+    own = ", ".join(f"{name} {one}" for name, one in shown.items())
+    return f"{law} ({own})" if own else law
+
+
+def _one(value: Any, row: Row, name: str = "") -> str:
+    """A value of a row; of a list of tables that at a name."""
+    kind = row["kind"].get(name, "") if isinstance(row["kind"], dict) else row["kind"]
+    if not kind or not isinstance(value, float):
+        return "undefined" if value is None else str(value)
+    if row["table"] == DIMENSIONS and abs(value) < _ROUNDING:
+        value = 0.0
+    return _shown(value, kind, _unit(row["table"], f"{row['key']}.{name}".removesuffix("."), kind))
+
+
+def _shown(value: float, kind: str, unit: str) -> str:
+    if unit in ("", "1"):
+        return f"{value:.6g}"
+    return f"{units.convert(value, unit, kind):.6g} {unit}"
+
+
+def _unit(table: str, key: str, kind: str) -> str:
+    """Unit in which the value at a key is shown, one of its kind."""
+    own = _own_unit(table, key)
+    return own if own in units.units_of(kind) else _UNITS.get(kind, units.si_unit(kind))
+
+
+def _own_unit(table: str, key: str) -> str:
+    """Unit that the schema or the list of variables names for a key; empty where neither does."""
+    if table == DIMENSIONS:
+        variable = VARIABLES.get(key) or VARIABLES.get(f"{key}_1")
+        return "" if variable is None else variable.display
+    try:
+        quantity = quantity_at(f"{table}.{key}")
+    except InputError:  # no key of a case file
+        return ""
+    return "" if quantity is None else quantity.unit
