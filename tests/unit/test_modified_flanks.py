@@ -253,6 +253,17 @@ def test_an_eccentric_gear_makes_order_one() -> None:
     np.testing.assert_allclose(shown, np.stack([following] * 3), atol=1e-9 * size)
 
 
+def test_an_eccentric_gear_that_is_driven_by_its_wheel() -> None:
+    """Gear 1 carries the load and turns the other way: the line of action passes its teeth forwards."""
+    wave = [{"order": 1, "amplitude": "10 um", "phase": "30 deg"}]
+    mesh, data = error_of(pair(gears__deviations__gear_1=wave, operation__driver="gear 2"))
+    turned = data["turn_angle"].values * 61.0 / 23.0
+    following = ECCENTRICITY / float(mesh.base_radii[0]) * np.cos(np.pi / 6.0 + turned)
+    np.testing.assert_allclose(
+        data["kinematic_error"].values[0], following, atol=1e-9 * np.abs(following).max()
+    )
+
+
 def test_pitch_deviations_of_rigid_teeth_are_those_of_the_tooth_in_contact() -> None:
     variant = pair(gears__deviations__iso_class=[6, 6])
     built = variant.built({})

@@ -23,7 +23,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.modified import Modifications, class_deviations, modified
+from pitchpoint.gears.modified import Modifications, class_deviations, class_warnings, modified
 from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
 from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.gears.strain_wave_design import (
@@ -123,9 +123,7 @@ def _modifications(gears: CylindricalGears) -> Modifications | None:
 
 def _beyond_iso_1328(pair: CylindricalPair, gears: CylindricalGears) -> tuple[str, ...]:
     asked = gears.deviations
-    if asked is None or asked.iso_class is None:
-        return ()
-    return class_deviations(pair, asked.iso_class, int(asked.seed))[1]
+    return class_warnings(pair) if asked is not None and asked.iso_class is not None else ()
 
 
 def _gear_deviations(gears: CylindricalGears, pair: CylindricalPair) -> Surfaces:
@@ -135,7 +133,7 @@ def _gear_deviations(gears: CylindricalGears, pair: CylindricalPair) -> Surfaces
     first, second = _waves(asked.gear_1), _waves(asked.gear_2)
     if asked.iso_class is None:
         return first, second
-    drawn = class_deviations(pair, asked.iso_class, int(asked.seed))[0]
+    drawn = class_deviations(pair, asked.iso_class, int(asked.seed))
     return (*first, *drawn[0]), (*second, *drawn[1])
 
 

@@ -1,6 +1,8 @@
 """Modifications and deviations of the flanks of a cylindrical pair, from what a drawing says of them."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from math import cos
 from typing import Any
 
 import numpy as np
@@ -15,7 +17,7 @@ from pitchpoint.gears.cylindrical import CylindricalPair
 from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.programs import program
 
-__all__ = ["FEWEST_SLICES", "Modifications", "class_deviations", "modified"]
+__all__ = ["FEWEST_SLICES", "Modifications", "class_deviations", "class_warnings", "modified"]
 
 FEWEST_SLICES = 4
 """Slices that surfaces which change across the face need at least."""
@@ -101,18 +103,8 @@ def modified(pair: CylindricalPair, given: Modifications, slices: int) -> Cylind
 def _of_gear(
     pair: CylindricalPair, given: Modifications, flanks: np.ndarray, member: int
 ) -> tuple[Surface, ...]:
-    root, tip = flanks[member]
-    inwards = -1.0 if pair.internal and member == 1 else 1.0  # the tip of a ring is its inner end
-    arcs = 2.0 * abs(float(pair.base_radii[member]))
-    found: list[Surface] = []
-    for amounts, lengths, end, sense in (
-        (given.tip_relief, given.tip_relief_length, tip, -inwards),
-        (given.root_relief, given.root_relief_length, root, inwards),
-    ):
-        if amounts is not None and lengths is not None:
-            start = end + sense * lengths[member]
-            places = array(start**2 / arcs), array(end**2 / arcs)
-            found.append(Relief(array(amounts[member]), *places, power=given.relief_power))
+    """Surfaces of one gear in a fixed order, so that the same keys make the same program."""
+    found: list[Surface] = [*_reliefs(pair, given, flanks, member)]
     width = pair.face_width
     if given.crowning is not None:
         found.append(Crowning(array(given.crowning[member]), width))
@@ -122,6 +114,22 @@ def _of_gear(
     if given.misalignment is not None and member == 0:
         found.append(LeadSlope(array(given.misalignment), width))
     return tuple(found)
+
+
+def _reliefs(
+    pair: CylindricalPair, given: Modifications, flanks: np.ndarray, member: int
+) -> Iterator[Relief]:
+    root, tip = flanks[member]
+    inwards = -1.0 if pair.internal and member == 1 else 1.0  # the tip of a ring is its inner end
+    arcs = 2.0 * abs(float(pair.base_radii[member]))
+    for amounts, lengths, end, sense in (
+        (given.tip_relief, given.tip_relief_length, tip, -inwards),
+        (given.root_relief, given.root_relief_length, root, inwards),
+    ):
+        if amounts is not None and lengths is not None:
+            start = end + sense * lengths[member]
+            places = array(start**2 / arcs), array(end**2 / arcs)
+            yield Relief(array(amounts[member]), *places, power=given.relief_power)
 
 
 def _check_lengths(key: str, given: Modifications, flanks: np.ndarray) -> None:
@@ -166,10 +174,8 @@ def _usual_lengths(pair: CylindricalPair) -> tuple[Float[Array, ""], Float[Array
     return (ratio - jnp.floor(ratio)) * pair.base_pitch, end
 
 
-def class_deviations(
-    pair: CylindricalPair, classes: Two, seed: int
-) -> tuple[Surfaces, tuple[str, ...]]:
-    """Flanks of two gears at the limits of their classes, drawn at random, and what the standard leaves out.
+def class_deviations(pair: CylindricalPair, classes: Two, seed: int) -> Surfaces:
+    """Flanks of two gears at the limits of their classes, drawn at random.
 
     Deviations of the standard lie along the reference circle and along the transverse line of action;
     surfaces count along the normal.
@@ -179,36 +185,46 @@ def class_deviations(
         classes: of ISO 1328-1, of each gear.
         seed: the same one gives the same gears.
     """
-    given = [float(v) for v in (pair.module, pair.face_width, pair.helix_angle)]
-    module, width, helix = given
     flanks = np.asarray(_active_flanks(pair))
     normal = float(jnp.cos(pair.base_helix_angle))
     upright = normal * float(jnp.cos(pair.transverse_pressure_angle))
-    found: list[tuple[Surface, ...]] = []
-    told: list[str] = []
-    for member, tolerance_class in enumerate(classes):
-        teeth = round(abs(float(pair.teeth[member])))
-        diameter = teeth * module / np.cos(helix)
-        size = {"diameter": diameter, "module": module, "face_width": width}
-        limits = flank_tolerances(tolerance_class=int(tolerance_class), **size)
+    found = []
+    for member, (size, teeth) in enumerate(_sizes(pair)):
+        limits = flank_tolerances(tolerance_class=int(classes[member]), **size)
         errors = gear_at_its_limits(limits, teeth, (seed, member))
         root, tip = flanks[member] ** 2 / (2.0 * abs(float(pair.base_radii[member])))
-        found.append(
-            (
-                ToothDeviations(
-                    pitch=array(upright * errors.pitch),
-                    profile_slope=array(normal * errors.profile_slope),
-                    lead_slope=array(normal * errors.helix_slope),
-                    profile_form=array(normal * errors.profile_form),
-                    lead_form=array(normal * errors.helix_form),
-                    root=array(root),
-                    tip=array(tip),
-                    width=pair.face_width,
-                ),
-            )
+        deviations = ToothDeviations(
+            pitch=array(upright * errors.pitch),
+            profile_slope=array(normal * errors.profile_slope),
+            lead_slope=array(normal * errors.helix_slope),
+            profile_form=array(normal * errors.profile_form),
+            lead_form=array(normal * errors.helix_form),
+            root=array(root),
+            tip=array(tip),
+            width=pair.face_width,
         )
-        outside = [*out_of_scope(teeth=teeth, **size, helix_angle=helix)]
-        told += [f"ISO 1328-1 does not hold for gear {member + 1}: {', '.join(outside)}."] * bool(
-            outside
-        )
-    return (found[0], found[1]), tuple(told)
+        found.append(deviations)
+    return (found[0],), (found[1],)
+
+
+def class_warnings(pair: CylindricalPair) -> tuple[str, ...]:
+    """Where the gears lie outside the ranges of ISO 1328-1."""
+    helix = float(pair.helix_angle)
+    told = [
+        ", ".join(out_of_scope(teeth=teeth, helix_angle=helix, **size))
+        for size, teeth in _sizes(pair)
+    ]
+    return tuple(
+        f"ISO 1328-1 does not hold for gear {number}: {outside}."
+        for number, outside in enumerate(told, 1)
+        if outside
+    )
+
+
+def _sizes(pair: CylindricalPair) -> list[tuple[dict[str, float], int]]:
+    """Reference diameter, module and face width [m] that the standard asks for, and number of teeth."""
+    module, width, helix = (float(v) for v in (pair.module, pair.face_width, pair.helix_angle))
+    return [
+        ({"diameter": z * module / cos(helix), "module": module, "face_width": width}, z)
+        for z in (round(abs(float(teeth))) for teeth in pair.teeth)
+    ]
