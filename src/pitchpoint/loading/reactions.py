@@ -31,12 +31,15 @@ class Bearing(eqx.Module):
         place: along its axis from the middle of the face [m]; of no account to one that is alone.
         other: place of the second bearing [m]; None without one.
         thrust: True if it takes the axial force; static.
+        beside: load on it by other meshes of the body, as a vector in the frame of this one [N]; None
+            without any.
     """
 
     coordinate: int = eqx.field(static=True)
     place: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
     other: Float[Array, ""] | None = None
     thrust: bool = eqx.field(static=True, default=True)
+    beside: Float[Array, "3 *b"] | None = None
 
     def unit_loads(self, mesh: Mesh, contacts: Contacts) -> Vectors:
         """Load on the bearing for a unit normal force at each contact, as a vector.
@@ -64,7 +67,12 @@ class Bearing(eqx.Module):
             contacts: of the mesh.
             force: normal force of each slice [N].
         """
-        return _size(_resultant(self.unit_loads(mesh, contacts) * force))
+        own = self.borne(mesh, contacts, force)
+        return _size(own if self.beside is None else own + self.beside)
+
+    def borne(self, mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Array, "3 *b"]:
+        """Load on the bearing by this mesh alone, as a vector [N]; arguments as in `load`."""
+        return _resultant(self.unit_loads(mesh, contacts) * force)
 
 
 class InnerBearing(eqx.Module):

@@ -1,0 +1,189 @@
+"""Two meshes on one shaft: torques, losses, loads on its bearings, stiffness at the output."""
+
+import dataclasses
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.drag import Drag
+from pitchpoint.efficiency.drive import Stage, chained, drive_cycle, output_wind_up
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.loading.reactions import Bearing
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials import Roughness, lubricants, solids
+
+CONSTANT = next(law for law in LAWS if law.name == "constant")
+STEEL = solids.find("steel").build()
+OIL = lubricants.find("pao-vg-220").build()
+RATIO = (61 / 23) * (70 / 19)
+POINT = Operation(*map(jnp.asarray, (300.0, 150.0, 330.0)))
+
+
+def design(teeth, module, **options):
+    pair = build_cylindrical_pair(
+        teeth=teeth, module=module, pressure_angle=np.deg2rad(20.0), face_width=0.02, **options
+    )
+    return Design(pair, (STEEL, STEEL), OIL, Roughness.from_composite_rq(0.4e-6))
+
+
+FIRST = Stage(design((23, 61), 2e-3), (0, 1))
+# Gear 2 turns clockwise, and so does gear 3 on its shaft: it pushes with its right flanks.
+SECOND = Stage(design((19, 70), 3e-3, right_flank=True), (1, 2), place=jnp.asarray(0.06))
+
+
+def models(mu, sharing="equal", compliance="beam_hertz"):
+    own = {"constant": {"coefficient": jnp.asarray(mu)}}
+    terms = TOOTH_COMPLIANCE[compliance].terms
+    rolling = ROLLING_RESISTANCE["none"]
+    return Models((CONSTANT,), jnp.asarray(0), own, LOAD_SHARING[sharing], rolling, terms)
+
+
+@eqx.filter_jit
+def answers(drive, point, mu):
+    found = drive_cycle(drive, point, [models(mu)] * len(drive.stages), nodes=4)
+    last = found.states[-1]
+    return {
+        "input": found.input_torque,
+        "lost": sum(found.states[k].loss[(..., *[None] * k)] for k in range(len(found.states))),
+        "out": last.output_power[(..., *[None] * (len(found.states) - 1))],
+        "mean_input": found.mean_input_torque,
+        "losses": found.mean_losses,
+        "efficiency": found.mean_efficiency,
+        "ripple": found.ripple,
+        "locked": found.locked,
+        "force": [one.balance.force for one in found.states],
+        "drag": found.states[0].balance.drag,
+    }
+
+
+def solved(drive, mu, point=POINT):
+    return jax.tree.map(np.asarray, answers(drive, point, jnp.asarray(mu)))
+
+
+BOTH = chained([FIRST, SECOND])
+
+
+def test_without_losses_the_torque_is_that_of_the_ratio():
+    found = solved(BOTH, 0.0)
+    np.testing.assert_allclose(found["input"], 300.0 / RATIO, rtol=1e-12)
+    assert float(found["efficiency"]) == pytest.approx(1.0, rel=1e-12)
+    assert float(found["ripple"]) < 1e-12
+    np.testing.assert_allclose(BOTH.ratios, [1.0, 23 / 61, 1.0 / RATIO], rtol=1e-14)
+
+
+def test_torque_route_equals_loss_route_at_every_meeting_of_phases():
+    found = solved(BOTH, 0.06)
+    put_in = found["input"] * 150.0
+    assert found["input"].shape == (12, 12)
+    rounding = 1e-14 * put_in.max()
+    np.testing.assert_allclose(put_in - found["out"], found["lost"], rtol=1e-10, atol=rounding)
+    assert not found["locked"]
+    each = np.ptp(found["input"], axis=0).max(), np.ptp(found["input"], axis=1).max()
+    assert found["ripple"] > max(each), "both stages have a part in the ripple"
+    power = 300.0 * 150.0 / RATIO
+    assert float(found["efficiency"]) == pytest.approx(power / (power + found["losses"].sum()))
+
+
+@eqx.filter_jit
+def alone(design, point, mu):
+    found = cycle(design, point, models(mu), nodes=4)
+    return found.mean_input_torque, found.mean_efficiency, found.ripple
+
+
+def test_one_stage_is_a_mesh_cycle():
+    found = solved(chained([FIRST]), 0.06)
+    torque, efficiency, _ = alone(FIRST.design, POINT, jnp.asarray(0.06))
+    assert float(found["mean_input"]) == pytest.approx(float(torque), rel=1e-13)
+    assert float(found["efficiency"]) == pytest.approx(float(efficiency), rel=1e-13)
+
+
+def test_with_a_constant_coefficient_efficiencies_multiply():
+    """Losses are in proportion to the load then, whatever the phase of the other stage."""
+    found = solved(BOTH, 0.06)
+    _, first, _ = alone(FIRST.design, POINT, jnp.asarray(0.06))
+    slow = dataclasses.replace(POINT, speed=POINT.speed * 23 / 61)
+    _, second, _ = alone(SECOND.design, slow, jnp.asarray(0.06))
+    assert float(found["efficiency"]) == pytest.approx(float(first * second), rel=1e-12)
+
+
+def bearing(shaft, place, other, **options):
+    seat = Bearing(shaft, jnp.asarray(place), jnp.asarray(other), **options)
+    return Drag(
+        np.eye(3)[shaft],
+        bearing=BEARING_LOSS["palmgren_1959"],
+        mean_diameter=0.05,
+        factors={"f0": 0.0, "f1": 1e-3},
+        seat=seat,
+    )
+
+
+@pytest.mark.parametrize("turn", [0.0, np.pi / 2.0, np.pi])
+def test_bearings_of_the_middle_shaft_bear_both_meshes(turn):
+    """Torque of the bearings over f1 d_m is the sum of their loads, which follow by hand."""
+    places = -0.03, 0.1
+    second = dataclasses.replace(SECOND, turn=jnp.asarray(turn))
+    drag = [bearing(1, *places), bearing(1, *places[::-1], thrust=False)]
+    found = solved(chained([FIRST, second], drag), 0.0)
+    angle = np.deg2rad(20.0)
+    # On gear 2 the force pushes on; gear 3 is pushed back, by its right flank.
+    own = found["force"][0][..., None] * [np.sin(angle), np.cos(angle)]
+    turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    other = -turned @ [np.sin(angle), -np.cos(angle)]
+    beside = found["force"][1][:, None, None] * other
+    span = places[1] - places[0]
+    parts = [
+        own * (places[1] - 0.0) / span + beside * (places[1] - 0.06) / span,
+        own * (0.0 - places[0]) / span + beside * (0.06 - places[0]) / span,
+    ]
+    loads = sum(np.linalg.norm(part, axis=-1) for part in parts)
+    np.testing.assert_allclose(np.abs(found["drag"][1]), 1e-3 * 0.05 * loads, rtol=1e-11)
+
+
+@eqx.filter_jit
+def wound(drive, load):
+    laws = [models(0.0, "from_stiffness")] * len(drive.stages)
+    return output_wind_up(drive, load, laws, nodes=4)
+
+
+def test_stages_are_springs_one_behind_the_other():
+    loads = jnp.asarray([100.0, 300.0])
+    turned, stiffness = map(np.asarray, wound(BOTH, loads))
+    first, second = (
+        np.asarray(wound(chained([one]), loads)[1])
+        for one in (FIRST, dataclasses.replace(SECOND, shafts=(0, 1)))
+    )
+    step = 19 / 70
+    np.testing.assert_allclose(1.0 / stiffness, 1.0 / second + step**2 / first, rtol=1e-12)
+    np.testing.assert_allclose(turned, loads / stiffness, rtol=1e-10)
+
+
+def test_the_output_drives_backwards():
+    back = BOTH.driven_backwards()
+    assert back.links == ((2, 1), (1, 0))
+    point = Operation(*map(jnp.asarray, (300.0 / RATIO, 150.0 / RATIO, 330.0)))
+    smooth = solved(back, 0.0, point)
+    np.testing.assert_allclose(smooth["input"], 300.0, rtol=1e-12)
+    rough = solved(back, 0.06, point)
+    assert 0.95 < float(rough["efficiency"]) < float(smooth["efficiency"])
+
+
+def test_stages_that_do_not_follow_each_other():
+    with pytest.raises(
+        InputError, match="stage 2 is driven by shaft 3, and the stage before it loads"
+    ):
+        chained([FIRST, dataclasses.replace(SECOND, shafts=(2, 3))])
+    wrong = Stage(design((19, 70), 3e-3), (1, 2))
+    with pytest.raises(
+        InputError, match="stage 2 turns its first shaft against the stage before it"
+    ):
+        chained([FIRST, wrong])
+    with pytest.raises(InputError, match="a loss between two shafts"):
+        chained([FIRST, SECOND], [Drag([1.0, -1.0, 0.0], seal_torque=0.1)])
