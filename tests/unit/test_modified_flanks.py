@@ -13,9 +13,12 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.kinematic_error import FEW_PAIRS, kinematic_error_part
 from pitchpoint.cases.studies import Variant, _face_warning, jobs
+from pitchpoint.cases.vibration import stiffness_part
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.errors import InputError
 from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)
@@ -222,6 +225,23 @@ def test_part_of_the_face_without_load_is_told_and_nearly_all_of_it_refused() ->
     with pytest.raises(InputError, match="at 50 N m only 2 of 12 slices of a contact line get"):
         _face_warning(built, run_with(2))
     assert _face_warning(pair().built({}), run_with(2)) == []
+
+
+def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> None:
+    """Crowned and relieved: static transmission error and stiffness are those of the wind-up."""
+    given = {"gears__modifications__crowning": "8 um", "models__tooth_compliance": "beam_hertz"}
+    built = pair(**RELIEVED, **given).built({})
+    data, mesh = stiffness_part(built), built.pair
+    contacts, load = mesh.contacts(jnp.asarray(data["phase"].values)), jnp.asarray(50.0)
+    terms = TOOTH_COMPLIANCE["beam_hertz"].terms
+    found = wound_up(mesh, built.design.solids, terms, load, contacts, None)
+    arm = abs(float(mesh.base_radii[1]))
+    error = np.asarray(found.wind_up + found.touch) * arm
+    np.testing.assert_allclose(data["static_transmission_error"], error, rtol=1e-9)
+    stiffness = np.asarray(found.stiffness) / arm**2
+    np.testing.assert_allclose(data["mesh_stiffness"], stiffness, rtol=1e-9)
+    sum_of_pairs = data["pair_stiffness"].sum("pair")
+    np.testing.assert_allclose(sum_of_pairs, stiffness, rtol=1e-9)
 
 
 # ------------------------------------------------------------------ kinematic error

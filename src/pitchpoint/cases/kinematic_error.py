@@ -8,7 +8,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.families import Turning
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
@@ -58,12 +58,11 @@ def kinematic_error_part(
         deviations: of both members.
         progress: told the number of states that are done, after each group of teeth.
     """
-    models, _ = laws_of(built)
     design, gears = built.design, built.case.gears
     assert hasattr(gears, "teeth")
     load = jnp.full((1, 1), built.case.operation.load)
     phases = PHASES if design.mesh.couples else FEW_PAIRS
-    period = _period(design.mesh, design.solids, models.compliance, load, phases)
+    period = _period(design.mesh, design.solids, built.terms, load, phases)
     teeth = np.abs(np.asarray(gears.teeth))
     solved: list[np.ndarray] = []
 

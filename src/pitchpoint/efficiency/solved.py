@@ -62,7 +62,7 @@ def solved_cycle(
     held, change, turns = np.asarray(found.state.balance.friction), np.inf, 0
     while tolerance < change and turns < most:  # a change that is not a number ends it too
         held, before = _asked(solver, at, held), held
-        given = replace(models, friction=(), parameters={}, held=array(held))
+        given = replace(models.without_friction, held=array(held))
         found, at = _turn(design, operation, given, engaged, tuple(wanted))
         change, turns = _change(held, before), turns + 1
     code = Code.SOLVED if change <= tolerance else Code.NOT_CONVERGED

@@ -22,7 +22,7 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
-from pitchpoint.gears.members import CYLINDRICAL
+from pitchpoint.gears.members import CYLINDRICAL, number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.programs import program
@@ -406,6 +406,11 @@ class CylindricalPair(Mesh):
     def loaded(self) -> Float[Array, "2"]:
         """The driven gear."""
         return 1.0 - self.driver
+
+    def driven_by(self, member: str | int) -> Self:
+        """The pair with this gear driving the other one; the same flanks touch."""
+        wheel_drives = array(number_of(member, CYLINDRICAL) == 1)
+        return dataclasses.replace(self, wheel_drives=wheel_drives)
 
     @property
     def onward(self) -> Float[Array, ""]:

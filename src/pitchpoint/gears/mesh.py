@@ -252,6 +252,19 @@ class Mesh(eqx.Module):
     def loaded(self) -> Float[Array, " dof"]:
         """One for the coordinate whose load is prescribed, zero elsewhere."""
 
+    @abc.abstractmethod
+    def driven_by(self, member: str | int) -> Self:
+        """The same drive with another member driving, in the sense that presses the same flanks.
+
+        A fixed member stays fixed; the remaining one carries the load.
+
+        Args:
+            member: name of a body, or number of its coordinate.
+
+        Raises:
+            InputError: it cannot drive.
+        """
+
     @property
     @abc.abstractmethod
     def period(self) -> Float[Array, ""]:

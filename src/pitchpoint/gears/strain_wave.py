@@ -7,14 +7,16 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.contact.surface import Spot
+from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.groove import Groove, swept
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference
 from pitchpoint.gears.ring_compliance import ring_compliance
 from pitchpoint.gears.tooth_motion import Passing, ToothMotion
@@ -31,6 +33,7 @@ __all__ = [
     "lanes_for",
     "nearest_points",
     "places",
+    "rates",
     "survey",
 ]
 
@@ -215,6 +218,15 @@ class StrainWave(Mesh):
     def loaded(self) -> Float[Array, "3"]:
         """One for the member that carries the load."""
         return self.loaded_of
+
+    def driven_by(self, member: str | int) -> Self:
+        """The drive with this member driving; the fixed one stays fixed, the third carries the load."""
+        drives = number_of(member, MEMBERS)
+        fixed = int(np.argmin(self.driver_of + self.loaded_of))
+        if drives == fixed:
+            raise InputError(f"the {MEMBERS[fixed]} is fixed and cannot drive")
+        motion, driver, loaded = map(array, rates(np.asarray(self.teeth), fixed, drives))
+        return dataclasses.replace(self, motion_of=motion, driver_of=driver, loaded_of=loaded)
 
     @property
     def period(self) -> Float[Array, ""]:
@@ -465,6 +477,33 @@ class StrainWave(Mesh):
 def _vector(place: Array) -> Float[Array, "3 pair slice *b"]:
     """Vector of a place in the plane across the axis."""
     return jnp.stack([jnp.real(place), jnp.imag(place), jnp.zeros(place.shape)])
+
+
+def rates(
+    teeth: Float[np.ndarray, "2"], fixed: int, drives: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rates of the members for a radian of the driver, in the sense that presses the flanks together.
+
+    Args:
+        teeth: numbers of teeth z1, z2 of flexspline and circular spline.
+        fixed: member that does not turn.
+        drives: member that drives.
+
+    Returns:
+        Rates [rad/rad], and one for the driver and for the loaded member, zero elsewhere.
+
+    Source: z2 q_C = z1 q_F + (z2 - z1) q_W; torques are in proportion to these factors.
+
+    Example:
+        >>> rates(np.array([200.0, 202.0]), fixed=2, drives=0)[0]
+        array([ 1.  , -0.01,  0.  ])
+    """
+    z1, z2 = teeth
+    law, loaded = np.array([z2 - z1, z1, -z2]), 3 - fixed - drives
+    motion = np.zeros(3)
+    motion[drives] = np.sign(law[drives])
+    motion[loaded] = -law[drives] * motion[drives] / law[loaded]
+    return motion, np.eye(3)[drives], np.eye(3)[loaded]
 
 
 def lanes_for(held: int) -> int:

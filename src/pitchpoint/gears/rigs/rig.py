@@ -1,12 +1,14 @@
 """What test rigs have in common: one contact that stays where it is."""
 
 import abc
+from typing import Self
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot
+from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, Reference
 
@@ -34,6 +36,14 @@ class Rig(Mesh):
     def loaded(self) -> Float[Array, "3"]:
         """The load presses along the normal."""
         return jnp.array([0.0, 0.0, 1.0])
+
+    def driven_by(self, member: str | int) -> Self:
+        """The rig as it is, driven by body 0; its load presses and does not drive."""
+        if member not in (0, self.coordinates[0].body):
+            raise InputError(
+                f"the {self.coordinates[0].body} of a test rig sets the speed, and nothing else drives it"
+            )
+        return self
 
     @property
     def period(self) -> Float[Array, ""]:
