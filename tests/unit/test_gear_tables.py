@@ -308,13 +308,13 @@ def test_deviations_are_read_and_shown() -> None:
     assert row["value"][0] == pytest.approx(
         {"order": 1.0, "amplitude": 5e-6, "phase": radians(30.0)}
     )
-    (first,), second = built.family.deviations(built.case.gears)
+    (first,), second = built.deviations
     assert isinstance(first, Waves)
     np.testing.assert_allclose(first.amplitude[:2], [5e-6, 3e-6])
     np.testing.assert_allclose(first.phase[:2], [np.pi / 6.0, 0.0])
     assert not np.any(first.amplitude[2:])  # places that are filled up to a step
     assert second == ()
-    assert built.family.deviations(drive().built({}).case.gears) == ((), ())
+    assert drive().built({}).deviations == ((), ())
     order = quantity_at("gears.deviations.flexspline.order")
     assert order is not None
     assert order.whole
@@ -344,7 +344,7 @@ def test_states_without_equilibrium_are_told(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(part, "_period", lambda *given: None)
     monkeypatch.setattr(part, "_pieces", pieces)
     built = drive(gears__deviations__flexspline=WAVES).built({})
-    deviations = built.family.deviations(built.case.gears)
+    deviations = built.deviations
     assert deviations is not None
     done: list[int] = []
     data = part.kinematic_error_part(built, deviations, done.append)

@@ -21,6 +21,7 @@ from pitchpoint.cases.solids import (
     solids_in_use,
     surrounded,
 )
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
@@ -122,6 +123,11 @@ class Built:
     def following(self) -> dict[str, Any]:
         """Values that the table of the gears leaves open, by key inside it."""
         return self.family.following(self.case.gears, self.design.mesh)
+
+    @cached_property
+    def deviations(self) -> Surfaces:
+        """Deviations of the teeth around both members, which make the kinematic error."""
+        return self.family.deviations(self.case.gears, self.design.mesh)
 
     @cached_property
     def engaged(self) -> Engagement | None:

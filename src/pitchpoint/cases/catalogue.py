@@ -323,7 +323,7 @@ def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
 
 
 def kinematic_error_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
-    """Rows and columns: kinematic error, peak to peak, by the deviations of each spline and of both."""
+    """Rows and columns: kinematic error, peak to peak, by the deviations of each member and of both."""
     name = "kinematic_error_range"
     rows = [
         {f"kinematic error {_head(name)}": curve}

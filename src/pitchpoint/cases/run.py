@@ -426,6 +426,7 @@ def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> d
     laws = [models.law for models in built.models]
     others = _models(built)
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
+    keys += case.gears.sources
     keys += [datum.source for datum in built.lubricant.data().values() if datum.source]
     keys += [
         one.source for used in built.solids for one in used.record.data().values() if one.source

@@ -220,7 +220,7 @@ def _running(built: Built) -> Iterator[Job]:
 
 def _yielding(built: Built) -> Iterator[Job]:
     """Parts on how teeth yield, and what follows; what they import is not needed without them."""
-    dynamics, deviations = built.case.dynamics, built.family.deviations(built.case.gears)
+    dynamics, deviations = built.case.dynamics, built.deviations
     shares = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
     if not shares and dynamics is None and built.design.mesh.touching and not any(deviations):
         return
@@ -286,6 +286,7 @@ def _cycle(built: Built) -> xr.Dataset:
     ]
     warnings += _conformal_warning(built.design.mesh, runs[0])
     warnings += _pressure_warning(built, runs)
+    warnings += _face_warning(built, runs[0])
     data = dataset(
         {**common, **each},
         {"law": names},
@@ -715,6 +716,35 @@ def _conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     return [
         f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
         f"radius is cut at {largest:.3g} m, and pressure and film there say little."
+    ]
+
+
+LEAST_FACE = 3.0
+"""Mean number of slices of a contact line below which it is nearly a point, not a line."""
+
+
+def _face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
+    """Part of the contact lines that gets no load; refused where hardly any of them gets some."""
+    mesh, active = built.design.mesh, np.asarray(run["active"])
+    carries = np.asarray(run["load"]) > 0.0
+    pairs, slices = carries.any(axis=2), active.shape[2]
+    if mesh.touching or slices == 1 or not pairs.any():
+        return []
+    lines = np.sum(pairs.sum(axis=1) * run["weight"])
+    mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
+    load = _LOADS[built.case.gears.load].show(built.case.operation.load)
+    if mean < LEAST_FACE:
+        raise InputError(
+            f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "
+            "point in place of a line; less crowning, end relief or misalignment, a higher load or more "
+            "slices leave a line of contact",
+            key="gears",
+        )
+    if mean > slices * (1.0 - 1e-9):
+        return []
+    return [
+        f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: "
+        "there flanks do not touch."
     ]
 
 

@@ -10,7 +10,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.factored import Arrays
 
-__all__ = ["Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
+__all__ = ["Lanes", "Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
 
 Lanes = Float[Arrays, "pair slice *#b"]
 

@@ -134,6 +134,11 @@ class Mesh(eqx.Module):
         return not any(self.surfaces)
 
     @property
+    def onward(self) -> Float[Array, ""]:
+        """Sense in which the phase runs while the drive turns on: one, or minus one."""
+        return jnp.ones(())
+
+    @property
     def filled(self) -> np.ndarray | None:
         """Numbers of the places for pairs that hold one, or None where all do.
 

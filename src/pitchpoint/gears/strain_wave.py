@@ -236,6 +236,11 @@ class StrainWave(Mesh):
         return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
 
     @property
+    def onward(self) -> Float[Array, ""]:
+        """A wave generator that turns on meets teeth of growing angle, and phases fall."""
+        return -jnp.ones(())
+
+    @property
     def touching(self) -> bool:
         """Most teeth of a zone have a clearance that load must close."""
         return False
@@ -394,10 +399,12 @@ class StrainWave(Mesh):
         )
 
     def inner_load(self, contacts: Contacts) -> Float[Array, "2 pair slice *b"]:
-        """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones."""
-        zone = _as_lanes(self._place[0], contacts.path[0, 0])
-        pressed = -self.ring_loads(contacts).radial
-        return jnp.stack([jnp.where(zone == end, pressed, 0.0) for end in (0, 1)])
+        """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones.
+
+        A zone is told by the end of the long axis at which its pairs lie, so that any of them may be missing.
+        """
+        pressed, second = -self.ring_loads(contacts).radial, contacts.point[0] < 0.0
+        return jnp.stack([jnp.where(second, 0.0, pressed), jnp.where(second, pressed, 0.0)])
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:

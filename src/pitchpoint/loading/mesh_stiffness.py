@@ -19,8 +19,7 @@ Lanes = Float[Array, "pair slice *#b"]
 class MeshStiffness(eqx.Module):
     """Springs of all pairs over one period.
 
-    One arm and one separation stand for the whole contact line of a pair: flanks without deviations on
-    parallel axes.
+    One arm and one separation stand for the whole contact line of a pair.
 
     Attributes:
         edges: phases between which the stiffness is smooth [periods].
@@ -28,7 +27,7 @@ class MeshStiffness(eqx.Module):
         weight: of each node in a mean over the period.
         single: normal stiffness of each pair, the sum over its contact line; zero out of contact [N/m].
         arm: closing of each contact along its normal for a unit of transmission error.
-        error: separation of the unloaded flanks [m].
+        error: separation of the unloaded flanks, the mean over the springs of a contact line [m].
     """
 
     edges: Float[Array, " edge"]
@@ -117,8 +116,16 @@ def mesh_stiffness(
         weight=weight,
         single=jnp.sum(each, axis=1),
         arm=_action_arm(mesh, contacts)[:, 0],
-        error=contacts.gap[:, 0],
+        error=contacts.gap[:, 0] if mesh.touching else _mean_gap(contacts, each),
     )
+
+
+def _mean_gap(contacts: Contacts, springs: Lanes) -> Float[Array, "pair *b"]:
+    """Separation at which the springs of a whole contact line, all stretched alike, carry nothing."""
+    whole = jnp.sum(springs, axis=1)
+    touches = whole > 0.0
+    moved = jnp.sum(springs * contacts.gap, axis=1)
+    return jnp.where(touches, moved / jnp.where(touches, whole, 1.0), 0.0)
 
 
 def _action_arm(mesh: Mesh, contacts: Contacts) -> Lanes:
