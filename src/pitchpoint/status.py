@@ -8,7 +8,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float, Int
 
-__all__ = ["Code", "Status", "summary"]
+__all__ = ["DIRECT", "Code", "Status", "locked_or_lost", "summary", "told"]
 
 
 class Code(IntEnum):
@@ -73,6 +73,15 @@ class Status(eqx.Module):
         return Code(int(np.max(np.asarray(self.code)))).sentence
 
 
+DIRECT: dict[str, Any] = {
+    "code": 0,
+    "sentence": "computed directly: nothing was solved for",
+    "residual": None,
+    "iterations": None,
+}
+"""What stands in a dataset for which nothing was solved."""
+
+
 def summary(status: Status) -> dict[str, Any]:
     """Status of many solves as plain numbers and words, for a dataset.
 
@@ -89,14 +98,40 @@ def summary(status: Status) -> dict[str, Any]:
         >>> told["sentence"]
         '2 of 3: a solution was found; 1 of 3: friction locks the mesh: no force moves the load'
     """
-    codes = np.asarray(status.code)
-    residual = np.broadcast_to(np.asarray(status.residual), codes.shape)[codes == Code.SOLVED]
+    return told(np.asarray(status.code), np.asarray(status.residual), np.asarray(status.iterations))
+
+
+def told(
+    code: np.ndarray, residual: np.ndarray | None = None, iterations: np.ndarray | None = None
+) -> dict[str, Any]:
+    """The worst code, how many solves ended how, and the largest residual of those that are solved.
+
+    Args:
+        code: of `Code`, any shape.
+        residual: of each; None where a part does not keep it.
+        iterations: most that a solve took; None where a part does not keep them.
+    """
+    solved = code == Code.SOLVED
+    largest = None
+    if residual is not None:
+        largest = float(np.broadcast_to(residual, code.shape)[solved].max(initial=0.0))
     return {
-        "code": int(codes.max(initial=0)),
-        "sentence": "; ".join(_counted(codes)),
-        "residual": float(residual.max(initial=0.0)),
-        "iterations": int(np.max(status.iterations, initial=0)),
+        "code": int(code.max(initial=0)),
+        "sentence": "; ".join(_counted(code)),
+        "residual": largest,
+        "iterations": None if iterations is None else int(np.max(iterations, initial=0)),
     }
+
+
+def locked_or_lost(locked: np.ndarray | bool, lost: np.ndarray | bool = False) -> np.ndarray:
+    """Codes of balances that friction locks, that were not found, and of all others.
+
+    Args:
+        locked: True where friction locks the mesh.
+        lost: True where no balance was found otherwise.
+    """
+    code = np.where(lost, int(Code.NOT_CONVERGED), int(Code.SOLVED))
+    return np.where(locked, int(Code.LOCKED), code)
 
 
 def _counted(codes: np.ndarray) -> Iterator[str]:

@@ -19,6 +19,8 @@ from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
+from pitchpoint.status import locked_or_lost
+from pitchpoint.status import told as told_of
 
 __all__ = ["kinematic_error_part"]
 
@@ -105,6 +107,7 @@ def kinematic_error_part(
         },
         title="kinematic error",
         warnings=told if lost else [],
+        solve=told_of(locked_or_lost(False, np.isnan(under_load))),
         **_turns(built.family.turning, members[most]),
     )
     whole["turn_angle"].attrs.update(long_name=whole.attrs["turn_angle"])

@@ -22,6 +22,8 @@ from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
+from pitchpoint.status import locked_or_lost
+from pitchpoint.status import told as told_of
 
 __all__ = ["joined", "map_axes", "pieces"]
 
@@ -88,6 +90,7 @@ def joined(parts: Sequence[xr.Dataset], laws: Sequence[str]) -> xr.Dataset:
         {name: (name, data[name].values) for name in _DIMS},
         title="loss map",
         warnings=told,
+        solve=told_of(locked_or_lost(locked, lost)),
         note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
     )
 

@@ -14,6 +14,7 @@ from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.results.store import dataset
+from pitchpoint.status import locked_or_lost, told
 
 __all__ = ["running_axes", "running_part"]
 
@@ -59,8 +60,13 @@ def running_part(built: Built) -> xr.Dataset:
         },
         title="running without load",
         warnings=_unloaded(built),
+        solve=told(np.concatenate([_held(values).ravel() for _, values in data.values()])),
         note="NaN where friction holds the drive whatever the torque",
     )
+
+
+def _held(torques: np.ndarray) -> np.ndarray:
+    return locked_or_lost(np.isnan(torques))
 
 
 def _unloaded(built: Built) -> list[str]:

@@ -42,6 +42,8 @@ from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.programs import program
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset, without_nan
+from pitchpoint.status import locked_or_lost
+from pitchpoint.status import told as told_of
 from pitchpoint.units import si_unit
 
 __all__ = ["Job", "Variant", "jobs"]
@@ -292,6 +294,7 @@ def _cycle(built: Built) -> xr.Dataset:
         {"law": names},
         title="mesh cycle",
         warnings=warnings,
+        solve=told_of(locked_or_lost(each["locked"][1]), each["residual"][1]),
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )
@@ -571,11 +574,19 @@ def _summaries(
         {"law": names, **_named_places(points[0])},
         title=title,
         warnings=warnings,
+        solve=_balances(out),
     )
     data["mean_efficiency"].attrs.update(points[0].covers)
     if not points[0].transmits:
         data["mean_efficiency"].attrs["note"] = "undefined (NaN): no power goes through a test rig"
     return data
+
+
+def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
+    """What became of the balances behind the figures [law, point]."""
+    found = (np.asarray(values[name]) for name in ("locked", "residual", "iterations"))
+    locked, residual, iterations = found
+    return told_of(locked_or_lost(locked.astype(bool)), residual, iterations)
 
 
 _FIGURE = ("law", "point", "place")
@@ -591,6 +602,9 @@ def _joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
     data = xr.concat(pieces, "point", combine_attrs="override")
     told = [text for piece in pieces for text in json.loads(piece.attrs["warnings"])]
     data.attrs["warnings"] = json.dumps(few([*dict.fromkeys(told)]))
+    data.attrs["solve"] = json.dumps(
+        _balances({str(name): values for name, values in data.items()})
+    )
     return data
 
 

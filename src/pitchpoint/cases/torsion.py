@@ -17,6 +17,7 @@ from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.wind_up import hysteresis, wound_up
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
+from pitchpoint.status import locked_or_lost, told
 
 __all__ = ["torsion_part"]
 
@@ -40,7 +41,7 @@ def torsion_part(built: Built) -> xr.Dataset:
         "loading_torque": ("law", "torque"),
         "unloading_torque": ("law", "torque"),
     }
-    phase = found.pop("phase")
+    phase, solve = found.pop("phase"), found.pop("solve")
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
     yields, rigid = built.design.mesh.yielding
     whole = dataset(
@@ -53,6 +54,7 @@ def torsion_part(built: Built) -> xr.Dataset:
         title="torsion",
         warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
         note=f"{yields} yield; {rigid} are not in it",
+        solve=solve,
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
     mesh = built.design.mesh
@@ -95,7 +97,7 @@ def _mean_friction(built: Built) -> np.ndarray:
     return np.array([run["mean_friction"][0] for run in runs])
 
 
-def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[str, np.ndarray]:
+def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[str, Any]:
     """Wind-up at every torque, and the load on every tooth there."""
     design = built.design
     known = built.engaged
@@ -110,9 +112,10 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
     loop: Any = hysteresis(found, friction[:, None, None])
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
-    approach = found.wind_up + found.touch
+    approach, lost = found.wind_up + found.touch, np.isnan(found.wind_up)
     return {
         "phase": phase[::SHOWN],
+        "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
         "lost_motion": np.asarray(_lost_motion(design.mesh, known.contacts, known.phase)) @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),

@@ -37,6 +37,7 @@ from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
+from pitchpoint.status import told as told_of
 
 __all__ = [
     "figures_of",
@@ -165,6 +166,7 @@ def vibration_part(built: Built) -> xr.Dataset:
         title="vibration",
         warnings=[*_warnings(built, told), *_moduli(built)],
         status=[status.sentence for status in told],
+        solve=told_of(found["vibration_status"].astype(int)),
         contact=CONTACT_LAWS[built.case.models.tooth_contact].title,
     )
 
@@ -206,6 +208,7 @@ def resonance_part(built: Built) -> xr.Dataset:
         title="vibration against speed",
         warnings=[*status_sentences(data["vibration_status"][1], _AT_SPEED), *_moduli(built)],
         sentences=[code.sentence for code in Code],
+        solve=told_of(data["vibration_status"][1].astype(int)),
     )
 
 

@@ -19,6 +19,7 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.status import DIRECT
 
 __all__ = [
     "dataset",
@@ -45,6 +46,8 @@ _TEMPORARY = re.compile(r"\.[\w.-]+-[a-z0-9_]{8}\.(nc|json|html)", re.ASCII)
 def dataset(
     variables: Mapping[str, tuple[tuple[str, ...], Any]],
     coordinates: Mapping[str, Any],
+    *,
+    solve: Mapping[str, Any] = DIRECT,
     **attributes: Any,
 ) -> xr.Dataset:
     """Dataset whose variables carry unit, long name and symbol.
@@ -52,6 +55,7 @@ def dataset(
     Args:
         variables: dimensions and values by name; names of `VARIABLES` get their attributes.
         coordinates: values by dimension.
+        solve: what became of the solves behind it, see `status.told`; kept as JSON.
         attributes: strings and numbers; anything else is stored as JSON.
     """
     data = xr.Dataset(
@@ -65,7 +69,7 @@ def dataset(
                 units=described.unit, long_name=described.long_name, symbol=described.symbol
             )
     data.attrs.update(
-        {key: _attribute(value) for key, value in attributes.items()},
+        {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
         version=version("pitchpoint"),
     )
     return data
