@@ -411,6 +411,11 @@ class CylindricalPair(Mesh):
         return 2.0 * jnp.pi / jnp.sum(self.driver * jnp.abs(self.teeth))
 
     @property
+    def phase_rate(self) -> Float[Array, ""]:
+        """Pairs run from A to E, or from E to A if gear 2 drives."""
+        return jnp.where(self.wheel_drives, -1.0, 1.0) / self.period
+
+    @property
     def line_of_action(self) -> Float[Array, "2"]:
         """Base radii with the sense in which the gears close along the transverse line of action."""
         return self._side * self.base_radii

@@ -253,6 +253,11 @@ class Mesh(eqx.Module):
         """Driver angle of one period [rad]."""
 
     @property
+    def phase_rate(self) -> Float[Array, ""]:
+        """Periods that phase grows by for one radian of the nominal motion; negative where it falls."""
+        return 1.0 / self.period
+
+    @property
     @abc.abstractmethod
     def reference(self) -> Reference | None:
         """Pitch-point values, or None: laws for a whole mesh then do not apply."""

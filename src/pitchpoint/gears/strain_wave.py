@@ -222,6 +222,11 @@ class StrainWave(Mesh):
         return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
 
     @property
+    def phase_rate(self) -> Float[Array, ""]:
+        """Teeth of the flexspline move along the wave as it stands back behind them."""
+        return (self.motion[1] - self.motion[0]) / self.tooth_angle
+
+    @property
     def touching(self) -> bool:
         """Most teeth of a zone have a clearance that load must close."""
         return False
