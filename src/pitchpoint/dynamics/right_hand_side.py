@@ -7,7 +7,7 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, total
 from pitchpoint.dynamics.bodies import Body, damping, masses, on_all_coordinates, stiffness
 from pitchpoint.dynamics.contact_law import separating
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
@@ -53,7 +53,7 @@ class Moving(eqx.Module):
     design: Design
     operation: Operation
     models: Models
-    bodies: tuple[Body, ...]
+    bodies: tuple[Body, ...] = eqx.field(converter=tuple)
     knots: Float[Array, " knot"]
     phase: Float[Array, ""]
     creep: Float[Array, ""]
@@ -138,7 +138,7 @@ def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> Con
         place, rate: of all coordinates.
     """
     mesh = moving.design.mesh
-    turned = along(place, moving.padded(mesh.driver)) * (mesh.driver @ mesh.motion)
+    turned = jnp.tensordot(moving.padded(mesh.driver), place, axes=1) * (mesh.driver @ mesh.motion)
     phase = moving.phase + mesh.phase_rate * turned
     own = mesh.contacts(phase)
     contacts = on_all_coordinates(own, mesh.coordinates, moving.bodies)
@@ -231,7 +231,7 @@ def _springs(moving: Moving, contacts: Contacts) -> Lanes:
 
 def _friction(moving: Moving, contacts: Contacts, force: Lanes, rate: Coordinates) -> Lanes:
     """Friction coefficient of each slice by the law, at the forces and rates of the moment."""
-    driving = jnp.abs(along(rate, moving.padded(moving.design.mesh.driver)))
+    driving = jnp.abs(jnp.tensordot(moving.padded(moving.design.mesh.driver), rate, axes=1))
     point = replace(moving.operation, speed=jnp.maximum(driving, STANDSTILL))
     carries = force > 0.0
     load = jnp.where(carries, force, 1.0)

@@ -37,6 +37,9 @@ ROUNDING = 1e-12
 MOST_STEPS = 1_000_000
 """Steps after which a transient is given up."""
 
+SHORTEST = 1e-15
+"""Step over the whole duration below which it is given up too."""
+
 _WORKS = 5
 """Integrals of powers, see `right_hand_side.powers`."""
 
@@ -65,7 +68,7 @@ class Transient(eqx.Module):
 
 def transient(
     moving: Moving,
-    times: Sequence[float] | Float[Array, " time"],
+    times: ArrayLike | Sequence[float],
     *,
     place: ArrayLike = 0.0,
     rate: ArrayLike = 0.0,
@@ -174,7 +177,10 @@ def _integrated(
     moving: Moving, times: Array, scale: _Scale, start: Array
 ) -> tuple[Float[Array, "time state"], Bool[Array, ""], Int[Array, ""]]:
     """States without dimensions at all times, whether all were reached, and the steps taken."""
-    control = diffrax.PIDController(rtol=ROUNDING, atol=TOLERANCE)
+    shortest = SHORTEST * (times[-1] - times[0])
+    control = diffrax.PIDController(
+        rtol=ROUNDING, atol=TOLERANCE, dtmin=shortest, force_dtmin=False
+    )
     solution = diffrax.diffeqsolve(
         diffrax.ODETerm(_rate(moving, scale)),
         diffrax.Dopri8(),
