@@ -19,7 +19,6 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +32,7 @@ import strain_wave_numpy as rival
 import xarray as xr
 
 from pitchpoint._jax import jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.loss_map import map_axes, pieces
 from pitchpoint.cases.run import load_case
 from pitchpoint.efficiency import quasi_static
@@ -130,9 +129,7 @@ def whole_map(built: Built) -> list[xr.Dataset]:
 
 def parts_of_one(built: Built, repeats: int) -> None:
     """Where the time of one torque goes."""
-    models, chosen = laws_of(built)
-    models = replace(models, choice=jnp.asarray(chosen[0]))
-    alone = replace(models, friction=(models.friction[chosen[0]],), choice=jnp.asarray(0))
+    models = built.models[0]
     design, load = built.design, built.operation.load
     known = engagement(design, load, models)
     last = list(pieces(built))[-1]
@@ -146,7 +143,6 @@ def parts_of_one(built: Built, repeats: int) -> None:
             design, known.contacts, load, models, known.body
         ),
         "balance": lambda: _balance(design, points, models, known),
-        "balance, one law": lambda: _balance(design, points, alone, known),
         "one torque in all": lambda: last(lambda done: None)["mean_loss"].values,
     }
     for name, part in work.items():
@@ -161,7 +157,6 @@ def theirs(
     drive = given(built)
     _, speeds, degrees = map_axes(built)
     nu = np.asarray(built.design.lubricant.kinematic_viscosity(degrees))
-    models, _ = laws_of(built)
     tree = built.design.mesh, built.design.solids
     weight = np.asarray(known.weight)
     once, found = timed(lambda: rival.geometry(drive, np.asarray(known.phase)))
@@ -170,7 +165,7 @@ def theirs(
     seconds, own, shared = [], [], []
     for torque in torques:
         compliance = np.asarray(
-            _compliance(tree, known.contacts, models.compliance, jnp.asarray(torque))
+            _compliance(tree, known.contacts, built.terms, jnp.asarray(torque))
         )[np.ix_(held, held)]
         inputs = (drive, found, compliance, weight, float(torque), speeds[1:], nu)
         took, figure = timed(lambda inputs=inputs: loop(*inputs))
@@ -200,8 +195,7 @@ def main() -> None:
     points = asked.torques * asked.speeds * asked.temperatures
     print(f"map of {points} points: {own:.2f} s, {own / points * 1e6:.0f} us a point")
     parts_of_one(built, asked.repeats)
-    models, _ = laws_of(built)
-    known = engagement(built.design, built.operation.load, models)
+    known = engagement(built.design, built.operation.load, built.models[0])
     chosen = np.unique(np.linspace(0, asked.torques - 1, asked.subset).round().astype(int))
     torques = map_axes(built)[0][1:][chosen]
     for name, loop in (("by point", rival.by_point), ("by state", rival.by_state)):

@@ -20,6 +20,9 @@ os.environ["XLA_FLAGS"] = " ".join([_given, *_more]).strip()  # read once, with 
 import jax  # noqa: E402
 import pytest  # noqa: E402
 from budget import Meter, Spent, exceeded, order  # noqa: E402
+from shapes import install  # noqa: E402
+
+install()  # before anything of the package is imported
 
 from pitchpoint import programs  # noqa: E402
 

@@ -13,7 +13,6 @@ _LAZY: dict[str, str] = {
     "run": "pitchpoint.cases.run",
     "load_case": "pitchpoint.cases.run",
     "open_result": "pitchpoint.cases.run",
-    "laws_of": "pitchpoint.cases.build",
     "write_report": "pitchpoint.views.report",
     "Study": "pitchpoint.cases.schema",
     "Sweep": "pitchpoint.cases.schema",

@@ -5,16 +5,17 @@ from __future__ import annotations
 from functools import reduce
 from math import log as natural_logarithm
 from operator import mul
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
 import numpy as np
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
+from numpy.typing import NDArray
 
 from pitchpoint._jax import jnp
 
-__all__ = ["Factored", "as_array", "log", "product", "root", "scaled"]
+__all__ = ["Arrays", "Factored", "Numbers", "as_array", "log", "product", "root", "scaled"]
 
 
 class Factored(eqx.Module):
@@ -30,7 +31,7 @@ class Factored(eqx.Module):
     factors: tuple[ArrayLike, ...]
 
     @property
-    def merged(self) -> list[Array]:
+    def merged(self) -> list[Numbers]:
         """Factors of one shape multiplied with each other, the smallest first."""
         found: dict[tuple[int, ...], Any] = {}
         for one in self.factors:
@@ -56,7 +57,7 @@ class Factored(eqx.Module):
     def __jax_array__(self) -> Array:
         return self.value
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         return np.asarray(self.value, dtype)
 
     def __getattr__(self, name: str) -> Any:
@@ -101,7 +102,16 @@ for _name in [*_OPERATORS.split(), *_QUESTIONS.split()]:
     setattr(Factored, f"__{_name}__", _on_value(f"__{_name}__"))
 
 
-def scaled(value: ArrayLike, by: float) -> Any:
+if TYPE_CHECKING:  # which need not tell them apart
+    Arrays = Array
+    Numbers = Array
+else:
+    Arrays = Array | np.ndarray
+    Numbers = Arrays | float | Factored
+"""`Arrays` of JAX or, outside of programs, of NumPy; `Numbers` are all that calculates as they do."""
+
+
+def scaled(value: Factored | ArrayLike, by: float) -> Any:
     """A value times a number, as in a change of unit; a product stays one."""
     return value * by if isinstance(value, Factored) else jnp.asarray(value) * by
 
@@ -111,7 +121,7 @@ def product(*factors: ArrayLike) -> Any:
     return Factored(factors)
 
 
-def as_array(value: Factored | ArrayLike) -> Any:
+def as_array(value: Any) -> Any:
     """The value itself, or the array that a product stands for."""
     return value.value if isinstance(value, Factored) else value
 
@@ -127,12 +137,12 @@ def log(value: Factored | ArrayLike, least: float) -> Float[Array, "..."]:
     return jnp.maximum(sum(map(_log, merged)), natural_logarithm(least))
 
 
-def _log(value: Array) -> Array:
+def _log(value: Numbers) -> Array:
     tiny = float(np.finfo(jnp.result_type(value, jnp.float32)).tiny)
     return jnp.log(jnp.where(value > tiny, value, tiny))
 
 
-def root(square: Factored | Float[Array, "*b"]) -> Any:
+def root(square: Float[Numbers, "..."]) -> Any:
     """Square root with a zero gradient at zero instead of an infinite one."""
     if isinstance(square, Factored):
         return Factored(tuple(map(root, square.merged)))

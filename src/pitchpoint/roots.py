@@ -5,6 +5,7 @@ from collections.abc import Callable
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.factored import Arrays
 
 __all__ = ["TOLERANCE", "hypot", "quotient", "root", "third_order_step"]
 
@@ -17,7 +18,7 @@ NEAR = 1e-2
 MOST = 60
 """Largest number of steps: enough for bisection alone."""
 
-Each = Float[Array, "*b"]
+Each = Float[Arrays, "*#b"]
 Carry = tuple[Each, Each, Each, Each, Array]
 
 
@@ -33,7 +34,7 @@ def hypot(x: Each | float, y: Each) -> Each:
 def root(
     function: Callable[[Each], Each],
     guess: Each,
-    most: float | Float[Array, ""],
+    most: Each | float,
 ) -> tuple[Each, Int[Array, ""]]:
     """Root of an equation that each state solves for itself, and the steps it took.
 
@@ -60,7 +61,7 @@ def root(
 
 
 def _iterate(
-    function: Callable[[Each], Each], start: Each, most: float | Float[Array, ""]
+    function: Callable[[Each], Each], start: Each, most: Each | float
 ) -> tuple[Each, Int[Array, ""]]:
     def unfinished(carry: Carry) -> Array:
         _, low, high, residual, steps = carry

@@ -17,7 +17,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache, lru_cache
@@ -571,7 +571,7 @@ def _factors(kind: str, unit: str) -> tuple[Decimal, Decimal]:
 
 
 @cache
-def _every_factor() -> dict[str, dict[str, tuple[str, str]]]:
+def _every_factor() -> Mapping[str, Mapping[str, Sequence[str]]]:
     """Factors of all units by kind, as pint gives them; kept, because pint takes its time."""
     from importlib.metadata import version
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, cycle, state
+from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, State, cycle, state
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.gears.period import nodes
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
@@ -141,8 +141,10 @@ def test_loss_factor_as_friction_vanishes(design, sharing, expected):
 def test_extremes_do_not_run_beyond_kinks():
     phase, weight = (each.ravel() for each in nodes(jnp.zeros(1), 8))
     values = jnp.maximum(phase - 0.55, 0.0)
-    assert Cycle(phase, weight, None, 8).extremes(values)[0] < -1e-3
-    low, high = Cycle(phase, weight, None, 8, smooth=False).extremes(jnp.stack([values, -values]))
+    unread = object.__new__(State)
+    assert Cycle(phase, weight, unread, 8).extremes(values)[0] < -1e-3
+    kinked = Cycle(phase, weight, unread, 8, smooth=False)
+    low, high = kinked.extremes(jnp.stack([values, -values]))
     np.testing.assert_array_equal(low, [0.0, -values.max()])
     np.testing.assert_array_equal(high, [values.max(), 0.0])
 

@@ -12,6 +12,7 @@ from scipy.optimize import nnls
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading import equilibrium as module
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium
@@ -256,15 +257,24 @@ def contacts(path, gap=0.0, active=True):
 
 def mesh(separate):
     """As much of a mesh as the models look at."""
-    return _Looked(not separate, "wave" if separate else "action")
+    return _Looked(separate)
 
 
-class _Looked(eqx.Module):
-    touching: bool = eqx.field(static=True)
-    counts: str = eqx.field(static=True)
+class _Looked(Mesh):
+    separate: bool = eqx.field(static=True)
     toothed: ClassVar[bool] = True
-    overlap_ratio: ClassVar[float] = 0.0
-    contact_ratio: ClassVar[float] = 1.5
+    overlap_ratio: ClassVar[jax.Array] = jnp.asarray(0.0)
+    contact_ratio: ClassVar[jax.Array] = jnp.asarray(1.5)
+    events = motion = driver = driven_by = period = reference = None
+    coordinates = rigid_contacts = spots = None
+
+    @property
+    def touching(self):
+        return not self.separate
+
+    @property
+    def counts(self):
+        return "wave" if self.separate else "action"
 
     @property
     def loaded(self):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import laws_of
 from pitchpoint.cases.studies import Variant
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
@@ -129,7 +128,7 @@ def test_drag_grows_with_the_load_as_the_bearing_model_says():
             (case.design, dataclasses.replace(case.operation, load=jnp.asarray(load)))
             for load in (200.0, 1.0)
         ],
-        laws_of(case)[0],
+        case.models[0],
     )
     more = found["bearing_load"][0] - found["bearing_load"][1]
     np.testing.assert_allclose(found["bearing_load"][:, 0], found["radial_reaction_2"], rtol=1e-12)
@@ -143,7 +142,7 @@ def test_drag_grows_with_the_load_as_the_bearing_model_says():
 def test_two_bearings_of_one_shaft_take_their_parts():
     first, second = ({**BEARING, "position": place} for place in ("-30 mm", "50 mm"))
     case = built(left=first, right=second)
-    found = summarise([(case.design, case.operation)], laws_of(case)[0])
+    found = summarise([(case.design, case.operation)], case.models[0])
     whole = found["radial_reaction_2"][0]
     np.testing.assert_allclose(found["bearing_load"][0], [5 / 8 * whole, 3 / 8 * whole], rtol=1e-12)
     seats = [

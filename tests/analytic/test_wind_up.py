@@ -1,7 +1,7 @@
 """Wind-up of strain-wave gears, hysteresis by friction of the teeth, kinematic error by deviations."""
 
 import dataclasses
-from types import SimpleNamespace
+from unittest.mock import Mock
 
 import equinox as eqx
 import numpy as np
@@ -12,6 +12,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.contact.surface import Spot, Waves
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave import places
 from pitchpoint.gears.strain_wave_design import build_strain_wave
 from pitchpoint.loading import wind_up as module
@@ -69,7 +70,8 @@ def springs(monkeypatch):
     pressed = jnp.asarray([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]).reshape(6, 1, 1)
     zones = jnp.repeat(jnp.eye(2), 3, axis=1).reshape(2, 6, 1, 1)
     monkeypatch.setattr(module, "compliance", compliance)
-    return SimpleNamespace(
+    return Mock(
+        spec=Mesh,
         contacts=lambda phase: at,
         inner_load=lambda contacts: zones * pressed,
         loaded=LOADED,

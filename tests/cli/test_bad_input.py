@@ -42,6 +42,16 @@ teeth = [23, 61]
 module = "2 mm"
 face_width = "20 mm"
 
+[gears.modifications]
+tip_relief = "2 um"
+root_relief = "1 um"
+end_relief = "3 um"
+
+[gears.deviations]
+gear_1 = [{ order = 1, amplitude = "5 um", phase = "30 deg" }]
+gear_2 = [{ order = 2, amplitude = "3 um" }]
+iso_class = 6
+
 [materials]
 gear_1 = { young = "206 GPa", poisson = 0.3, density = "7830 kg/m3" }
 gear_2 = { young = "206 GPa", poisson = 0.3, density = "7830 kg/m3" }

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 from pitchpoint import cli
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.library import find
 from pitchpoint.cases.run import Outcome, Progress, describe, load_case, open_result, run_variant
 from pitchpoint.cases.studies import Variant, jobs
@@ -338,8 +338,7 @@ def test_every_order_of_a_profile_error_is_resolved(order: int, file: Callable[[
     """Between the events nothing else moves as fast: an error read too coarsely would alias."""
     given = [{"order": order, "amplitude": "2 um", "phase": "30 deg"}]
     built = load_case(file(SPUR), settings={"dynamics.profile_error": given})
-    models, _ = laws_of(built)
-    _, _, driven = _excited(built.design, built.operation, models, vibrating_of(built))
+    _, _, driven = _excited(built.design, built.operation, built.terms, vibrating_of(built))
     course = course_on(driven, Grid.resolving(order))
     wanted = 2e-6 * np.cos(2.0 * np.pi * order * np.asarray(course.phase) + np.pi / 6.0)
     long = np.diff(np.asarray(course.bounds)) > 0.0

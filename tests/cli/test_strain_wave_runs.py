@@ -203,14 +203,14 @@ def test_orders_of_the_kinematic_error(drive: Outcome) -> None:
     error = data["kinematic_error"]
     both = error.sel(curve="elastic mean").values
     np.testing.assert_allclose(error.sel(curve="under load"), both, atol=0.02 * np.ptp(both))
-    assert data["wave_angle"].values[-1] == pytest.approx(2.0 * np.pi * (1.0 - 1.0 / both.size))
+    assert data["turn_angle"].values[-1] == pytest.approx(2.0 * np.pi * (1.0 - 1.0 / both.size))
     assert kinematic_error_answer(drive).endswith("if they were rigid and without load")
 
 
 def test_waves_stay_on_their_teeth(drive: Outcome) -> None:
     """Once the wave has passed all teeth of the circular spline, those of the other have moved on by two."""
     data = drive.parts["kinematic_error"].sel(curve="elastic mean")
-    angle, error = data["wave_angle"].values, data["kinematic_error"].values
+    angle, error = data["turn_angle"].values, data["kinematic_error"].values
     ratio = 202.0 / 200.0
     columns = [np.ones(angle.size)]
     columns += [f(k * angle) for k in (2.0 * ratio, 4.0) for f in (np.cos, np.sin)]

@@ -15,7 +15,6 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import laws_of
 from pitchpoint.cases.comparison import compare
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.library import find
@@ -51,10 +50,9 @@ LOADS = np.array([0.0, 14.5, 29.0, 60.0, 68.5, 108.0, 137.0])
 
 @cache
 def case():
-    """The shipped case and its models with the case's friction law alone."""
+    """The shipped case and its models."""
     built = load_case("csd25")
-    models, chosen = laws_of(built)
-    return built, replace(models, friction=(models.friction[chosen[0]],), choice=jnp.asarray(0))
+    return built, built.models[0]
 
 
 def with_friction(models, coefficient):

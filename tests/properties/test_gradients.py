@@ -1,7 +1,7 @@
 """Gradients against differences, and properties that hold for any load, friction and unit."""
 
 import dataclasses
-from types import SimpleNamespace
+from unittest.mock import Mock
 
 import equinox as eqx
 import numpy as np
@@ -20,6 +20,7 @@ from pitchpoint.efficiency.gradients import (
 )
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -221,7 +222,7 @@ def contacts_on(path, active):
 @eqx.filter_jit
 def shares(sharing, ratio, phase, lanes):
     path = (phase + jnp.arange(float(lanes)))[:, None]
-    mesh = SimpleNamespace(contact_ratio=ratio)
+    mesh = Mock(spec=Mesh, contact_ratio=ratio)
     return sharing.function(contacts_on(path, path <= ratio), mesh, None), path <= ratio
 
 

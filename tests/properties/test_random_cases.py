@@ -45,6 +45,10 @@ SEED = 1
 SHARINGS = [name for name, model in LOAD_SHARING.items() if model.flanks != "apart"]
 PAIRED = list(zip(SHARINGS, itertools.cycle(ROLLING_RESISTANCE)))
 
+# Read before anything is drawn: checks of types look at random entries, which strategies must not.
+OILS, BASE_OILS = list(lubricants.catalogue()), list(lubricants.base_oils())
+SOLIDS = list(solids.catalogue())
+
 
 def between(low: float, high: float) -> st.SearchStrategy[float]:
     return st.floats(low, high, allow_nan=False)
@@ -88,11 +92,11 @@ def gears(draw: st.DrawFn) -> dict[str, Any]:
 @st.composite
 def oils(draw: st.DrawFn) -> dict[str, Any]:
     if draw(st.booleans()):
-        table: dict[str, Any] = {"name": draw(st.sampled_from(list(lubricants.catalogue())))}
+        table: dict[str, Any] = {"name": draw(st.sampled_from(OILS))}
     else:
         thin = draw(between(2.0, 50.0))
         table = {
-            "base": draw(st.sampled_from(list(lubricants.base_oils()))),
+            "base": draw(st.sampled_from(BASE_OILS)),
             "viscosity_40": f"{thin * draw(between(1.05, 20.0))!r} mm2/s",
             "viscosity_100": f"{thin!r} mm2/s",
         }
@@ -123,7 +127,7 @@ def materials() -> st.SearchStrategy[dict[str, Any]]:
     value = st.fixed_dictionaries(
         {"young": of(MODULUS, 1e9, 4e11), "poisson": between(POISSON.low, POISSON.high)}
     )
-    either = st.one_of(st.sampled_from(list(solids.catalogue())), value)
+    either = st.one_of(st.sampled_from(SOLIDS), value)
     return st.fixed_dictionaries({}, optional={"gear_1": either, "gear_2": either})
 
 

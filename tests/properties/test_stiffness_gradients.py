@@ -75,7 +75,7 @@ def moved_excitation(mesh, direction, solids, point, vibrating):
     oil, roughness = lubricants.find("pao-vg-220").build(), Roughness.from_composite_rq(0.8e-6)
 
     def of(at):
-        return excited(Design(at, solids, oil, roughness), point, models(), vibrating)
+        return excited(Design(at, solids, oil, roughness), point, models().compliance, vibrating)
 
     return eqx.filter_jvp(of, (mesh,), (direction,))
 

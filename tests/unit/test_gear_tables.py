@@ -10,16 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pitchpoint._jax import jax
-from pitchpoint.cases.build import laws_of
+from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
+from pitchpoint.cases.quantities import SIValue
 from pitchpoint.cases.schema import Case, quantity_at, validate
 from pitchpoint.cases.studies import Variant, jobs
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, check_strain_wave
 from pitchpoint.loading.reactions import InnerBearing
+from pitchpoint.lubrication.applicability import applies
+from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.views.inputs import input_rows
 
 DRIVE = tomllib.loads("""
@@ -141,9 +143,24 @@ def test_what_a_drive_cannot_have(changes: dict[str, Any], words: str) -> None:
     assert str(caught.value).startswith(f"drive.toml: {words}")
 
 
-def test_only_laws_that_hold_are_compiled_in() -> None:
-    models, _ = laws_of(drive().built({}))
-    assert {law.name for law in models.friction} == {"constant", "frictionless", "xu_2007"}
+def test_only_chosen_laws_are_compiled_in() -> None:
+    (models,) = drive().built({}).models
+    assert [law.name for law in models.friction] == ["constant"]
+    chosen = ["xu_2007", {"name": "constant", "coefficient": 0.03}]
+    built = Variant({**PAIR, "models": {"friction": chosen}}, "pair.toml", "default").built({})
+    assert built.law_names == ["xu_2007", "constant"]
+    assert {models.friction for models in built.models} == {tuple(built.laws)}
+    assert float(built.models[1].parameters["constant"]["coefficient"]) == 0.03
+
+
+def test_a_law_applies_or_says_why_not() -> None:
+    wave, pair = drive().built({}), Variant(PAIR, "pair.toml", "default").built({})
+    why_not = [applies(law, wave.design.mesh) for law in LAWS if law.sources]
+    assert why_not == [
+        "'iso_tr_14179_2' is a law for a whole mesh, and these gears have no pitch point",
+        None,
+    ]
+    assert not any(applies(law, pair.design.mesh) for law in LAWS)
 
 
 def test_losses_stand_between_bodies() -> None:
@@ -165,14 +182,61 @@ def test_a_grease_says_what_is_assumed_of_it() -> None:
 
 
 def test_backwards_the_loaded_member_carries_the_same_power() -> None:
-    from pitchpoint.cases.studies import _backwards
-
-    one = drive()
-    built = one.built({})
-    back = _backwards(one, built)
+    built = drive().built({})
+    back = built.backwards
     assert (back.case.operation.driver, back.loaded) == ("flexspline", "wave generator")
     assert back.case.operation.torque == pytest.approx(0.67)
     assert back.case.operation.speed == pytest.approx(built.case.operation.speed / 100.0)
+    assert float(back.operation.load) == back.case.operation.torque
+    demand_same(back.backwards.design, built.design)
+
+
+def demand_same(one: Any, other: Any) -> None:
+    """Trees that are alike for the compiler and hold equal numbers."""
+    assert jax.tree.structure(one) == jax.tree.structure(other)
+    for first, second in zip(jax.tree.leaves(one), jax.tree.leaves(other), strict=True):
+        assert first.dtype == second.dtype
+        np.testing.assert_array_equal(first, second)
+
+
+@pytest.mark.parametrize("fixed", ["circular spline", "flexspline", "wave generator"])
+def test_a_drive_driven_by_another_member_is_the_one_that_the_file_would_give(fixed: str) -> None:
+    one = drive(gears__fixed=fixed)
+    mesh, drivers = one.built({}).design.mesh, one.built({}).case.gears.drivers
+    for driver in drivers:
+        asked = one.built({"operation.driver": driver})
+        demand_same(mesh.driven_by(driver), asked.design.mesh)
+    with pytest.raises(InputError, match=f"the {fixed} is fixed and cannot drive"):
+        mesh.driven_by(fixed)
+
+
+@pytest.mark.parametrize(("teeth", "addendum"), [([23, 61], 1.0), ([20, -70], [1.0, 0.8])])
+def test_a_pair_driven_by_its_wheel_is_the_one_that_the_file_would_give(
+    teeth: list[int], addendum: float | list[float]
+) -> None:
+    short = {"gears.teeth": teeth, "gears.addendum": addendum}
+    pair = Variant(PAIR, "pair.toml", "default", short)
+    wheel = pair.built({"operation.driver": "gear 2"}).design.mesh
+    demand_same(pair.built({}).design.mesh.driven_by("gear 2"), wheel)
+    demand_same(wheel.driven_by(0), pair.built({}).design.mesh)
+    with pytest.raises(
+        InputError, match="'ring' is no member of this drive; use one of gear 1, gear 2"
+    ):
+        wheel.driven_by("ring")
+
+
+def test_backwards_plastic_teeth_are_as_warm_as_that_point_makes_them() -> None:
+    models = {"tooth_temperature": "vdi_2736_2", "friction": "xu_2007"}
+    plastic = {"materials": {"gear_2": "POM-H"}, "models": models}
+    pair = Variant({**PAIR, **plastic}, "pair.toml", "default", {"operation.torque": "2 N m"})
+    built, point = pair.built({}), pair.built({}).case.operation
+    step = 61 / 23
+    asked = {"driver": "gear 2", "torque": point.torque / step, "speed": point.speed / step}
+    si = {f"operation.{k}": v if k == "driver" else SIValue(v) for k, v in asked.items()}
+    wheel, back = pair.built(si).solids[1], built.backwards.solids[1]
+    assert back.temperature == pytest.approx(wheel.temperature, rel=1e-13)
+    assert float(back.solid.young) == pytest.approx(float(wheel.solid.young), rel=1e-12)
+    assert back.temperature != built.solids[1].temperature
 
 
 def test_running_without_load_is_told_at_the_operating_point() -> None:
@@ -222,7 +286,7 @@ def test_conformal_contacts_that_carry_are_told() -> None:
 def test_a_groove_that_was_not_found_whole_is_told() -> None:
     mesh = drive().built({}).design.mesh
     assert check_strain_wave(mesh) == ()
-    lost = replace(mesh, groove=replace(mesh.groove, unsolved=np.asarray(3.0)))
+    lost = replace(mesh, groove=replace(mesh.groove, unsolved=jnp.asarray(3.0)))
     (told,) = check_strain_wave(lost)
     assert "could not be found at 3 of 640 heights" in told
 
@@ -244,13 +308,13 @@ def test_deviations_are_read_and_shown() -> None:
     assert row["value"][0] == pytest.approx(
         {"order": 1.0, "amplitude": 5e-6, "phase": radians(30.0)}
     )
-    (first,), second = built.family.deviations(built.case.gears)
+    (first,), second = built.deviations
     assert isinstance(first, Waves)
     np.testing.assert_allclose(first.amplitude[:2], [5e-6, 3e-6])
     np.testing.assert_allclose(first.phase[:2], [np.pi / 6.0, 0.0])
     assert not np.any(first.amplitude[2:])  # places that are filled up to a step
     assert second == ()
-    assert built.family.deviations(drive().built({}).case.gears) == ((), ())
+    assert drive().built({}).deviations == ((), ())
     order = quantity_at("gears.deviations.flexspline.order")
     assert order is not None
     assert order.whole
@@ -280,7 +344,7 @@ def test_states_without_equilibrium_are_told(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(part, "_period", lambda *given: None)
     monkeypatch.setattr(part, "_pieces", pieces)
     built = drive(gears__deviations__flexspline=WAVES).built({})
-    deviations = built.family.deviations(built.case.gears)
+    deviations = built.deviations
     assert deviations is not None
     done: list[int] = []
     data = part.kinematic_error_part(built, deviations, done.append)

@@ -390,6 +390,7 @@ def test_a_case_is_made_again_from_its_record(odd: dict[str, Any], tmp_path: Pat
         "zhao2022",
         EXAMPLES / "strain_wave.toml",
         EXAMPLES / "helical_resonance.toml",
+        EXAMPLES / "spur_modified.toml",
         EXAMPLES / "ball_on_disc.toml",
     ],
     ids=str,

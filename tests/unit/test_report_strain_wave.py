@@ -12,6 +12,9 @@ import pytest
 import xarray as xr
 from records import entries
 
+from pitchpoint.cases.families import FAMILIES
+from pitchpoint.cases.gear_tables import StrainWaveGears
+from pitchpoint.cases.kinematic_error import _turns
 from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.gears.strain_wave_design import _rates
@@ -179,19 +182,20 @@ def kinematic_error(*, flexspline: bool = True) -> xr.Dataset:
     size = [np.ptp(one, axis=1) for one in (first, second, first + second)]
     return dataset(
         {
-            "wave_angle": (("state",), angle),
+            "turn_angle": (("state",), angle),
             "kinematic_error": (("curve", "state"), first + second),
-            "kinematic_error_spectrum": (("curve", "spline", "order"), lines),
+            "kinematic_error_spectrum": (("curve", "member", "order"), lines),
             "kinematic_error_range": (("curve", "cause"), np.stack(size, axis=1)),
         },
         {
             "curve": ["geometry", "elastic mean", "under load"],
-            "spline": ["flexspline", "circular spline"],
+            "member": ["flexspline", "circular spline"],
             "cause": ["flexspline", "circular spline", "both"],
             "order": ("order", np.arange(Z1)),
         },
         title="kinematic error",
         warnings=[],
+        **_turns(FAMILIES[StrainWaveGears].turning, "circular spline"),
     )
 
 

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 from records import entries
 
+from pitchpoint._jax import jnp
 from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.results.store import dataset
@@ -221,7 +222,7 @@ def test_lengths_of_contact_lines_have_closed_forms(alpha: float, beta: float) -
 def test_contact_lines_are_as_long_as_the_contacts(helical: CylindricalPair) -> None:
     plane = plane_of_action(teeth_of(helical))
     phases = np.array([0.02, 0.3, 0.7, 0.95])
-    contacts = helical.contacts(phases)
+    contacts = helical.contacts(jnp.asarray(phases))
     weights = np.where(contacts.active, contacts.weight, 0.0).sum(axis=(0, 1))
     assert weights == pytest.approx([plane.total_length(phase) for phase in phases], rel=1e-6)
 
@@ -385,7 +386,7 @@ def test_helical_values_stand_at_the_middle_of_the_face(
     """A quantity that is linear along the path is met exactly, whatever slices a line has."""
     fact = facts(whole)
     phases = np.linspace(0.0, 0.999, 40)
-    contacts = helical.contacts(phases)
+    contacts = helical.contacts(jnp.asarray(phases))
     lanes = ("node", "pair", "slice")
     fields = {
         name: np.moveaxis(np.broadcast_to(values, contacts.path.shape), -1, 0)

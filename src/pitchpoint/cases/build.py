@@ -1,5 +1,6 @@
 """From a validated case to the design, the operating point and the laws that compute it."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import isfinite
@@ -10,9 +11,17 @@ import numpy as np
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.families import FAMILIES, Family, built_gears
-from pitchpoint.cases.laws import CASE_LAWS, FRICTION
-from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Surface
-from pitchpoint.cases.solids import SolidInUse, datum, failures, heated, solids_in_use
+from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Operating, Surface
+from pitchpoint.cases.solids import (
+    SolidInUse,
+    datum,
+    failures,
+    heated,
+    solids_in_use,
+    surrounded,
+)
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
@@ -23,7 +32,9 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.lubrication.applicability import applies
+from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -31,12 +42,13 @@ from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 
-__all__ = ["Built", "build", "laws_of"]
+__all__ = ["Built", "build"]
 
 TEETH_ALONE = (
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
     "churning take their part."
 )
+NO_PLASTIC = "No gear is of plastic: the tooth temperature changes nothing."
 
 
 @dataclass(frozen=True)
@@ -46,19 +58,43 @@ class Built:
     Attributes:
         case: as validated.
         design, operation: what the kernels take.
+        models: laws that act together, once under each friction law of the case; they share programs.
         lubricant: record of the oil with the origin of its values.
         solids: of both gears, with the temperature at which they are taken.
-        warnings: sentences about the design.
-        own: friction law of the user's own that takes the place of those of the case.
+        told: sentences about the design.
     """
 
     case: Case
     design: Design
     operation: Operation
+    models: tuple[Models, ...]
     lubricant: lubricants.LubricantRecord
     solids: tuple[SolidInUse, SolidInUse]
-    warnings: tuple[str, ...]
-    own: FrictionLaw | None = None
+    told: tuple[str, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about gears that are too hot, and about the design."""
+        return (*failures(self.solids), *self.told)
+
+    @property
+    def laws(self) -> list[FrictionLaw]:
+        """Friction laws of the case, in order."""
+        return [models.law for models in self.models]
+
+    @property
+    def law_names(self) -> list[str]:
+        """Names of the friction laws."""
+        return [law.name for law in self.laws]
+
+    @property
+    def terms(self) -> Terms:
+        """Terms of the model by which teeth yield."""
+        return self.models[0].compliance
+
+    def under(self, laws: Sequence[FrictionLaw]) -> tuple[Models, ...]:
+        """The models of the case under other friction laws, with the parameters of their formulas."""
+        return _under(laws, self.models[0], {})
 
     @cached_property
     def dimensions(self) -> dict[str, Any]:
@@ -89,9 +125,14 @@ class Built:
         return self.family.following(self.case.gears, self.design.mesh)
 
     @cached_property
+    def deviations(self) -> Surfaces:
+        """Deviations of the teeth around both members, which make the kinematic error."""
+        return self.family.deviations(self.case.gears, self.design.mesh)
+
+    @cached_property
     def engaged(self) -> Engagement | None:
         """Contacts and shares at the operating point of a mesh whose own take long, for all that ask."""
-        return engaged(self.design, self.operation, laws_of(self)[0])
+        return engaged(self.design, self.operation, self.models[0])
 
     @property
     def transmits(self) -> bool:
@@ -108,6 +149,37 @@ class Built:
     def loaded(self) -> str:
         """Name of the member that carries the load."""
         return self.case.gears.members[int(self.nominal["loaded"].argmax())]
+
+    @cached_property
+    def backwards(self) -> "Built":
+        """The same drive with its loaded member driving at its own speed.
+
+        It carries the power to the former driver that the drive takes without loss. What follows from
+        the operating point, such as the temperature of plastic teeth, follows from this one.
+        """
+        driver, loaded = (self.nominal[name] @ self.nominal["motion"] for name in _ENDS)
+        step = abs(float(driver / loaded))
+        point = self.case.operation
+        changes = {
+            "driver": self.loaded,
+            "torque": point.load / step,
+            "speed": point.speed / step,
+        }
+        point = point.model_copy(update=changes)
+        other = replace(
+            self,
+            case=self.case.model_copy(update={"operation": point}),
+            design=replace(self.design, mesh=self.design.mesh.driven_by(self.loaded)),
+            operation=_operation(point),
+        )
+        return warmed(other)
+
+
+_ENDS = ("driver", "loaded")
+
+
+def _operation(point: Operating) -> Operation:
+    return Operation(array(point.load), array(point.speed), array(point.temperature))
 
 
 def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Built:
@@ -139,80 +211,73 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         roughness=_roughness(case.roughness),
         drag=tuple(_drag(loss, case, mesh) for loss in case.losses.values()),
     )
-    operation = Operation(
-        load=array(case.operation.load),
-        speed=array(case.operation.speed),
-        temperature=array(case.operation.temperature),
-    )
-    told = (*warnings, *_yielding(case, mesh), *filter(None, [record.note]))
-    built = Built(case, design, operation, record, used, told, own)
-    if built.covers:
-        built = replace(built, warnings=(*told, TEETH_ALONE))
-    hot = built if case.models.tooth_temperature == "isothermal" else warmed(built, document)
-    return replace(hot, warnings=(*failures(hot.solids), *hot.warnings))
+    told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
+    models = _models(case, own)
+    built = Built(case, design, _operation(case.operation), models, record, used, tuple(told))
+    try:
+        return warmed(replace(built, told=(*told, *_left_out(built))))
+    except InputError as error:
+        raise error.at(file=document.name) from None
 
 
-def warmed(built: Built, document: Document) -> Built:
+def _left_out(built: Built) -> list[str]:
+    """What a model leaves out, or changes nothing of."""
+    heats = built.case.models.tooth_temperature != "isothermal"
+    idle = heats and not any(used.plastic for used in built.solids)
+    return [TEETH_ALONE] * bool(built.covers) + [NO_PLASTIC] * idle
+
+
+def warmed(built: Built) -> Built:
     """The case with its gears at the temperature that their own loss gives them.
 
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
-    if not any(used.plastic for used in built.solids):
-        text = "No gear is of plastic: the tooth temperature changes nothing."
-        return replace(built, warnings=(*built.warnings, text))
-    models, _ = laws_of(built)
-    found = jax.device_get(heat(built.design, built.operation, models))
+    case = built.case
+    cool = surrounded(built.solids, case.operation.temperature)
+    if case.models.tooth_temperature == "isothermal" or not any(used.plastic for used in cool):
+        return built
+    cold = _of_solids(built, cool)
+    found = jax.device_get(heat(cold.design, cold.operation, cold.models[0]))
     figures = {name: float(value) for name, value in found.items()}
     if not all(map(isfinite, figures.values())):
-        return built  # friction locks the mesh, which the computation says
-    used = heated(built.case, built.design.mesh, built.solids, figures, document)
+        return cold  # friction locks the mesh, which the computation says
+    return _of_solids(cold, heated(case, cold.design.mesh, cool, figures))
+
+
+def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
+    """The case with its gears of these solids."""
     design = replace(built.design, solids=(used[0].solid, used[1].solid))
     return replace(built, design=design, solids=used)
 
 
-def laws_of(built: Built) -> tuple[Models, tuple[int, ...]]:
-    """Models with every law compiled in, the first law of the case acting, and the indices of its laws.
-
-    The laws of the library are always among them, so that cases share one compiled program: the
-    spread of the fitted ones is shown beside every efficiency.
-    """
-    case = built.case
-    chosen = [FRICTION[choice.name] for choice in case.models.friction]
-    published = case.source in {law.sources[0] for law in CASE_LAWS}
-    extra = CASE_LAWS if published or any(law in CASE_LAWS for law in chosen) else ()
-    mesh = built.design.mesh
-    laws = tuple(law for law in (*LAWS, *extra) if _applies(law, mesh))
-    if built.own is not None:
-        chosen, laws = [built.own], (*laws, built.own)
-    indices = tuple(laws.index(law) for law in chosen)
-    models = Models(
-        friction=laws,
-        choice=array(indices[0]),
-        parameters=_parameters(case, laws),
+def _models(case: Case, own: FrictionLaw | None) -> tuple[Models, ...]:
+    """Models under each law of the case, or under the user's own."""
+    laws = [FRICTION[choice.name] for choice in case.models.friction] if own is None else [own]
+    given = {choice.name: choice.parameters for choice in case.models.friction}
+    common = Models(
+        friction=(),
+        choice=array(0),
+        parameters={},
         sharing=LOAD_SHARING[case.models.load_sharing],
         rolling=ROLLING_RESISTANCE[case.models.rolling_resistance],
         compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance].terms,
     )
-    return models, indices
+    return _under(laws, common, given)
 
 
-_OF_PITCH_POINT = {
-    "face_width",
-    "pitch_line_speed",
-    "reference_line_load",
-    "reference_radius",
-    "reference_sum_speed",
-}
-"""Conditions that only a mesh with a pitch point has."""
+def _under(
+    laws: Sequence[FrictionLaw], models: Models, given: Mapping[str, Mapping[str, float]]
+) -> tuple[Models, ...]:
+    """Models under each of some laws, with the parameters that are given of them."""
+    parameters = {law.name: _parameters(law, given.get(law.name, {})) for law in laws}
+    return replace(models, friction=tuple(laws), parameters=parameters).each
 
 
-def _applies(law: FrictionLaw, mesh: Mesh) -> bool:
-    from pitchpoint.lubrication.conditions import arguments, shape_of
-
-    if shape_of(law) not in (None, mesh.shape):
-        return False
-    return mesh.pitch_point or _OF_PITCH_POINT.isdisjoint(arguments(law.function)[0])
+def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.Array]:
+    """Values of a law's own parameters, by default those of its formula."""
+    _, defaults = arguments(law.function)
+    return {key: array(given.get(key, default), jnp.float64) for key, default in defaults.items()}
 
 
 def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
@@ -239,13 +304,9 @@ def _check_models(case: Case, mesh: Mesh) -> None:
     """InputError if a model of the case does not hold for these gears."""
     models = case.models
     for choice in models.friction:
-        if not _applies(FRICTION[choice.name], mesh):
-            others = ", ".join(law.name for law in LAWS if _applies(law, mesh))
-            raise InputError(
-                f"'{choice.name}' is a law for a whole mesh, and these gears have no pitch point; choose "
-                f"one of {others}",
-                key="models.friction",
-            )
+        if why_not := applies(FRICTION[choice.name], mesh):
+            others = ", ".join(law.name for law in LAWS if applies(law, mesh) is None)
+            raise InputError(f"{why_not}; choose one of {others}", key="models.friction")
     try:
         LOAD_SHARING[models.load_sharing].check(mesh)
     except InputError as error:
@@ -311,19 +372,6 @@ def _locates(loss: Loss, other: Loss, *, usual: bool) -> bool:
     if loss.locating is not None:
         return loss.locating
     return usual if other.locating is None else not other.locating
-
-
-def _parameters(case: Case, laws: tuple[FrictionLaw, ...]) -> dict[str, dict[str, jnp.ndarray]]:
-    from pitchpoint.lubrication.conditions import arguments
-
-    given = {choice.name: choice.parameters for choice in case.models.friction}
-    return {
-        law.name: {
-            key: array(given.get(law.name, {}).get(key, default), jnp.float64)
-            for key, default in arguments(law.function)[1].items()
-        }
-        for law in laws
-    }
 
 
 @lru_cache(maxsize=64)

@@ -19,6 +19,7 @@ from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.gears.wave_generator import WAVE_SHAPES
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.lubrication.applicability import asks_for_pitch_point
 from pitchpoint.lubrication.conditions import Law, shape_of
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -322,7 +323,7 @@ def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
 
 
 def kinematic_error_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
-    """Rows and columns: kinematic error, peak to peak, by the deviations of each spline and of both."""
+    """Rows and columns: kinematic error, peak to peak, by the deviations of each member and of both."""
     name = "kinematic_error_range"
     rows = [
         {f"kinematic error {_head(name)}": curve}
@@ -438,6 +439,7 @@ def _friction_range(law: FrictionLaw) -> str:
     limits = [
         f"{name.replace('_', ' ')} {limits_words(name, ends)}" for name, ends in law.ranges.items()
     ]
+    limits += ["gears with a pitch point"] if asks_for_pitch_point(law) else []
     limits += ["film at least Rq"] if law.full_film else []
     limits += [f"coefficient at most {law.largest:g}"] if law.largest < inf else []
     place = "each contact" if law.local else "whole mesh"

@@ -21,6 +21,7 @@ def worst_first(sentences: Iterable[str]) -> list[str]:
     """Sentences, each once, those on what cannot run first.
 
     Example:
+        >>> from pitchpoint.cases.failures import fails
         >>> worst_first(["tips are pointed.", fails("teeth melt."), "tips are pointed."])
         ['Fails: teeth melt.', 'tips are pointed.']
     """

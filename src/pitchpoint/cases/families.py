@@ -23,6 +23,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.modified import Modifications, class_deviations, class_warnings, modified
 from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
 from pitchpoint.gears.strain_wave import StrainWave
 from pitchpoint.gears.strain_wave_design import (
@@ -42,20 +43,44 @@ _RING_FILLET = 0.2  # fits the narrow spaces of most rings
 
 
 @dataclass(frozen=True)
+class Turning:
+    """Words of the turns over which deviations make a kinematic error.
+
+    Attributes:
+        whole: the turn over which both members are shown together; {} is the member with the most teeth.
+        angle: what turns there.
+        own: the turn of one member, {}, over which orders are counted.
+        alone: that turn where the member was named before.
+        note: how the errors of both members add up.
+    """
+
+    whole: str = "one turn of {}"
+    angle: str = "angle of {}"
+    own: str = "turn of {}"
+    alone: str = "one turn of it"
+    note: str = (
+        "Other teeth meet in each turn of a gear, so that the errors of both add up differently in later "
+        "turns; those of one gear alone, shown by order, stay as they are."
+    )
+
+
+@dataclass(frozen=True)
 class Family:
     """What a case asks of a family beside what every mesh answers.
 
     Attributes:
         build: mesh and warnings from the table, the name of the driver and the number of slices.
         following: values that the table leaves open, as the mesh has them, by key inside the table.
-        deviations: of the teeth around both members, from the table.
+        deviations: of the teeth around both members, from the table and the mesh.
+        turning: words of a turn around which they repeat themselves.
         drawing: dimensions of the arrays of a drawing.
         coordinates: labels along those dimensions.
     """
 
     build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
     following: Callable[[Any, Any], dict[str, Any]]
-    deviations: Callable[[Any], Surfaces] = lambda gears: ((), ())
+    deviations: Callable[[Any, Any], Surfaces] = lambda gears, mesh: ((), ())
+    turning: Turning = Turning()
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
 
@@ -74,7 +99,42 @@ def built_gears(
 
 def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
     pair = _pair(gears, driver=2 if driver == "gear 2" else 1, slices=slices)
-    return pair, (*check_cylindrical(pair), *_shortened(pair, gears))
+    told = (*check_cylindrical(pair), *_shortened(pair, gears), *_beyond_iso_1328(pair, gears))
+    return _with_flanks(pair, gears, slices), told
+
+
+def _with_flanks(pair: CylindricalPair, gears: CylindricalGears, slices: int) -> CylindricalPair:
+    """The pair with the modifications of its flanks; deviations of the lead need slices too."""
+    given = _modifications(gears)
+    if given is not None:
+        return modified(pair, given, slices)
+    by_class = gears.deviations is not None and gears.deviations.iso_class is not None
+    return replace(pair, slices=slices) if by_class else pair
+
+
+def _modifications(gears: CylindricalGears) -> Modifications | None:
+    table, slope = gears.modifications, gears.misalignment
+    if table is None or not table.amounts:
+        return None if slope is None else Modifications(misalignment=slope)
+    given = {key: getattr(table, key) for key in type(table).model_fields if key != "relief_shape"}
+    power = 2 if table.relief_shape == "parabolic" else 1
+    return Modifications(**given, relief_power=power, misalignment=slope)
+
+
+def _beyond_iso_1328(pair: CylindricalPair, gears: CylindricalGears) -> tuple[str, ...]:
+    asked = gears.deviations
+    return class_warnings(pair) if asked is not None and asked.iso_class is not None else ()
+
+
+def _gear_deviations(gears: CylindricalGears, pair: CylindricalPair) -> Surfaces:
+    asked = gears.deviations
+    if asked is None:
+        return (), ()
+    first, second = _waves(asked.gear_1), _waves(asked.gear_2)
+    if asked.iso_class is None:
+        return first, second
+    drawn = class_deviations(pair, asked.iso_class, int(asked.seed))
+    return (*first, *drawn[0]), (*second, *drawn[1])
 
 
 def _least_tip(gears: CylindricalGears) -> float:
@@ -159,7 +219,15 @@ _FOLLOWING = {
 
 
 def _of_pair(gears: CylindricalGears, pair: CylindricalPair) -> dict[str, Any]:
-    return {key: getattr(pair, name) for key, name in _FOLLOWING.items()}
+    found = {key: getattr(pair, name) for key, name in _FOLLOWING.items()}
+    given = _modifications(gears)
+    if given is not None:
+        lengths = given.completed(pair)
+        found |= {f"modifications.{key}": getattr(lengths, key) for key in _LENGTHS}
+    return found
+
+
+_LENGTHS = ("tip_relief_length", "root_relief_length", "end_relief_length")
 
 
 _KEYS = {
@@ -225,13 +293,13 @@ def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
     }
 
 
-def _deviations(gears: StrainWaveGears) -> Surfaces:
+def _deviations(gears: StrainWaveGears, drive: StrainWave) -> Surfaces:
     given = gears.deviations
     return _waves(given.flexspline), _waves(given.circular_spline)
 
 
 WAVES = 4
-"""Waves of a spline come in multiples of it, the last ones without height: few programs serve all."""
+"""Waves of a member come in multiples of it, the last ones without height: few programs serve all."""
 
 
 def _waves(given: tuple[Deviation, ...]) -> tuple[Waves, ...]:
@@ -267,13 +335,23 @@ FAMILIES: dict[type, Family] = {
     CylindricalGears: Family(
         _cylindrical,
         _of_pair,
+        _gear_deviations,
         drawing={"outline": ("gear", "corner", "xy"), "points": ("point",)},
         coordinates={"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
     ),
     StrainWaveGears: Family(
         _strain_wave,
         _of_drive,
-        deviations=_deviations,
+        _deviations,
+        Turning(
+            "one turn of the wave generator",
+            "wave generator against circular spline",
+            "turn against the {}",
+            "one turn of the wave generator against it",
+            "In each turn of the wave generator one spline moves on against the other by the tooth "
+            "difference, so that the errors of both add up differently in later turns; those of one "
+            "spline alone, shown by order, stay as they are.",
+        ),
         drawing={
             "tooth": ("corner", "xy"),
             "space": ("space_corner", "xy"),

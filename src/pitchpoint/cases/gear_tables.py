@@ -42,6 +42,11 @@ WAVES = Quantity("dimensionless", 1, 1_000, whole=True)
 DEVIATION = Quantity("length", 0.0, 1e-2, "um")
 PHASE = Quantity("angle", -4 * pi, 4 * pi, "deg")
 
+RELIEF = Quantity("length", 0.0, 1e-2, "um")
+RELIEF_LENGTH = Quantity("length", 0.0, 1.0, "mm", open_low=True)
+MISALIGNMENT = Quantity("length", -1e-2, 1e-2, "um")
+TOLERANCE_CLASS = Quantity("dimensionless", 1, 11, whole=True)
+SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
 BALL = Quantity("length", 1e-4, 1.0, "mm")
 TRACK = Quantity("length", 1e-3, 10.0, "mm")
 SLIDE_ROLL = Quantity("dimensionless", -1.9, 2.0)
@@ -67,13 +72,80 @@ def _teeth(value: tuple[float, float]) -> tuple[float, float]:
     return value
 
 
+class Deviation(Table):
+    """A wave of a deviation along the normal of the flanks, so many times around the member."""
+
+    order: Annotated[float, WAVES]
+    amplitude: Annotated[float, DEVIATION]
+    phase: Annotated[float, PHASE] = 0.0
+
+
+WavesAround = Annotated[tuple[Deviation, ...], Field(max_length=200)]
+
+_LENGTHS = ("tip_relief", "root_relief", "end_relief")
+
+
+class FlankModifications(Table):
+    """Modifications that all teeth of a gear have, along the normal; one value for both gears or two.
+
+    Lengths of tip and root relief are roll lengths, from the tip circle and from the start of the active
+    profile; without them a relief ends where one pair less is in contact. That of an end relief is along
+    the face, by default a module and at most a tenth of the face.
+    """
+
+    tip_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    tip_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+    root_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    root_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+    relief_shape: Literal["linear", "parabolic"] = "linear"
+    crowning: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    end_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    end_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+
+    @property
+    def amounts(self) -> dict[str, tuple[float, float]]:
+        """Amounts that are given, by key."""
+        given = {key: getattr(self, key) for key in (*_LENGTHS, "crowning")}
+        return {key: value for key, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _together(self) -> "FlankModifications":
+        for key in _LENGTHS:
+            if getattr(self, f"{key}_length") is not None and getattr(self, key) is None:
+                raise InputError(
+                    f"was given without {key}, to which it belongs", key=f"{key}_length"
+                )
+        return self
+
+
+class GearDeviations(Table):
+    """How far flanks lie behind their places, differently from tooth to tooth.
+
+    As waves around each gear, and as gears at the limits of a class of ISO 1328-1 that a seed draws at
+    random. They make the kinematic error; loads, losses and stiffness are those of teeth without them.
+    """
+
+    gear_1: WavesAround = ()
+    gear_2: WavesAround = ()
+    iso_class: Annotated[tuple[float, float], Pair(TOLERANCE_CLASS)] | None = None
+    seed: Annotated[float, SEED] = 1.0
+
+    @property
+    def each(self) -> dict[str, tuple[Deviation, ...]]:
+        """Waves by key of the gear."""
+        return {"gear_1": self.gear_1, "gear_2": self.gear_2}
+
+
 class CylindricalGears(Table):
-    """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring."""
+    """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring.
+
+    A misalignment counts over the face, positive where the flanks part at the end that a contact line
+    reaches last.
+    """
 
     members: ClassVar[tuple[str, ...]] = CYLINDRICAL
     load: ClassVar[Load] = "torque"
     friction: ClassVar[str] = "iso_tr_14179_2"
-    load_sharing: ClassVar[str] = "equal"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
     meaningless: ClassVar[Mapping[str, str]] = {}
 
@@ -92,11 +164,44 @@ class CylindricalGears(Table):
     centre_distance: Annotated[float, DISTANCE] | None = None
     bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
     flank: Literal["left", "right"] = "left"
+    misalignment: Annotated[float, MISALIGNMENT] | None = None
+    modifications: FlankModifications | None = None
+    deviations: GearDeviations | None = None
 
     @property
     def drivers(self) -> tuple[str, ...]:
         """Members that may drive, the usual one first."""
         return self.members
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Keys of the bibliography for what is given."""
+        modified = self.modifications is not None or self.misalignment is not None
+        by_class = self.deviations is not None and self.deviations.iso_class is not None
+        return ("iso_21771_2007",) * modified + ("iso_1328_1_2013",) * by_class
+
+    @property
+    def load_sharing(self) -> str:
+        """Flanks with modifications share the load as they yield."""
+        modified = self.modifications is not None and self.modifications.amounts
+        return "from_stiffness" if modified or self.misalignment is not None else "equal"
+
+    @model_validator(mode="after")
+    def _smaller_than_teeth(self) -> "CylindricalGears":
+        amounts = self.modifications.amounts if self.modifications is not None else {}
+        given = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
+        given["misalignment"] = abs(self.misalignment or 0.0)
+        for key, most in given.items():
+            if most > self.module / 2.0:
+                raise InputError(
+                    f"{RELIEF.show(most)} is more than a tooth allows; allowed is half a module, "
+                    f"{RELIEF.show(self.module / 2.0)}",
+                    key=key,
+                )
+        waves = self.deviations.each if self.deviations is not None else {}
+        for (key, each), teeth in zip(waves.items(), self.teeth, strict=False):
+            _check_waves(each, key, abs(teeth), self.module)
+        return self
 
     @model_validator(mode="after")
     def _one_tip(self) -> "CylindricalGears":
@@ -217,22 +322,14 @@ class Flexspline(Table):
     support_stiffness: Annotated[float, SUPPORT] | None = None
 
 
-class Deviation(Table):
-    """A wave of a deviation along the normal of the flanks, so many times around the member."""
-
-    order: Annotated[float, WAVES]
-    amplitude: Annotated[float, DEVIATION]
-    phase: Annotated[float, PHASE] = 0.0
-
-
 class SplineDeviations(Table):
     """How far the flanks of both splines lie behind their places, as waves around them.
 
     They make the kinematic error; loads, losses and stiffness are those of teeth without deviations.
     """
 
-    flexspline: Annotated[tuple[Deviation, ...], Field(max_length=200)] = ()
-    circular_spline: Annotated[tuple[Deviation, ...], Field(max_length=200)] = ()
+    flexspline: WavesAround = ()
+    circular_spline: WavesAround = ()
 
     @property
     def each(self) -> dict[str, tuple[Deviation, ...]]:
@@ -259,6 +356,7 @@ class StrainWaveGears(Table):
 
     members: ClassVar[tuple[str, ...]] = STRAIN_WAVE
     load: ClassVar[Load] = "torque"
+    sources: ClassVar[tuple[str, ...]] = ()
     friction: ClassVar[str] = "constant"
     load_sharing: ClassVar[str] = "from_stiffness"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
@@ -296,18 +394,18 @@ class StrainWaveGears(Table):
 
 def _check_waves(waves: tuple[Deviation, ...], key: str, teeth: float, module: float) -> None:
     """InputError for waves that the teeth are too few to tell, or as high as the teeth."""
-    spline = key.replace("_", " ")
+    member = key.replace("_", " ") if key.startswith("gear") else f"the {key.replace('_', ' ')}"
     for position, wave in enumerate(waves):
         if wave.order > teeth / 2.0:
             raise InputError(
-                f"{wave.order:.0f} waves around the {spline} look like fewer of them at its {teeth:.0f} "
+                f"{wave.order:.0f} waves around {member} look like fewer of them at its {teeth:.0f} "
                 f"teeth; allowed are 1 to {teeth // 2.0:.0f}",
                 key=f"deviations.{key}.{position}.order",
             )
     most = sum(wave.amplitude for wave in waves)
     if most > module / 2.0:
         raise InputError(
-            f"the deviations of the {spline} add up to {DEVIATION.show(most)}; allowed is half a "
+            f"the deviations of {member} add up to {DEVIATION.show(most)}; allowed is half a "
             f"module, {DEVIATION.show(module / 2.0)}",
             key=f"deviations.{key}",
         )
@@ -322,6 +420,7 @@ class BallOnDiscRig(Table):
 
     members: ClassVar[tuple[str, ...]] = BALL_ON_DISC
     load: ClassVar[Load] = "force"
+    sources: ClassVar[tuple[str, ...]] = ()
     drivers: ClassVar[tuple[str, ...]] = ("disc",)
     friction: ClassVar[str] = "constant"
     load_sharing: ClassVar[str] = "equal"

@@ -8,7 +8,8 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.families import Turning
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.mesh import Mesh
@@ -22,13 +23,15 @@ from pitchpoint.results.store import dataset
 __all__ = ["kinematic_error_part"]
 
 PHASES = 2
-"""States in each tooth period: four for every wave where a member has as many as it can have."""
+"""States in each tooth period of bodies that couple many teeth: four for every wave of the highest order."""
+
+FEW_PAIRS = 8
+"""The same where a few pairs hand over to each other."""
 
 TEETH = 32
 """Tooth periods solved together; one compiled program serves any number of them."""
 
 CURVES = ("geometry", "elastic mean", "under load")
-SPLINES = ("flexspline", "circular spline")
 
 Over = Callable[[Surfaces, int], np.ndarray]
 """Errors [curve, state] by deviations of both over so many tooth periods."""
@@ -45,44 +48,48 @@ class _Period(eqx.Module):
 def kinematic_error_part(
     built: Built, deviations: Surfaces, progress: Callable[[int], None]
 ) -> xr.Dataset:
-    """Rotation of the loaded member by deviations over one turn of the wave, at the operating torque.
+    """Rotation of the loaded member by deviations at the operating torque.
 
-    The turn is that of the wave generator against the circular spline. Orders are those of one
-    spline alone, over one turn against it.
+    Those of both members count over one turn of the member with the most teeth, which is that of a wave
+    generator against its circular spline. Orders are those of one member alone, over one turn of it.
 
     Args:
         built: the case.
-        deviations: of flexspline and circular spline.
+        deviations: of both members.
         progress: told the number of states that are done, after each group of teeth.
     """
-    models, _ = laws_of(built)
     design, gears = built.design, built.case.gears
     assert hasattr(gears, "teeth")
     load = jnp.full((1, 1), built.case.operation.load)
-    period = _period(design.mesh, design.solids, models.compliance, load)
-    teeth = np.asarray(gears.teeth)
+    phases = PHASES if design.mesh.couples else FEW_PAIRS
+    period = _period(design.mesh, design.solids, built.terms, load, phases)
+    teeth = np.abs(np.asarray(gears.teeth))
     solved: list[np.ndarray] = []
 
     def over(own: Surfaces, count: int) -> np.ndarray:
         done, found = sum(one.shape[1] for one in solved), []
         for piece in _pieces(design.mesh, period, own, count):
             found.append(piece)
-            progress(done + min(len(found) * TEETH, count) * PHASES)
-        solved.append(np.concatenate(found, axis=1)[:, : count * PHASES])
+            progress(done + min(len(found) * TEETH, count) * phases)
+        solved.append(np.concatenate(found, axis=1)[:, : count * phases])
         return solved[-1]
 
-    alone = [_alone(over, deviations, spline, teeth) for spline in (0, 1)]
-    together = _together(over, deviations, alone, teeth)
-    order = np.arange(PHASES * int(teeth.min()) // 2 + 1)
+    states = teeth.astype(int) * phases
+    alone = [_alone(over, deviations, member, int(teeth[member]), phases) for member in (0, 1)]
+    most = int(np.argmax(teeth))
+    together = _together(over, deviations, alone, int(teeth[most]), phases)
+    order = np.arange(int(teeth.min()) + 1)
     under_load = np.concatenate([one[-1] for one in solved])
     lost = int(np.isnan(under_load).sum())
     told = [f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states."]
-    return dataset(
+    bodies = eqx.filter_eval_shape(lambda mesh: mesh.coordinates, design.mesh)
+    members = [one.body for one in bodies if one.member is not None]
+    whole = dataset(
         {
-            "wave_angle": (("state",), np.arange(together.shape[1]) * _step(teeth)),
+            "turn_angle": (("state",), np.arange(states[most]) * 2.0 * np.pi / states[most]),
             "kinematic_error": (("curve", "state"), together),
             "kinematic_error_spectrum": (
-                ("curve", "spline", "order"),
+                ("curve", "member", "order"),
                 np.stack([_amplitudes(one, order.size) for one in alone], axis=1),
             ),
             "kinematic_error_range": (
@@ -92,46 +99,53 @@ def kinematic_error_part(
         },
         {
             "curve": [*CURVES],
-            "spline": [*SPLINES],
-            "cause": [*SPLINES, "both"],
+            "member": members,
+            "cause": [*members, "both"],
             "order": ("order", order),
         },
         title="kinematic error",
         warnings=told if lost else [],
+        **_turns(built.family.turning, members[most]),
     )
+    whole["turn_angle"].attrs.update(long_name=whole.attrs["turn_angle"])
+    return whole
 
 
-def _step(teeth: np.ndarray) -> float:
-    """Turn of the wave generator against the circular spline between two states [rad]."""
-    return float(2.0 * np.pi / (teeth[1] * PHASES))
+def _turns(turning: Turning, most: str) -> dict[str, str]:
+    """Words of the turns, see `Turning`; `own_turn` keeps its place for the member."""
+    return {
+        "turn": turning.whole.format(most),
+        "turn_angle": turning.angle.format(most),
+        "own_turn": turning.own,
+        "turn_alone": turning.alone,
+        "note": turning.note,
+    }
 
 
-def _alone(over: Over, deviations: Surfaces, spline: int, teeth: np.ndarray) -> np.ndarray:
-    """Errors [curve, state] with deviations of one spline alone over one turn against it."""
-    count = int(teeth[spline])
-    if not deviations[spline]:
-        return np.zeros((len(CURVES), count * PHASES))
-    own = (deviations[0], ()) if spline == 0 else ((), deviations[1])
-    return over(own, count)
+def _alone(over: Over, deviations: Surfaces, member: int, teeth: int, phases: int) -> np.ndarray:
+    """Errors [curve, state] with deviations of one member alone over one turn of it."""
+    if not deviations[member]:
+        return np.zeros((len(CURVES), teeth * phases))
+    own = (deviations[0], ()) if member == 0 else ((), deviations[1])
+    return over(own, teeth)
 
 
 def _together(
-    over: Over, deviations: Surfaces, alone: list[np.ndarray], teeth: np.ndarray
+    over: Over, deviations: Surfaces, alone: list[np.ndarray], teeth: int, phases: int
 ) -> np.ndarray:
-    """Errors [curve, state] with both over one turn against the circular spline."""
-    count = int(teeth[1])
+    """Errors [curve, state] with both over one turn of the member with the most teeth."""
     given = [bool(one) for one in deviations]
     if all(given):
-        return over(deviations, count)
+        return over(deviations, teeth)
     own = alone[given.index(True)]
-    return np.take(own, np.arange(count * PHASES), axis=1, mode="wrap")
+    return np.take(own, np.arange(teeth * phases), axis=1, mode="wrap")
 
 
 def _pieces(mesh: Mesh, period: _Period, deviations: Surfaces, count: int) -> Iterator[np.ndarray]:
+    phases = period.contacts.path.shape[-1]
     for start in range(0, count, TEETH):
-        # A wave generator that turns on meets teeth of growing angle, and phases fall.
-        phase = -(start + np.arange(TEETH)[:, None] + np.arange(PHASES) / PHASES)
-        added = _added(mesh, period, deviations, jnp.asarray(phase))
+        turned = start + np.arange(TEETH)[:, None] + np.arange(phases) / phases
+        added = _added(mesh, period, deviations, jnp.asarray(turned))
         found = jax.device_get(_errors(period, added))
         each = (found.geometric, found.elastic_mean, found.under_load)
         yield np.stack([values.ravel() for values in each])
@@ -145,17 +159,19 @@ def _amplitudes(errors: np.ndarray, orders: int) -> np.ndarray:
 
 
 @program
-def _period(mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Array) -> _Period:
-    contacts = mesh.contacts(-jnp.arange(PHASES)[None] / PHASES)
+def _period(
+    mesh: Mesh, solids: tuple[Solid, Solid], terms: Terms, load: Array, phases: int
+) -> _Period:
+    contacts = mesh.contacts(mesh.onward * jnp.arange(phases)[None] / phases)
     yields = compliance(mesh, contacts, solids, terms, load)
     return _Period(contacts, yields, mesh.loaded)
 
 
 @program
 def _added(
-    mesh: Mesh, period: _Period, deviations: Surfaces, phase: Float[Array, "tooth phase"]
+    mesh: Mesh, period: _Period, deviations: Surfaces, turned: Float[Array, "tooth phase"]
 ) -> Float[Array, "pair slice tooth phase"]:
-    return added_gap(deviations, mesh.spots(period.contacts, phase))
+    return added_gap(deviations, mesh.spots(period.contacts, mesh.onward * turned))
 
 
 @program

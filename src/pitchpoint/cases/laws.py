@@ -24,7 +24,7 @@ def limits_words(name: str, limits: tuple[float, float]) -> str:
         limits: smallest and largest value [SI]; infinite where there is none.
 
     Example:
-        >>> limits_words("viscosity", (1e-3, inf))
+        >>> limits_words("viscosity", (1e-3, float("inf")))
         'at least 1 mPa s'
     """
     low, high = (_shown(name, value) for value in limits)

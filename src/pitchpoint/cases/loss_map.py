@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
@@ -18,7 +18,8 @@ from pitchpoint.efficiency.quasi_static import (
     cycle,
     cycle_nodes,
 )
-from pitchpoint.efficiency.summary import engaged
+from pitchpoint.efficiency.summary import at_points, engaged
+from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
 
@@ -43,9 +44,9 @@ def pieces(built: Built) -> Iterator[Piece]:
 
 def _start(built: Built) -> tuple[Engagement | None, int]:
     """What all torques have in common: contacts, where they are known beforehand, and how many there are."""
-    models, _ = laws_of(built)
+    models = built.models[0]
     known = engaged(built.design, built.operation, models, _NODES)
-    length = _line_length(built.design, models) if known is None else known.contacts.weight
+    length = _line_length(built.design, models.sharing) if known is None else known.contacts.weight
     return known, int(np.prod(length.shape))
 
 
@@ -99,24 +100,20 @@ def _piece(
     start: Callable[[], tuple[Engagement | None, int]],
 ) -> Piece:
     def compute(progress: Callable[[int], None]) -> xr.Dataset:
-        models, chosen = laws_of(built)
         point = replace(built.operation, load=array(torque))
         like, lanes = start()
-        known = engaged(built.design, point, models, _NODES, like)
+        known = engaged(built.design, point, built.models[0], _NODES, like)
         known = known and known.loaded()
         together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
-        laws = tuple(models.friction[law] for law in chosen)
         runs = []
-        for count in range(1, len(laws) + 1):
-            # With the laws of the library beside it, one law could not be fused with what surrounds it.
-            own = replace(models, friction=laws, choice=array(count - 1))
-            runs.append(_map(built.design, torque, speeds, degrees, own, known, together))
+        for count, models in enumerate(built.models, 1):
+            runs.append(_map(built.design, torque, speeds, degrees, models, known, together))
             progress(count * speeds.size * degrees.size)
         found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
         return dataset(
             {name: (_DIMS, values) for name, values in zip(_NAMES, found, strict=True)},
             {
-                "law": [models.friction[law].name for law in chosen],
+                "law": built.law_names,
                 "torque": ("torque", [torque]),
                 "speed": ("speed", speeds),
                 "temperature": ("temperature", degrees),
@@ -142,21 +139,35 @@ def _map(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
     moving = np.where(speeds > 0.0, speeds, 1.0)  # at rest nothing is lost, whatever the laws say
-    compute = _figures if speeds.size * degrees.size < MANY else _figures_of_many
-    parts = []
-    for start in range(0, speeds.size, together):
-        part = moving[start : start + together]
-        filled = np.concatenate([part, np.full(together - part.size, part[-1])])
-        found = compute(design, array(torque), array(filled), array(degrees), models, known)
-        parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
-    loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
+    few = speeds.size * degrees.size < MANY
+    if few and known is None:
+        loss, efficiency, locked = _by_point(design, torque, moving, degrees, models)
+    else:
+        compute = partial(_figures if few else _figures_of_many, design, array(torque))
+        parts = []
+        for start in range(0, speeds.size, together):
+            part = moving[start : start + together]
+            filled = np.concatenate([part, np.full(together - part.size, part[-1])])
+            found = compute(array(filled), array(degrees), models, known)
+            parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
+        loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
     turns = (speeds > 0.0)[:, None]
     return np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
 
 
+def _by_point(
+    design: Design, torque: float, speeds: np.ndarray, degrees: np.ndarray, models: Models
+) -> list[np.ndarray]:
+    """Loss, efficiency and locking by the program of operating points, which other parts ask for anyway."""
+    speed, degree = (values.ravel() for values in np.meshgrid(speeds, degrees, indexing="ij"))
+    points = Operation(*map(array, (np.full(speed.size, torque), speed, degree)))
+    found = at_points(design, points, models)
+    return [found[name].reshape(speeds.size, degrees.size) for name in _NAMES]
+
+
 @program
-def _line_length(design: Design, models: Models) -> Array:
-    phase, _ = cycle_nodes(design.mesh, models.sharing, _NODES)
+def _line_length(design: Design, sharing: LoadSharing) -> Array:
+    phase, _ = cycle_nodes(design.mesh, sharing, _NODES)
     return design.mesh.contacts(phase).weight
 
 

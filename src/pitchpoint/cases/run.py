@@ -13,7 +13,7 @@ from uuid import uuid4
 import xarray as xr
 
 from pitchpoint.cases import inputs
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.comparison import Row, compare, demand_parts
 from pitchpoint.cases.document import variants
 from pitchpoint.cases.failures import worst_first
@@ -423,10 +423,10 @@ def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
 
 def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> dict[str, Any]:
     case, document = built.case, variant.document()
-    models, chosen = laws_of(built)
-    laws = [models.friction[index] for index in chosen]
+    laws = [models.law for models in built.models]
     others = _models(built)
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
+    keys += case.gears.sources
     keys += [datum.source for datum in built.lubricant.data().values() if datum.source]
     keys += [
         one.source for used in built.solids for one in used.record.data().values() if one.source

@@ -8,7 +8,7 @@ import xarray as xr
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.loss_map import map_axes
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
@@ -25,36 +25,35 @@ _DIMS = ("law", "speed", "temperature")
 _AT_REST = ("law", "temperature")
 
 
-def running_part(built: Built, backwards: Built) -> xr.Dataset:
+def running_part(built: Built) -> xr.Dataset:
     """Torque without load over speed and temperature, and torques that start the drive either way.
 
     Speed and temperature of the operating point are among them.
 
     Args:
         built: the case.
-        backwards: the same drive with its loaded member driving.
     """
     speeds, degrees = running_axes(built)
-    models, chosen = laws_of(built)
-    each = [replace(models, choice=array(law)) for law in chosen]
     idle = replace(built.operation, load=array(0.0))
 
     def over(torque: Callable[..., Array], rates: np.ndarray, one: Built) -> np.ndarray:
         speed, degree = np.meshgrid(rates, degrees, indexing="ij")
         points = Operation(*map(jnp.asarray, (0.0 * speed, speed, degree)))
-        known = engaged(one.design, idle, models)
-        return np.stack([np.asarray(torque(one.design, points, own, known)) for own in each])
+        known = engaged(one.design, idle, built.models[0])
+        return np.stack(
+            [np.asarray(torque(one.design, points, own, known)) for own in built.models]
+        )
 
     creeping = np.array([CREEPING])
     data = {
         "no_load_torque": (_DIMS, over(no_load_torque, speeds, built)),
         "starting_torque": (_AT_REST, over(starting_torque, creeping, built)[:, 0]),
-        "back_driving_torque": (_AT_REST, over(starting_torque, creeping, backwards)[:, 0]),
+        "back_driving_torque": (_AT_REST, over(starting_torque, creeping, built.backwards)[:, 0]),
     }
     return dataset(
         data,
         {
-            "law": [models.friction[law].name for law in chosen],
+            "law": built.law_names,
             "speed": ("speed", speeds),
             "temperature": ("temperature", degrees),
         },

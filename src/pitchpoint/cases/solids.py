@@ -14,7 +14,7 @@ from pitchpoint.materials import solids
 from pitchpoint.materials._leaves import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
 
-__all__ = ["SolidInUse", "datum", "failures", "heated", "solids_in_use"]
+__all__ = ["SolidInUse", "datum", "failures", "heated", "solids_in_use", "surrounded"]
 
 BY_VALUE = "by value"
 _PLASTIC_BELOW = 30e9  # Pa; no metal for gears is as soft, no plastic without fibres as stiff
@@ -77,20 +77,29 @@ def solids_in_use(materials: Materials, document: Document, temperature: float) 
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
+    try:
+        first, second = (
+            _in_use(_record(getattr(materials, key), key, document), key, temperature)
+            for key in _KEYS
+        )
+    except InputError as error:
+        raise error.at(file=document.name) from None
+    return first, second
+
+
+def surrounded(used: Used, temperature: float) -> Used:
+    """The same materials at the temperature of their surroundings.
+
+    Raises:
+        InputError: the temperature is outside what is known of a material.
+    """
     first, second = (
-        _in_use(_record(getattr(materials, key), key, document), key, document, temperature)
-        for key in _KEYS
+        _in_use(one.record, key, temperature) for one, key in zip(used, _KEYS, strict=True)
     )
     return first, second
 
 
-def heated(
-    case: Case,
-    mesh: Mesh,
-    used: Used,
-    found: Mapping[str, float],
-    document: Document,
-) -> Used:
+def heated(case: Case, mesh: Mesh, used: Used, found: Mapping[str, float]) -> Used:
     """Materials with plastic gears at the temperature of their tooth roots.
 
     The tooth yields most in its root and body, so the temperature there sets its modulus.
@@ -100,13 +109,12 @@ def heated(
         mesh: of the gears.
         used: materials at the temperature of the surroundings.
         found: mean_friction and loss_factor at the operating point, by the first friction law.
-        document: for messages.
 
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
     first, second = (
-        _warm(case, mesh, used, gear, found, document) if used[gear].plastic else used[gear]
+        _warm(case, mesh, used, gear, found) if used[gear].plastic else used[gear]
         for gear in (0, 1)
     )
     return first, second
@@ -120,14 +128,7 @@ def datum(value: float, key: str, document: Document) -> Datum:
     return Datum(value=value, status=cast("Status", mark.status), note=mark.note)
 
 
-def _warm(
-    case: Case,
-    mesh: Mesh,
-    used: Used,
-    gear: int,
-    found: Mapping[str, float],
-    document: Document,
-) -> SolidInUse:
+def _warm(case: Case, mesh: Mesh, used: Used, gear: int, found: Mapping[str, float]) -> SolidInUse:
     pair, point, gears = mesh.reference, case.operation, case.gears
     assert pair is not None and hasattr(gears, "teeth") and hasattr(gears, "module")
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(
@@ -146,7 +147,7 @@ def _warm(
     )
     root, flank = float(temperature.root), float(temperature.flank)
     record = used[gear].record
-    warm = _in_use(record, _KEYS[gear], document, root)
+    warm = _in_use(record, _KEYS[gear], root)
     told = (
         f"The teeth of gear {gear + 1} reach {celsius(flank)} at the flank and {celsius(root)} at the "
         f"root; modulus {float(warm.solid.young) / 1e9:.3g} GPa."
@@ -163,11 +164,11 @@ def _upper(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _in_use(record: SolidRecord, key: str, document: Document, temperature: float) -> SolidInUse:
+def _in_use(record: SolidRecord, key: str, temperature: float) -> SolidInUse:
     try:
         return SolidInUse(record, record.build(temperature), temperature)
     except InputError as error:
-        raise error.at(file=document.name, key=f"materials.{key}") from None
+        raise error.at(key=f"materials.{key}") from None
 
 
 def _record(given: SolidValues | str, key: str, document: Document) -> SolidRecord:

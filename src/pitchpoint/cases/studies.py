@@ -10,12 +10,12 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array
 
-from pitchpoint._jax import array, jax
+from pitchpoint._jax import jax
 from pitchpoint.cases import loss_map
-from pitchpoint.cases.build import Built, build, laws_of
+from pitchpoint.cases.build import Built, build
 from pitchpoint.cases.document import Document, leaves, resolve
 from pitchpoint.cases.failures import fails
-from pitchpoint.cases.laws import CASE_LAWS, limits_words
+from pitchpoint.cases.laws import limits_words
 from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import (
@@ -35,8 +35,9 @@ from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError, shorten
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.programs import program
 from pitchpoint.results.rounding import difference
@@ -184,17 +185,15 @@ def jobs(variant: Variant, extra: Mapping[str, Study]) -> Iterator[Job]:
     yield from _yielding(built)
     yield from studies
     if built.transmits:
-        yield from _of_power(variant, built)
+        yield from _of_power(built)
 
 
-def _of_power(variant: Variant, built: Built) -> Iterator[Job]:
+def _of_power(built: Built) -> Iterator[Job]:
     """Parts on the power that goes through."""
-    yield from _running(variant, built)
-    models, chosen = laws_of(built)
-    titles = [models.friction[law].title for law in chosen]
-    whole = partial(loss_map.joined, laws=titles)
+    yield from _running(built)
+    whole = partial(loss_map.joined, laws=[law.title for law in built.laws])
     yield Job("loss_map", "loss map", tuple(loss_map.pieces(built)), whole)
-    yield Job("back_driving", "back-driving", (lambda _: _back_driving(variant, built),))
+    yield Job("back_driving", "back-driving", (lambda _: _back_driving(built),))
 
 
 def _deviating(built: Built, deviations: Surfaces) -> Iterator[Job]:
@@ -207,21 +206,21 @@ def _deviating(built: Built, deviations: Surfaces) -> Iterator[Job]:
     yield Job("kinematic_error", "kinematic error", (compute,))
 
 
-def _running(variant: Variant, built: Built) -> Iterator[Job]:
+def _running(built: Built) -> Iterator[Job]:
     """Torque that runs and starts a drive with losses beside its teeth."""
     if not built.design.drag:
         return
     from pitchpoint.cases import running
 
     def compute(_: Progress) -> xr.Dataset:
-        return running.running_part(built, _backwards(variant, built))
+        return running.running_part(built)
 
     yield Job("running", "running without load", (compute,))
 
 
 def _yielding(built: Built) -> Iterator[Job]:
     """Parts on how teeth yield, and what follows; what they import is not needed without them."""
-    dynamics, deviations = built.case.dynamics, built.family.deviations(built.case.gears)
+    dynamics, deviations = built.case.dynamics, built.deviations
     shares = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
     if not shares and dynamics is None and built.design.mesh.touching and not any(deviations):
         return
@@ -265,9 +264,7 @@ def _drawing(mesh: Mesh) -> dict[str, Array]:
 
 
 def _cycle(built: Built) -> xr.Dataset:
-    models, chosen = laws_of(built)
-    runs = _profiles(built, models, chosen)
-    names = _names(models, chosen)
+    runs, names = _profiles(built, built.models), built.law_names
     _demand_motion(*_jammed(runs), [built], names)
     _demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)
     lanes = ("law", "node", "pair", "slice")
@@ -282,14 +279,14 @@ def _cycle(built: Built) -> xr.Dataset:
         for name in runs[0]
         if name not in common and not name.startswith("outside")
     }
-    laws = [models.friction[index] for index in chosen]
     warnings = [
         text
-        for law, run in zip(laws, runs, strict=True)
+        for law, run in zip(built.laws, runs, strict=True)
         for text in _told_of(law, _outside(built, law, run))
     ]
     warnings += _conformal_warning(built.design.mesh, runs[0])
     warnings += _pressure_warning(built, runs)
+    warnings += _face_warning(built, runs[0])
     data = dataset(
         {**common, **each},
         {"law": names},
@@ -304,12 +301,11 @@ def _cycle(built: Built) -> xr.Dataset:
     return data if filled is None else data.isel(pair=filled)
 
 
-def _profiles(built: Built, models: Models, laws: Sequence[int]) -> list[dict[str, np.ndarray]]:
-    """The mesh cycle under each law."""
+def _profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
+    """The mesh cycle under each of some models."""
     film = FILM_THICKNESS[built.case.models.film_thickness]
     point = built.design, built.operation
-    runs = (profile(*point, _choose(models, law), film, engaged=built.engaged) for law in laws)
-    return [jax.device_get(run) for run in runs]
+    return [profile(*point, models, film, engaged=built.engaged) for models in under]
 
 
 def _jammed(
@@ -326,13 +322,13 @@ def _jammed(
 
 
 def _operation(built: Built) -> xr.Dataset:
-    models, chosen = laws_of(built)
+    count = len(built.models)
     extra = {
-        **_vibrations([built], len(chosen)),
-        **_temperatures([built], len(chosen)),
-        **_at_contact([built], models, chosen),
+        **_vibrations([built], count),
+        **_temperatures([built], count),
+        **_at_contact([built], built.models),
     }
-    return _summaries([built], models, chosen, extra, title="operating point")
+    return _summaries([built], built.models, extra, title="operating point")
 
 
 def _laws(built: Built) -> xr.Dataset:
@@ -341,16 +337,15 @@ def _laws(built: Built) -> xr.Dataset:
     The attribute `outside` lists the others and the laws of the case that are out of theirs, each with
     its efficiency there and the reasons.
     """
-    models, chosen = laws_of(built)
-    every = [
-        index for index, law in enumerate(models.friction) if law not in CASE_LAWS and law.sources
-    ]
-    considered = list(dict.fromkeys([*every, *chosen]))
+    every = [law for law in LAWS if law.sources and applies(law, built.design.mesh) is None]
+    others = built.under([law for law in every if law not in built.laws])
+    under = {models.law: models for models in (*others, *built.models)}
+    considered = [under[law] for law in dict.fromkeys([*every, *built.laws])]
     title = "friction laws that apply"
-    data = _summaries([built], models, considered, {}, title=title, may_lock=True)
+    data = _summaries([built], considered, {}, title=title, may_lock=True)
     reasons = [
-        _outside(built, models.friction[law], run)
-        for law, run in zip(considered, _profiles(built, models, considered), strict=True)
+        _outside(built, models.law, run)
+        for models, run in zip(considered, _profiles(built, considered), strict=True)
     ]
     outside = [
         {
@@ -361,7 +356,7 @@ def _laws(built: Built) -> xr.Dataset:
         for k, told in enumerate(reasons)
         if told
     ]
-    kept = [k for k, law in enumerate(considered) if law in every and not reasons[k]]
+    kept = [k for k, models in enumerate(considered) if models.law in every and not reasons[k]]
     return data.isel(law=kept).assign_attrs(outside=json.dumps(without_nan(outside)))
 
 
@@ -416,15 +411,15 @@ def _points(
     def compute(progress: Progress) -> xr.Dataset:
         swept = told.get("sweep_key", "")
         points = [_point(variant, change, where, swept) for change in changes]
-        models, chosen = laws_of(points[0])
+        under = points[0].models
         extra = {
             **axis,
-            **_vibrations(points, len(chosen)),
-            **_temperatures(points, len(chosen)),
-            **_at_contact(points, models, chosen),
-            **readings_of(points, len(chosen)),
+            **_vibrations(points, len(under)),
+            **_temperatures(points, len(under)),
+            **_at_contact(points, under),
+            **readings_of(points, len(under)),
         }
-        data = _summaries(points, models, chosen, extra, progress, title=title)
+        data = _summaries(points, under, extra, progress, title=title)
         data.attrs.update(told)
         if told.get("axis_kind"):
             data["axis"].attrs.update(units=si_unit(told["axis_kind"]), long_name=swept)
@@ -488,31 +483,16 @@ def _read(quantity: Quantity, value: Any) -> Any:
     return SIValue(quantity.read(value))
 
 
-def _back_driving(variant: Variant, built: Built) -> xr.Dataset:
+def _back_driving(built: Built) -> xr.Dataset:
     """The loaded member drives at its own speed and carries the same power to the former driver."""
-    other = _backwards(variant, built)
-    models, chosen = laws_of(built)
-    return _summaries([other], models, chosen, {}, title="back-driving", may_lock=True)
+    return _summaries([built.backwards], built.models, {}, title="back-driving", may_lock=True)
 
 
-def _backwards(variant: Variant, built: Built) -> Built:
-    point, nominal = built.case.operation, built.nominal
-    driver, loaded = (nominal[name] @ nominal["motion"] for name in ("driver", "loaded"))
-    step = abs(float(driver / loaded))
-    return variant.built(
-        {
-            "operation.driver": built.loaded,
-            "operation.torque": SIValue(point.load / step),
-            "operation.speed": SIValue(point.speed / step),
-        }
-    )
-
-
-def _at_contact(points: Sequence[Built], models: Models, laws: Sequence[int]) -> dict[str, Any]:
+def _at_contact(points: Sequence[Built], under: Sequence[Models]) -> dict[str, Any]:
     """Pressure, film and speeds at the one contact of a rig, which transmits nothing."""
     if points[0].transmits:
         return {}
-    runs = [_profiles(point, models, laws) for point in points]
+    runs = [_profiles(point, under) for point in points]
     return {
         name: (
             ("law", "point"),
@@ -548,8 +528,7 @@ def _vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
 
 def _summaries(
     points: list[Built],
-    models: Models,
-    laws: tuple[int, ...] | list[int],
+    under: Sequence[Models],
     extra: Mapping[str, Any],
     progress: Progress = lambda _: None,
     *,
@@ -557,16 +536,17 @@ def _summaries(
     may_lock: bool = False,
 ) -> xr.Dataset:
     """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN."""
-    runs = [_grouped(points, _choose(models, law), progress) for law in laws]
+    names = [models.law.name for models in under]
+    runs = [_grouped(points, models, progress) for models in under]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
     if not may_lock and len(points) == 1:
         ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
-        _demand_motion(out["locked"], *ends, points, _names(models, laws))
+        _demand_motion(out["locked"], *ends, points, names)
     for name, values in out.items():
         if values.dtype.kind == "f" and name in _WITH_FRICTION:
             values[out["locked"]] = np.nan
     residual = np.where(out["locked"], 0.0, out["residual"])
-    _demand_convergence(residual, points, _names(models, laws))
+    _demand_convergence(residual, points, names)
     if points[0].case.models.averaging == "path":
         for name in ("mean_loss", "mean_efficiency", "mean_input_torque"):
             out[name] = out[f"{name}_path"]
@@ -584,11 +564,11 @@ def _summaries(
 
         warnings += status_sentences(extra["vibration_status"][1][0])
     if not may_lock:
-        for law, locked in zip(laws, out["locked"], strict=True):
-            warnings += _lock_warning(models.friction[law], locked)
+        for models, locked in zip(under, out["locked"], strict=True):
+            warnings += _lock_warning(models.law, locked)
     data = dataset(
         {**{name: (_FIGURE[: values.ndim], values) for name, values in out.items()}, **extra},
-        {"law": _names(models, laws), **_named_places(points[0])},
+        {"law": names, **_named_places(points[0])},
         title=title,
         warnings=warnings,
     )
@@ -653,14 +633,6 @@ def _in_groups(
         for name in result:
             result[name][where] = values[name]
     return result
-
-
-def _choose(models: Models, index: int) -> Models:
-    return replace(models, choice=array(index))
-
-
-def _names(models: Models, laws: tuple[int, ...] | list[int]) -> list[str]:
-    return [models.friction[law].name for law in laws]
 
 
 def _number(value: Any) -> float:
@@ -744,6 +716,35 @@ def _conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     return [
         f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
         f"radius is cut at {largest:.3g} m, and pressure and film there say little."
+    ]
+
+
+LEAST_FACE = 3.0
+"""Mean number of slices of a contact line below which it is nearly a point, not a line."""
+
+
+def _face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
+    """Part of the contact lines that gets no load; refused where hardly any of them gets some."""
+    mesh, active = built.design.mesh, np.asarray(run["active"])
+    carries = np.asarray(run["load"]) > 0.0
+    pairs, slices = carries.any(axis=2), active.shape[2]
+    if mesh.touching or slices == 1 or not pairs.any():
+        return []
+    lines = np.sum(pairs.sum(axis=1) * run["weight"])
+    mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
+    load = _LOADS[built.case.gears.load].show(built.case.operation.load)
+    if mean < LEAST_FACE:
+        raise InputError(
+            f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "
+            "point in place of a line; less crowning, end relief or misalignment, a higher load or more "
+            "slices leave a line of contact",
+            key="gears",
+        )
+    if mean > slices * (1.0 - 1e-9):
+        return []
+    return [
+        f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: "
+        "there flanks do not touch."
     ]
 
 

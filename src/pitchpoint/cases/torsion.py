@@ -1,6 +1,5 @@
 """Wind-up of a drive under load, as a dataset of a case."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,11 +7,11 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import TORQUE
 from pitchpoint.contact.contacts import Contacts, along
-from pitchpoint.efficiency.quasi_static import Models, coupling, engagement
-from pitchpoint.efficiency.summary import engaged, summarise
+from pitchpoint.efficiency.quasi_static import coupling, engagement
+from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.wind_up import hysteresis, wound_up
@@ -28,10 +27,9 @@ SHOWN = 3
 
 def torsion_part(built: Built) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
-    models, chosen = laws_of(built)
     torques = np.linspace(0.0, 2.0 * built.case.operation.load or 1.0, TORQUES)
-    friction = _mean_friction(built, models, chosen)
-    found = _torsion(built, models, torques, friction)
+    friction = _mean_friction(built)
+    found = _torsion(built, torques, friction)
     dims = {
         "path": ("phase", "pair"),
         "lost_motion": (),
@@ -48,7 +46,7 @@ def torsion_part(built: Built) -> xr.Dataset:
     whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
-            "law": [models.friction[law].name for law in chosen],
+            "law": built.law_names,
             "torque": ("torque", torques),
             "phase": ("phase", phase),
         },
@@ -77,37 +75,34 @@ def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
 
 def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     """Why a loop of torque over wind-up has no width, or is not there."""
-    models, chosen = laws_of(built)
     if built.case.operation.load == 0.0:
         return [
             "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
             "as zero and the torque loop has no width."
         ]
     return [
-        f"Wind-up: {models.friction[law].title}: friction locks the drive at the operating point; there is "
+        f"Wind-up: {models.law.title}: friction locks the drive at the operating point; there is "
         "no torque loop."
-        for law, value in zip(chosen, friction, strict=True)
+        for models, value in zip(built.models, friction, strict=True)
         if np.isnan(value)
     ]
 
 
-def _mean_friction(built: Built, models: Models, laws: tuple[int, ...]) -> np.ndarray:
+def _mean_friction(built: Built) -> np.ndarray:
     """Coefficient at the operating point by each law, as for sliding that begins anew."""
     point = [(built.design, built.operation)]
-    runs = [summarise(point, replace(models, choice=jnp.asarray(law))) for law in laws]
+    runs = [summarise(point, models) for models in built.models]
     return np.array([run["mean_friction"][0] for run in runs])
 
 
-def _torsion(
-    built: Built, models: Models, torques: np.ndarray, friction: np.ndarray
-) -> dict[str, np.ndarray]:
+def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[str, np.ndarray]:
     """Wind-up at every torque, and the load on every tooth there."""
     design = built.design
-    known = engaged(design, built.operation, models)
+    known = built.engaged
     if known is None:
-        known = engagement(design, built.operation.load, models)
+        known = engagement(design, built.operation.load, built.models[0])
     body = coupling(design, known.contacts) if known.body is None else known.body
-    given = design.mesh, design.solids, models.compliance
+    given = design.mesh, design.solids, built.terms
     each = [
         jax.device_get(wound_up(*given, jnp.asarray(torque), known.contacts, body))
         for torque in torques

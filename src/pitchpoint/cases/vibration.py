@@ -10,7 +10,8 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.build import Built, laws_of
+from pitchpoint.cases.build import Built
+from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
@@ -25,12 +26,14 @@ from pitchpoint.dynamics.vibration import (
     steady,
     transmission_figures,
 )
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import InputError
+from pitchpoint.loading.compliance import compliance
+from pitchpoint.loading.equilibrium import Equilibrium, equilibrium
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -84,9 +87,11 @@ def separating(built: Built) -> bool:
 
 
 def stiffness_part(built: Built) -> xr.Dataset:
-    """Stiffness of each pair and of the mesh over one period, with the estimate of ISO 6336."""
-    models, _ = laws_of(built)
-    found = jax.device_get(_stiffness(built.design, built.operation, models))
+    """Stiffness of each pair and of the mesh over one period, with the estimate of ISO 6336.
+
+    Where flanks have gaps only the springs that carry count.
+    """
+    found = jax.device_get(_stiffness(built.design, built.operation, built.terms))
     lanes = ("pair", "node")
     data = {
         name: (lanes if np.ndim(values) == 2 else ("node",)[: np.ndim(values)], values)
@@ -104,24 +109,43 @@ def stiffness_part(built: Built) -> xr.Dataset:
 
 
 @program
-def _stiffness(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
+def _stiffness(design: Design, operation: Operation, terms: Terms) -> dict[str, Array]:
     mesh, load = design.mesh, operation.load
-    found = mesh_stiffness(mesh, design.solids, models.compliance, load)
+    found = mesh_stiffness(mesh, design.solids, terms, load)
     contacts = mesh.contacts(found.phase)
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
     entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
-    total = found.total
     action = mesh.line_of_action
     assert action is not None
-    lanes = {"entered": entered, "pair_stiffness": found.along_action, "line_length": length}
-    mean = {
-        "mean_stiffness": found.mean,
-        "stiffness_variation": (jnp.max(total) - jnp.min(total)) / found.mean,
+    radius = jnp.abs(action @ mesh.loaded)
+    single, total = found.along_action, found.total
+    error = load / radius / total
+    if not mesh.touching:
+        springs, state = _carrying(design, contacts, terms, jnp.broadcast_to(load, total.shape))
+        single = springs * found.arm**2
+        total, error = state.stiffness / radius**2, state.approach * radius
+    mean = jnp.sum(total * found.weight)
+    lanes = {"entered": entered, "pair_stiffness": single, "line_length": length}
+    whole = {
+        "mean_stiffness": mean,
+        "stiffness_variation": (jnp.max(total) - jnp.min(total)) / mean,
     }
     nodal = {"phase": found.phase, "weight": found.weight, "mesh_stiffness": total}
-    nodal["static_transmission_error"] = load / jnp.abs(action @ mesh.loaded) / total
+    nodal["static_transmission_error"] = error
     flat = {name: values.reshape(values.shape[0], -1) for name, values in lanes.items()}
-    return flat | {name: values.ravel() for name, values in nodal.items()} | mean
+    return flat | {name: values.ravel() for name, values in nodal.items()} | whole
+
+
+def _carrying(
+    design: Design, contacts: Contacts, terms: Terms, load: Float[Array, "*b"]
+) -> tuple[Float[Array, "pair *b"], Equilibrium]:
+    """Springs of the pairs along the normal, of their slices that carry, and the equilibrium."""
+    mesh = design.mesh
+    yields = compliance(mesh, contacts, design.solids, terms, load)
+    teeth, arm = yields.of_teeth(contacts), jnp.abs(along(contacts.normal, mesh.loaded))
+    at = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
+    found = equilibrium(teeth, yields.body, **at, load=load)
+    return jnp.sum(jnp.where(found.loaded, 1.0 / teeth, 0.0), axis=1), found
 
 
 def vibration_part(built: Built) -> xr.Dataset:
@@ -164,11 +188,10 @@ def resonance_part(built: Built) -> xr.Dataset:
     asked = built.case.dynamics.speeds
     assert asked is not None
     speeds = np.linspace(asked.start, asked.stop, int(asked.count))
-    models = laws_of(built)[0]
     slowest = replace(built.operation, speed=jnp.asarray(speeds[0]))
     points = [replace(slowest, load=load.load) for load in _loads(built)]
     own = vibrating_of(built)
-    parts = [(*_excited(built.design, point, models, own), own.backlash) for point in points]
+    parts = [(*_excited(built.design, point, built.terms, own), own.backlash) for point in points]
     grid = _grid(parts, own.orders, "dynamics.speeds.start")
     periods = built.design.mesh.period / jnp.asarray(speeds)
     runs = [
@@ -236,8 +259,8 @@ Excited = tuple[MeshStiffness, System, Excitation, Array]
 
 def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str, np.ndarray]:
     """What is read from the steady vibration of every input, solved in chunks of one size."""
-    models = laws_of(built)[0]
-    parts = [(*_excited(design, point, models, own), own.backlash) for design, point, own in inputs]
+    terms = built.terms
+    parts = [(*_excited(design, point, terms, own), own.backlash) for design, point, own in inputs]
     grid = _grid(parts, inputs[0][2].orders)
     parting = separating(built)
     return in_chunks(lambda chunk: _read(chunk, grid, parting, reading), parts, size=TOGETHER)

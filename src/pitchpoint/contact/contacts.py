@@ -6,6 +6,7 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Arrays
 
 __all__ = ["Contacts", "Shape", "along", "total"]
 
@@ -55,33 +56,31 @@ class Contacts(eqx.Module):
     shape: Shape = eqx.field(static=True)
 
     @property
-    def slip_arm(self) -> Float[Array, "dof pair slice *b"]:
+    def slip_arm(self) -> Float[Arrays, "dof pair slice *b"]:
         """Sliding velocity of member 0 over member 1 for a unit rate of each coordinate [m/rad or 1]."""
         return self.surface[0] - self.surface[1]
 
     @property
-    def roll_arm(self) -> Float[Array, "dof pair slice *b"]:
+    def roll_arm(self) -> Float[Arrays, "dof pair slice *b"]:
         """Sum of the two surface velocities for a unit rate of each coordinate [m/rad or 1]."""
         return self.surface[0] + self.surface[1]
 
     @property
-    def relative_curvature(self) -> Float[Array, "2 pair slice *b"]:
+    def relative_curvature(self) -> Float[Arrays, "2 pair slice *b"]:
         """Sum of the members' curvatures: second derivative of the separation [1/m]."""
         return self.curvature[0] + self.curvature[1]
 
     @property
-    def radius(self) -> Float[Array, "pair slice *b"]:
+    def radius(self) -> Float[Arrays, "pair slice *b"]:
         """Relative radius of curvature in the rolling direction [m]."""
         return 1.0 / self.relative_curvature[0]
 
 
-def along(
-    arms: Float[Array, "dof pair slice *b"], rates: Float[Array, " dof"]
-) -> Float[Array, "pair slice *b"]:
+def along(arms: Float[Arrays, "dof *b"], rates: Float[Arrays, "dof ..."]) -> Float[Arrays, "*b"]:
     """Velocity at each contact for given rates of the coordinates: sum of arms times rates."""
     return sum((rates[k] * arms[k] for k in range(1, arms.shape[0])), rates[0] * arms[0])
 
 
-def total(values: Float[Array, "pair slice *b"]) -> Float[Array, "*b"]:
+def total(values: Float[Arrays, "pair slice *b"]) -> Float[Array, "*b"]:
     """Sum over all contacts of a mesh."""
     return jnp.sum(values, axis=(0, 1))

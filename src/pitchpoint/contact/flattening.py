@@ -3,6 +3,7 @@
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Numbers
 
 __all__ = ["line_compression", "yang_sun_1985"]
 
@@ -10,7 +11,7 @@ _LEAST_WIDTH_RATIO = 1e-9
 
 
 def yang_sun_1985(
-    *, young: Float[Array, "member *b"], poisson: Float[Array, "member *b"]
+    *, young: Float[Numbers, "member *b"], poisson: Float[Numbers, "member *b"]
 ) -> Float[Array, "*b"]:
     """Compliance of a line contact that does not depend on the load [m2/N].
 
@@ -37,10 +38,10 @@ def yang_sun_1985(
 
 def line_compression(
     *,
-    young: Float[Array, "*b"],
-    poisson: Float[Array, "*b"],
-    depth: Float[Array, "*b"],
-    half_width: Float[Array, "*b"],
+    young: Float[Numbers, "*#b"],
+    poisson: Float[Numbers, "*#b"],
+    depth: Float[Numbers, "*#b"],
+    half_width: Float[Numbers, "*#b"],
 ) -> Float[Array, "*b"]:
     """Compliance of one solid between a line contact and a point below it [m2/N].
 

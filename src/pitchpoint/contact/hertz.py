@@ -1,16 +1,16 @@
 """Hertz pressure of line and elliptic contacts."""
 
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import root
+from pitchpoint.factored import Numbers, root
 
 __all__ = ["elliptic_pressure", "line_half_width", "line_pressure"]
 
+Each = Float[Numbers, "*#b"]
 
-def line_half_width(
-    *, line_load: Float[Array, "*b"], radius: Float[Array, "*b"], modulus: Float[Array, "*b"]
-) -> Float[Array, "*b"]:
+
+def line_half_width(*, line_load: Each, radius: Each, modulus: Each) -> Each:
     """Half-width of a line contact [m]: b = sqrt(8 w R / (pi E')).
 
     Args:
@@ -19,14 +19,17 @@ def line_half_width(
         modulus: E' [Pa] with 2/E' = sum of (1 - nu^2)/E over both members.
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.43 (there E* = E'/2).
+
+    Example:
+        >>> half_width = line_half_width(line_load=1e5, radius=0.01, modulus=226.4e9)
+        >>> round(float(half_width) * 1e6)
+        106
     """
-    found: Float[Array, "*b"] = root(8.0 * line_load * radius / (jnp.pi * modulus))
+    found: Each = root(8.0 * line_load * radius / (jnp.pi * modulus))
     return found
 
 
-def line_pressure(
-    *, line_load: Float[Array, "*b"], radius: Float[Array, "*b"], modulus: Float[Array, "*b"]
-) -> Float[Array, "*b"]:
+def line_pressure(*, line_load: Each, radius: Each, modulus: Each) -> Each:
     """Largest pressure of a line contact [Pa]: p_H = sqrt(w E' / (2 pi R)).
 
     Args:
@@ -35,18 +38,23 @@ def line_pressure(
         modulus: E' [Pa] with 2/E' = sum of (1 - nu^2)/E over both members.
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.45 (there E* = E'/2).
+
+    Example:
+        >>> pressure = line_pressure(line_load=1e5, radius=0.01, modulus=226.4e9)
+        >>> round(float(pressure) / 1e6)
+        600
     """
-    found: Float[Array, "*b"] = root(line_load * modulus / (2.0 * jnp.pi * radius))
+    found: Each = root(line_load * modulus / (2.0 * jnp.pi * radius))
     return found
 
 
 def elliptic_pressure(
     *,
-    load: Float[Array, "*b"],
-    radius: Float[Array, "*b"],
-    transverse_radius: Float[Array, "*b"],
-    modulus: Float[Array, "*b"],
-) -> Float[Array, "*b"]:
+    load: Each,
+    radius: Each,
+    transverse_radius: Each,
+    modulus: Each,
+) -> Each:
     """Largest pressure of an elliptic contact [Pa], exact for a circle, within 3 % of Hertz otherwise.
 
     Args:
@@ -56,6 +64,14 @@ def elliptic_pressure(
         modulus: E' [Pa] with 2/E' = sum of (1 - nu^2)/E over both members.
 
     Valid for 0.01 <= R_y/R_x <= 100. Source: Hamrock and Brewe (1983), eqs. 1-8.
+
+    Example: a steel ball of 19 mm on a disc.
+
+        >>> pressure = elliptic_pressure(
+        ...     load=30.0, radius=9.5e-3, transverse_radius=9.5e-3, modulus=226.4e9
+        ... )
+        >>> round(float(pressure) / 1e6)
+        938
     """
     slender = jnp.maximum(transverse_radius / radius, radius / transverse_radius)
     small = jnp.minimum(radius, transverse_radius)

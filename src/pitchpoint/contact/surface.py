@@ -8,10 +8,11 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.factored import Arrays
 
-__all__ = ["Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
+__all__ = ["Lanes", "Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
 
-Lanes = Float[Array, "pair slice *b"]
+Lanes = Float[Arrays, "pair slice *#b"]
 
 
 class Spot(eqx.Module):
@@ -29,7 +30,7 @@ class Spot(eqx.Module):
     flank: Lanes
     across: Lanes
     angle: Lanes
-    tooth: Int[Array, "pair slice *b"]
+    tooth: Int[Arrays, "pair slice *#b"]
     leaning: Lanes
 
 
@@ -110,7 +111,7 @@ def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spo
     return replace(contacts, gap=gap, curvature=curvature)
 
 
-def _bend(surfaces: tuple[Surface, ...], spot: Spot) -> Float[Array, "2 pair slice *b"]:
+def _bend(surfaces: tuple[Surface, ...], spot: Spot) -> Float[Array, "2 pair slice *#b"]:
     """Second derivatives of the missing height along the flank and across it [1/m]."""
 
     def second(name: str) -> Lanes:

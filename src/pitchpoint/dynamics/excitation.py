@@ -25,7 +25,7 @@ class Excitation(eqx.Module):
         error: composite profile error, separation of the unloaded flanks [m].
     """
 
-    edges: Float[Array, "segment+1"]
+    edges: Float[Array, " edge"]
     stiffness: Float[Array, "pair segment node"]
     arm: Float[Array, "coordinate pair segment node"]
     error: Float[Array, "pair segment node"]
@@ -59,7 +59,7 @@ class Course(eqx.Module):
         grid: static.
     """
 
-    bounds: Float[Array, "element+1"]
+    bounds: Float[Array, " bound"]
     phase: Float[Array, "element node"]
     stiffness: Pairs
     arm: Float[Array, "coordinate pair element node"]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Complex, Float, Int
 
 from pitchpoint._jax import jnp
 from pitchpoint.gears.period import between, lobatto
@@ -47,6 +47,7 @@ class Grid:
             Grid with 4, 6, 8, 12, 16... elements, so that few are ever compiled.
 
         Example:
+            >>> from pitchpoint.dynamics.grid import Grid
             >>> Grid.resolving(90.0).elements
             32
         """
@@ -73,7 +74,7 @@ class Grid:
         """Weights of the nodes of an element; they sum to one."""
         return lobatto(self.nodes)[1]
 
-    def bounds(self, edges: Float[Array, "segment+1"]) -> Float[Array, "element+1"]:
+    def bounds(self, edges: Float[Array, " edge"]) -> Float[Array, " bound"]:
         """Phases between the elements: hand-overs and even grid points, sorted."""
         even = edges[0] + jnp.arange(1, self.elements) / self.elements
         return jnp.sort(jnp.concatenate([edges, even]))
@@ -118,8 +119,8 @@ class Grid:
         return jnp.max(jnp.abs(values @ _modes(self.nodes)[:, -2:]), axis=(-2, -1))
 
     def fourier(
-        self, values: Values, bounds: Float[Array, "element+1"], orders: np.ndarray
-    ) -> Float[Array, "order *b"]:
+        self, values: Values, bounds: Float[Array, " bound"], orders: np.ndarray
+    ) -> Complex[Array, "order *b"]:
         """Complex Fourier coefficients of the mean-value kind, for any order.
 
         Each element's polynomial is multiplied with the harmonic at points enough for both, so that

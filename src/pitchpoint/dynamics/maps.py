@@ -53,7 +53,9 @@ def chain(maps: Float[Array, "state state+1 element interval"]) -> Chain:
     return Chain(jnp.moveaxis(within, 0, -1), before)
 
 
-def product(left: Float[Array, "i j *b"], right: Float[Array, "j k *b"]) -> Float[Array, "i k *b"]:
+def product(
+    left: Float[Array, "i j *#b"], right: Float[Array, "j k *#b"]
+) -> Float[Array, "i k *b"]:
     """Matrix product with the batch last, where it runs along rows."""
     value: Array = left[:, 0, None] * right[None, 0]
     for j in range(1, right.shape[0]):

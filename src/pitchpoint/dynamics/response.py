@@ -11,6 +11,7 @@ from pitchpoint.dynamics.contact_law import ContactLaw
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import Course
 from pitchpoint.dynamics.floquet import STABLE, multipliers
+from pitchpoint.factored import Numbers
 from pitchpoint.status import Code, Status
 
 __all__ = ["Response", "respond"]
@@ -90,7 +91,7 @@ class Response(eqx.Module):
         low, high = self.extremes(values)
         return high - low
 
-    def dynamic_factor(self, nominal: Float[Array, ""]) -> Pairs:
+    def dynamic_factor(self, nominal: Float[Numbers, ""]) -> Pairs:
         """Force of each pair over the nominal force c_d = F/F_nominal.
 
         Args:
@@ -102,7 +103,7 @@ class Response(eqx.Module):
         return self.force / nominal
 
     def spectrum(
-        self, values: Float[Array, "*b element node"], orders: Sequence[int]
+        self, values: Float[Array, "*b element node"], orders: Sequence[int] | np.ndarray
     ) -> Float[Array, "order *b"]:
         """Amplitude of each order of the mesh frequency; order zero is the magnitude of the mean.
 

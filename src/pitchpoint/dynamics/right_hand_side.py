@@ -139,7 +139,7 @@ def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> Con
     """
     mesh = moving.design.mesh
     turned = jnp.tensordot(moving.padded(mesh.driver), place, axes=1) * (mesh.driver @ mesh.motion)
-    phase = moving.phase + mesh.phase_rate * turned
+    phase = moving.phase + mesh.onward / mesh.period * turned
     own = mesh.contacts(phase)
     contacts = on_all_coordinates(own, mesh.coordinates, moving.bodies)
     springs = _springs(moving, own)

@@ -4,6 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Arrays
 
 __all__ = ["System", "modal_damping", "reduced_mass"]
 
@@ -46,7 +47,7 @@ def modal_damping(mass: Matrix, mean_stiffness: Matrix, ratio: Float[Array, ""] 
     return 2.0 * ratio * _congruent(root, (modes * frequency) @ modes.T)
 
 
-def reduced_mass(inertia: Float[Array, " body"], arm: Float[Array, " body"]) -> Float[Array, ""]:
+def reduced_mass(inertia: Float[Arrays, " body"], arm: Float[Arrays, " body"]) -> Float[Array, ""]:
     """Mass that vibrates along a contact between free bodies, m_e = 1/sum(n^2/J).
 
     Args:
@@ -57,7 +58,8 @@ def reduced_mass(inertia: Float[Array, " body"], arm: Float[Array, " body"]) -> 
     (2011), whose print swaps the indices.
 
     Example:
-        >>> float(reduced_mass(jnp.asarray([2.0, 3.0]), jnp.asarray([1.0, 1.0])))
+        >>> import jax.numpy as jnp
+        >>> round(float(reduced_mass(jnp.asarray([2.0, 3.0]), jnp.asarray([1.0, 1.0]))), 3)
         1.2
     """
     return 1.0 / jnp.sum(arm**2 / inertia)

@@ -9,9 +9,10 @@ from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.steady_state import separating_steady_state, steady_state
 from pitchpoint.dynamics.system import System, modal_damping, reduced_mass
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
+from pitchpoint.loading.tooth_compliance import Terms
 
 __all__ = [
     "Vibrating",
@@ -99,19 +100,19 @@ def frequency_ratio(stiffness: MeshStiffness, moved: System) -> Float[Array, ""]
 
 
 def excited(
-    design: Design, operation: Operation, models: Models, vibrating: Vibrating
+    design: Design, operation: Operation, terms: Terms, vibrating: Vibrating
 ) -> tuple[MeshStiffness, System, Excitation]:
     """Stiffness of the mesh, and the system that it excites, at one operating point.
 
     Args:
         design: mesh and materials.
         operation: one operating point.
-        models: how teeth yield.
+        terms: of the model of tooth compliance.
         vibrating: inertia, damping, profile error.
     """
     # A segment between events may be a whole period long, and each order has to be resolved in it.
     count = _NODES + 4 * max(vibrating.orders, default=0)
-    stiffness = mesh_stiffness(design.mesh, design.solids, models.compliance, operation.load, count)
+    stiffness = mesh_stiffness(design.mesh, design.solids, terms, operation.load, count)
     moved = system(design.mesh, vibrating, stiffness.mean, operation)
     return stiffness, moved, excitation(stiffness, vibrating)
 

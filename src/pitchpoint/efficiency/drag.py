@@ -10,14 +10,15 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, BearingLoss
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.materials._leaves import as_array
 
 __all__ = ["Drag", "at_rest", "bearing_loads", "resistance"]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Arrays, "pair slice *#b"]
+Each = Float[Numbers, "*#b"]
 
 ROUNDING = 1e-13
 """Relative rate, over the rates of the bodies, up to which two bodies turn together."""
@@ -107,7 +108,7 @@ def resistance(
     *,
     speed: Each,
     kinematic_viscosity: Each,
-) -> Callable[[Lanes], Float[Array, "dof *b"]]:
+) -> Callable[[Lanes], Float[Array, "dof *#b"]]:
     """External torques that overcome the losses beside the teeth, from the loads on the teeth.
 
     Args:
@@ -122,7 +123,7 @@ def resistance(
         its power at the rates of the mesh is the power lost, never negative.
     """
 
-    def torques(load: Lanes) -> Float[Array, "dof *b"]:
+    def torques(load: Lanes) -> Float[Array, "dof *#b"]:
         pressed = bearing_loads(drags, mesh, contacts, load)
         every = [
             _on_bodies(drag, mesh.motion, speed, held, kinematic_viscosity)

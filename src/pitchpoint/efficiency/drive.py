@@ -25,7 +25,7 @@ from pitchpoint.loading.wind_up import wind_up
 
 __all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "output_wind_up"]
 
-Each = Float[Array, "*b"]
+Each = Float[Array, "*#b"]
 
 
 class Stage(eqx.Module):
@@ -139,7 +139,7 @@ class DriveCycle(eqx.Module):
     weights: tuple[Float[Array, " node"], ...]
     speed: Each
 
-    def mean(self, values: Float[Array, "*b"], stage: int = 0) -> Each:
+    def mean(self, values: Float[Array, "*#b"], stage: int = 0) -> Each:
         """Mean over the periods of a stage and of those behind it.
 
         Args:
@@ -151,7 +151,7 @@ class DriveCycle(eqx.Module):
         return values
 
     @property
-    def input_torque(self) -> Float[Array, "*b"]:
+    def input_torque(self) -> Float[Array, "*#b"]:
         """Torque at the input at every meeting of phases [N m]."""
         return self.states[0].input_torque
 
@@ -167,7 +167,7 @@ class DriveCycle(eqx.Module):
         return jnp.max(self.input_torque, axis=axes) - jnp.min(self.input_torque, axis=axes)
 
     @property
-    def mean_losses(self) -> Float[Array, "stage *b"]:
+    def mean_losses(self) -> Float[Array, "stage *#b"]:
         """Mean power lost in each stage and beside its teeth [W]."""
         return jnp.stack([self.mean(one.loss, k) for k, one in enumerate(self.states)])
 
@@ -187,7 +187,7 @@ class DriveCycle(eqx.Module):
         )
 
     @property
-    def locked(self) -> Bool[Array, "*b"]:
+    def locked(self) -> Bool[Array, "*#b"]:
         """True where friction locks a mesh at some meeting of phases."""
         each = [
             jnp.any(one.balance.locked, axis=tuple(range(k - len(self.states), 0)))
@@ -260,7 +260,7 @@ def _seated(seat: Bearing, stage: Stage) -> Bearing:
     return replace(seat, coordinate=coordinate, place=seat.place - stage.place, other=other)
 
 
-def _beside(seat: Bearing, stage: Stage, behind: Stage, found: State) -> Float[Array, "3 *b"]:
+def _beside(seat: Bearing, stage: Stage, behind: Stage, found: State) -> Float[Array, "3 *#b"]:
     """Load on a bearing by the stage behind, in the frame of a stage [N]."""
     mesh = behind.design.mesh
     x, y, z = _seated(seat, behind).borne(mesh, found.contacts, found.balance.load)

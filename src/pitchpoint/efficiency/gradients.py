@@ -27,7 +27,7 @@ def mean_loss_gradient(design: Design, operation: Operation, models: Models) -> 
         A design and an operation that hold the derivative in place of each continuous value, in W
         over its SI unit; None in place of the others. Dimensions that follow from others (a centre
         distance without backlash, tip alterations that keep the clearance) are taken along: their
-        own derivative is zero. The acting law is `models.choice`.
+        own derivative is zero. The friction law is the one that acts in `models`.
 
     Raises:
         ConvergenceError: friction locks the mesh, there is no balance.

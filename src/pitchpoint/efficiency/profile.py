@@ -1,18 +1,30 @@
 """Everything along one mesh cycle, for figures and tables: torques, and the state of every contact."""
 
+from dataclasses import replace
+
+import numpy as np
 from jaxtyping import Array
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
+from pitchpoint.efficiency.quasi_static import (
+    Design,
+    Engagement,
+    Models,
+    Operation,
+    cycle_of,
+    engagement_alone,
+)
+from pitchpoint.efficiency.rows import balance_in_rows
+from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
+from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.programs import program
 
 __all__ = ["profile"]
 
 
-@program
 def profile(
     design: Design,
     operation: Operation,
@@ -20,7 +32,7 @@ def profile(
     film: FilmThickness,
     nodes: int = 48,
     engaged: Engagement | None = None,
-) -> dict[str, Array]:
+) -> dict[str, np.ndarray]:
     """State over one period at one operating point.
 
     Args:
@@ -37,7 +49,34 @@ def profile(
         Without any load there is no film (NaN), which the laws let grow without limit; over smooth
         flanks its ratio to their roughness is infinite.
     """
-    result = cycle(design, operation, models, nodes, engaged)
+    law = models.law
+    known = engaged or _engagement(design, operation.load, models.without_friction, nodes)
+    found = balance_in_rows(design, operation, known, models)
+    limited = sorted({*law.ranges, *(name for one in LAWS for name in one.ranges)})
+    told, ranged = jax.device_get(
+        _profile(design, operation, replace(known, body=None), found, film, tuple(limited))
+    )
+    outside = {
+        f"outside {law.name} {name}": _outside(ranged[name], limits, told["active"])
+        for name, limits in law.ranges.items()
+    }
+    return {**told, **outside}
+
+
+_engagement = program(engagement_alone)
+
+
+@program
+def _profile(
+    design: Design,
+    operation: Operation,
+    known: Engagement,
+    found: Balance,
+    film: FilmThickness,
+    limited: tuple[str, ...],
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """The state by name, and conditions by which laws are limited [pair, slice, node]."""
+    result = cycle_of(design, operation, known, found)
     state = result.state
     at, contacts = state.conditions, state.contacts
     carries = state.balance.force > 0.0
@@ -75,20 +114,20 @@ def profile(
     if design.drag:
         mesh["drag_loss"] = state.drag_loss
     mesh = {name: jnp.broadcast_to(v, result.phase.shape) for name, v in mesh.items()}
-    outside = {
-        f"outside {law.name} {name}": _outside(getattr(at, name), limits, contacts.active)
-        for law in models.friction
-        for name, limits in law.ranges.items()
-    }
     masked = {name: jnp.where(contacts.active, values, 0.0) for name, values in each.items()}
     lanes = {**masked, "active": contacts.active, "path": contacts.path}
-    return {**mesh, **outside, **{name: jnp.moveaxis(v, -1, 0) for name, v in lanes.items()}}
+    ranged = {name: jnp.broadcast_to(getattr(at, name), contacts.path.shape) for name in limited}
+    in_order: dict[str, Array] = {
+        name: jnp.moveaxis(values, -1, 0) for name, values in lanes.items()
+    }
+    return {**mesh, **in_order}, ranged
 
 
-def _outside(value: Array, limits: tuple[float, float], active: Array) -> Array:
-    """True at nodes where a condition of a pair in contact leaves the range of a law."""
+def _outside(value: np.ndarray, limits: tuple[float, float], active: np.ndarray) -> np.ndarray:
+    """True at nodes where a condition [pair, slice, node] of a pair in contact leaves a range."""
     beyond = (value < limits[0]) | (value > limits[1])
-    return jnp.any(beyond & active, axis=(0, 1))
+    found: np.ndarray = np.any(beyond & np.moveaxis(active, 0, -1), axis=(0, 1))
+    return found
 
 
 def _positive(value: Array) -> Array:

@@ -8,10 +8,10 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.efficiency.drag import Drag, resistance
-from pitchpoint.factored import as_array
+from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
@@ -36,16 +36,19 @@ __all__ = [
     "Models",
     "Operation",
     "State",
+    "balanced",
     "coupling",
     "cycle",
     "cycle_nodes",
+    "cycle_of",
     "engagement",
+    "engagement_alone",
     "state",
 ]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
-Coupling = Float[Array, "lane lane *b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Arrays, "*#b"]
+Coupling = Float[Array, "lane lane *#b"]
 
 FEWEST = 32
 """Pairs that are kept of many; more are twice as many, and so on."""
@@ -134,10 +137,10 @@ class Operation(eqx.Module):
 class Models(eqx.Module):
     """Which law stands for which effect.
 
-    Several friction laws share one compiled program: `choice` picks one of them at run time.
+    Rival friction laws share one compiled program: `choice` picks one of them at run time.
 
     Attributes:
-        friction: laws of the friction coefficient.
+        friction: laws of the friction coefficient, one of which acts.
         choice: index of the one that acts.
         parameters: values of the laws' own parameters by name of the law.
         sharing: of the load between pairs.
@@ -157,8 +160,23 @@ class Models(eqx.Module):
     )
     held: Lanes | None = None
 
+    @property
+    def law(self) -> FrictionLaw:
+        """The friction law that acts."""
+        return self.friction[int(self.choice)]
+
+    @property
+    def each(self) -> "tuple[Models, ...]":
+        """The same models under each of the friction laws."""
+        return tuple(replace(self, choice=array(number)) for number in range(len(self.friction)))
+
+    @property
+    def without_friction(self) -> "Models":
+        """The same without friction laws, for what does not ask for them: its programs serve every law."""
+        return replace(self, friction=(), choice=array(0), parameters={}, held=None)
+
     def coefficient(self, conditions: Conditions) -> Lanes:
-        """Friction coefficient at every contact by the chosen law."""
+        """Friction coefficient at every contact by the law that acts."""
 
         def branch(law: FrictionLaw) -> Callable[[Conditions], Lanes]:
             return lambda at: evaluate(law, at, self.parameters.get(law.name))
@@ -204,7 +222,7 @@ class Engagement(eqx.Module):
     phase: Float[Array, " node"]
     weight: Float[Array, " node"]
     contacts: Contacts
-    share: Float[Array, "pair slice node"]
+    share: Float[Arrays, "pair slice node"]
     body: Float[Array, "lane lane node"] | None
     nodes: int = eqx.field(static=True)
 
@@ -273,7 +291,20 @@ def _share(
     if models.sharing.function is from_stiffness:
         given = design.mesh, design.solids, models.compliance, jnp.asarray(load, float)
         return wound_up(*given, contacts, body).share
-    return _shares(design, contacts, load, replace(models, friction=(), parameters={}), body)
+    return _shares(design, contacts, load, models.without_friction, body)
+
+
+def engagement_alone(
+    design: Design, load: Float[Array, ""], models: Models, nodes: int = 24
+) -> Engagement:
+    """Contacts and shares for one load, all traced together: for meshes with few contacts.
+
+    Arguments as in `engagement`.
+    """
+    phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
+    contacts = design.mesh.contacts(phase)
+    share = models.share(design, contacts, load[None])
+    return Engagement(phase, weight, contacts, share, None, nodes)
 
 
 @program
@@ -365,42 +396,65 @@ def state(
             takes; check the residual then.
         engaged: contacts and shares at these phases, where they are known already.
     """
-    mesh = design.mesh
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
     phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
     contacts, share = (None, None) if engaged is None else engaged.of_rank(rank)
     if contacts is None:
-        contacts = mesh.contacts(phase)
-    oil, temperature = design.lubricant, operation.temperature
-    drag = _drag(design, operation, contacts, oil.kinematic_viscosity(temperature))
-    carried = tooth_load(contacts, loaded=mesh.loaded, load=operation.load, drag=drag)
+        contacts = design.mesh.contacts(phase)
     # Losses beside the teeth hardly move the shares; leaving them out, one sharing of each load
     # serves all speeds and temperatures.
     if share is None:
         share = models.share(design, contacts, operation.load)
+    unloaded = _unloaded(design, operation, contacts, share)
+    found = _balance(design, operation, share, unloaded, models, quick=quick)
+    return _state(design, operation, unloaded, found)
+
+
+def _unloaded(design: Design, operation: Operation, contacts: Contacts, share: Lanes) -> Conditions:
+    """Conditions at the contacts before it is known what each of them carries."""
+    mesh, oil, temperature = design.mesh, design.lubricant, operation.temperature
+    drag = _drag(design, operation, contacts, oil.kinematic_viscosity(temperature))
+    carried = tooth_load(contacts, loaded=mesh.loaded, load=operation.load, drag=drag)
     arm = jnp.abs(total(share * along(contacts.normal, mesh.loaded)))
-    unloaded = design.conditions(
+    return design.conditions(
         contacts, operation, load=jnp.zeros_like(share), nominal_load=carried / arm
     )
-    given = design, operation, contacts, share, unloaded, mesh.motion, mesh.loaded
+
+
+def _balance(
+    design: Design,
+    operation: Operation,
+    share: Lanes,
+    unloaded: Conditions,
+    models: Models,
+    *,
+    quick: bool = False,
+) -> Balance:
+    """Forces under the friction law: all that a state asks of it."""
+    mesh = design.mesh
+    given = design, operation, unloaded.contacts, share, unloaded, mesh.motion, mesh.loaded
     guess = None
     if quick:
         single = jax.tree.map(_single, given)
         guess = jnp.asarray(first_guess(**_in_balance(single, models)), jnp.float64)
-    balanced = balance(**_in_balance(given, models), guess=guess)
-    at_contact = replace(unloaded, load=balanced.load)
+    return balance(**_in_balance(given, models), guess=guess)
+
+
+def _state(design: Design, operation: Operation, unloaded: Conditions, found: Balance) -> State:
+    """What follows from the forces."""
+    mesh, at_contact = design.mesh, replace(unloaded, load=found.load)
     driver = mesh.driver * jnp.sign(mesh.driver @ mesh.motion)
     putting, taking = (1.0 - mesh.loaded) * mesh.motion, mesh.loaded * mesh.motion
     return State(
-        contacts=contacts,
+        contacts=unloaded.contacts,
         conditions=at_contact,
-        balance=balanced,
-        sliding_loss=balanced.load * balanced.friction * as_array(at_contact.sliding),
-        rolling_loss=2.0 * balanced.rolling * as_array(at_contact.entrainment),
-        drag_loss=along(balanced.drag, mesh.motion) * operation.speed,
-        input_torque=along(balanced.torque, driver),
-        input_power=along(balanced.torque, putting) * operation.speed,
-        output_power=-along(balanced.torque, taking) * operation.speed,
+        balance=found,
+        sliding_loss=found.load * found.friction * as_array(at_contact.sliding),
+        rolling_loss=2.0 * found.rolling * as_array(at_contact.entrainment),
+        drag_loss=along(found.drag, mesh.motion) * operation.speed,
+        input_torque=along(found.torque, driver),
+        input_power=along(found.torque, putting) * operation.speed,
+        output_power=-along(found.torque, taking) * operation.speed,
     )
 
 
@@ -576,13 +630,37 @@ def cycle(
         phase, weight = cycle_nodes(design.mesh, models.sharing, nodes)
     else:
         phase, weight, nodes = engaged.phase, engaged.weight, engaged.nodes
-    points = Operation(
-        load=operation.load[..., None],
-        speed=operation.speed[..., None],
-        temperature=operation.temperature[..., None],
-    )
-    found = state(design, points, phase, models, engaged=engaged)
+    found = state(design, _at_nodes(operation), phase, models, engaged=engaged)
     return Cycle(phase, weight, found, nodes, smooth=design.mesh.touching)
+
+
+def balanced(design: Design, operation: Operation, known: Engagement, models: Models) -> Balance:
+    """Forces at the nodes of a cycle whose contacts and shares are known; only they ask for the law.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: one operating point.
+        known: contacts and shares.
+        models: laws.
+    """
+    points = _at_nodes(operation)
+    unloaded = _unloaded(design, points, known.contacts, known.share)
+    return _balance(design, points, known.share, unloaded, models)
+
+
+def cycle_of(design: Design, operation: Operation, known: Engagement, found: Balance) -> Cycle:
+    """The cycle that belongs to such forces; arguments as in `balanced`."""
+    points = _at_nodes(operation)
+    unloaded = _unloaded(design, points, known.contacts, known.share)
+    states = _state(design, points, unloaded, found)
+    smooth = design.mesh.touching
+    return Cycle(known.phase, known.weight, states, known.nodes, smooth=smooth)
+
+
+def _at_nodes(operation: Operation) -> Operation:
+    """Operating points with an axis for the nodes of a cycle."""
+    found: Operation = jax.tree.map(lambda values: values[..., None], operation)
+    return found
 
 
 def cycle_nodes(

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array
 
 from pitchpoint._jax import array, jax
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation, cycle
@@ -62,7 +62,7 @@ def solved_cycle(
     held, change, turns = np.asarray(found.state.balance.friction), np.inf, 0
     while tolerance < change and turns < most:  # a change that is not a number ends it too
         held, before = _asked(solver, at, held), held
-        given = replace(models, friction=(), parameters={}, held=array(held))
+        given = replace(models.without_friction, held=array(held))
         found, at = _turn(design, operation, given, engaged, tuple(wanted))
         change, turns = _change(held, before), turns + 1
     code = Code.SOLVED if change <= tolerance else Code.NOT_CONVERGED
@@ -104,7 +104,7 @@ def _cycle(
     models: Models,
     engaged: Engagement | None,
     wanted: tuple[str, ...],
-) -> tuple[Cycle, dict[str, Float[Array, "..."]]]:
+) -> tuple[Cycle, dict[str, Array]]:
     found = cycle(design, operation, models, engaged=engaged)
     at: Conditions = found.state.conditions
     carries = found.state.contacts.active & (found.state.balance.load > 0.0)

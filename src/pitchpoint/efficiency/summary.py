@@ -9,7 +9,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import along, total
 from pitchpoint.efficiency.drag import bearing_loads
 from pitchpoint.efficiency.quasi_static import (
@@ -20,17 +20,17 @@ from pitchpoint.efficiency.quasi_static import (
     Operation,
     cycle,
     cycle_nodes,
+    cycle_of,
     engagement,
 )
+from pitchpoint.efficiency.rows import CHUNK, Row, balances, engagements, stacked
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
 from pitchpoint.loading.sharing import equal
 from pitchpoint.programs import program
 
-__all__ = ["CHUNK", "engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
-
-CHUNK = 8
-"""Cycles computed together: one compiled program serves any number of them."""
+__all__ = ["at_points", "engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
 
 Point = tuple[Design, Operation]
 Prepared = tuple[Design, Operation, Engagement | None]
@@ -63,18 +63,14 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
     )
 
 
-def summary(
-    design: Design, operation: Operation, models: Models, engaged: Engagement | None = None
-) -> dict[str, Array]:
+def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
     """Figures of one cycle; powers in W, torques in N m, the rest dimensionless.
 
     Args:
         design: mesh, materials, oil, surfaces.
-        operation: one operating point.
-        models: laws.
-        engaged: contacts and shares, where they are known already.
+        result: its cycle at one operating point.
+        factor: loss factor.
     """
-    result = cycle(design, operation, models, engaged=engaged)
     state = result.state
     low, high = result.extremes(state.efficiency)
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
@@ -84,7 +80,7 @@ def summary(
     return {
         **_by_gear(design.mesh.dimensions()),
         "contact_ratio": design.mesh.contact_ratio,
-        "loss_factor": loss_factor(design, models, engaged),
+        "loss_factor": factor,
         "mean_loss": result.mean_loss,
         "mean_loss_path": result.path_mean(state.loss),
         "mean_drag_loss": result.mean(state.drag_loss),
@@ -169,7 +165,43 @@ def summarise(
         progress: told the number of finished points after each chunk.
     """
     prepared = list(_prepared(points, models))
-    return in_chunks(lambda chunk: _summaries(chunk, models), prepared, progress=progress)
+    return in_chunks(lambda chunk: _figures(chunk, models), prepared, progress=progress)
+
+
+def at_points(design: Design, operation: Operation, models: Models) -> dict[str, np.ndarray]:
+    """Summaries of one design at several operating points of one load, each quantity [point].
+
+    Their contacts and shares are the same and are found once.
+
+    Args:
+        design: whose rigid flanks all touch.
+        operation: operating points [point].
+        models: laws.
+    """
+    alone, designs = models.without_friction, stacked([design] * CHUNK)
+    known = engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
+    count = operation.load.shape[0]
+
+    def some(start: int) -> dict[str, np.ndarray]:
+        taken = np.minimum(np.arange(start, start + CHUNK), count - 1)
+        rows = designs, jax.tree.map(lambda values: np.asarray(values)[taken], operation), known
+        found: dict[str, np.ndarray] = jax.device_get(
+            _summaries(rows, balances(rows, models), alone)
+        )
+        return found
+
+    chunks = [some(start) for start in range(0, count, CHUNK)]
+    return {name: np.concatenate([one[name] for one in chunks])[:count] for name in chunks[0]}
+
+
+def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
+    """Summaries of stacked points: programs without a law before and after that of their balances."""
+    design, operation, known = chunk
+    alone = models.without_friction
+    if known is None:
+        known = engagements(design, operation.load, alone)
+    rows = design, operation, known
+    return _summaries(rows, balances(rows, models), alone)
 
 
 def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
@@ -267,10 +299,14 @@ def in_chunks(
 
 
 @program
-def _summaries(points: Prepared, models: Models) -> dict[str, Array]:
-    result: dict[str, Array] = eqx.filter_vmap(
-        lambda design, operation, known: summary(design, operation, models, known)
-    )(*points)
+def _summaries(rows: Row, found: Balance, models: Models) -> dict[str, Array]:
+    def one(
+        design: Design, operation: Operation, known: Engagement, found: Balance
+    ) -> dict[str, Array]:
+        factor = loss_factor(design, models, None if design.mesh.touching else known)
+        return summary(design, cycle_of(design, operation, known, found), factor)
+
+    result: dict[str, Array] = eqx.filter_vmap(one)(*rows, found)
     return result
 
 
@@ -279,7 +315,7 @@ def _chunks(points: Sequence[Any], size: int) -> Iterator[tuple[Any, int]]:
     for start in range(0, len(points), size):
         part = list(points[start : start + size])
         padded = part + [part[-1]] * (size - len(part))
-        yield jax.tree.map(lambda *leaves: np.stack(leaves), *padded), len(part)
+        yield stacked(padded), len(part)
 
 
 def _mean_friction(result: Cycle) -> Array:

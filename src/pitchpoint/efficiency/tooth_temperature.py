@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Numbers
 from pitchpoint.materials.solids import SolidRecord, celsius, heat_failure
 from pitchpoint.registry import Registry
 
@@ -21,8 +22,7 @@ __all__ = [
     "vdi_2736_2",
 ]
 
-Each = Float[Array, "*b"]
-Mate = Literal["steel", "plastic"]
+Each = Float[Numbers, "*#b"]
 
 _NEAR = 10.0  # K; the modulus of a plastic hardly changes within
 
@@ -81,7 +81,7 @@ def vdi_2736_2(
     teeth: Each,
     pitch_speed: Each,
     normal_module: Each,
-    mate: Mate = "steel",
+    mate: str = "steel",
     housing_resistance: Each | None = None,
     housing_area: Each | None = None,
     duty: Each | float = 1.0,
@@ -102,7 +102,7 @@ def vdi_2736_2(
         pitch_speed: v, speed of the pitch line, shape (...) [m/s]; at 0 the teeth stay at the
             temperature of the housing.
         normal_module: m_n, shape (...) [m].
-        mate: material of the mating gear.
+        mate: material of the mating gear, "steel" or "plastic".
         housing_resistance: R, resistance of the housing to the passage of heat, shape (...)
             [K m2/W]: 0 open, 0.015 to 0.045 half open, 0.06 closed.
         housing_area: A, outer surface of the housing, shape (...) [m2]; both or neither, neither
@@ -182,8 +182,8 @@ def modulus_at(record: SolidRecord, temperature: float) -> ModulusInUse:
 
     Example:
         >>> from pitchpoint.materials import solids
-        >>> modulus_at(solids.find("PEEK"), 353.15).status
-        'PEEK: its modulus is known at 23 degC only, the same value is used at 80 degC'
+        >>> modulus_at(solids.find("POM-H"), 333.15).status
+        'POM-H: its modulus is known from -40 degC to 100 degC, interpolated at 60 degC (values assumed)'
     """
     young = record.build(temperature).young
     if not record.young_at:

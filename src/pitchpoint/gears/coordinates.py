@@ -31,7 +31,7 @@ class Coordinate(eqx.Module):
     turns: bool = eqx.field(static=True, default=True)
     rigid: bool = eqx.field(static=True, default=True)
 
-    def velocity(self, point: Float[Array, "3 *b"]) -> Float[Array, "3 *b"]:
+    def velocity(self, point: Float[Array, "3 *#b"]) -> Float[Array, "3 *#b"]:
         """Velocity of a point of the body for a unit rate of the coordinate [m/rad or 1].
 
         Args:

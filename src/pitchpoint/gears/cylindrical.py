@@ -10,8 +10,10 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Offset, Spot, Surfaces
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import (
@@ -21,7 +23,7 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
-from pitchpoint.gears.members import CYLINDRICAL
+from pitchpoint.gears.members import CYLINDRICAL, number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.programs import program
@@ -187,7 +189,8 @@ class CylindricalPair(Mesh):
     all formulas hold as they stand. Lengths along the line of action are transverse and counted from
     N1, the point where it touches the base circle of gear 1. A is the end of the path of contact
     near N1, where gear 2 has its tip; E the other end. A contact line enters the plane of action at
-    one end face and leaves at the other; a spur pair has one slice, a line over the whole face.
+    one end face and leaves at the other; a spur pair has one slice, a line over the whole face, unless
+    its surfaces change across the face.
 
     Attributes:
         teeth: numbers of teeth z1, z2; z2 negative for a ring.
@@ -213,7 +216,7 @@ class CylindricalPair(Mesh):
         internal: True if gear 2 is a ring; static.
         lanes: static count of pairs held, at least the contact ratio rounded up.
         slices: static count of slices of each contact line; even, or one.
-        surfaces: how the flanks of both gears differ from involutes.
+        surfaces: how all flanks of both gears differ from involutes.
     """
 
     pitch_point: ClassVar[bool] = True
@@ -405,15 +408,26 @@ class CylindricalPair(Mesh):
         """The driven gear."""
         return 1.0 - self.driver
 
+    def driven_by(self, member: str | int) -> Self:
+        """The pair with this gear driving the other one; the same flanks touch."""
+        wheel_drives = array(number_of(member, CYLINDRICAL) == 1)
+        return dataclasses.replace(self, wheel_drives=wheel_drives)
+
+    @property
+    def onward(self) -> Float[Array, ""]:
+        """Pairs run from A to E where gear 1 drives, else from E to A."""
+        return jnp.where(self.wheel_drives, -1.0, 1.0)
+
+    @property
+    def active_flanks(self) -> Float[Array, "2 2"]:
+        """Roll lengths of both gears at the start of the active profile and at the tip, positive [m]."""
+        tips = jnp.stack([gear.tip_roll_length for gear in self.gears])
+        return jnp.stack([jnp.abs(self._innermost), tips], axis=1)
+
     @property
     def period(self) -> Float[Array, ""]:
         """Driver angle of one base pitch [rad]."""
         return 2.0 * jnp.pi / jnp.sum(self.driver * jnp.abs(self.teeth))
-
-    @property
-    def phase_rate(self) -> Float[Array, ""]:
-        """Pairs run from A to E, or from E to A if gear 2 drives."""
-        return jnp.where(self.wheel_drives, -1.0, 1.0) / self.period
 
     @property
     def line_of_action(self) -> Float[Array, "2"]:
@@ -448,14 +462,26 @@ class CylindricalPair(Mesh):
         """Phases of entry, exit and pitch point.
 
         Of helical teeth also those at which a contact line stops growing and begins to shrink, and
-        at which the pitch line enters and leaves it.
+        at which the pitch line enters and leaves it; of spur teeth those at which a relief begins.
         """
         line = self.line
         found = [jnp.zeros_like(line.pitch_path), line.contact_ratio, line.pitch_path]
         if self.helical:
             overlap = line.overlap_ratio
             found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
+        else:
+            found += self._relief_paths(line)
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
+
+    def _relief_paths(self, line: LineOfAction) -> list[Array]:
+        """Positions on the path at which a relief of either gear begins [base pitches]."""
+        rolls = [
+            [jnp.sqrt(2.0 * jnp.abs(base) * one.start) for one in own if isinstance(one, Relief)]
+            for base, own in zip(line.base_radii, self.surfaces, strict=True)
+        ]
+        second = -1.0 if self.internal else 1.0
+        positions = [*rolls[0], *(line.tangent_length - second * roll for roll in rolls[1])]
+        return [(position - line.limits[0]) / line.base_pitch for position in positions]
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
@@ -463,7 +489,9 @@ class CylindricalPair(Mesh):
         entered = jnp.mod(phase, 1.0) + number
         line, side = self.line, self._side
         across, share = self._lines(entered, line)
-        path = entered - line.overlap_ratio * across if self.helical else entered
+        path = jnp.broadcast_to(entered, jnp.shape(across))
+        if self.helical:
+            path = entered - line.overlap_ratio * across
         active = jnp.broadcast_to(entered <= line.contact_ratio, jnp.shape(path))
         position = jnp.where(active, line.limits[0] + path * line.base_pitch, line.pitch_position)
         rolling = jnp.stack([position, line.tangent_length - position])
@@ -492,9 +520,9 @@ class CylindricalPair(Mesh):
         surfaces = ((*first, Offset(self.normal_backlash)), second)
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
 
-    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
-        lanes = contacts.path.shape
+        lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
         found = []
@@ -503,8 +531,8 @@ class CylindricalPair(Mesh):
             sense = -self._side * (1.0 if member == 0 else -jnp.sign(self.teeth[1]))
             found.append(
                 Spot(
-                    flank=contacts.flank[member],
-                    across=contacts.width,
+                    flank=jnp.broadcast_to(contacts.flank[member], lanes),
+                    across=jnp.broadcast_to(contacts.width, lanes),
                     angle=jnp.broadcast_to(sense * phase * 2.0 * jnp.pi / teeth, lanes),
                     tooth=jnp.mod(sense * entered, teeth).astype(int),
                     leaning=jnp.ones(lanes),
@@ -622,7 +650,8 @@ class CylindricalPair(Mesh):
             line: of the pair.
         """
         if not self.helical:
-            return jnp.full_like(entered, 0.5), jnp.ones_like(entered)
+            whole = jnp.zeros_like(entered)
+            return _sliced(whole, whole + 1.0, self.slices)
         overlap = line.overlap_ratio
         low = jnp.clip((entered - line.transverse_contact_ratio) / overlap, 0.0, 1.0)
         high = jnp.clip(entered / overlap, 0.0, 1.0)
@@ -732,6 +761,14 @@ def build_cylindrical_pair(
 
     Raises:
         InputError: the flanks cannot meet at all; `check_cylindrical` says what else is wrong.
+
+    Example:
+        >>> from math import radians
+        >>> pair = build_cylindrical_pair(
+        ...     teeth=(18, 36), module=3e-3, pressure_angle=radians(20.0), face_width=0.02
+        ... )
+        >>> round(float(pair.centre_distance), 6)
+        0.081
     """
     helical = bool(helix_angle != 0.0)
     pair = CylindricalPair(

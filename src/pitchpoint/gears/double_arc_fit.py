@@ -137,9 +137,8 @@ def fit_double_arc(
 
     Example: a short search; the default one tries 1700 teeth, in about a minute.
 
-        >>> from pitchpoint.gears.double_arc_fit import fit_double_arc
         >>> from pitchpoint.gears.strain_wave_design import build_strain_wave
-        >>> found = fit_double_arc(teeth=(100, 102), freedom=0.1, generations=2, population=2)
+        >>> found = fit_double_arc(teeth=(100, 102), freedom=0.05, generations=1, population=1)
         >>> found.merit.objective < found.start.objective
         True
         >>> drive = build_strain_wave(

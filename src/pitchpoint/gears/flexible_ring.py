@@ -37,7 +37,7 @@ class RingLoads(eqx.Module):
         height: of the contact above the neutral line [m].
     """
 
-    angle: Float[Array, "pair slice *b"]
-    tangential: Float[Array, "pair slice *b"]
-    radial: Float[Array, "pair slice *b"]
-    height: Float[Array, "pair slice *b"]
+    angle: Float[Array, "pair slice *#b"]
+    tangential: Float[Array, "pair slice *#b"]
+    radial: Float[Array, "pair slice *#b"]
+    height: Float[Array, "pair slice *#b"]

@@ -6,12 +6,13 @@ import equinox as eqx
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.involute import involute
 
 __all__ = ["ArcChain", "DoubleArcFlank", "Flank", "InvoluteFlank"]
 
-Along = Float[Array, "*b"]
-Place = Complex[Array, "*b"]
+Along = Float[Arrays, "*#b"]
+Place = Complex[Array, "*#b"]
 
 STEEPEST = 1.4
 """Flank angle at which the rounding of the tip ends [rad]: what lies beyond meets no flank."""

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.flexspline_tooth import InvoluteFlank
@@ -275,7 +275,7 @@ def _enveloping(
         scale = jnp.where(scale == 0.0, 1.0, scale)
         return (a * b_p - a_p * b) / scale, (a_s * b - a * b_s) / scale
 
-    def bounded(_: int, at: tuple[Array, Array]) -> tuple[Array, Array]:
+    def bounded(_: Int[Array, ""], at: tuple[Array, Array]) -> tuple[Array, Array]:
         by_s, by_p = newton(frozen, *at, targets)
         s = at[0] - jnp.clip(by_s, -length / 50.0, length / 50.0)
         return jnp.clip(s, 0.0, length), at[1] - jnp.clip(by_p, -_STRIDE, _STRIDE)

@@ -12,6 +12,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
@@ -133,6 +134,11 @@ class Mesh(eqx.Module):
         return not any(self.surfaces)
 
     @property
+    def onward(self) -> Float[Array, ""]:
+        """Sense in which the phase runs while the drive turns on: one, or minus one."""
+        return jnp.ones(())
+
+    @property
     def filled(self) -> np.ndarray | None:
         """Numbers of the places for pairs that hold one, or None where all do.
 
@@ -170,7 +176,7 @@ class Mesh(eqx.Module):
         return self
 
     @abc.abstractmethod
-    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Where contacts lie on both members.
 
         Args:
@@ -247,15 +253,23 @@ class Mesh(eqx.Module):
     def loaded(self) -> Float[Array, " dof"]:
         """One for the coordinate whose load is prescribed, zero elsewhere."""
 
+    @abc.abstractmethod
+    def driven_by(self, member: str | int) -> Self:
+        """The same drive with another member driving, in the sense that presses the same flanks.
+
+        A fixed member stays fixed; the remaining one carries the load.
+
+        Args:
+            member: name of a body, or number of its coordinate.
+
+        Raises:
+            InputError: it cannot drive.
+        """
+
     @property
     @abc.abstractmethod
     def period(self) -> Float[Array, ""]:
         """Driver angle of one period [rad]."""
-
-    @property
-    def phase_rate(self) -> Float[Array, ""]:
-        """Periods that phase grows by for one radian of the nominal motion; negative where it falls."""
-        return 1.0 / self.period
 
     @property
     @abc.abstractmethod

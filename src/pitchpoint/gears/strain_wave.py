@@ -5,16 +5,19 @@ from typing import ClassVar, Self
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Num
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.contact.surface import Spot
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.groove import Groove, swept
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference
 from pitchpoint.gears.ring_compliance import ring_compliance
 from pitchpoint.gears.tooth_motion import Passing, ToothMotion
@@ -31,6 +34,7 @@ __all__ = [
     "lanes_for",
     "nearest_points",
     "places",
+    "rates",
     "survey",
 ]
 
@@ -63,6 +67,7 @@ _ALONG = np.unique(np.round(_ALONG, 12))  # no two that differ by rounding alone
 _LIGHT = 1e-3  # clearance in modules below which a pair counts as touching
 
 Lanes = Float[Array, "pair slice *b"]
+Each = Float[Array, "*b"]
 
 
 class Touching(eqx.Module):
@@ -76,11 +81,11 @@ class Touching(eqx.Module):
         held: True where the nearest point is an end of the flank and does not roll.
     """
 
-    along: Lanes
+    along: Each
     at: Passing
-    clearance: Lanes
-    mate: Lanes
-    held: Lanes
+    clearance: Each
+    mate: Each
+    held: Bool[Array, "*b"]
 
 
 class Survey(eqx.Module):
@@ -216,15 +221,24 @@ class StrainWave(Mesh):
         """One for the member that carries the load."""
         return self.loaded_of
 
+    def driven_by(self, member: str | int) -> Self:
+        """The drive with this member driving; the fixed one stays fixed, the third carries the load."""
+        drives = number_of(member, MEMBERS)
+        fixed = int(np.argmin(self.driver_of + self.loaded_of))
+        if drives == fixed:
+            raise InputError(f"the {MEMBERS[fixed]} is fixed and cannot drive")
+        motion, driver, loaded = map(array, rates(np.asarray(self.teeth), fixed, drives))
+        return dataclasses.replace(self, motion_of=motion, driver_of=driver, loaded_of=loaded)
+
     @property
     def period(self) -> Float[Array, ""]:
         """Driver angle in which the wave moves on by one tooth of the flexspline [rad]."""
         return self.tooth_angle / jnp.abs(self.motion[1] - self.motion[0])
 
     @property
-    def phase_rate(self) -> Float[Array, ""]:
-        """Teeth of the flexspline move along the wave as it stands back behind them."""
-        return (self.motion[1] - self.motion[0]) / self.tooth_angle
+    def onward(self) -> Float[Array, ""]:
+        """A wave generator that turns on meets teeth of growing angle, and phases fall."""
+        return -jnp.ones(())
 
     @property
     def touching(self) -> bool:
@@ -251,13 +265,13 @@ class StrainWave(Mesh):
         """Mean number of pairs that touch without load, to a thousandth of the module."""
         return self.pairs
 
-    def overlaps(self, angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
+    def overlaps(self, angle: Float[Array, "*b"]) -> Bool[Array, "*b"]:
         """True where a tooth reaches into the circular spline's teeth."""
         return _overlaps(self.tooth_motion, self.groove, angle)
 
     @property
     def filled(self) -> np.ndarray:
-        """Numbers of the places for pairs that hold one."""
+        """Arrays of the places for pairs that hold one."""
         return np.flatnonzero(self._place[1] < float(self.held))
 
     @property
@@ -353,7 +367,7 @@ class StrainWave(Mesh):
         """The flexspline's rim couples all its teeth."""
         return ring_compliance(self.rim, solids[0], self.ring_loads(contacts))
 
-    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the teeth, which stand as they are while they touch.
 
         A tooth that lies behind its place moves along the circumference; the normals of roundings at root
@@ -385,10 +399,12 @@ class StrainWave(Mesh):
         )
 
     def inner_load(self, contacts: Contacts) -> Float[Array, "2 pair slice *b"]:
-        """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones."""
-        zone = _as_lanes(self._place[0], contacts.path[0, 0])
-        pressed = -self.ring_loads(contacts).radial
-        return jnp.stack([jnp.where(zone == end, pressed, 0.0) for end in (0, 1)])
+        """Radial load on the wave generator's bearing: teeth press the ring onto it in both zones.
+
+        A zone is told by the end of the long axis at which its pairs lie, so that any of them may be missing.
+        """
+        pressed, second = -self.ring_loads(contacts).radial, contacts.point[0] < 0.0
+        return jnp.stack([jnp.where(second, 0.0, pressed), jnp.where(second, pressed, 0.0)])
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -467,6 +483,34 @@ def _vector(place: Array) -> Float[Array, "3 pair slice *b"]:
     return jnp.stack([jnp.real(place), jnp.imag(place), jnp.zeros(place.shape)])
 
 
+def rates(
+    teeth: Float[np.ndarray, "2"], fixed: int, drives: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rates of the members for a radian of the driver, in the sense that presses the flanks together.
+
+    Args:
+        teeth: numbers of teeth z1, z2 of flexspline and circular spline.
+        fixed: member that does not turn.
+        drives: member that drives.
+
+    Returns:
+        Rates [rad/rad], and one for the driver and for the loaded member, zero elsewhere.
+
+    Source: z2 q_C = z1 q_F + (z2 - z1) q_W; torques are in proportion to these factors.
+
+    Example:
+        >>> import numpy as np
+        >>> rates(np.array([200.0, 202.0]), fixed=2, drives=0)[0]
+        array([ 1.  , -0.01,  0.  ])
+    """
+    z1, z2 = teeth
+    law, loaded = np.array([z2 - z1, z1, -z2]), 3 - fixed - drives
+    motion = np.zeros(3)
+    motion[drives] = np.sign(law[drives])
+    motion[loaded] = -law[drives] * motion[drives] / law[loaded]
+    return motion, np.eye(3)[drives], np.eye(3)[loaded]
+
+
 def lanes_for(held: int) -> int:
     """Places for so many pairs in a zone: one of a few sizes."""
     several = -(-held // PLACES[0]) * PLACES[0]
@@ -513,13 +557,13 @@ def _overlaps(motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"]) ->
     return jnp.asarray(jnp.real(tip) > groove.low)
 
 
-def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Float[Array, "pair 1 *b"]:
+def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Num[Arrays, "pair 1 ..."]:
     """Values of the pairs, broadcast over slices and phases."""
     return jnp.reshape(each, (-1, *(1 for _ in range(phase.ndim + 1))))
 
 
 def places(
-    contacts: Contacts, phase: Float[Array, "*b"], teeth: Float[Array, "2"]
+    contacts: Contacts, phase: Float[Arrays, "*#b"], teeth: Float[Array, "2"]
 ) -> Float[Array, "member pair slice *b"]:
     """Angles around flexspline and circular spline at which their teeth touch [rad].
 

@@ -12,7 +12,7 @@ from pitchpoint.gears.flexible_ring import FlexibleRing
 from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.groove import NODES, Groove, given, swept, tip_with_land
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
-from pitchpoint.gears.strain_wave import WINDOW, StrainWave, Survey, lanes_for, survey
+from pitchpoint.gears.strain_wave import WINDOW, StrainWave, Survey, lanes_for, rates, survey
 from pitchpoint.gears.tooth_motion import ToothMotion
 from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 from pitchpoint.programs import program
@@ -119,7 +119,7 @@ def build_strain_wave(
         InputError: dimensions that give no drive; the key is the name of the argument.
     """
     z1, z2 = _checked_teeth(teeth)
-    motion, loaded = _rates(z1, z2, fixed, driver)
+    motion, drives, loaded = rates(np.array([z1, z2], dtype=float), *_roles(fixed, driver))
     rim = 2.0 * module if rim_thickness is None else rim_thickness
     flank = _flank(form, z1, module, rim, tip_rounding)
     dedendum = (
@@ -161,8 +161,8 @@ def build_strain_wave(
         tip_rounding=array(edge),
         backlash=array(backlash),
         motion_of=array(motion),
-        driver_of=array(np.eye(3)[MEMBERS.index(driver)]),
-        loaded_of=array(np.eye(3)[loaded]),
+        driver_of=array(drives),
+        loaded_of=array(loaded),
         held=array(float(held)),
         surveyed=found,
         conjugate=groove is None,
@@ -350,22 +350,15 @@ def _check_depth(
         )
 
 
-def _rates(z1: int, z2: int, fixed: str, driver: str) -> tuple[np.ndarray, int]:
-    """Rates of the members for a radian of the driver, and which member carries the load."""
+def _roles(fixed: str, driver: str) -> tuple[int, int]:
+    """Numbers of the fixed and of the driving member."""
     for name, member in (("fixed", fixed), ("driver", driver)):
         if member not in MEMBERS:
             raise InputError(f"'{member}' is no member; use one of {', '.join(MEMBERS)}", key=name)
     if fixed == driver:
         others = " or ".join(name for name in MEMBERS if name != fixed)
         raise InputError(f"the {driver} is fixed and cannot drive; use {others}", key="driver")
-    held, drives = MEMBERS.index(fixed), MEMBERS.index(driver)
-    loaded = 3 - held - drives
-    # z2 q_C = z1 q_F + (z2 - z1) q_W; torques are in proportion to these factors.
-    law = np.array([z2 - z1, z1, -z2], dtype=float)
-    motion = np.zeros(3)
-    motion[drives] = np.sign(law[drives])
-    motion[loaded] = -law[drives] * motion[drives] / law[loaded]
-    return motion, loaded
+    return MEMBERS.index(fixed), MEMBERS.index(driver)
 
 
 def _weights(shape: str | tuple[float, ...], angle: float, relative: float) -> np.ndarray:

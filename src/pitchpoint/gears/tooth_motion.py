@@ -4,13 +4,14 @@ import equinox as eqx
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.flexspline_tooth import Flank
 from pitchpoint.gears.wave_generator import NeutralLine
 
 __all__ = ["Passing", "ToothMotion"]
 
-Each = Float[Array, "*b"]
-Place = Complex[Array, "*b"]
+Each = Float[Arrays, "*#b"]
+Place = Complex[Array, "*#b"]
 
 
 class Passing(eqx.Module):

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Arrays
 from pitchpoint.registry import Registry
 
 __all__ = ["TERMS", "WAVE_SHAPES", "NeutralLine", "WaveShape"]
@@ -30,19 +31,19 @@ class NeutralLine(eqx.Module):
     deflection: Float[Array, ""]
     weights: Float[Array, " term"]
 
-    def radial(self, angle: Float[Array, "*b"], order: int = 0) -> Float[Array, "*b"]:
+    def radial(self, angle: Float[Arrays, "*b"], order: int = 0) -> Float[Array, "*b"]:
         """Radial displacement w or a derivative of it with respect to the angle [m]."""
         return self._series(angle, order)
 
-    def tangential(self, angle: Float[Array, "*b"], order: int = 0) -> Float[Array, "*b"]:
+    def tangential(self, angle: Float[Arrays, "*b"], order: int = 0) -> Float[Array, "*b"]:
         """Tangential displacement v [m]: its derivative is minus w, so the line keeps its length."""
         return -self._series(angle, order - 1)
 
-    def rotation(self, angle: Float[Array, "*b"], order: int = 0) -> Float[Array, "*b"]:
+    def rotation(self, angle: Float[Arrays, "*b"], order: int = 0) -> Float[Array, "*b"]:
         """Turn of the normal against the radius through the displaced point, -w'/r [rad]."""
         return -self._series(angle, order + 1) / self.radius
 
-    def _series(self, angle: Float[Array, "*b"], order: int) -> Float[Array, "*b"]:
+    def _series(self, angle: Float[Arrays, "*b"], order: int) -> Float[Array, "*b"]:
         """Derivative of the radial displacement; its integral for order -1."""
         angle = jnp.asarray(angle)
         count = self.weights.shape[0]

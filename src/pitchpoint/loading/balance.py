@@ -8,17 +8,17 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.factored import product
+from pitchpoint.factored import Arrays, Numbers, product
 from pitchpoint.roots import quotient, root, third_order_step
 from pitchpoint.status import Code, Status
 
 __all__ = ["Balance", "balance", "first_guess", "tooth_load"]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
-Drag = Callable[[Lanes], Float[Array, "dof *b"]]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Arrays, "*#b"]
+Drag = Callable[[Lanes], Float[Array, "dof *#b"]]
 Friction = Callable[[Lanes], Lanes]
-Torques = list[Float[Array, "*b"]]
+Torques = list[Each]
 Terms = tuple[Lanes, Lanes, Torques, Torques]
 
 LARGEST_RATIO = 1e4

@@ -23,9 +23,9 @@ class Compliance(eqx.Module):
         load: that the driven coordinate carries [N m or N].
     """
 
-    stiffness: Float[Array, "pair slice *b"]
-    body: Float[Array, "lane lane *b"] | None
-    load: Float[Array, "*b"]
+    stiffness: Float[Array, "pair slice *#b"]
+    body: Float[Array, "lane lane *#b"] | None
+    load: Float[Array, "*#b"]
 
     def of_teeth(self, contacts: Contacts) -> Float[Array, "pair slice *b"]:
         """Compliance of each lane by itself [m/N].
@@ -42,8 +42,8 @@ def compliance(
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
-    load: Float[Array, "*b"],
-    body: Float[Array, "lane lane *b"] | None = None,
+    load: Float[Array, "*#b"],
+    body: Float[Array, "lane lane *#b"] | None = None,
 ) -> Compliance:
     """How the contacts of a mesh yield under a load.
 

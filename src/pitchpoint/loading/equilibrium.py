@@ -6,12 +6,13 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.factored import Arrays
 from pitchpoint.status import Code, Status
 
 __all__ = ["Equilibrium", "equilibrium", "touch"]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Arrays, "pair slice *#b"]
+Each = Float[Arrays, "*#b"]
 Rows = Float[Array, "*b lane"]
 
 MOST = 200
@@ -101,12 +102,12 @@ class _Scale(NamedTuple):
 
 
 def equilibrium(
-    teeth: Lanes,
-    body: Float[Array, "lane lane *b"] | None,
+    teeth: Float[Arrays, "..."],
+    body: Float[Arrays, "lane lane *#b"] | None,
     *,
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array, "pair slice *b"],
+    active: Bool[Arrays, "pair slice *#b"],
     load: Each,
 ) -> Equilibrium:
     """Forces of the contacts of any mesh that share a load.
@@ -173,11 +174,11 @@ def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Arra
 
 
 def _normalised(
-    teeth: Lanes,
-    body: Float[Array, "lane lane *b"] | None,
+    teeth: Float[Arrays, "..."],
+    body: Float[Arrays, "lane lane *#b"] | None,
     gap: Lanes,
     arm: Lanes,
-    active: Bool[Array, "pair slice *b"],
+    active: Bool[Arrays, "pair slice *#b"],
     load: Each,
 ) -> tuple[_Problem, _Scale]:
     """The problem counted from first touch, with mean compliance, arm and load of one.
@@ -188,7 +189,7 @@ def _normalised(
     each = (teeth.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
     batch = jnp.broadcast_shapes(coupled, *each)
 
-    def rows(lanes: Array) -> Array:
+    def rows(lanes: Arrays) -> Array:
         flat = jnp.moveaxis(lanes.reshape(-1, *lanes.shape[2:]), 0, -1)
         return jnp.broadcast_to(flat, (*batch, flat.shape[-1]))
 
@@ -367,24 +368,24 @@ def _divided(
     """Solution of C x = b on the loaded lanes; two last steps from it carry two orders of derivatives.
 
     Factors are not differentiated: that would solve for a whole matrix. The systems are taken one
-    after the other: batches of them wait for threads of the pool that they run on (`_jax`).
+    after the other, each from its factors to its last step: batches of them wait for threads of the pool
+    that they run on (`_jax`), and factors put aside for all of them are copied more than they are used.
     """
     if problem.matrix is None:
         return by / problem.own[..., None]
-    matrix = _masked(problem.matrix, loaded)
-    matrix = jnp.broadcast_to(matrix, (*by.shape[:-2], *matrix.shape[-2:]))
-    flat = matrix.reshape(-1, *matrix.shape[-2:])
-    root = jax.lax.map(jnp.linalg.cholesky, jax.lax.stop_gradient(flat))
 
-    def solve(pair: tuple[Array, Array]) -> Array:
-        found: Array = jax.scipy.linalg.cho_solve((pair[0], True), pair[1])
+    def alone(system: tuple[Array, Array]) -> Array:
+        own, sides = system
+        factors = jnp.linalg.cholesky(jax.lax.stop_gradient(own)), True
+        found: Array = jax.scipy.linalg.cho_solve(factors, jax.lax.stop_gradient(sides))
+        for _ in range(2):
+            found = found + jax.scipy.linalg.cho_solve(factors, sides - own @ found)
         return found
 
-    sides = by.reshape(-1, *by.shape[-2:])
-    found = jax.lax.map(solve, (root, jax.lax.stop_gradient(sides)))
-    for _ in range(2):
-        found = found + jax.lax.map(solve, (root, sides - flat @ found))
-    return jnp.reshape(found, by.shape)
+    matrix = _masked(problem.matrix, loaded)
+    matrix = jnp.broadcast_to(matrix, (*by.shape[:-2], *matrix.shape[-2:]))
+    flat = matrix.reshape(-1, *matrix.shape[-2:]), by.reshape(-1, *by.shape[-2:])
+    return jnp.reshape(jax.lax.map(alone, flat), by.shape)
 
 
 def _residual(problem: _Problem, loaded: Bool[Array, "*b lane"], found: _Solution) -> Each:

@@ -11,8 +11,8 @@ from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
 
 __all__ = ["KinematicError", "added_gap", "kinematic_error"]
 
-Each = Float[Array, "*b"]
-Lanes = Float[Array, "pair slice *b"]
+Each = Float[Array, "*#b"]
+Lanes = Float[Array, "pair slice *#b"]
 
 
 class KinematicError(eqx.Module):

@@ -5,6 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
 from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
@@ -12,14 +13,13 @@ from pitchpoint.materials.solids import Solid
 
 __all__ = ["MeshStiffness", "mean_line_load", "mesh_stiffness", "slice_stiffness"]
 
-Lanes = Float[Array, "pair slice *b"]
+Lanes = Float[Array, "pair slice *#b"]
 
 
 class MeshStiffness(eqx.Module):
     """Springs of all pairs over one period.
 
-    One arm and one separation stand for the whole contact line of a pair: flanks without deviations on
-    parallel axes.
+    One arm and one separation stand for the whole contact line of a pair.
 
     Attributes:
         edges: phases between which the stiffness is smooth [periods].
@@ -27,7 +27,7 @@ class MeshStiffness(eqx.Module):
         weight: of each node in a mean over the period.
         single: normal stiffness of each pair, the sum over its contact line; zero out of contact [N/m].
         arm: closing of each contact along its normal for a unit of transmission error.
-        error: separation of the unloaded flanks [m].
+        error: separation of the unloaded flanks, the mean over the springs of a contact line [m].
     """
 
     edges: Float[Array, " edge"]
@@ -38,22 +38,24 @@ class MeshStiffness(eqx.Module):
     error: Float[Array, "pair segment node"]
 
     @property
-    def along_action(self) -> Float[Array, "pair segment node"]:
+    def along_action(self) -> Float[Arrays, "pair segment node"]:
         """Stiffness of each pair against transmission error, along the line of action [N/m]."""
         return self.single * self.arm**2
 
     @property
-    def total(self) -> Float[Array, "segment node"]:
+    def total(self) -> Float[Arrays, "segment node"]:
         """Stiffness of the mesh against transmission error [N/m]."""
         return jnp.sum(self.along_action, axis=0)
 
     @property
-    def mean(self) -> Float[Array, ""]:
+    def mean(self) -> Float[Arrays, ""]:
         """Mean over the period [N/m]."""
         return jnp.sum(self.total * self.weight)
 
 
-def mean_line_load(mesh: Mesh, contacts: Contacts, load: Float[Array, "*b"]) -> Float[Array, "*b"]:
+def mean_line_load(
+    mesh: Mesh, contacts: Contacts, load: Float[Array, "*#b"]
+) -> Float[Array, "*#b"]:
     """Load per length if all contact lines carried the same [N/m].
 
     Args:
@@ -70,7 +72,7 @@ def slice_stiffness(
     contacts: Contacts,
     solids: tuple[Solid, Solid],
     terms: Terms,
-    load: Float[Array, "*b"],
+    load: Float[Array, "*#b"],
 ) -> Lanes:
     """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
 
@@ -114,8 +116,16 @@ def mesh_stiffness(
         weight=weight,
         single=jnp.sum(each, axis=1),
         arm=_action_arm(mesh, contacts)[:, 0],
-        error=contacts.gap[:, 0],
+        error=contacts.gap[:, 0] if mesh.touching else _mean_gap(contacts, each),
     )
+
+
+def _mean_gap(contacts: Contacts, springs: Lanes) -> Float[Array, "pair *b"]:
+    """Separation at which the springs of a whole contact line, all stretched alike, carry nothing."""
+    whole = jnp.sum(springs, axis=1)
+    touches = whole > 0.0
+    moved = jnp.sum(springs * contacts.gap, axis=1)
+    return jnp.where(touches, moved / jnp.where(touches, whole, 1.0), 0.0)
 
 
 def _action_arm(mesh: Mesh, contacts: Contacts) -> Lanes:

@@ -11,9 +11,9 @@ from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["Bearing", "InnerBearing", "radial_and_axial", "unit_forces"]
 
-Lanes = Float[Array, "pair slice *b"]
-Vectors = Float[Array, "3 pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Array, "pair slice *#b"]
+Vectors = Float[Array, "3 pair slice *#b"]
+Each = Float[Array, "*#b"]
 
 ROUNDING = 1e-12
 """Component of a resultant over the sum of its forces that counts as zero."""
@@ -39,7 +39,7 @@ class Bearing(eqx.Module):
     place: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.zeros(()))
     other: Float[Array, ""] | None = None
     thrust: bool = eqx.field(static=True, default=True)
-    beside: Float[Array, "3 *b"] | None = None
+    beside: Float[Array, "3 *#b"] | None = None
 
     def unit_loads(self, mesh: Mesh, contacts: Contacts) -> Vectors:
         """Load on the bearing for a unit normal force at each contact, as a vector.
@@ -70,7 +70,7 @@ class Bearing(eqx.Module):
         own = self.borne(mesh, contacts, force)
         return _size(own if self.beside is None else own + self.beside)
 
-    def borne(self, mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Array, "3 *b"]:
+    def borne(self, mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Array, "3 *#b"]:
         """Load on the bearing by this mesh alone, as a vector [N]; arguments as in `load`."""
         return _resultant(self.unit_loads(mesh, contacts) * force)
 
@@ -98,7 +98,7 @@ def unit_forces(body: Coordinate, contacts: Contacts) -> Vectors:
     return contacts.direction if body.member == 1 else -contacts.direction
 
 
-def radial_and_axial(mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Array, "2 member *b"]:
+def radial_and_axial(mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Array, "2 member *#b"]:
     """Resultant of the normal forces on each member: across the axis of its body, and along it [N].
 
     The bearings of the body hold it. The axial part is signed, positive along the body's axis. Forces that
@@ -120,11 +120,11 @@ def radial_and_axial(mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Arra
     return jnp.stack(found, axis=1)
 
 
-def _resultant(vectors: Vectors) -> Float[Array, "3 *b"]:
+def _resultant(vectors: Vectors) -> Float[Array, "3 *#b"]:
     return jnp.sum(vectors, axis=(1, 2))
 
 
-def _size(vector: Float[Array, "3 *b"]) -> Each:
+def _size(vector: Float[Array, "3 *#b"]) -> Each:
     found: Each = root(jnp.sum(vector**2, axis=0))
     return found
 

@@ -230,7 +230,7 @@ LOAD_SHARING = Registry(
         from_stiffness,
         ("weber_banaschek_1953",),
         by_stiffness=True,
-        note="Thin slices side by side, gears without deviations; `tooth_compliance` says how teeth yield.",
+        note="Thin slices side by side; `tooth_compliance` says how teeth yield.",
     ),
     LoadSharing(
         "single",

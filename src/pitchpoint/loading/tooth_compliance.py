@@ -187,7 +187,7 @@ def _moduli(solids: Solids, terms: Terms) -> Solids:
 
 def _linear(
     contacts: Contacts, sections: Sections, solids: Solids, line_load: Float[Array, "..."]
-) -> Field:
+) -> Float[Array, "*b"]:
     young = jnp.stack([solid.young for solid in solids])
     poisson = jnp.stack([solid.poisson for solid in solids])
     return yang_sun_1985(young=young, poisson=poisson)

@@ -6,6 +6,7 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
@@ -15,7 +16,7 @@ from pitchpoint.programs import program
 
 __all__ = ["Hysteresis", "WindUp", "hysteresis", "wind_up", "wound_up"]
 
-Each = Float[Array, "*b"]
+Each = Float[Arrays, "*#b"]
 
 
 class WindUp(eqx.Module):
@@ -70,7 +71,7 @@ def wind_up(
     load: Each,
     phase: Each,
     contacts: Contacts | None = None,
-    body: Float[Array, "lane lane *b"] | None = None,
+    body: Float[Array, "lane lane *#b"] | None = None,
 ) -> WindUp:
     """Movement of the driven coordinate at loads and phases, with the pairs that come to carry.
 
@@ -122,7 +123,7 @@ def wound_up(
     terms: Terms,
     load: Float[Array, ""],
     contacts: Contacts,
-    body: Float[Array, "lane lane *b"] | None,
+    body: Float[Array, "lane lane *#b"] | None,
 ) -> WindUp:
     """Wind-up at one torque at all phases of known contacts: one program for every torque and part of a run.
 
@@ -132,7 +133,7 @@ def wound_up(
     return wind_up(mesh, solids, terms, loads, loads, contacts, body)
 
 
-def hysteresis(found: WindUp, friction: float | Float[Array | np.ndarray, "..."]) -> Hysteresis:
+def hysteresis(found: WindUp, friction: float | Float[Array | np.ndarray, "*#b"]) -> Hysteresis:
     """Loop of torque over wind-up by Coulomb friction on the teeth while the drive stands still.
 
     On loading, friction adds mu times the sum of forces times sliding arms to the torque that the

@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -12,13 +12,21 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.errors import InputError
-from pitchpoint.factored import as_array, product
+from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference
 
-__all__ = ["Conditions", "Law", "arguments", "demand_shape", "evaluate", "shape_of"]
+__all__ = [
+    "Conditions",
+    "Law",
+    "arguments",
+    "demand_shape",
+    "evaluate",
+    "of_other_shape",
+    "shape_of",
+]
 
-Lanes = Float[Array, "pair slice *b"]
-Each = Float[Array, "*b"]
+Lanes = Float[Numbers, "pair slice *#b"]
+Each = Float[Numbers, "*#b"]
 
 
 class Conditions(eqx.Module):
@@ -206,6 +214,7 @@ _KINDS: Mapping[Shape, str] = {"line": "line contacts", "ellipse": "elliptic con
 _TOUCH: Mapping[Shape, str] = {"line": "along lines", "ellipse": "in an ellipse"}
 
 
+@runtime_checkable
 class Law(Protocol):
     """A published law: a function of conditions with what a user needs to choose it."""
 
@@ -254,14 +263,26 @@ def demand_shape(law: Law | Callable[..., Any], shape: Shape) -> None:
         law: a record of the library, or a function.
         shape: of the contacts.
     """
-    own = shape_of(law)
-    if own in (None, shape):
+    why_not = of_other_shape(law, shape)
+    if why_not is None:
         return
-    assert own is not None
-    name = getattr(law, "name", getattr(law, "__name__", "the law"))
     fitting = [one.name for one in getattr(law, "rivals", ()) if shape_of(one) in (None, shape)]
     choose = f"; choose one of {', '.join(fitting)}" if fitting else ""
-    raise InputError(f"'{name}' holds for {_KINDS[own]}, and these touch {_TOUCH[shape]}{choose}")
+    raise InputError(f"{why_not}{choose}")
+
+
+def of_other_shape(law: Law | Callable[..., Any], shape: Shape) -> str | None:
+    """None if a law holds for contacts of this shape, else why not, in one sentence without its stop.
+
+    Args:
+        law: a record of the library, or a function.
+        shape: of the contacts.
+    """
+    own = shape_of(law)
+    if own is None or own == shape:
+        return None
+    name = getattr(law, "name", getattr(law, "__name__", "the law"))
+    return f"'{name}' holds for {_KINDS[own]}, and these touch {_TOUCH[shape]}"
 
 
 def _function(law: Law | Callable[..., Any]) -> Callable[..., Any]:

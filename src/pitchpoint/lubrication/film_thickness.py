@@ -7,6 +7,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
+from pitchpoint.factored import Numbers
 from pitchpoint.registry import Registry
 
 __all__ = [
@@ -16,7 +17,7 @@ __all__ = [
     "hamrock_dowson_1977",
 ]
 
-Each = Float[Array, "*b"]
+Each = Float[Numbers, "*#b"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,14 @@ def dowson_higginson_1959(
         modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
 
     W = w/(E' R), U = eta0 u/(E' R), G = alpha E'. Source: Dowson and Higginson (1959).
+
+    Example:
+        >>> film = dowson_higginson_1959(
+        ...     line_load=1e5, entrainment=5.0, viscosity=0.05, pressure_viscosity=2e-8, radius=0.01,
+        ...     modulus=226.4e9,
+        ... )
+        >>> round(float(film) * 1e6, 3)
+        0.986
     """
     groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     return radius * _product(1.6, groups, (-0.13, 0.7, 0.6))
@@ -87,6 +96,14 @@ def hamrock_dowson_1977(
         modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
 
     W = F/(E' R_x^2), k = (R_y/R_x)^(2/pi), fitted from 1 (a ball) to 8. Source: Hamrock and Dowson (1977).
+
+    Example:
+        >>> film = hamrock_dowson_1977(
+        ...     load=30.0, entrainment=1.0, viscosity=0.05, pressure_viscosity=2e-8, radius=9.5e-3,
+        ...     transverse_radius=9.5e-3, modulus=226.4e9,
+        ... )
+        >>> round(float(film) * 1e6, 3)
+        0.165
     """
     groups = (
         load / (modulus * radius**2),

@@ -20,7 +20,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
-from pitchpoint.factored import as_array, log, scaled
+from pitchpoint.factored import Numbers, as_array, log, scaled
 
 __all__ = [
     "LAWS",
@@ -30,6 +30,8 @@ __all__ = [
     "iso_tr_14179_2",
     "xu_2007",
 ]
+
+Each = Float[Numbers, "*#b"]
 
 # Far below any physical value in fitted units, large enough for finite powers and gradients.
 _FLOOR: Final = 1e-12
@@ -89,7 +91,7 @@ class FrictionLaw:
         return LAWS
 
 
-def _power_product(*factors: tuple[ArrayLike, float], exponent: ArrayLike = 0.0) -> Array:
+def _power_product(*factors: tuple[Each, float], exponent: Each | float = 0.0) -> Array:
     """Product of value ** power, times exp(exponent); 0 where a factor of positive power vanishes.
 
     A factor of negative power has no finite limit at zero: it is held at the floor.
@@ -131,12 +133,12 @@ def frictionless() -> Float[Array, ""]:
 
 def iso_tr_14179_2(
     *,
-    reference_line_load: ArrayLike,
-    reference_sum_speed: ArrayLike,
-    reference_radius: ArrayLike,
-    viscosity: ArrayLike,
-    roughness_ra: ArrayLike,
-    lubricant_factor: ArrayLike,
+    reference_line_load: Each,
+    reference_sum_speed: Each,
+    reference_radius: Each,
+    viscosity: Each,
+    roughness_ra: Each,
+    lubricant_factor: Each,
 ) -> Float[Array, "..."]:
     """Mean coefficient of a whole mesh after ISO/TR 14179-2, known as Schlenk's formula.
 
@@ -175,12 +177,12 @@ def iso_tr_14179_2(
 
 def xu_2007(
     *,
-    pressure: ArrayLike,
-    slide_roll_ratio: ArrayLike,
-    entrainment: ArrayLike,
-    viscosity: ArrayLike,
-    radius: ArrayLike,
-    roughness_rq: ArrayLike,
+    pressure: Each,
+    slide_roll_ratio: Each,
+    entrainment: Each,
+    viscosity: Each,
+    radius: Each,
+    roughness_rq: Each,
 ) -> Float[Array, "..."]:
     """Local coefficient after Xu and Kahraman: a regression of computed EHL contacts.
 

@@ -3,15 +3,16 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
+from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.registry import Registry
 
 __all__ = ["ROLLING_RESISTANCE", "RollingResistance", "none", "wu_cheng_1991"]
 
-Each = Float[Array, "*b"]
+Each = Float[Numbers, "*#b"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,14 @@ def wu_cheng_1991(
     Valid where the film is thick and the contact not starved; a converged EHL solution differs by
     -5 to +22 % for Hertz pressures of 0.5 to 1.5 GPa. Source: Goksem and Hargreaves (1978), in the
     form used by Wu and Cheng (1991).
+
+    Example:
+        >>> resistance = wu_cheng_1991(
+        ...     line_load=1e5, entrainment=5.0, viscosity=0.05, pressure_viscosity=2e-8, radius=0.01,
+        ...     modulus=226.4e9,
+        ... )
+        >>> round(float(resistance))
+        136
     """
     material = pressure_viscosity * modulus
     speed = viscosity * entrainment / (modulus * radius)
@@ -72,7 +81,7 @@ def wu_cheng_1991(
     return jnp.where(positive, 4.318 * jnp.exp(exponent) * radius / pressure_viscosity, 0.0)
 
 
-def _log(value: Each, positive: Each) -> Each:
+def _log(value: Each, positive: Bool[Arrays, "*#b"] | bool) -> Each:
     return jnp.log(jnp.where(positive, value, 1.0))
 
 

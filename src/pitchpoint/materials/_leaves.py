@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any, Literal, get_args
@@ -30,7 +30,7 @@ class Datum:
     note: str = ""
 
 
-def as_array(value: ArrayLike) -> Float[Array, "..."]:
+def as_array(value: ArrayLike | Sequence[float]) -> Float[Array, "..."]:
     """Return a float64 array: a leaf that is a Python float would retrace for each value."""
     return array(value, jnp.float64)
 

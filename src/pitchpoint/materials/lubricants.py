@@ -153,7 +153,8 @@ class LubricantRecord:
         InputError: a value is out of its physical range.
 
     Example:
-        >>> oil = find("pao-vg-220").build()
+        >>> from pitchpoint.materials import lubricants
+        >>> oil = lubricants.find("pao-vg-220").build()
         >>> round(float(oil.kinematic_viscosity(353.15)) * 1e6, 1)
         45.1
     """

@@ -72,7 +72,8 @@ def reduced_modulus(a: Solid, b: Solid) -> Float[Array, "..."]:
         E', broadcast shape of the two [Pa].
 
     Example:
-        >>> steel = find("steel").build()
+        >>> from pitchpoint.materials import solids
+        >>> steel = solids.find("steel").build()
         >>> round(float(reduced_modulus(steel, steel)) / 1e9, 1)
         226.4
     """
@@ -114,9 +115,10 @@ class SolidRecord:
         InputError: a value is out of its physical range, or the table is not in order.
 
     Example:
-        >>> find("POM-H").modulus_known
+        >>> from pitchpoint.materials import solids
+        >>> solids.find("POM-H").modulus_known
         'its modulus is known from -40 degC to 100 degC'
-        >>> find("PEEK").modulus_known
+        >>> solids.find("PEEK").modulus_known
         'its modulus is known at 23 degC only'
     """
 
@@ -191,7 +193,8 @@ class SolidRecord:
             InputError: a temperature is outside the table; nothing is extrapolated.
 
         Example:
-            >>> round(float(find("POM-H").build(333.15).young) / 1e9, 2)
+            >>> from pitchpoint.materials import solids
+            >>> round(float(solids.find("POM-H").build(333.15).young) / 1e9, 2)
             2.02
         """
         return Solid(
@@ -222,9 +225,10 @@ def heat_failure(record: SolidRecord, temperature: float) -> str:
         temperature: of its hottest place [K].
 
     Example:
-        >>> heat_failure(find("PA66"), 600.0)
+        >>> from pitchpoint.materials import solids
+        >>> heat_failure(solids.find("PA66"), 600.0)
         'PA66 melts at 260 degC'
-        >>> heat_failure(find("PA66"), 350.0)
+        >>> heat_failure(solids.find("PA66"), 350.0)
         ''
     """
     melts, bears = record.melting, record.service_limit

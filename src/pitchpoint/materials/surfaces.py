@@ -76,6 +76,7 @@ class Roughness(eqx.Module):
         """Build from Ra [m] of one flank, taken for both, or of each.
 
         Example:
+            >>> from pitchpoint.materials.surfaces import Roughness
             >>> round(float(Roughness.from_ra(0.8e-6).composite_rq) * 1e6, 4)
             1.418
         """

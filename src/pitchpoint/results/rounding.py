@@ -12,6 +12,7 @@ def difference(high: np.ndarray, low: np.ndarray) -> np.ndarray:
     """Difference of two values; zero where rounding alone has left it.
 
     Example:
+        >>> import numpy as np
         >>> difference(np.array([0.1 + 0.2, 2.0]), np.array([0.3, 1.0])).tolist()
         [0.0, 1.0]
     """

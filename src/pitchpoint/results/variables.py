@@ -254,7 +254,7 @@ VARIABLES: dict[str, Variable] = {
     "wind_up_range": Variable(
         "change of the wind-up with the phase", "Δθ range", "rad", "arcmin", "angle"
     ),
-    "wave_angle": _angle("angle of the wave generator against the circular spline", "θ"),
+    "turn_angle": _angle("angle that is turned", "θ"),
     "kinematic_error": Variable("kinematic error", "Δφ", "rad", "arcsec", "angle"),
     "kinematic_error_spectrum": Variable(
         "amplitude of the kinematic error", "|Δφ_n|", "rad", "arcsec", "angle"

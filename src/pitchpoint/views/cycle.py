@@ -143,7 +143,8 @@ def along(data: xr.Dataset, name: str, law: int, fact: Facts) -> Points:
     """Place [base pitches] and SI value, the pairs one after the other.
 
     Quantities of a point of the flanks stand over the place on the path from A; those of a helical
-    pair are taken at the middle of the face. Quantities of a whole contact line (`_WHOLE`) stand over
+    pair are taken at the middle of the face, those of a spur pair cut into slices where the load on them
+    is highest. Quantities of a whole contact line (`_WHOLE`) stand over
     the base pitches since the pair entered, which is the same place for straight teeth.
     """
     values = _values(data, name)[law]
@@ -152,6 +153,9 @@ def along(data: xr.Dataset, name: str, law: int, fact: Facts) -> Points:
         by_pair = np.broadcast_to(values[:, None], entered.shape)
     elif name in _WHOLE or data.sizes["slice"] == 1:
         by_pair = values.sum(axis=-1)
+    elif not fact.helical:
+        highest = np.argmax(data["load"].values[law], axis=-1, keepdims=True)
+        by_pair = np.take_along_axis(values, highest, axis=-1)[..., 0]
     else:
         by_pair = _at_middle(data, values, entered - fact.overlap_ratio / 2.0)
         entered = entered - fact.overlap_ratio / 2.0

@@ -1,4 +1,4 @@
-"""Kinematic error by deviations of the teeth: over a turn of the wave generator, and by order."""
+"""Kinematic error by deviations of the teeth: over a turn, and by order."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -60,26 +60,30 @@ def kinematic_error_answer(outcome: Outcome) -> str:
         for k in (-1, 0)
     )
     return (
-        f"{loaded} peak to peak under the operating torque over one turn of the wave generator, by "
-        f"deviations of the teeth; {rigid} if they were rigid and without load"
+        f"{loaded} peak to peak under the operating torque over {data.attrs['turn']}, by deviations of the "
+        f"teeth; {rigid} if they were rigid and without load"
     )
 
 
 def _panel(name: str, title: str, outcome: Outcome) -> Panel:
     data = outcome.parts["kinematic_error"]
-    splines = [str(spline) for spline in data["spline"].values]
-    deviate = np.any(data["kinematic_error_range"].values[:, : len(splines)] != 0.0, axis=0)
+    members = [str(member) for member in data["member"].values]
+    deviate = np.any(data["kinematic_error_range"].values[:, : len(members)] != 0.0, axis=0)
     bars = [
-        _spectrum(f"{name}_{position}", data, position, spline)
-        for position, spline in enumerate(splines)
+        _spectrum(f"{name}_{position}", data, position, member)
+        for position, member in enumerate(members)
         if deviate[position]
     ]
-    return Panel(title, [_turn(f"{name}_turn", data), *bars])
+    return Panel(title, [_turn(f"{name}_turn", data), *bars], note=data.attrs["note"])
+
+
+def _the(member: str) -> str:
+    return member if member.startswith("gear") else f"the {member}"
 
 
 def _turn(name: str, data: xr.Dataset) -> Figure:
-    """Error over one turn of the wave generator."""
-    angle = display("wave_angle", data["wave_angle"])
+    """Error by the deviations of both members."""
+    angle = display("turn_angle", data["turn_angle"])
     unit = show.unit(VARIABLES["kinematic_error"].display)
     traces = [
         plain(key, *continued(angle, display("kinematic_error", data["kinematic_error"][k])), unit)
@@ -87,37 +91,37 @@ def _turn(name: str, data: xr.Dataset) -> Figure:
     ]
     return Figure(
         name,
-        "Kinematic error over one turn of the wave generator",
+        f"Kinematic error over {data.attrs['turn']}",
         traces,
         layout(
-            "wave generator against circular spline θ [°]",
+            f"{data.attrs['turn_angle']} θ [°]",
             short_axis("kinematic_error"),
             xaxis={"range": [0, 360], "dtick": 90},
         ),
         "Rotation of the loaded member in the sense of its torque, less that of teeth without "
-        "deviations. At 0° the angles of both splines are zero at the long axis.",
+        "deviations.",
         tuple(_KEYS.values()),
         missing="No equilibrium was found.",
     )
 
 
-def _spectrum(name: str, data: xr.Dataset, position: int, spline: str) -> Figure:
-    """Amplitudes of the orders that the deviations of one spline make."""
+def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> Figure:
+    """Amplitudes of the orders that the deviations of one member make."""
     lines = display("kinematic_error_spectrum", data["kinematic_error_spectrum"][:, position])
     alone = float(data["kinematic_error_range"].values[-1, position])
     shown = _orders(lines)
     return Figure(
         name,
-        f"Orders by the {spline}",
+        f"Orders by {_the(member)}",
         [_bars(key, lines[k], shown) for k, key in enumerate(_KEYS.values())],
         layout(
-            f"order, per turn against the {spline}",
+            f"order, per {data.attrs['own_turn'].format(member)}",
             short_axis("kinematic_error_spectrum"),
             xaxis={"range": [0.4, shown[-1] + 0.6], "dtick": 1 if shown.size < 25 else None},
             yaxis={"rangemode": "tozero"},
             barmode="group",
         ),
-        f"With deviations of the {spline} alone, over one turn of the wave generator against it: "
+        f"With deviations of {_the(member)} alone, over {data.attrs['turn_alone']}: "
         f"{show.quantity('kinematic_error_range', alone)} peak to peak under the operating torque. "
         "Orders of the mesh, about the number of teeth, are not drawn.",
         tuple(replace(key, dash="") for key in _KEYS.values()),

@@ -596,6 +596,9 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
         )
     else:
         notes.append("Between B and D one pair carries the load, outside two share it.")
+    cycles = [one.parts["cycle"] for one in outcomes.values() if "cycle" in one.parts]
+    if not fact.helical and any(cycle.sizes["slice"] > 1 for cycle in cycles):
+        notes.append("What differs over the face is shown where the load on it is highest.")
     if fact.backwards:
         notes.append("Gear 2 drives, so every pair runs from E to A, and the phase runs backwards.")
     return notes

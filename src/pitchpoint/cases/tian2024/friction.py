@@ -2,14 +2,15 @@
 
 from functools import partial
 
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw, xu_2007
 
 __all__ = ["LAWS", "method_1", "method_2"]
 
-Each = Float[Array, "*b"]
+Each = Float[Numbers, "*#b"]
 
 
 def method_1(
@@ -19,7 +20,7 @@ def method_1(
     reference_radius: Each,
     viscosity: Each,
     roughness_ra: Each,
-    factor: float = 2.0,
+    factor: Each | float = 2.0,
 ) -> Each:
     """Eq. 12 with the load of each contact instead of that of the mesh, X_L = (F/b)^-0.0651.
 

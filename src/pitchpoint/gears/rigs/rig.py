@@ -1,12 +1,15 @@
 """What test rigs have in common: one contact that stays where it is."""
 
 import abc
+from typing import Self
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, Reference
 
@@ -35,6 +38,14 @@ class Rig(Mesh):
         """The load presses along the normal."""
         return jnp.array([0.0, 0.0, 1.0])
 
+    def driven_by(self, member: str | int) -> Self:
+        """The rig as it is, driven by body 0; its load presses and does not drive."""
+        if member not in (0, self.coordinates[0].body):
+            raise InputError(
+                f"the {self.coordinates[0].body} of a test rig sets the speed, and nothing else drives it"
+            )
+        return self
+
     @property
     def period(self) -> Float[Array, ""]:
         """One turn of body 0."""
@@ -59,7 +70,7 @@ class Rig(Mesh):
         """Nothing enters or leaves."""
         return jnp.zeros(1)
 
-    def spots(self, contacts: Contacts, phase: Float[Array, "*b"]) -> tuple[Spot, Spot]:
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Both bodies turn on under the contact."""
         lanes = contacts.path.shape
         first, second = (

@@ -1,0 +1,82 @@
+"""Balances of mesh cycles in rows of one size, by the one program of a run that knows its friction laws.
+
+Contacts and shares come from programs without a law, and figures are read by such, so that another law
+compiles its balance alone.
+"""
+
+from dataclasses import replace
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax
+from pitchpoint.efficiency.quasi_static import (
+    Design,
+    Engagement,
+    Models,
+    Operation,
+    balanced,
+    engagement_alone,
+)
+from pitchpoint.loading.balance import Balance
+from pitchpoint.programs import program
+
+__all__ = ["CHUNK", "NODES", "Row", "balance_in_rows", "balances", "engagements", "stacked"]
+
+CHUNK = 8
+"""Rows that are computed together: one compiled program serves any number of them."""
+
+NODES = 24
+"""Nodes of a row in each segment between events."""
+
+Row = tuple[Design, Operation, Engagement]
+
+
+@program
+def engagements(designs: Design, load: Float[Array, " row"], models: Models) -> Engagement:
+    """Contacts and shares of every row, for meshes with few contacts; see `engagement_alone`."""
+    found: Engagement = eqx.filter_vmap(
+        lambda design, one: engagement_alone(design, one, models, NODES)
+    )(designs, load)
+    return found
+
+
+@program
+def balances(rows: Row, models: Models) -> Balance:
+    """Balance of every row."""
+    found: Balance = eqx.filter_vmap(
+        lambda design, operation, known: balanced(design, operation, known, models)
+    )(*rows)
+    return found
+
+
+def stacked(rows: list[Any]) -> Any:
+    """Trees of arrays as one with an axis in front."""
+    return jax.tree.map(lambda *leaves: np.stack(leaves), *rows)
+
+
+def balance_in_rows(
+    design: Design, operation: Operation, known: Engagement, models: Models
+) -> Balance:
+    """Balance of one cycle, by the program of `balances`; a cycle of more nodes takes several rows."""
+    count = known.nodes // NODES if known.nodes % NODES == 0 else 1
+    parts = [_part(known, number, count) for number in range(count)]
+    rows = [(design, operation, part) for part in parts]
+    found = jax.device_get(balances(stacked(rows + rows[-1:] * (CHUNK - count)), models))
+
+    def joined(leaf: np.ndarray) -> np.ndarray:
+        return np.concatenate(leaf[:count], axis=-1) if leaf.ndim > 1 else leaf.max()
+
+    whole: Balance = jax.tree.map(joined, found)
+    return whole
+
+
+def _part(known: Engagement, number: int, count: int) -> Engagement:
+    """One of so many equal parts of the nodes."""
+    alone = replace(known, body=None, nodes=known.nodes // count)
+    found: Engagement = jax.tree.map(
+        lambda leaf: np.split(np.asarray(leaf), count, axis=-1)[number], alone
+    )
+    return found

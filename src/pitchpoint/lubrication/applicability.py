@@ -1,0 +1,44 @@
+"""Which laws hold for the contacts of a mesh, by what they ask for."""
+
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.conditions import arguments, of_other_shape
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+
+__all__ = ["OF_PITCH_POINT", "applies", "asks_for_pitch_point"]
+
+OF_PITCH_POINT = frozenset(
+    {
+        "face_width",
+        "pitch_line_speed",
+        "reference_line_load",
+        "reference_radius",
+        "reference_sum_speed",
+    }
+)
+"""Conditions that only a mesh with a pitch point has."""
+
+
+def asks_for_pitch_point(law: FrictionLaw) -> bool:
+    """True if a law asks for what only a mesh with a pitch point has.
+
+    Example:
+        >>> from pitchpoint.lubrication.friction_coefficient import LAWS
+        >>> [law.name for law in LAWS if asks_for_pitch_point(law)]
+        ['iso_tr_14179_2']
+    """
+    wanted, _ = arguments(law.function)
+    return not OF_PITCH_POINT.isdisjoint(wanted)
+
+
+def applies(law: FrictionLaw, mesh: Mesh) -> str | None:
+    """None if a law holds for the contacts of a mesh, else why not, in one sentence without its stop.
+
+    Args:
+        law: of friction.
+        mesh: any family.
+    """
+    if told := of_other_shape(law, mesh.shape):
+        return told
+    if mesh.pitch_point or not asks_for_pitch_point(law):
+        return None
+    return f"'{law.name}' is a law for a whole mesh, and these gears have no pitch point"
