@@ -251,7 +251,7 @@ DISCS = design_of(TwinDisc(array(RADII), array(0.01), array(0.9)))
 
 
 def discs(inertia, mass, held, creep, times, rate):
-    shifted = Support(array(mass), array([[0.0, 1.0, 0.0]]), array([[held]]), array([[0.0]]))
+    shifted = Support(mass, np.array([[0.0, 1.0, 0.0]]), np.array([[held]]), np.zeros((1, 1)))
     spring = 1e6
     bodies = (Body(inertia[0]), Body(inertia[1], support=shifted), Body(1.0, [NORMAL]))
     given = Moving(

@@ -127,7 +127,7 @@ def _supports(bodies: Sequence[Body]) -> Iterator[tuple[int, Support]]:
             yield number, body.support
 
 
-def _assembled(bodies: Sequence[Body], blocks: Sequence[Matrix]) -> Matrix:
+def _assembled(bodies: Sequence[Body], blocks: Sequence[Array]) -> Matrix:
     turning = jnp.zeros((len(bodies), len(bodies)))
     whole: Matrix = jax.scipy.linalg.block_diag(turning, *blocks)
     return whole

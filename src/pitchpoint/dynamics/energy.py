@@ -6,12 +6,13 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.system import System
+from pitchpoint.factored import Arrays
 
 __all__ = ["Account", "Energies", "energies"]
 
 Pairs = Float[Array, "pair element node"]
 Each = Float[Array, ""]
-Times = Float[Array, " time"]
+Times = Float[Arrays, " time"]
 
 
 class Energies(eqx.Module):

@@ -119,8 +119,8 @@ def relaxation_time(ratio: ArrayLike, mass: ArrayLike, stiffness: ArrayLike) -> 
         stiffness: of the mesh [N/m].
 
     Example:
-        >>> float(relaxation_time(0.05, 1.0, 4e8))
-        5e-06
+        >>> round(1e6 * float(relaxation_time(0.05, 1.0, 4e8)), 6)
+        5.0
     """
     return 2.0 * jnp.asarray(ratio) * jnp.sqrt(jnp.asarray(mass) / stiffness)
 
@@ -246,5 +246,8 @@ def _lanes(arms: Float[Array, "coordinate pair slice *b"], values: Coordinates) 
     return jnp.sum(arms * values[:, None, None], axis=0)
 
 
-def _column(values: Float[Array, " coordinate"], like: Coordinates) -> Coordinates:
+def _column(
+    values: Float[Array, " coordinate"], like: Coordinates
+) -> Float[Array, "coordinate ..."]:
+    """Values along the first axis of others, to go with all of these."""
     return values.reshape(-1, *[1] * (like.ndim - 1))

@@ -70,8 +70,8 @@ def transient(
     moving: Moving,
     times: ArrayLike | Sequence[float],
     *,
-    place: ArrayLike = 0.0,
-    rate: ArrayLike = 0.0,
+    place: ArrayLike | Sequence[float] = 0.0,
+    rate: ArrayLike | Sequence[float] = 0.0,
 ) -> Transient:
     """Motion from a given state, from rest by default, under torques, friction and drag.
 
