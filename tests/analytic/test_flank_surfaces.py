@@ -139,7 +139,8 @@ def test_relief_begins_where_the_drawing_says():
         ):
             tip = float(gear.tip_roll_length)
             rolls = tip + np.array([0.0, -0.5, -1.0]) * length * gear.side
-            spot = Spot(rolls**2 / (2.0 * abs(float(base))), *np.zeros((4, 3)))
+            none = np.zeros(3)
+            spot = Spot(rolls**2 / (2.0 * abs(float(base))), none, none, none.astype(int), none)
             np.testing.assert_allclose(
                 surface.missing(spot), RELIEF * np.array([1.0, 0.5, 0.0]), atol=1e-18
             )

@@ -12,7 +12,7 @@ from pitchpoint.factored import Arrays
 
 __all__ = ["Lanes", "Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
 
-Lanes = Float[Arrays, "pair slice *#b"]
+Lanes = Float[Arrays, "*#b"]
 
 
 class Spot(eqx.Module):
@@ -30,7 +30,7 @@ class Spot(eqx.Module):
     flank: Lanes
     across: Lanes
     angle: Lanes
-    tooth: Int[Arrays, "pair slice *#b"]
+    tooth: Int[Arrays, "*#b"]
     leaning: Lanes
 
 
@@ -111,7 +111,7 @@ def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spo
     return replace(contacts, gap=gap, curvature=curvature)
 
 
-def _bend(surfaces: tuple[Surface, ...], spot: Spot) -> Float[Array, "2 pair slice *#b"]:
+def _bend(surfaces: tuple[Surface, ...], spot: Spot) -> Float[Array, "2 *#b"]:
     """Second derivatives of the missing height along the flank and across it [1/m]."""
 
     def second(name: str) -> Lanes:

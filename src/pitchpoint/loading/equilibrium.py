@@ -163,7 +163,7 @@ def equilibrium(
     )
 
 
-def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *b"]) -> Each:
+def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each:
     """Approach at which the first of rigid contacts touches [rad or m]; arguments as in `equilibrium`."""
     touches = active & (arm > 0.0)
     return jnp.min(jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf), axis=(0, 1))
