@@ -1,1 +1,1 @@
-"""Dynamics of meshes: excitation, equations of motion, steady states, spectra, speed sweeps."""
+"""Dynamics of meshes: excitation, equations of motion, steady states, spectra, sweeps, transients."""

@@ -1,16 +1,18 @@
-"""Energy that goes through a mesh in one steady period."""
+"""Energy that goes through a mesh: in one steady period, and in a transient."""
 
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.system import System
+from pitchpoint.factored import Arrays
 
-__all__ = ["Energies", "energies"]
+__all__ = ["Account", "Energies", "energies"]
 
 Pairs = Float[Array, "pair element node"]
 Each = Float[Array, ""]
+Times = Float[Arrays, " time"]
 
 
 class Energies(eqx.Module):
@@ -41,6 +43,52 @@ class Energies(eqx.Module):
         parts = jnp.stack([self.load, self.damping, self.mesh, self.error, self.arm])
         largest = jnp.max(jnp.abs(parts))
         return jnp.abs(self.sum) / jnp.where(largest > 0.0, largest, 1.0)
+
+
+class Account(eqx.Module):
+    """Energy in a transient: what is there at each time, and what went through since its start [J].
+
+    Attributes:
+        kinetic: of all bodies.
+        contacts: elastic energy of the contacts.
+        bearings: elastic energy of the bearings.
+        put_in: by the external torques.
+        friction: lost in the contacts.
+        damping: lost to damping of contacts and bearings.
+        drag: lost to resistance and viscous torques of the bodies.
+        pressed: what the bodies did on the springs of the contacts.
+    """
+
+    kinetic: Times
+    contacts: Times
+    bearings: Times
+    put_in: Times
+    friction: Times
+    damping: Times
+    drag: Times
+    pressed: Times
+
+    @property
+    def mesh(self) -> Times:
+        """Parametric work: what phase adds to the springs beside what the bodies do on them.
+
+        Springs that stiffen or enter pressed bring energy in, those that soften or leave take it out.
+        """
+        return self.contacts - self.contacts[0] - self.pressed
+
+    @property
+    def sum(self) -> Times:
+        """What is left; zero where the equations of motion are solved."""
+        stored = self.kinetic + self.bearings
+        spent = self.friction + self.damping + self.drag + self.pressed
+        return self.put_in - spent - (stored - stored[0])
+
+    @property
+    def closure(self) -> Each:
+        """Most that is ever left, relative to the largest part; zero where nothing moves."""
+        parts = jnp.stack(jax.tree.leaves(self))
+        largest = jnp.max(jnp.abs(parts))
+        return jnp.max(jnp.abs(self.sum)) / jnp.where(largest > 0.0, largest, 1.0)
 
 
 def energies(system: System, response: Response) -> Energies:

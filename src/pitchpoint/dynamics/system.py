@@ -6,7 +6,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
 
-__all__ = ["System", "modal_damping", "reduced_mass", "reduced_system", "relative_motion"]
+__all__ = ["System", "modal_damping", "reduced_mass"]
 
 Matrix = Float[Array, "coordinate coordinate"]
 Vector = Float[Array, " coordinate"]
@@ -63,38 +63,6 @@ def reduced_mass(inertia: Float[Arrays, " body"], arm: Float[Arrays, " body"]) -
         1.2
     """
     return 1.0 / jnp.sum(arm**2 / inertia)
-
-
-def relative_motion(
-    inertia: Float[Arrays, " body"], arm: Float[Arrays, " body"]
-) -> Float[Array, "body 1"]:
-    """Motion of each body for a unit of closure along the contact, without rigid motion.
-
-    Args:
-        inertia, arm: as in `reduced_mass`.
-
-    Returns:
-        Basis B: the closure is one, and no momentum is put on the motion that keeps the contact.
-    """
-    return (reduced_mass(inertia, arm) * arm / inertia)[:, None]
-
-
-def reduced_system(
-    mass: Float[Arrays, "body body"],
-    basis: Float[Arrays, "body coordinate"],
-    torque: Float[Arrays, " body"],
-) -> tuple[Matrix, Vector]:
-    """Mass and load on reduced coordinates, for a motion `basis` times coordinates.
-
-    Args:
-        mass: of the bodies [kg or kg m2].
-        basis: motion of the bodies per unit of each coordinate, without rigid motion.
-        torque: nominal external torques and forces on the bodies, in equilibrium [N m or N].
-
-    Returns:
-        B' M B and B' Q. Contacts with arms n on the bodies have arms B' n on the coordinates.
-    """
-    return basis.T @ mass @ basis, basis.T @ torque
 
 
 def _congruent(left: Matrix, matrix: Matrix) -> Matrix:

@@ -1,0 +1,242 @@
+"""Transients of a mesh with friction, such as a start from rest, by diffrax."""
+
+from collections.abc import Callable, Sequence
+
+import diffrax
+import equinox as eqx
+import numpy as np
+from jax.typing import ArrayLike
+from jaxtyping import Array, Bool, Float, Int
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.dynamics.bodies import stiffness
+from pitchpoint.dynamics.energy import Account
+from pitchpoint.dynamics.right_hand_side import (
+    ContactForces,
+    Moving,
+    acceleration,
+    contact_forces,
+    external,
+    powers,
+)
+from pitchpoint.errors import InputError
+from pitchpoint.programs import fast_program
+from pitchpoint.status import Code, Status
+
+__all__ = ["Transient", "transient"]
+
+Vector = Float[Array, " coordinate"]
+States = Float[Array, "coordinate time"]
+
+TOLERANCE = 1e-10
+"""Largest estimated error of a step over the amplitude at which the external torques swing."""
+
+ROUNDING = 1e-12
+"""The same over the state itself, which bounds it from below where bodies have turned far."""
+
+MOST_STEPS = 1_000_000
+"""Steps after which a transient is given up."""
+
+SHORTEST = 1e-15
+"""Step over the whole duration below which it is given up too."""
+
+_WORKS = 5
+"""Integrals of powers, see `right_hand_side.powers`."""
+
+
+class Transient(eqx.Module):
+    """Motion at given times; what was not reached is NaN.
+
+    Attributes:
+        time: [s].
+        place, rate: of all coordinates [rad or m, rad/s or m/s]: those of the mesh, then the
+            translations of bodies.
+        found: forces at the contacts.
+        torque: external ones on all coordinates [N m or N].
+        energy: where it is and where it went.
+        status: the residual is the closure of the energy, iterations are steps.
+    """
+
+    time: Float[Array, " time"]
+    place: States
+    rate: States
+    found: ContactForces
+    torque: States
+    energy: Account
+    status: Status
+
+
+def transient(
+    moving: Moving,
+    times: ArrayLike | Sequence[float],
+    *,
+    place: ArrayLike | Sequence[float] = 0.0,
+    rate: ArrayLike | Sequence[float] = 0.0,
+) -> Transient:
+    """Motion from a given state, from rest by default, under torques, friction and drag.
+
+    Integrated by an explicit method of order eight with steps that its error sets: where pairs enter or
+    leave, teeth part and sliding changes its sense, it finds the place by itself. The works of all
+    forces are integrated beside the motion, so that the balance of energy says how well both are known.
+    Friction needs speed: at rest nothing sticks, and bodies under it creep at a speed of the order of
+    `Moving.creep`. Back flanks are left out.
+
+    Args:
+        moving: mesh and bodies.
+        times: at which the motion is kept, growing; the first is the start [s].
+        place, rate: of all coordinates at the start.
+
+    Raises:
+        InputError: what moves is not complete, or has effects that a transient leaves out.
+    """
+    asked = np.asarray(times, float)
+    _check(moving, asked)
+    size = moving.mass.shape[0]
+    start = [jnp.asarray(np.broadcast_to(np.asarray(v, float), (size,))) for v in (place, rate)]
+    found: Transient = _travel(moving, array(asked), *start)
+    return found
+
+
+def _check(moving: Moving, times: np.ndarray) -> None:
+    """InputError in one sentence."""
+    mesh, names = moving.design.mesh, [one.body for one in moving.design.mesh.coordinates]
+    if len(moving.bodies) != len(names):
+        told = f"{', '.join(names)}; {len(moving.bodies)} bodies are given"
+        raise InputError(f"a transient asks for one body for each of {told}")
+    for name, body in zip(names, moving.bodies, strict=True):
+        if not float(body.inertia) > 0.0:
+            raise InputError(f"{name} needs a positive inertia, got {float(body.inertia):g}")
+        if body.support is not None and not float(body.support.mass) > 0.0:
+            raise InputError(f"{name} needs a positive mass, got {float(body.support.mass):g}")
+    if times.size < 2 or not np.all(np.diff(times) > 0.0):
+        raise InputError("times of a transient grow from its start on, at least two of them")
+    if mesh.couples:
+        raise InputError(
+            "a transient takes each pair of teeth as a spring, and a ring couples these"
+        )
+    if moving.stiffness is None and not mesh.toothed:
+        raise InputError("bodies without teeth need the stiffness of their contact in a transient")
+    if moving.models.rolling.name != "none" or moving.design.drag:
+        raise InputError(
+            "a transient leaves out rolling resistance and the losses of a design beside its teeth; "
+            "give them as resistance and viscous torque of the bodies"
+        )
+
+
+@fast_program
+def _travel(moving: Moving, times: Array, place: Vector, rate: Vector) -> Transient:
+    scale = _Scale(moving, times, place, rate)
+    states, reached, steps = _integrated(moving, times, scale, scale.scaled(place, rate))
+    place, rate, works = scale.parts(states.T)
+    return _described(moving, times, (place, rate, works), reached, steps)
+
+
+class _Scale:
+    """Units in which all parts of the state are of order one.
+
+    Energy is counted in what the torques store as they deflect the bodies, or what is there at the
+    start, and places and rates as their shares of it at the highest natural frequency.
+    """
+
+    def __init__(self, moving: Moving, times: Array, place: Vector, rate: Vector) -> None:
+        mass, held = moving.mass, stiffness(moving.bodies)
+        found = contact_forces(moving, place, rate)
+        pushed = found.stiffness * found.contacts.normal**2
+        stiff = jnp.max((jnp.diag(held) + jnp.sum(pushed, axis=(1, 2))) / mass)
+        frequency = jnp.where(stiff > 0.0, jnp.sqrt(stiff), 1.0 / (times[-1] - times[0]))
+        kicked = jnp.sum(_pushes(moving) ** 2 / mass) / frequency**2
+        there = mass @ rate**2 + place @ held @ place
+        energy = (kicked + there) / 2.0 + found.energy
+        self.energy = jnp.where(energy > 0.0, energy, 1.0)
+        self.rate = jnp.sqrt(2.0 * self.energy / mass)
+        self.place = self.rate / frequency
+
+    def scaled(self, place: Vector, rate: Vector) -> Float[Array, " state"]:
+        """State without dimensions, no work done."""
+        return jnp.concatenate([place / self.place, rate / self.rate, jnp.zeros(_WORKS)])
+
+    def parts(self, state: Float[Array, "state *b"]) -> tuple[Array, Array, Array]:
+        """Places, rates and works of states without dimensions."""
+        size = self.place.shape[0]
+        units = jnp.concatenate([self.place, self.rate, jnp.full(_WORKS, self.energy)])
+        whole = units.reshape(-1, *[1] * (state.ndim - 1)) * state
+        return whole[:size], whole[size : 2 * size], whole[2 * size :]
+
+    def changes(self, rate: Vector, faster: Vector, powers: Array) -> Float[Array, " state"]:
+        """Derivative of the state without dimensions."""
+        return jnp.concatenate([rate / self.place, faster / self.rate, powers / self.energy])
+
+
+def _pushes(moving: Moving) -> Vector:
+    """Largest external torque and resistance on each coordinate."""
+    own = [jnp.max(jnp.abs(body.torque)) + body.resistance for body in moving.bodies]
+    return moving.padded(jnp.stack(own))
+
+
+def _integrated(
+    moving: Moving, times: Array, scale: _Scale, start: Array
+) -> tuple[Float[Array, "time state"], Bool[Array, ""], Int[Array, ""]]:
+    """States without dimensions at all times, whether all were reached, and the steps taken."""
+    shortest = SHORTEST * (times[-1] - times[0])
+    control = diffrax.PIDController(
+        rtol=ROUNDING, atol=TOLERANCE, dtmin=shortest, force_dtmin=False
+    )
+    solution = diffrax.diffeqsolve(
+        diffrax.ODETerm(_rate(moving, scale)),
+        diffrax.Dopri8(),
+        t0=times[0],
+        t1=times[-1],
+        dt0=None,
+        y0=start,
+        saveat=diffrax.SaveAt(ts=times),
+        stepsize_controller=diffrax.ClipStepSizeController(
+            control, step_ts=times[1:], jump_ts=_bends(moving.knots, times)
+        ),
+        adjoint=diffrax.ForwardMode(),
+        max_steps=MOST_STEPS,
+        throw=False,
+    )
+    assert solution.ys is not None
+    reached = solution.result == diffrax.RESULTS.successful
+    return solution.ys, reached, solution.stats["num_steps"]
+
+
+def _bends(knots: Array, times: Array) -> Array | None:
+    """Times between which the torques are straight; those up to the start are put behind the end."""
+    return None if knots.size == 1 else jnp.where(knots > times[0], knots, times[-1] + 1.0)
+
+
+def _rate(moving: Moving, scale: _Scale) -> Callable[..., Array]:
+    def rate(time: Array, state: Array, _: None) -> Array:
+        place, moved, _works = scale.parts(state)
+        found = contact_forces(moving, place, moved)
+        faster = acceleration(moving, time, place, moved, found)
+        return scale.changes(moved, faster, powers(moving, time, moved, found))
+
+    return rate
+
+
+def _described(
+    moving: Moving,
+    times: Array,
+    states: tuple[Array, Array, Array],
+    reached: Bool[Array, ""],
+    steps: Int[Array, ""],
+) -> Transient:
+    """Forces and energies of states that were found."""
+    place, rate, works = (jnp.where(jnp.isfinite(part), part, jnp.nan) for part in states)
+    found = contact_forces(moving, place, rate)
+    account = Account(
+        kinetic=moving.mass @ rate**2 / 2.0,
+        contacts=found.energy,
+        bearings=jnp.sum(place * (stiffness(moving.bodies) @ place), axis=0) / 2.0,
+        put_in=works[0],
+        friction=works[1],
+        damping=works[2],
+        drag=works[3],
+        pressed=works[4],
+    )
+    code = jnp.where(reached, int(Code.SOLVED), int(Code.NOT_CONVERGED))
+    status = Status(code, account.closure, steps)
+    torque = external(moving, times)
+    return Transient(times, place, rate, found, torque, account, status)
