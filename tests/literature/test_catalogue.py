@@ -239,9 +239,9 @@ def test_support_of_the_case_is_that_of_the_balls():
     load, ball = size_32().inner_load[:, list(LOADS).index(29.0 / 2.0)].mean(), 6.35
     yields = 4.36e-4 * load ** (2.0 / 3.0) / ball ** (1.0 / 3.0) * 1e-3
     slope = 1.5 * load / yields / (np.pi * 69.5e-3 / 23)
-    support = float(drive("ball_bearing").design.mesh.ring.support_stiffness)
+    support = float(drive("ball_bearing").design.mesh.rim.support_stiffness)
     assert slope == pytest.approx(support, rel=0.01)
-    assert np.isinf(drive().design.mesh.ring.support_stiffness)
+    assert np.isinf(drive().design.mesh.rim.support_stiffness)
 
 
 @pytest.mark.parametrize("conformity", [0.515, 0.53])

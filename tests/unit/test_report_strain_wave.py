@@ -17,7 +17,7 @@ from pitchpoint.cases.gear_tables import StrainWaveGears
 from pitchpoint.cases.kinematic_error import _turns
 from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
-from pitchpoint.gears.strain_wave_design import _rates
+from pitchpoint.gears.strain_wave import rates
 from pitchpoint.results.store import dataset
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel
@@ -254,7 +254,7 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
     driver = changes.setdefault("driver", "wave generator")
     loaded = changes.setdefault("loaded", "flexspline")
     fixed = next(name for name in MEMBERS if name not in (driver, loaded))
-    rates, _ = _rates(Z1, Z2, fixed, driver)
+    turning, _, _ = rates(np.array([Z1, Z2], float), *map(MEMBERS.index, (fixed, driver)))
     manifest = {
         "case": "by hand",
         "variant": "default",
@@ -262,7 +262,7 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
         "summary": "",
         "oil": "oil",
         "members": list(MEMBERS),
-        "motion": rates.tolist(),
+        "motion": turning.tolist(),
         "period": 2.0 * pi / Z1 / abs(rates[1] - rates[0]),
         "averaging": "base_pitch",
         "finished": True,
