@@ -263,7 +263,7 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
         "oil": "oil",
         "members": list(MEMBERS),
         "motion": turning.tolist(),
-        "period": 2.0 * pi / Z1 / abs(rates[1] - rates[0]),
+        "period": 2.0 * pi / Z1 / abs(turning[1] - turning[0]),
         "averaging": "base_pitch",
         "finished": True,
         "warnings": [],
