@@ -12,6 +12,8 @@ from uuid import uuid4
 
 import xarray as xr
 
+from pitchpoint.analyses.analysis import Piece
+from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.comparison import Row, compare, demand_parts
@@ -20,7 +22,7 @@ from pitchpoint.cases.failures import worst_first
 from pitchpoint.cases.library import as_text, find, names
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Study, validate
-from pitchpoint.cases.studies import Job, Variant, jobs
+from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
@@ -44,6 +46,7 @@ from pitchpoint.results.store import (
     without_nan,
     write_text,
 )
+from pitchpoint.runs.jobs import Job, jobs
 
 __all__ = ["Outcome", "Progress", "open_result", "run", "run_variant"]
 
@@ -188,7 +191,7 @@ def run_variant(
     for job in work:
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
-        if not job.name.startswith("study_"):
+        if not is_study(job.name):
             told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
             outcome.manifest["warnings"] = worst_first(told)
         _note(outcome, folder, finished=False)
@@ -293,7 +296,7 @@ def compare_case(
     if not built.case.targets:
         raise InputError("has no targets to compare with", file=made.name)
     needed = {target.reads for target in built.case.targets}
-    work = list(jobs(made, {}))
+    work = jobs(made, {})
     demand_parts(built.case.targets, [job.name for job in work], made.name)
     parts = {}
     with (watch or _unwatched)(None) as progress:
@@ -339,11 +342,11 @@ def _part(
     if found is not None:
         return found
     pieces = []
-    for number, compute in enumerate(job.pieces):
+    for number, description in enumerate(job.pieces):
         path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
         piece = None if variant.own is not None else _found(path, mark)
         if piece is None:
-            piece = _computed(compute, progress, variant)
+            piece = _computed(job, description, progress, variant)
             piece.attrs.update(labels)
             if len(job.pieces) > 1:
                 _keep(piece, path)
@@ -362,11 +365,9 @@ def _drop_pieces(folder: Path, part: str) -> None:
         path.unlink()
 
 
-def _computed(
-    compute: Callable[[Callable[[int], None]], xr.Dataset], progress: Progress, variant: Variant
-) -> xr.Dataset:
+def _computed(job: Job, piece: Piece, progress: Progress, variant: Variant) -> xr.Dataset:
     try:
-        return compute(progress.points)
+        return job.compute(piece, progress.points)
     except InputError as error:
         raise error.at(file=error.file or variant.name) from None
 
@@ -404,7 +405,7 @@ def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
 
 def _jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
     """Parts of a variant; InputError if a target reads one that is not among them."""
-    made = list(jobs(variant, studies))
+    made = jobs(variant, studies)
     if _measured(variant):
         targets = validate(variant.document()).targets
         demand_parts(targets, [job.name for job in made], variant.name)
