@@ -32,7 +32,7 @@ import strain_wave_numpy as rival
 import xarray as xr
 
 from pitchpoint._jax import jnp
-from pitchpoint.analyses.loss_map import compute, map_axes, pieces
+from pitchpoint.analyses.loss_map import at_torque, map_axes, pieces
 from pitchpoint.cases.build import Built
 from pitchpoint.efficiency import quasi_static
 from pitchpoint.efficiency.quasi_static import Engagement, Operation, cycle, engagement
@@ -128,7 +128,7 @@ def whole_map(built: Built) -> list[xr.Dataset]:
 
 
 def torque_of(built: Built, number: int) -> xr.Dataset:
-    return compute(built, pieces(built)[number], lambda done: None)
+    return at_torque(built, pieces(built)[number], lambda done: None)
 
 
 def parts_of_one(built: Built, repeats: int) -> None:

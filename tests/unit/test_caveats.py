@@ -65,19 +65,19 @@ def cycle(**changes: Any) -> dict[str, np.ndarray]:
     ],
 )
 def test_a_law_out_of_its_range_says_why(law: Any, run: dict[str, Any], words: str) -> None:
-    assert caveats.outside(case(), law, cycle()) == []
-    (told,) = caveats.outside(case(), law, cycle(**run))
+    assert caveats.why_outside(case(), law, cycle()) == []
+    (told,) = caveats.why_outside(case(), law, cycle(**run))
     assert words in told
 
 
 def test_flanks_without_roughness_have_a_film_without_limit() -> None:
-    assert caveats.outside(case(), XU, cycle(lambda_ratio=inf)) == []
+    assert caveats.why_outside(case(), XU, cycle(lambda_ratio=inf)) == []
 
 
 def test_rolling_that_is_counted_twice_is_told_with_its_share() -> None:
-    (told,) = caveats.outside(case("wu_cheng_1991"), ISO, cycle())
+    (told,) = caveats.why_outside(case("wu_cheng_1991"), ISO, cycle())
     assert "rolling counts twice, here with 25 % of the loss" in told
-    assert caveats.outside(case("wu_cheng_1991"), XU, cycle()) == []
+    assert caveats.why_outside(case("wu_cheng_1991"), XU, cycle()) == []
 
 
 def test_limits_of_laws_are_listed() -> None:

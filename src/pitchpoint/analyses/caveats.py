@@ -21,9 +21,9 @@ __all__ = [
     "demand_motion",
     "face_warning",
     "jamming_words",
-    "outside",
     "pressure_warning",
     "told_of_law",
+    "why_outside",
 ]
 
 
@@ -164,7 +164,7 @@ def told_of_law(law: FrictionLaw, reasons: Sequence[str]) -> list[str]:
     return [f"{law.title}: {reason}." for reason in reasons]
 
 
-def outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
+def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
     reasons = [
         f"the {name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}, "

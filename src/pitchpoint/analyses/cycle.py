@@ -11,9 +11,9 @@ from pitchpoint.analyses.caveats import (
     demand_convergence,
     demand_motion,
     face_warning,
-    outside,
     pressure_warning,
     told_of_law,
+    why_outside,
 )
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
@@ -46,7 +46,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     warnings = [
         text
         for law, run in zip(built.laws, runs, strict=True)
-        for text in told_of_law(law, outside(built, law, run))
+        for text in told_of_law(law, why_outside(built, law, run))
     ]
     warnings += conformal_warning(built.design.mesh, runs[0])
     warnings += pressure_warning(built, runs)

@@ -27,7 +27,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
 
-__all__ = ["LOSS_MAP", "compute", "map_axes", "pieces"]
+__all__ = ["LOSS_MAP", "at_torque", "map_axes", "pieces"]
 
 STATES = 1 << 20
 """Contacts (pairs, slices, nodes of the cycle, operating points) that are computed together at most."""
@@ -88,7 +88,7 @@ def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     )
 
 
-def compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def at_torque(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     """The map at one torque."""
     torque, (speeds, degrees) = float(piece["torque"]), map_axes(built)[1:]
     point = replace(built.operation, load=array(torque))
@@ -184,7 +184,7 @@ LOSS_MAP = Analysis(
     name="loss_map",
     title="loss map",
     lacks=untransmitted,
-    compute=compute,
+    compute=at_torque,
     pieces=pieces,
     joined=_joined,
 )

@@ -7,7 +7,7 @@ from typing import Any
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
-from pitchpoint.analyses.caveats import outside
+from pitchpoint.analyses.caveats import why_outside
 from pitchpoint.analyses.figures import (
     CONTACT,
     MAIN,
@@ -54,7 +54,7 @@ def _laws(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     title = "friction laws that apply"
     data = summaries([built], considered, {}, title=title, may_lock=True)
     reasons = [
-        outside(built, models.law, run)
+        why_outside(built, models.law, run)
         for models, run in zip(considered, profiles(built, considered), strict=True)
     ]
     outside = [
