@@ -223,6 +223,20 @@ def test_run_leaves_results_that_are_not_computed_twice(
     assert changed["operation"] != made["operation"]
 
 
+def test_every_part_says_what_became_of_its_solves(repeated: tuple[Path, Path]) -> None:
+    (outcome,) = running.open_result(repeated[0]).values()
+    solves = {name: json.loads(data.attrs["solve"]) for name, data in outcome.parts.items()}
+    for name, told in solves.items():
+        assert told.keys() == {"code", "sentence", "residual", "iterations"}
+        assert told["code"] == 0, f"{name}: {told['sentence']}"
+    assert solves["teeth"]["residual"] is None
+    swept = next(name for name in solves if name.startswith("study_"))
+    for name in ("operation", "back_driving", swept):
+        assert solves[name]["sentence"] == "a solution was found"
+        assert 0.0 <= solves[name]["residual"] < 1e-10
+        assert solves[name]["iterations"] > 1
+
+
 def test_a_record_repeats_its_result_bit_for_bit(repeated: tuple[Path, Path]) -> None:
     first, again = (folder / "default" for folder in repeated)
     files = {path.name for path in first.iterdir()}

@@ -23,7 +23,7 @@ from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-PAIR, MODIFIED, PLASTIC, WAVE, TARGETS = (text for kind, text in BLOCKS if kind == "toml")
+PAIR, MODIFIED, PLASTIC, WAVE, BALL, TARGETS = (text for kind, text in BLOCKS if kind == "toml")
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
 SET_UP = [
     "sh bootstrap && .venv/bin/pitchpoint run tian2024",
@@ -34,6 +34,7 @@ CASES = {
     "modified": (PAIR, MODIFIED),
     "plastic": (PAIR, PLASTIC),
     "wave": WAVE,
+    "ball": BALL,
     "targets": (WAVE, TARGETS),
 }
 """Whole cases: a block that goes on with another stands behind it."""

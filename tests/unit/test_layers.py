@@ -135,3 +135,18 @@ def test_nothing_heavy_is_loaded(code: str) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1].strip() == "loaded:"
+
+
+PHYSICS = ("contact", "loading", "lubrication", "efficiency", "dynamics")
+FAMILIES = {"CylindricalPair", "StrainWave", "TwinDisc", "BallOnDisc"}
+
+
+def test_physics_does_not_ask_for_the_family() -> None:
+    """Neither its class nor a question that stands for it; `gears` answers what all families are asked."""
+    for room in PHYSICS:
+        for file in sorted((SOURCE / room).rglob("*.py")):
+            tree = ast.parse(file.read_text("utf-8"))
+            names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+            asked = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+            assert not names & FAMILIES, file.name
+            assert not asked & {"clearances", "has_wave", "has_path", "ring_loads"}, file.name

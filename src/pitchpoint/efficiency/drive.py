@@ -22,6 +22,7 @@ from pitchpoint.efficiency.quasi_static import (
 from pitchpoint.errors import InputError
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.wind_up import wind_up
+from pitchpoint.programs import program
 
 __all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "output_wind_up"]
 
@@ -196,6 +197,7 @@ class DriveCycle(eqx.Module):
         return jnp.any(jnp.stack(each), axis=0)
 
 
+@program
 def drive_cycle(
     drive: Drive, operation: Operation, models: Sequence[Models], nodes: int = 12
 ) -> DriveCycle:
@@ -269,6 +271,7 @@ def _beside(seat: Bearing, stage: Stage, behind: Stage, found: State) -> Float[A
     return jnp.stack([cosine * x - sine * y, sine * x + cosine * y, z])[..., None]
 
 
+@program
 def output_wind_up(
     drive: Drive, load: Each, models: Sequence[Models], nodes: int = 12
 ) -> tuple[Each, Each]:

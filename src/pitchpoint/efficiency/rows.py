@@ -67,7 +67,7 @@ def balance_in_rows(
     found = jax.device_get(balances(stacked(rows + rows[-1:] * (CHUNK - count)), models))
 
     def joined(leaf: np.ndarray) -> np.ndarray:
-        return np.concatenate(leaf[:count], axis=-1) if leaf.ndim > 1 else leaf.max()
+        return np.concatenate(leaf[:count], axis=-1) if leaf.ndim > 1 else np.asarray(leaf.max())
 
     whole: Balance = jax.tree.map(joined, found)
     return whole
