@@ -279,12 +279,27 @@ def cite(
 
 
 @app.command()
-def models(json_: AsJson = False) -> None:
+def models(
+    matrix: Annotated[
+        bool, typer.Option("--matrix", help="Which analysis there is for which family, or why not.")
+    ] = False,
+    json_: AsJson = False,
+) -> None:
     """List the laws that can be chosen by name, with their ranges and sources."""
+    if matrix:
+        _show_matrix(json_)
+        return
     from pitchpoint.runs.catalogue import entries
 
     columns = ("kind", "name", "title", "range", "sources", "note")
     _show(entries(), json_, columns)
+
+
+def _show_matrix(as_json: bool) -> None:
+    from pitchpoint.runs.matrix import matrix
+
+    rows = matrix()
+    _show(rows, as_json, tuple(rows[0])[1:])
 
 
 def _settings(texts: list[str]) -> dict[str, Any]:

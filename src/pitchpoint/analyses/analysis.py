@@ -79,11 +79,14 @@ class Analysis(Entry):
             piece, so that another process can compute it.
         pieces: where the pieces lie, in order; one that is the whole by default.
         joined: the whole dataset from its pieces.
+        onward: of a march, the next piece after the last one as computed, None at its end; it begins after
+            `pieces`.
     """
 
     compute: Callable[[Built, Piece, Progress], xr.Dataset]
     pieces: Callable[[Built], Iterable[Piece]] = lambda built: ({},)
     joined: Callable[[Built, Sequence[xr.Dataset]], xr.Dataset] = _only
+    onward: Callable[[Built, xr.Dataset, Progress], xr.Dataset | None] | None = None
 
     def parts(self, subject: Subject) -> "Iterable[Analysis]":
         """The analysis itself, unless a case lacks something that it needs."""

@@ -11,8 +11,9 @@ from pitchpoint.analyses.studies import STUDIES
 from pitchpoint.analyses.teeth import TEETH
 from pitchpoint.analyses.torsion import TORSION
 from pitchpoint.registry import Registry
+from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["ANALYSES"]
+__all__ = ["ANALYSES", "register"]
 
 ANALYSES: Registry[Analysis | Several] = Registry(
     "analysis",
@@ -30,3 +31,9 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     LOSS_MAP,
     BACK_DRIVING,
 )
+
+
+def register(analysis: Analysis | Several) -> None:
+    """Add an analysis of one's own, with its variables, to all that are computed from now on."""
+    ANALYSES.add(analysis)
+    VARIABLES.update(analysis.variables)

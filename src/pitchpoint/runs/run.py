@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
+from itertools import count
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -46,9 +47,9 @@ from pitchpoint.results.store import (
     without_nan,
     write_text,
 )
-from pitchpoint.runs.jobs import Job, jobs
+from pitchpoint.runs.jobs import Job, job_of, jobs
 
-__all__ = ["Outcome", "Progress", "open_result", "run", "run_variant"]
+__all__ = ["Outcome", "Progress", "open_result", "pieces_of", "run", "run_piece", "run_variant"]
 
 
 class Progress:
@@ -307,6 +308,36 @@ def compare_case(
     return made.label, made.variant, compare(built.case.targets, parts, made.name)
 
 
+def run_piece(
+    case: str, description: Piece, *, variant: str | None = None, last: xr.Dataset | None = None
+) -> xr.Dataset | None:
+    """One piece of a part, computed from its description alone, in whatever process.
+
+    Args:
+        case: name of a shipped case, a file, or the manifest of a result.
+        description: of the piece, one of those of `pieces_of`.
+        variant: the first one by default.
+        last: of a march, the piece that was computed last; the one after it is computed.
+
+    Returns:
+        The piece; None at the end of a march.
+
+    Raises:
+        InputError: anything wrong with the input, or no such part.
+        ConvergenceError: a balance that was not found.
+    """
+    made = _variants(case, [variant] if variant else [])[0]
+    job = job_of(made, str(description.get("analysis", "")))
+    with _told_of(made):
+        return job.compute(description) if last is None else job.onward(last)
+
+
+def pieces_of(case: str, *, variant: str | None = None) -> list[Piece]:
+    """Descriptions of all pieces of a case, each less than 1 kB of plain data, see `run_piece`."""
+    made = _variants(case, [variant] if variant else [])[0]
+    return [piece for job in jobs(made, {}) for piece in job.pieces]
+
+
 @contextmanager
 def _unwatched(_: Path | None) -> Iterator[Progress]:
     yield Progress()
@@ -341,15 +372,8 @@ def _part(
     progress.part(variant.variant, job.title, found is not None)
     if found is not None:
         return found
-    pieces = []
-    for number, description in enumerate(job.pieces):
-        path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
-        piece = None if variant.own is not None else _found(path, mark)
-        if piece is None:
-            piece = _computed(job, description, progress, variant)
-            piece.attrs.update(labels)
-            if len(job.pieces) > 1:
-                _keep(piece, path)
+    pieces: list[xr.Dataset] = []
+    for piece in _pieces(job, variant, labels, folder, progress):
         pieces.append(piece)
         progress.points(sum(map(_points, pieces)))
     data = job.joined(pieces)
@@ -360,14 +384,36 @@ def _part(
     return data
 
 
+def _pieces(
+    job: Job, variant: Variant, labels: Mapping[str, str], folder: Path | None, progress: Progress
+) -> Iterator[xr.Dataset]:
+    """Pieces of a part in order, those on disk read; a march goes on from its last one."""
+    last: xr.Dataset | None = None
+    for number in count():
+        path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
+        piece = None if variant.own is not None else _found(path, labels["fingerprint"])
+        if piece is None:
+            with _told_of(variant):
+                piece = job.piece(number, last, progress.points)
+            if piece is None:
+                return
+            piece.attrs.update(labels)
+            if job.several:
+                _keep(piece, path)
+        last = piece
+        yield piece
+
+
 def _drop_pieces(folder: Path, part: str) -> None:
     for path in folder.glob(f"{part}.[0-9][0-9][0-9][0-9]*.nc"):
         path.unlink()
 
 
-def _computed(job: Job, piece: Piece, progress: Progress, variant: Variant) -> xr.Dataset:
+@contextmanager
+def _told_of(variant: Variant) -> Iterator[None]:
+    """What is wrong with a case is told with its name."""
     try:
-        return job.compute(piece, progress.points)
+        yield
     except InputError as error:
         raise error.at(file=error.file or variant.name) from None
 
