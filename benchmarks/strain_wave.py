@@ -32,14 +32,14 @@ import strain_wave_numpy as rival
 import xarray as xr
 
 from pitchpoint._jax import jnp
+from pitchpoint.analyses.loss_map import at_torque, map_axes, pieces
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.loss_map import map_axes, pieces
-from pitchpoint.cases.run import load_case
 from pitchpoint.efficiency import quasi_static
 from pitchpoint.efficiency.quasi_static import Engagement, Operation, cycle, engagement
 from pitchpoint.gears import strain_wave
 from pitchpoint.gears.groove import swept
 from pitchpoint.loading.compliance import compliance
+from pitchpoint.runs.run import load_case
 
 OUTLINE = 400_001
 
@@ -124,7 +124,11 @@ def _balance(design: Any, points: Operation, models: Any, known: Engagement) -> 
 
 
 def whole_map(built: Built) -> list[xr.Dataset]:
-    return [compute(lambda done: None) for compute in pieces(built)]
+    return [torque_of(built, number) for number in range(len(pieces(built)))]
+
+
+def torque_of(built: Built, number: int) -> xr.Dataset:
+    return at_torque(built, pieces(built)[number], lambda done: None)
 
 
 def parts_of_one(built: Built, repeats: int) -> None:
@@ -132,7 +136,6 @@ def parts_of_one(built: Built, repeats: int) -> None:
     models = built.models[0]
     design, load = built.design, built.operation.load
     known = engagement(design, load, models)
-    last = list(pieces(built))[-1]
     _, speeds, degrees = map_axes(built)
     speed, degree = (jnp.asarray(x) for x in np.meshgrid(speeds[1:], degrees, indexing="ij"))
     points = Operation(jnp.full(speed.shape, load), speed, degree)
@@ -143,7 +146,7 @@ def parts_of_one(built: Built, repeats: int) -> None:
             design, known.contacts, load, models, known.body
         ),
         "balance": lambda: _balance(design, points, models, known),
-        "one torque in all": lambda: last(lambda done: None)["mean_loss"].values,
+        "one torque in all": lambda: torque_of(built, -1)["mean_loss"].values,
     }
     for name, part in work.items():
         part()  # compiled now if it was not
@@ -187,7 +190,7 @@ def main() -> None:
     asked = parser.parse_args()
     built = the_case(asked.torques, asked.speeds, asked.temperatures)
     groove(built, asked.repeats)
-    first, _ = timed(lambda: next(pieces(built))(lambda done: None)["mean_loss"].values)
+    first, _ = timed(lambda: torque_of(built, 0)["mean_loss"].values)
     print(f"map: first torque with compilation {first:.2f} s")
     start = time.process_time()
     ours = whole_map(built)[1:]  # without the torque of zero

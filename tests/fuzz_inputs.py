@@ -27,9 +27,9 @@ import jax
 from pitchpoint import cli
 from pitchpoint.cases.document import read
 from pitchpoint.cases.library import names, path_of
-from pitchpoint.cases.run import describe
 from pitchpoint.cases.schema import keys
 from pitchpoint.results.store import without_nan
+from pitchpoint.runs.run import describe
 
 ROOT = Path(__file__).parents[1]
 SEEDS = [read(path) for path in sorted(ROOT.glob("examples/*.toml"))]

@@ -10,9 +10,9 @@ __version__: str
 
 # public name -> module that defines it
 _LAZY: dict[str, str] = {
-    "run": "pitchpoint.cases.run",
-    "load_case": "pitchpoint.cases.run",
-    "open_result": "pitchpoint.cases.run",
+    "run": "pitchpoint.runs.run",
+    "load_case": "pitchpoint.runs.run",
+    "open_result": "pitchpoint.runs.run",
     "write_report": "pitchpoint.views.report",
     "Study": "pitchpoint.cases.schema",
     "Sweep": "pitchpoint.cases.schema",

@@ -18,8 +18,8 @@ from pitchpoint.errors import InputError, PitchpointError, shorten, visible
 
 if TYPE_CHECKING:
     from pitchpoint.cases.comparison import Row
-    from pitchpoint.cases.run import Outcome, Progress
     from pitchpoint.cases.schema import Study
+    from pitchpoint.runs.run import Outcome, Progress
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -161,7 +161,7 @@ def show(
     case: CaseName, variant: Variants = None, set_: Settings = None, json_: AsJson = False
 ) -> None:
     """Show the inputs of a case as resolved, with their status, and its issues."""
-    from pitchpoint.cases.run import describe
+    from pitchpoint.runs.run import describe
 
     manifests = describe(case, only=variant or [], settings=_settings(set_ or []))
     if json_:
@@ -191,7 +191,7 @@ def run(
 ) -> None:
     """Compute a case: tables on screen, results and report.html in a folder."""
     from pitchpoint.cases.record import default_folder
-    from pitchpoint.cases.run import run as compute
+    from pitchpoint.runs.run import run as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
     folder = output or default_folder(case, Path("results"))
@@ -228,7 +228,7 @@ def compare(
     json_: AsJson = False,
 ) -> None:
     """Compare a published case with its print; exit status 1 when a row misses."""
-    from pitchpoint.cases.run import compare_case
+    from pitchpoint.runs.run import compare_case
 
     name, chosen, rows = compare_case(case, variant, _progress)
     if json_:
@@ -266,7 +266,7 @@ def cite(
 ) -> None:
     """List the sources behind a result or a case."""
     from pitchpoint import citations
-    from pitchpoint.cases.run import manifests
+    from pitchpoint.runs.run import manifests
 
     sources = {
         source["key"]: source["text"] for one in manifests(result) for source in one["sources"]
@@ -279,12 +279,27 @@ def cite(
 
 
 @app.command()
-def models(json_: AsJson = False) -> None:
+def models(
+    matrix: Annotated[
+        bool, typer.Option("--matrix", help="Which analysis there is for which family, or why not.")
+    ] = False,
+    json_: AsJson = False,
+) -> None:
     """List the laws that can be chosen by name, with their ranges and sources."""
-    from pitchpoint.cases.catalogue import entries
+    if matrix:
+        _show_matrix(json_)
+        return
+    from pitchpoint.runs.catalogue import entries
 
     columns = ("kind", "name", "title", "range", "sources", "note")
     _show(entries(), json_, columns)
+
+
+def _show_matrix(as_json: bool) -> None:
+    from pitchpoint.runs.matrix import matrix
+
+    rows = matrix()
+    _show(rows, as_json, tuple(rows[0])[1:])
 
 
 def _settings(texts: list[str]) -> dict[str, Any]:
@@ -337,7 +352,7 @@ def _write_report(outcomes: "dict[str, Outcome]", folder: Path) -> None:
 @contextmanager
 def _progress(folder: Path | None) -> "Iterator[Progress]":
     """Progress: a moving line on a terminal, else a line for each part; what is on disk if interrupted."""
-    from pitchpoint.cases.run import Progress
+    from pitchpoint.runs.run import Progress
 
     console = _console(stderr=True)
     moving = sys.stderr.isatty() and not console.is_dumb_terminal
@@ -373,13 +388,13 @@ def _progress(folder: Path | None) -> "Iterator[Progress]":
 
 
 def _figures(outcome: "Outcome") -> dict[str, Any]:
-    from pitchpoint.cases.catalogue import figures
+    from pitchpoint.runs.catalogue import figures
 
     return figures(outcome)
 
 
 def _summary(name: str, outcome: "Outcome") -> None:
-    from pitchpoint.cases.catalogue import (
+    from pitchpoint.runs.catalogue import (
         bearing_table,
         kinematic_error_table,
         of_contact,

@@ -49,6 +49,10 @@ class Registry(Mapping[str, Entry]):
         """Number of entries."""
         return len(self._entries)
 
+    def add(self, entry: Entry) -> None:
+        """Add an entry at the end, or put it in the place of that of its name."""
+        self._entries[entry.name] = entry
+
     def extended(self, *entries: Entry) -> "Registry[Entry]":
         """A registry with further entries, this one unchanged."""
         return Registry(self.kind, *self._entries.values(), *entries)

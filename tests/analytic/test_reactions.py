@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.studies import Variant
+from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import build_cylindrical_pair

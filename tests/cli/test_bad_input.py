@@ -26,10 +26,11 @@ from pitchpoint import cli, units
 from pitchpoint.cases import gear_tables, schema
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.quantities import Pair, Quantity
-from pitchpoint.cases.studies import Variant, jobs
 from pitchpoint.cases.tables import Table, tag
+from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.runs.jobs import jobs
 
 BASE = tomllib.loads("""
 title = "a title"

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from pitchpoint.cases.catalogue import entries, figures, summary_table, sweep_tables
-from pitchpoint.cases.run import Outcome, describe, run
 from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.errors import InputError
+from pitchpoint.runs.catalogue import entries, figures, summary_table, sweep_tables
+from pitchpoint.runs.run import Outcome, describe, run
 from pitchpoint.views.report import render
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ball_on_disc.toml"

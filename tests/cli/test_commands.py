@@ -19,11 +19,11 @@ import pytest
 import xarray as xr
 
 from pitchpoint import cli
-from pitchpoint.cases import run as running
-from pitchpoint.cases import studies
-from pitchpoint.cases.run import describe, open_result
+from pitchpoint.analyses import studies
 from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.materials import lubricants
+from pitchpoint.runs import run as running
+from pitchpoint.runs.run import describe, open_result
 from pitchpoint.views.report import render
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -473,7 +473,7 @@ PIECE, POINTS = 16, 160
 SWEEP = f"operation.torque=10 N m:50 N m:{POINTS}"
 CODE = f"""
 import pitchpoint.cli as cli
-from pitchpoint.cases import studies
+from pitchpoint.analyses import studies
 studies.PIECE = {PIECE}
 cli._write_report = lambda outcomes, folder: None
 cli.main()

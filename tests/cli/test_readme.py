@@ -13,12 +13,13 @@ import pytest
 import typer
 
 from pitchpoint import cli
-from pitchpoint.cases import run
 from pitchpoint.cases.comparison import compare
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.schema import Target, validate
-from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.cases.variant import Variant
 from pitchpoint.results.store import dataset
+from pitchpoint.runs import run
+from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)

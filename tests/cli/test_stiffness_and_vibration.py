@@ -11,14 +11,15 @@ import pytest
 import xarray as xr
 
 from pitchpoint import cli
+from pitchpoint.analyses.vibration import _excited, stiffness_part, vibrating_of, vibration_part
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.library import find
-from pitchpoint.cases.run import Outcome, Progress, describe, load_case, open_result, run_variant
-from pitchpoint.cases.studies import Variant, jobs
-from pitchpoint.cases.vibration import _excited, stiffness_part, vibrating_of, vibration_part
+from pitchpoint.cases.variant import Variant
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.errors import InputError
+from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.run import Outcome, Progress, describe, load_case, open_result, run_variant
 from pitchpoint.views.inputs import input_rows
 from pitchpoint.views.report import write_report
 

@@ -11,17 +11,18 @@ import xarray as xr
 from sound import PAIR
 
 from pitchpoint import programs
-from pitchpoint.cases import run as running
 from pitchpoint.cases.build import TEETH_ALONE
-from pitchpoint.cases.catalogue import (
+from pitchpoint.cases.library import find
+from pitchpoint.cases.variant import Variant
+from pitchpoint.runs import run as running
+from pitchpoint.runs.catalogue import (
     figures,
     kinematic_error_table,
     summary_table,
     wind_up_table,
 )
-from pitchpoint.cases.library import find
-from pitchpoint.cases.run import Outcome, Progress, open_result
-from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.run import Outcome, Progress, open_result
 from pitchpoint.views import show
 from pitchpoint.views.kinematic_error import kinematic_error_answer
 from pitchpoint.views.running import starting_answer

@@ -16,9 +16,9 @@ from pitchpoint.cases.comparison import compare, counts
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.library import find
 from pitchpoint.cases.readings import readings_of
-from pitchpoint.cases.run import compare_case
-from pitchpoint.cases.studies import Variant
+from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
+from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("atanasiu2011")
 VARIANT = Variant(TREE, NAME, "as_published")

@@ -19,12 +19,12 @@ from pitchpoint.cases.comparison import compare
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.library import find
 from pitchpoint.cases.quantities import SIValue
-from pitchpoint.cases.run import load_case
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.results.store import dataset
+from pitchpoint.runs.run import load_case
 from pitchpoint.units import parse
 
 SPEEDS = np.array([500.0, 1000.0, 2000.0, 3500.0])  # rpm

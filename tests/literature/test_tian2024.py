@@ -10,8 +10,9 @@ import pytest
 
 from pitchpoint.cases.comparison import compare, counts
 from pitchpoint.cases.library import find
-from pitchpoint.cases.run import compare_case
-from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.cases.variant import Variant
+from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.run import compare_case
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def computed(changes):
     targets = variant.built({}).case.targets
     needed = {f"study_{target.study}" for target in targets}
     parts = {
-        job.name: job.pieces[0](lambda _: None) for job in jobs(variant, {}) if job.name in needed
+        job.name: job.compute(job.pieces[0]) for job in jobs(variant, {}) if job.name in needed
     }
     return compare(targets, parts)
 

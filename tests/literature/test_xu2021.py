@@ -17,8 +17,7 @@ from pitchpoint.cases.comparison import compare, counts
 from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.cases.library import find
 from pitchpoint.cases.readings import readings_of
-from pitchpoint.cases.run import compare_case
-from pitchpoint.cases.studies import Variant
+from pitchpoint.cases.variant import Variant
 from pitchpoint.cases.xu2021 import printed
 from pitchpoint.cases.xu2021.printed import (
     OIL,
@@ -39,6 +38,7 @@ from pitchpoint.cases.xu2021.printed import (
 )
 from pitchpoint.citations import cite
 from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("xu2021")
 VARIANTS = {name: Variant(TREE, NAME, name) for name in ("as_published", "physical")}

@@ -16,8 +16,7 @@ from pitchpoint.cases.comparison import compare, counts
 from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.cases.library import find
 from pitchpoint.cases.readings import readings_of
-from pitchpoint.cases.run import compare_case
-from pitchpoint.cases.studies import Variant
+from pitchpoint.cases.variant import Variant
 from pitchpoint.cases.zhao2022 import printed
 from pitchpoint.cases.zhao2022.printed import (
     arc_distance,
@@ -29,6 +28,7 @@ from pitchpoint.cases.zhao2022.printed import (
     tooth_forces,
 )
 from pitchpoint.citations import cite
+from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("zhao2022")
 VARIANTS = {name: Variant(TREE, NAME, name) for name in ("as_published", "physical")}

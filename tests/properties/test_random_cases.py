@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from sound import PAIR
 
-from pitchpoint.cases import studies
+from pitchpoint.analyses.operation import OPERATION
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.gear_tables import WIDTH
 from pitchpoint.cases.laws import FRICTION
@@ -29,7 +29,7 @@ from pitchpoint.cases.schema import (
     TORQUE,
     VISCOSITY,
 )
-from pitchpoint.cases.studies import Variant
+from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -166,7 +166,7 @@ def computed(case: dict[str, Any]) -> tuple[Built, xr.Dataset]:
     if built.pair.lanes < LANES:
         mesh = dataclasses.replace(built.pair, lanes=LANES)
         built = dataclasses.replace(built, design=dataclasses.replace(built.design, mesh=mesh))
-    return built, studies._operation(built)
+    return built, OPERATION.compute(built, {}, lambda _: None)
 
 
 def check(data: xr.Dataset, transmits: bool) -> None:

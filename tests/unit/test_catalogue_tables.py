@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from pitchpoint.cases.catalogue import sweep_tables
-from pitchpoint.cases.run import Outcome
 from pitchpoint.results.store import dataset
+from pitchpoint.runs.catalogue import sweep_tables
+from pitchpoint.runs.run import Outcome
 
 
 def test_a_sweep_shows_every_law_by_name():

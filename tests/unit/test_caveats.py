@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pitchpoint.cases import studies
+from pitchpoint.analyses import caveats
 from pitchpoint.cases.build import _roughness
-from pitchpoint.cases.catalogue import entries
 from pitchpoint.cases.failures import fails, worst_first
 from pitchpoint.cases.laws import FRICTION, limits_words
 from pitchpoint.cases.schema import Surface
@@ -19,6 +18,7 @@ from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.materials import solids
 from pitchpoint.materials._leaves import Datum
+from pitchpoint.runs.catalogue import entries
 
 XU, ISO = FRICTION["xu_2007"], FRICTION["iso_tr_14179_2"]
 
@@ -65,19 +65,19 @@ def cycle(**changes: Any) -> dict[str, np.ndarray]:
     ],
 )
 def test_a_law_out_of_its_range_says_why(law: Any, run: dict[str, Any], words: str) -> None:
-    assert studies._outside(case(), law, cycle()) == []
-    (told,) = studies._outside(case(), law, cycle(**run))
+    assert caveats.why_outside(case(), law, cycle()) == []
+    (told,) = caveats.why_outside(case(), law, cycle(**run))
     assert words in told
 
 
 def test_flanks_without_roughness_have_a_film_without_limit() -> None:
-    assert studies._outside(case(), XU, cycle(lambda_ratio=inf)) == []
+    assert caveats.why_outside(case(), XU, cycle(lambda_ratio=inf)) == []
 
 
 def test_rolling_that_is_counted_twice_is_told_with_its_share() -> None:
-    (told,) = studies._outside(case("wu_cheng_1991"), ISO, cycle())
+    (told,) = caveats.why_outside(case("wu_cheng_1991"), ISO, cycle())
     assert "rolling counts twice, here with 25 % of the loss" in told
-    assert studies._outside(case("wu_cheng_1991"), XU, cycle()) == []
+    assert caveats.why_outside(case("wu_cheng_1991"), XU, cycle()) == []
 
 
 def test_limits_of_laws_are_listed() -> None:
@@ -92,10 +92,10 @@ def test_limits_of_laws_are_listed() -> None:
 
 def test_why_a_mesh_is_locked() -> None:
     assert (
-        studies.jamming_words(0.31, 0.29)
+        caveats.jamming_words(0.31, 0.29)
         == "friction 0.31 reaches the 0.29 at which this mesh locks"
     )
-    assert "grows with the force" in studies.jamming_words(0.2, 0.29)
+    assert "grows with the force" in caveats.jamming_words(0.2, 0.29)
 
 
 @pytest.mark.parametrize(
@@ -128,13 +128,13 @@ def test_beyond_its_table_a_molten_plastic_is_refused_as_such() -> None:
 def test_a_pressure_beyond_what_steel_bears_comes_first() -> None:
     steel, plastic = in_use("steel"), in_use("PA66")
     by_value = in_use("rigid", title=BY_VALUE, young=Datum(value=206e9))
-    assert studies._pressure_warning(case("none", steel, steel), [cycle()]) == []
+    assert caveats.pressure_warning(case("none", steel, steel), [cycle()]) == []
     pressed = [cycle(), cycle(pressure=3.1e9)]
     for gears in ((steel, steel), (plastic, by_value)):
-        (told,) = studies._pressure_warning(case("none", *gears), pressed)
+        (told,) = caveats.pressure_warning(case("none", *gears), pressed)
         assert told.startswith("Fails: the Hertz pressure reaches 3.1 GPa")
         assert "bears about 2.5 GPa" in told
-    assert studies._pressure_warning(case("none", in_use("rigid"), plastic), pressed) == []
+    assert caveats.pressure_warning(case("none", in_use("rigid"), plastic), pressed) == []
 
 
 def test_what_cannot_run_is_told_first_and_once() -> None:

@@ -15,13 +15,14 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.quantities import SIValue
 from pitchpoint.cases.schema import Case, quantity_at, validate
-from pitchpoint.cases.studies import Variant, jobs
+from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, check_strain_wave
 from pitchpoint.loading.reactions import InnerBearing
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.runs.jobs import jobs
 from pitchpoint.views.inputs import input_rows
 
 DRIVE = tomllib.loads("""
@@ -240,7 +241,7 @@ def test_backwards_plastic_teeth_are_as_warm_as_that_point_makes_them() -> None:
 
 
 def test_running_without_load_is_told_at_the_operating_point() -> None:
-    from pitchpoint.cases.running import running_axes
+    from pitchpoint.analyses.running import running_axes
 
     for settings, sizes in [
         ({}, (9, 3)),  # the middle of the map's own axes
@@ -256,7 +257,7 @@ def test_running_without_load_is_told_at_the_operating_point() -> None:
 
 
 def test_what_a_loop_of_torque_cannot_show_is_said() -> None:
-    from pitchpoint.cases.torsion import _loopless, _lost
+    from pitchpoint.analyses.torsion import _loopless, _lost
 
     built = Variant(PAIR, "pair.toml", "default", {"operation.torque": "0 N m"}).built({})
     (told,) = _loopless(built, np.zeros(1))
@@ -273,12 +274,12 @@ def test_what_a_loop_of_torque_cannot_show_is_said() -> None:
 def test_conformal_contacts_that_carry_are_told() -> None:
     from types import SimpleNamespace
 
-    from pitchpoint.cases.studies import _conformal_warning
+    from pitchpoint.analyses.caveats import conformal_warning
 
     run = {"load": np.array([0.0, 1.0, 2.0]), "radius": np.array([1.0, 1.0, 0.5])}
-    (told,) = _conformal_warning(SimpleNamespace(largest_radius=1.0), run)
+    (told,) = conformal_warning(SimpleNamespace(largest_radius=1.0), run)
     assert told.startswith("1 of 2 loaded contacts of the mesh cycle are conformal")
-    assert _conformal_warning(SimpleNamespace(largest_radius=np.inf), run) == []
+    assert conformal_warning(SimpleNamespace(largest_radius=np.inf), run) == []
     assert float(drive().built({}).design.mesh.largest_radius) == pytest.approx(2000 * 0.3e-3)
     assert Variant(PAIR, "pair.toml", "default").built({}).design.mesh.largest_radius == np.inf
 
@@ -333,7 +334,7 @@ def test_deviations_leave_the_mesh_and_ask_for_one_part_more() -> None:
 
 
 def test_states_without_equilibrium_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    from pitchpoint.cases import kinematic_error as part
+    from pitchpoint.analyses import kinematic_error as part
 
     def pieces(mesh: Any, period: Any, deviations: Any, count: int) -> Iterator[np.ndarray]:
         for start in range(0, count, part.TEETH):

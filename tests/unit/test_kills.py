@@ -13,27 +13,37 @@ import json, os, signal, sys
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
-from pitchpoint.cases import run as running
-from pitchpoint.cases.studies import Job, Variant
+from pitchpoint.analyses.analysis import Analysis
+from pitchpoint.cases.variant import Variant
 from pitchpoint.results.store import dataset, load
+from pitchpoint.runs import run as running
+from pitchpoint.runs.jobs import Job
 
 root = Path(sys.argv[1])
 TOUCHES = {"open", "os.chmod", "os.listdir", "os.mkdir", "os.remove", "os.rename", "os.scandir"}
 
 
-def piece(number):
-    def compute(told):
-        rows = np.arange(3.0) + number
-        values = {"mean_loss": (("point",), np.sin(rows)), "locked": (("point",), rows > 4.0)}
-        return dataset(values, {}, warnings=[f"piece {number}"])
-    return compute
+def compute(built, piece, told):
+    rows = np.arange(3.0) + piece["number"]
+    values = {"mean_loss": (("point",), np.sin(rows)), "locked": (("point",), rows > 4.0)}
+    return dataset(values, {}, warnings=[f"piece {piece['number']}"])
 
 
-JOBS = [
-    Job("teeth", "teeth", (piece(0),)),
-    Job("study_sweep", "sweep", (piece(1), piece(2), piece(3))),
-]
+def job(name, *numbers):
+    pieces = [{"number": number} for number in numbers]
+    analysis = Analysis(
+        name=name,
+        title=name,
+        compute=compute,
+        pieces=lambda built: pieces,
+        joined=lambda built, parts: xr.concat(parts, "point", combine_attrs="override"),
+    )
+    return Job(analysis, None)
+
+
+JOBS = [job("teeth", 0), job("study_sweep", 1, 2, 3)]
 Variant.built = lambda self, changes: None
 running._manifest = lambda *_: {"warnings": [], "inputs": [], "source": "", "own": ""}
 running._rows = lambda *_: []

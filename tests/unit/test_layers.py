@@ -33,6 +33,8 @@ FLOW = (
     {"dynamics"},
     {"results"},
     {"cases"},
+    {"analyses"},
+    {"runs"},
     {"views"},
     {"cli", "__main__"},
 )

@@ -10,15 +10,17 @@ import pytest
 from sound import PAIR
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.analyses.caveats import face_warning
+from pitchpoint.analyses.kinematic_error import FEW_PAIRS, kinematic_error_part
+from pitchpoint.analyses.vibration import stiffness_part
 from pitchpoint.cases.inputs import resolved
-from pitchpoint.cases.kinematic_error import FEW_PAIRS, kinematic_error_part
-from pitchpoint.cases.studies import Variant, _face_warning, jobs
-from pitchpoint.cases.vibration import stiffness_part
+from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.errors import InputError
 from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wound_up
+from pitchpoint.runs.jobs import jobs
 from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)
@@ -218,13 +220,13 @@ def run_with(carrying: int) -> dict[str, np.ndarray]:
 
 def test_part_of_the_face_without_load_is_told_and_nearly_all_of_it_refused() -> None:
     built = pair(gears__modifications__crowning="5 um").built({})
-    (told,) = _face_warning(built, run_with(9))
+    (told,) = face_warning(built, run_with(9))
     assert told.startswith("Of the contact lines that carry, 25 % get no load at 50 N m")
-    assert _face_warning(built, run_with(12)) == []
-    assert _face_warning(built, run_with(0)) == []  # nothing is loaded at all
+    assert face_warning(built, run_with(12)) == []
+    assert face_warning(built, run_with(0)) == []  # nothing is loaded at all
     with pytest.raises(InputError, match="at 50 N m only 2 of 12 slices of a contact line get"):
-        _face_warning(built, run_with(2))
-    assert _face_warning(pair().built({}), run_with(2)) == []
+        face_warning(built, run_with(2))
+    assert face_warning(pair().built({}), run_with(2)) == []
 
 
 def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> None:

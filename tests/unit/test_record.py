@@ -9,12 +9,12 @@ import pytest
 from records import entries
 from sound import PAIR
 
-from pitchpoint.cases import run as running
 from pitchpoint.cases.library import as_text, find
 from pitchpoint.cases.record import MANIFEST, RUN, Record, default_folder, owner
-from pitchpoint.cases.run import describe, manifests, open_result
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import dataset, save, without_nan, write_text
+from pitchpoint.runs import run as running
+from pitchpoint.runs.run import describe, manifests, open_result
 from pitchpoint.views.inputs import input_rows, set_for_run
 
 LAW = {"name": "constant", "title": "constant", "note": ""}

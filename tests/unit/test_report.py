@@ -14,10 +14,10 @@ import pytest
 import xarray as xr
 from records import entries
 
-from pitchpoint.cases.catalogue import summary_table
-from pitchpoint.cases.run import Outcome, open_result, run
 from pitchpoint.gears.cylindrical import build_cylindrical_pair
 from pitchpoint.results.store import dataset
+from pitchpoint.runs.catalogue import summary_table
+from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.views import show
 from pitchpoint.views.cycle import gapped, loss_places
 from pitchpoint.views.facts import facts

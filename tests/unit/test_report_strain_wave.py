@@ -12,13 +12,13 @@ import pytest
 import xarray as xr
 from records import entries
 
+from pitchpoint.analyses.kinematic_error import _turns
 from pitchpoint.cases.families import FAMILIES
 from pitchpoint.cases.gear_tables import StrainWaveGears
-from pitchpoint.cases.kinematic_error import _turns
-from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.gears.strain_wave import rates
 from pitchpoint.results.store import dataset
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel
 from pitchpoint.views.drive import loaded_arcs, picture, simplified, wave_dimensions

@@ -12,9 +12,9 @@ import xarray as xr
 from records import entries
 
 from pitchpoint._jax import jnp
-from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.results.store import dataset
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views.cycle import along, loss_places
 from pitchpoint.views.design_chart import design_charts
 from pitchpoint.views.facts import facts

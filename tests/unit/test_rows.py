@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.studies import Variant
+from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency import profile as profiles
 from pitchpoint.efficiency import rows, summary
 from pitchpoint.efficiency.profile import profile

@@ -38,7 +38,7 @@ import sys
 from collections import Counter
 
 from pitchpoint._jax import jax
-from pitchpoint.cases.run import run
+from pitchpoint.runs.run import run
 from pitchpoint.cases.schema import Study, Sweep
 
 told = Counter()

@@ -9,10 +9,10 @@ from sound import PAIR
 from pitchpoint.cases.comparison import compare, demand_parts
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.library import find, names
-from pitchpoint.cases.run import describe
 from pitchpoint.cases.schema import Target, validate
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import dataset
+from pitchpoint.runs.run import describe
 
 TORQUE = np.array([0.0, 10.0, 20.0, 40.0])
 WIND_UP = np.array([0.0, 2e-4, 3e-4, 4e-4])

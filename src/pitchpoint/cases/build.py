@@ -51,7 +51,7 @@ TEETH_ALONE = (
 NO_PLASTIC = "No gear is of plastic: the tooth temperature changes nothing."
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Built:
     """A case ready to compute.
 

@@ -69,6 +69,7 @@ class Family:
     """What a case asks of a family beside what every mesh answers.
 
     Attributes:
+        sample: file of a case with every table that analyses ask for, in `cases/samples`.
         build: mesh and warnings from the table, the name of the driver and the number of slices.
         following: values that the table leaves open, as the mesh has them, by key inside the table.
         deviations: of the teeth around both members, from the table and the mesh.
@@ -77,6 +78,7 @@ class Family:
         coordinates: labels along those dimensions.
     """
 
+    sample: str
     build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
     following: Callable[[Any, Any], dict[str, Any]]
     deviations: Callable[[Any, Any], Surfaces] = lambda gears, mesh: ((), ())
@@ -333,6 +335,7 @@ def _of_ball(rig: BallOnDiscRig, mesh: BallOnDisc) -> dict[str, Any]:
 
 FAMILIES: dict[type, Family] = {
     CylindricalGears: Family(
+        "cylindrical.toml",
         _cylindrical,
         _of_pair,
         _gear_deviations,
@@ -340,6 +343,7 @@ FAMILIES: dict[type, Family] = {
         coordinates={"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
     ),
     StrainWaveGears: Family(
+        "strain_wave.toml",
         _strain_wave,
         _of_drive,
         _deviations,
@@ -363,6 +367,6 @@ FAMILIES: dict[type, Family] = {
         },
         coordinates={"gear": [1, 2], "xy": ["x", "y"]},
     ),
-    BallOnDiscRig: Family(_ball_on_disc, _of_ball),
+    BallOnDiscRig: Family("ball_on_disc.toml", _ball_on_disc, _of_ball),
 }
 """Families by the class of their table."""

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.facts import wave
 from pitchpoint.views.inputs import words

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint.cases.run import Outcome
 from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views.inputs import given, number
 
 __all__ = [

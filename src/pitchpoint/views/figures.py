@@ -15,9 +15,9 @@ import xarray as xr
 
 from pitchpoint import units
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.run import Outcome
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 
 __all__ = [

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.cases.run import Outcome
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.facts import Facts, facts
 from pitchpoint.views.inputs import words

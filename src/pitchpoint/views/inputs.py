@@ -5,10 +5,10 @@ from typing import Any
 
 from pitchpoint import units
 from pitchpoint.cases.inputs import DIMENSIONS, OIL, SOLIDS, STUDIES
-from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.errors import InputError
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
 
 __all__ = ["given", "input_rows", "number", "set_for_run", "words"]
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pitchpoint.cases.catalogue import CONTACT, of_contact
+from pitchpoint.analyses.caveats import jamming_words
 from pitchpoint.cases.comparison import Row, counts
 from pitchpoint.cases.inputs import OIL
-from pitchpoint.cases.run import Outcome
-from pitchpoint.cases.studies import jamming_words
 from pitchpoint.results.store import write_text
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.catalogue import CONTACT, of_contact
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel, cycle_pitch, loss_places, path_panel
 from pitchpoint.views.design_chart import design_charts

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pitchpoint.cases.run import Outcome
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views.cycle import PLACE, marks
 from pitchpoint.views.facts import facts
 from pitchpoint.views.figures import PALETTE, Figure, Key, layout, plain

@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.cases.catalogue import CONTACT, of_contact
-from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.catalogue import CONTACT, of_contact
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.design_chart import is_design_chart
 from pitchpoint.views.figures import (

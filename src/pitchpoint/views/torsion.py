@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (

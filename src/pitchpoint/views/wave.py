@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.cases.run import Outcome
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.cycle import regimes
 from pitchpoint.views.drive import arc_of, loaded_arcs, simplified

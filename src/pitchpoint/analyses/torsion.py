@@ -1,5 +1,6 @@
 """Wind-up of a drive under load, as a dataset of a case."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -7,6 +8,8 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.figures import WIND_UP, by_torque
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import TORQUE
 from pitchpoint.contact.contacts import Contacts, along
@@ -14,12 +17,13 @@ from pitchpoint.efficiency.quasi_static import coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.loading.equilibrium import touch
+from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.wind_up import hysteresis, wound_up
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["torsion_part"]
+__all__ = ["TORSION", "rigid", "torsion_part"]
 
 TORQUES = 25
 SHOWN = 3
@@ -146,3 +150,38 @@ def _lost_motion(mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"]) -
         (touch(at.gap, jnp.abs(along(at.normal, one.loaded)), at.active) for one, at in both),
         jnp.zeros(()),
     )
+
+
+def rigid(built: Built) -> str | None:
+    """Why nothing is computed of how teeth yield."""
+    by_stiffness = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
+    dynamics, touching = built.case.dynamics, built.design.mesh.touching
+    if by_stiffness or dynamics is not None or not touching or any(built.deviations):
+        return None
+    if not built.transmits:
+        return "nothing is transmitted by a test rig, so that nothing winds up"
+    return (
+        "nothing in the case asks how teeth yield, as gaps and deviations of flanks, [dynamics] and "
+        'load_sharing = "from_stiffness" do'
+    )
+
+
+def _torsion_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    return torsion_part(built)
+
+
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Wind-up over torque, and the play of the loaded member between its flanks [rad]."""
+    data = parts.get("torsion")
+    lost = None if data is None else float(data["lost_motion"])
+    return {"torsion": by_torque(data, WIND_UP), "lost_motion": lost}
+
+
+TORSION = Analysis(
+    name="torsion",
+    title="torsion",
+    lacks=rigid,
+    compute=_torsion_of,
+    main=(*WIND_UP, "lost_motion"),
+    figures=_figures,
+)

@@ -1,6 +1,5 @@
 """Tables for people and machines: what can be chosen by name, and the main figures of a result."""
 
-import json
 from collections.abc import Iterator
 from dataclasses import fields
 from math import inf
@@ -9,10 +8,21 @@ from typing import Any
 import numpy as np
 
 from pitchpoint import units
+from pitchpoint.analyses.figures import (
+    CONTACT,
+    REACTIONS,
+    VIBRATION,
+    WIND_UP,
+    bearing_loads,
+    covers,
+    error_ranges,
+    main_figures,
+    of_contact,
+    out_of_range,
+)
+from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION, limits_words
-from pitchpoint.cases.run import Outcome
 from pitchpoint.cases.schema import quantity_at
-from pitchpoint.cases.studies import AT_CONTACT
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
@@ -27,6 +37,7 @@ from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
 
 __all__ = [
     "CONTACT",
@@ -39,29 +50,6 @@ __all__ = [
     "vibration_table",
     "wind_up_table",
 ]
-
-MAIN = (
-    "mean_efficiency",
-    "min_efficiency",
-    "max_efficiency",
-    "mean_loss",
-    "mean_input_torque",
-    "torque_ripple",
-    "mean_friction",
-)
-
-CONTACT = (*AT_CONTACT, "mean_friction", "mean_loss", "mean_input_torque")
-"""Main figures of a test rig, which transmits nothing."""
-
-
-def of_contact(data: Any) -> bool:
-    """True for an operating point or a study of a test rig, whose figures are those of its contact."""
-    return AT_CONTACT[0] in data
-
-
-def main_figures(data: Any) -> tuple[str, ...]:
-    """Names of the figures that are shown first of an operating point, or of a study."""
-    return CONTACT if of_contact(data) else MAIN
 
 
 def entries() -> list[dict[str, str]]:
@@ -93,71 +81,6 @@ def entries() -> list[dict[str, str]]:
     return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]
 
 
-VIBRATION = (
-    "mean_stiffness",
-    "stiffness_variation",
-    "mean_transmission_error",
-    "transmission_error_range",
-    "largest_dynamic_factor",
-    "natural_frequency",
-    "mesh_frequency",
-)
-
-
-TEMPERATURES = tuple(
-    f"{name}_{gear}"
-    for gear in (1, 2)
-    for name in ("flank_temperature", "root_temperature", "young")
-)
-
-
-def figures(outcome: Outcome) -> dict[str, Any]:
-    """Main figures of one variant in SI, by law; None where a quantity is undefined."""
-    manifest = outcome.manifest
-    studies = {
-        name.removeprefix("study_"): _by_law(data, main_figures(data))
-        for name, data in outcome.parts.items()
-        if name.startswith("study_")
-    }
-    return {
-        "title": manifest["title"],
-        "units": {
-            name: VARIABLES[name].unit
-            for name in (
-                *(*MAIN, *CONTACT, *REACTIONS, "bearing_load"),
-                *(*VIBRATION, *TEMPERATURES, *WIND_UP, "lost_motion", "kinematic_error_range"),
-            )
-        },
-        "operation": _by_law(outcome.parts["operation"], main_figures(outcome.parts["operation"])),
-        "efficiency_of": _covers(outcome),
-        "reactions": _by_law(outcome.parts["operation"], REACTIONS),
-        "bearing_load": {
-            str(law): dict(_loads(outcome.parts["operation"], k))
-            for k, law in enumerate(outcome.parts["operation"]["law"].values)
-        },
-        "vibration": _by_torque(outcome, "vibration", VIBRATION),
-        "torsion": _by_torque(outcome, "torsion", WIND_UP),
-        "lost_motion": _lost_motion(outcome),
-        "kinematic_error_range": {
-            curve: dict(zip(causes, _numbers(values), strict=True))
-            for curve, causes, values in _ranges(outcome)
-        },
-        "friction_laws": _by_law(outcome.parts["laws"], ("mean_efficiency",)),
-        "friction_laws_out_of_range": out_of_range(outcome),
-        "back_driving": _back_driving(outcome),
-        "studies": studies,
-        "warnings": manifest["warnings"],
-        "rows": manifest["rows"],
-    }
-
-
-def _back_driving(outcome: Outcome) -> dict[str, Any]:
-    """Figures by law with the loaded member driving; none where nothing is transmitted."""
-    data = outcome.parts.get("back_driving")
-    names = ("mean_efficiency", "locked", "jamming_coefficient")
-    return {} if data is None else _by_law(data, names)
-
-
 _LOCKS = "locks from μ"
 
 
@@ -182,16 +105,25 @@ def _of_power(outcome: Outcome, position: int) -> dict[str, str]:
         return {}
     locked = bool(back["locked"].values[position, 0])
     return {
-        "η of": _covers(outcome),
+        "η of": covers(outcome.parts["operation"]),
         _LOCKS: _cell(data, "jamming_coefficient", position),
         "back-driving": "locked" if locked else _cell(back, "mean_efficiency", position),
         f"back-driving {_LOCKS}": _cell(back, "jamming_coefficient", position),
     }
 
 
-def _covers(outcome: Outcome) -> str:
-    """What the efficiency is of, where that is less than the whole drive."""
-    return str(outcome.parts["operation"]["mean_efficiency"].attrs.get("covers", ""))
+def figures(outcome: Outcome) -> dict[str, Any]:
+    """Main figures of one variant in SI, by law; None where a quantity is undefined."""
+    manifest, every = outcome.manifest, ANALYSES.values()
+    shown = [analysis.shown(outcome.parts) for analysis in every]
+    units_of = {name: VARIABLES[name].unit for analysis in every for name in analysis.main}
+    return {
+        "title": manifest["title"],
+        "units": units_of,
+        **{key: value for one in shown for key, value in one.items()},
+        "warnings": manifest["warnings"],
+        "rows": manifest["rows"],
+    }
 
 
 def spread_sentence(outcome: Outcome) -> str:
@@ -225,16 +157,10 @@ def _within(outcome: Outcome) -> str:
 
 def _apart(outcome: Outcome) -> Iterator[str]:
     """A sentence for each law that is out of its range."""
-    for one in out_of_range(outcome):
+    for one in out_of_range(outcome.parts["laws"]):
         value = one["mean_efficiency"]
         gives = "" if value is None else f" (it would give {100 * value:.2f} %)"
         yield f"Out of its range is {one['law']}{gives}: {'; '.join(one['reasons'])}."
-
-
-def out_of_range(outcome: Outcome) -> list[dict[str, Any]]:
-    """Laws of the library that do not hold at the operating point, with their efficiency and the reasons."""
-    found: list[dict[str, Any]] = json.loads(outcome.parts["laws"].attrs.get("outside", "[]"))
-    return found
 
 
 def _head(name: str) -> str:
@@ -271,9 +197,6 @@ def vibration_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, 
     return rows, tuple(rows[0])
 
 
-REACTIONS = tuple(f"{way}_reaction_{gear}" for gear in (1, 2) for way in ("radial", "axial"))
-
-
 def bearing_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
     """Rows and columns: load on the bearings by law, those that are nothing anywhere left out."""
     data = outcome.parts["operation"]
@@ -282,29 +205,11 @@ def bearing_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
         | {_head(name): _cell(data, name, k) for name in REACTIONS if np.any(data[name])}
         | {
             f"{_head('bearing_load')} {place}": _shown("bearing_load", float(load))
-            for place, load in _loads(data, k)
+            for place, load in bearing_loads(data, k)
         }
         for k, law in enumerate(data["law"].values)
     ]
     return (rows, tuple(rows[0])) if len(rows[0]) > 1 else ([], ())
-
-
-def _loads(data: Any, law: int) -> list[tuple[str, float]]:
-    """Bearings by name and what they bear [N]."""
-    if "bearing_load" not in data:
-        return []
-    loads = data["bearing_load"].values[:, 0]
-    bears = loads.any(axis=0)
-    return [(str(place), loads[law, k]) for k, place in enumerate(data["place"].values) if bears[k]]
-
-
-WIND_UP = ("wind_up", "angular_transmission_error_range", "torsional_stiffness", "loaded_pairs")
-
-
-def _lost_motion(outcome: Outcome) -> float | None:
-    """Play of the loaded member between its flanks [rad]; None where it is not known."""
-    data = outcome.parts.get("torsion")
-    return None if data is None else float(data["lost_motion"])
 
 
 def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
@@ -328,21 +233,9 @@ def kinematic_error_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple
     rows = [
         {f"kinematic error {_head(name)}": curve}
         | {cause: _shown(name, float(v)) for cause, v in zip(causes, values, strict=True)}
-        for curve, causes, values in _ranges(outcome)
+        for curve, causes, values in error_ranges(outcome.parts.get("kinematic_error"))
     ]
     return rows, tuple(rows[0]) if rows else ()
-
-
-def _ranges(outcome: Outcome) -> Iterator[tuple[str, list[str], Any]]:
-    """Name of each curve of the kinematic error, and its peak to peak by what causes it."""
-    data = outcome.parts.get("kinematic_error")
-    if data is None:
-        return
-    causes = [str(cause) for cause in data["cause"].values]
-    for curve, values in zip(
-        data["curve"].values, data["kinematic_error_range"].values, strict=True
-    ):
-        yield str(curve), causes, values
 
 
 SWEPT = ("mean_efficiency", "torque_ripple", "mean_stiffness", "transmission_error_range")
@@ -376,33 +269,6 @@ def _place(value: float, key: str) -> str:
     """Place on the axis of a sweep as case files write it."""
     quantity = quantity_at(key)
     return f"{value:.6g}" if quantity is None else quantity.show(float(value))
-
-
-def _by_torque(outcome: Outcome, part: str, names: tuple[str, ...]) -> dict[str, Any]:
-    data = outcome.parts.get(part)
-    if data is None:
-        return {}
-    return {name: _numbers(data[name].values) for name in ("torque", *names)}
-
-
-def _by_law(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
-    every = (*names, *(name for name in (*VIBRATION, *TEMPERATURES) if name in data))
-    result: dict[str, Any] = {
-        str(law): {name: _numbers(data[name].values[position]) for name in every}
-        for position, law in enumerate(data["law"].values)
-    }
-    if "axis" in data:
-        result["axis"] = {
-            "key": data.attrs["sweep_key"],
-            "unit": data["axis"].attrs.get("units", ""),
-            "values": _numbers(data["axis"].values),
-        }
-    return result
-
-
-def _numbers(values: Any) -> Any:
-    plain = [None if isinstance(v, float) and np.isnan(v) else v for v in values.tolist()]
-    return plain if len(plain) > 1 else plain[0]
 
 
 def _entry(kind: str, model: Any, limits: str) -> dict[str, str]:

@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
+from itertools import count
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,8 @@ from uuid import uuid4
 
 import xarray as xr
 
+from pitchpoint.analyses.analysis import Piece
+from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.comparison import Row, compare, demand_parts
@@ -20,7 +23,7 @@ from pitchpoint.cases.failures import worst_first
 from pitchpoint.cases.library import as_text, find, names
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Study, validate
-from pitchpoint.cases.studies import Job, Variant, jobs
+from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
@@ -44,8 +47,9 @@ from pitchpoint.results.store import (
     without_nan,
     write_text,
 )
+from pitchpoint.runs.jobs import Job, job_of, jobs
 
-__all__ = ["Outcome", "Progress", "open_result", "run", "run_variant"]
+__all__ = ["Outcome", "Progress", "open_result", "pieces_of", "run", "run_piece", "run_variant"]
 
 
 class Progress:
@@ -188,7 +192,7 @@ def run_variant(
     for job in work:
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
-        if not job.name.startswith("study_"):
+        if not is_study(job.name):
             told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
             outcome.manifest["warnings"] = worst_first(told)
         _note(outcome, folder, finished=False)
@@ -293,7 +297,7 @@ def compare_case(
     if not built.case.targets:
         raise InputError("has no targets to compare with", file=made.name)
     needed = {target.reads for target in built.case.targets}
-    work = list(jobs(made, {}))
+    work = jobs(made, {})
     demand_parts(built.case.targets, [job.name for job in work], made.name)
     parts = {}
     with (watch or _unwatched)(None) as progress:
@@ -302,6 +306,36 @@ def compare_case(
                 progress.part(made.variant, job.title, False)
                 parts[job.name] = _part(job, made, "", None, progress)
     return made.label, made.variant, compare(built.case.targets, parts, made.name)
+
+
+def run_piece(
+    case: str, description: Piece, *, variant: str | None = None, last: xr.Dataset | None = None
+) -> xr.Dataset | None:
+    """One piece of a part, computed from its description alone, in whatever process.
+
+    Args:
+        case: name of a shipped case, a file, or the manifest of a result.
+        description: of the piece, one of those of `pieces_of`.
+        variant: the first one by default.
+        last: of a march, the piece that was computed last; the one after it is computed.
+
+    Returns:
+        The piece; None at the end of a march.
+
+    Raises:
+        InputError: anything wrong with the input, or no such part.
+        ConvergenceError: a balance that was not found.
+    """
+    made = _variants(case, [variant] if variant else [])[0]
+    job = job_of(made, str(description.get("analysis", "")))
+    with _told_of(made):
+        return job.compute(description) if last is None else job.onward(last)
+
+
+def pieces_of(case: str, *, variant: str | None = None) -> list[Piece]:
+    """Descriptions of all pieces of a case, each less than 1 kB of plain data, see `run_piece`."""
+    made = _variants(case, [variant] if variant else [])[0]
+    return [piece for job in jobs(made, {}) for piece in job.pieces]
 
 
 @contextmanager
@@ -338,15 +372,8 @@ def _part(
     progress.part(variant.variant, job.title, found is not None)
     if found is not None:
         return found
-    pieces = []
-    for number, compute in enumerate(job.pieces):
-        path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
-        piece = None if variant.own is not None else _found(path, mark)
-        if piece is None:
-            piece = _computed(compute, progress, variant)
-            piece.attrs.update(labels)
-            if len(job.pieces) > 1:
-                _keep(piece, path)
+    pieces: list[xr.Dataset] = []
+    for piece in _pieces(job, variant, labels, folder, progress):
         pieces.append(piece)
         progress.points(sum(map(_points, pieces)))
     data = job.joined(pieces)
@@ -357,16 +384,36 @@ def _part(
     return data
 
 
+def _pieces(
+    job: Job, variant: Variant, labels: Mapping[str, str], folder: Path | None, progress: Progress
+) -> Iterator[xr.Dataset]:
+    """Pieces of a part in order, those on disk read; a march goes on from its last one."""
+    last: xr.Dataset | None = None
+    for number in count():
+        path = None if folder is None else folder / f"{job.name}.{number:04d}.nc"
+        piece = None if variant.own is not None else _found(path, labels["fingerprint"])
+        if piece is None:
+            with _told_of(variant):
+                piece = job.piece(number, last, progress.points)
+            if piece is None:
+                return
+            piece.attrs.update(labels)
+            if job.several:
+                _keep(piece, path)
+        last = piece
+        yield piece
+
+
 def _drop_pieces(folder: Path, part: str) -> None:
     for path in folder.glob(f"{part}.[0-9][0-9][0-9][0-9]*.nc"):
         path.unlink()
 
 
-def _computed(
-    compute: Callable[[Callable[[int], None]], xr.Dataset], progress: Progress, variant: Variant
-) -> xr.Dataset:
+@contextmanager
+def _told_of(variant: Variant) -> Iterator[None]:
+    """What is wrong with a case is told with its name."""
     try:
-        return compute(progress.points)
+        yield
     except InputError as error:
         raise error.at(file=error.file or variant.name) from None
 
@@ -404,7 +451,7 @@ def _note(outcome: Outcome, folder: Path | None, *, finished: bool) -> None:
 
 def _jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
     """Parts of a variant; InputError if a target reads one that is not among them."""
-    made = list(jobs(variant, studies))
+    made = jobs(variant, studies)
     if _measured(variant):
         targets = validate(variant.document()).targets
         demand_parts(targets, [job.name for job in made], variant.name)

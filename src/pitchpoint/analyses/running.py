@@ -8,15 +8,17 @@ import xarray as xr
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jnp
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.loss_map import map_axes
+from pitchpoint.analyses.operation import untransmitted
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.loss_map import map_axes
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["running_axes", "running_part"]
+__all__ = ["RUNNING", "running_axes", "running_part"]
 
 SPEEDS = 9
 CREEPING = 2.0 * np.pi / 60.0
@@ -92,3 +94,15 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
     """Values in order with one more, in place of an equal one up to rounding."""
     others = values[~np.isclose(values, one, rtol=1e-9, atol=0.0)]
     return np.unique(np.append(others, one))
+
+
+def _free(built: Built) -> str | None:
+    told = None if built.design.drag else "the case has no [losses] beside its teeth"
+    return untransmitted(built) or told
+
+
+def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    return running_part(built)
+
+
+RUNNING = Analysis(name="running", title="running without load", lacks=_free, compute=_computed)

@@ -1,14 +1,16 @@
 """The loss map of a case: mean loss and efficiency over torque, speed and temperature."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import lru_cache, partial
 
 import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.operation import untransmitted
 from pitchpoint.cases.build import Built
 from pitchpoint.efficiency.quasi_static import (
     Design,
@@ -25,7 +27,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
 
-__all__ = ["joined", "map_axes", "pieces"]
+__all__ = ["LOSS_MAP", "at_torque", "map_axes", "pieces"]
 
 STATES = 1 << 20
 """Contacts (pairs, slices, nodes of the cycle, operating points) that are computed together at most."""
@@ -33,17 +35,13 @@ STATES = 1 << 20
 MANY = 100
 """Points of each torque from which on a program that takes longer to compile saves time."""
 
-Piece = Callable[[Callable[[int], None]], xr.Dataset]
+
+def pieces(built: Built) -> list[Piece]:
+    """One for each torque; its share of the load serves all speeds and temperatures."""
+    return [{"torque": float(torque)} for torque in map_axes(built)[0]]
 
 
-def pieces(built: Built) -> Iterator[Piece]:
-    """One computation for each torque; its share of the load serves all speeds and temperatures."""
-    torques, *axes = map_axes(built)
-    start = cache(lambda: _start(built))
-    for torque in torques:
-        yield _piece(built, float(torque), axes[0], axes[1], start)
-
-
+@lru_cache(maxsize=1)
 def _start(built: Built) -> tuple[Engagement | None, int]:
     """What all torques have in common: contacts, where they are known beforehand, and how many there are."""
     models = built.models[0]
@@ -68,21 +66,16 @@ def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.linspace(0.0, torque, loads), np.linspace(0.0, speed, speeds), degrees
 
 
-def joined(parts: Sequence[xr.Dataset], laws: Sequence[str]) -> xr.Dataset:
-    """The whole map, with what there is to say about it.
-
-    Args:
-        parts: of the torques, in order.
-        laws: titles of the friction laws, in order.
-    """
+def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """The whole map, with what there is to say about it."""
     data = xr.concat(parts, "torque", combine_attrs="override")
     locked = data["locked"].values & (data["torque"].values > 0.0)[:, None, None]
     moving = (data["torque"] > 0.0) & (data["speed"] > 0.0)
     lost = np.isnan(data["mean_efficiency"].where(moving, 1.0).values) & ~locked
     told = [
-        f"{law}: {what} at {where[k].sum()} of {where[k].size} points."
+        f"{law.title}: {what} at {where[k].sum()} of {where[k].size} points."
         for what, where in (("friction locks the mesh", locked), ("no balance was found", lost))
-        for k, law in enumerate(laws)
+        for k, law in enumerate(built.laws)
         if where[k].any()
     ]
     return dataset(
@@ -95,36 +88,29 @@ def joined(parts: Sequence[xr.Dataset], laws: Sequence[str]) -> xr.Dataset:
     )
 
 
-def _piece(
-    built: Built,
-    torque: float,
-    speeds: np.ndarray,
-    degrees: np.ndarray,
-    start: Callable[[], tuple[Engagement | None, int]],
-) -> Piece:
-    def compute(progress: Callable[[int], None]) -> xr.Dataset:
-        point = replace(built.operation, load=array(torque))
-        like, lanes = start()
-        known = engaged(built.design, point, built.models[0], _NODES, like)
-        known = known and known.loaded()
-        together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
-        runs = []
-        for count, models in enumerate(built.models, 1):
-            runs.append(_map(built.design, torque, speeds, degrees, models, known, together))
-            progress(count * speeds.size * degrees.size)
-        found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
-        return dataset(
-            {name: (_DIMS, values) for name, values in zip(_NAMES, found, strict=True)},
-            {
-                "law": built.law_names,
-                "torque": ("torque", [torque]),
-                "speed": ("speed", speeds),
-                "temperature": ("temperature", degrees),
-            },
-            warnings=[],
-        )
-
-    return compute
+def at_torque(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    """The map at one torque."""
+    torque, (speeds, degrees) = float(piece["torque"]), map_axes(built)[1:]
+    point = replace(built.operation, load=array(torque))
+    like, lanes = _start(built)
+    known = engaged(built.design, point, built.models[0], _NODES, like)
+    known = known and known.loaded()
+    together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
+    runs = []
+    for count, models in enumerate(built.models, 1):
+        runs.append(_map(built.design, torque, speeds, degrees, models, known, together))
+        progress(count * speeds.size * degrees.size)
+    found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
+    return dataset(
+        {name: (_DIMS, values) for name, values in zip(_NAMES, found, strict=True)},
+        {
+            "law": built.law_names,
+            "torque": ("torque", [torque]),
+            "speed": ("speed", speeds),
+            "temperature": ("temperature", degrees),
+        },
+        warnings=[],
+    )
 
 
 _DIMS = ("law", "torque", "speed", "temperature")
@@ -193,3 +179,12 @@ def _figures(
 
 
 _figures_of_many = fast_program(_figures.function)
+
+LOSS_MAP = Analysis(
+    name="loss_map",
+    title="loss map",
+    lacks=untransmitted,
+    compute=at_torque,
+    pieces=pieces,
+    joined=_joined,
+)

@@ -1,6 +1,7 @@
 """Kinematic error of a drive by deviations of its teeth, as a dataset of a case."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -8,6 +9,8 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.families import Turning
 from pitchpoint.contact.contacts import Contacts
@@ -22,7 +25,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
 
-__all__ = ["kinematic_error_part"]
+__all__ = ["KINEMATIC_ERROR", "kinematic_error_part"]
 
 PHASES = 2
 """States in each tooth period of bodies that couple many teeth: four for every wave of the highest order."""
@@ -180,3 +183,33 @@ def _added(
 @program
 def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> KinematicError:
     return kinematic_error(period.contacts, period.yields, period.loaded, added)
+
+
+def _exact(built: Built) -> str | None:
+    if any(built.deviations):
+        return None
+    return (
+        "the teeth have no deviations around their gears"
+        if built.transmits
+        else "a test rig has no teeth"
+    )
+
+
+def _computed(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+    return kinematic_error_part(built, built.deviations, progress)
+
+
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    found = error_ranges(parts.get("kinematic_error"))
+    ranges = {curve: dict(zip(c, numbers(v), strict=True)) for curve, c, v in found}
+    return {"kinematic_error_range": ranges}
+
+
+KINEMATIC_ERROR = Analysis(
+    name="kinematic_error",
+    title="kinematic error",
+    lacks=_exact,
+    compute=_computed,
+    main=("kinematic_error_range",),
+    figures=_figures,
+)

@@ -1,0 +1,108 @@
+"""The contract of an analysis: what it lacks, its pieces, and the dataset that they make."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import xarray as xr
+
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.schema import Study
+from pitchpoint.cases.variant import Variant
+from pitchpoint.results.variables import Variable
+
+__all__ = ["Analysis", "Piece", "Progress", "Several", "Subject"]
+
+Piece = Mapping[str, Any]
+"""Where a piece lies, as plain data of less than 1 kB: a torque, a range of points; empty for the whole."""
+
+Progress = Callable[[int], None]
+"""Told the number of points that are done."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What analyses look at.
+
+    Attributes:
+        variant: of the case, which can be built again with changed values.
+        built: the case as it stands.
+        studies: asked for beside those of the case.
+    """
+
+    variant: Variant
+    built: Built
+    studies: Mapping[str, Study] = field(default_factory=dict)
+
+
+def _only(_: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    (whole,) = parts
+    return whole
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """What is known of parts of a result before they are computed.
+
+    Attributes:
+        name: of the part, and of its file.
+        title: for progress and figures.
+        lacks: None, or why the part does not exist for a case: what its gears or its file do not have.
+        main: variables that are shown first.
+        figures: entries of `--json` from all parts that exist; by default the main variables under the
+            name of the part.
+        variables: those that no other part knows, by name.
+    """
+
+    name: str
+    title: str
+    lacks: Callable[[Built], str | None] = lambda built: None
+    main: tuple[str, ...] = ()
+    figures: Callable[[Mapping[str, xr.Dataset]], Mapping[str, Any]] | None = None
+    variables: Mapping[str, Variable] = field(default_factory=dict)
+
+    def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
+        """Entries of `--json`."""
+        if self.figures is not None:
+            return self.figures(parts)
+        data = parts.get(self.name)
+        found = {} if data is None else {name: data[name].values.tolist() for name in self.main}
+        return {self.name: found} if self.main else {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Analysis(Entry):
+    """One part of a result: what it needs, how it is computed, and what is shown of it.
+
+    Attributes:
+        compute: dataset of a piece, told a callback for progress. It needs nothing but the case and the
+            piece, so that another process can compute it.
+        pieces: where the pieces lie, in order; one that is the whole by default.
+        joined: the whole dataset from its pieces.
+        onward: of a march, the next piece after the last one as computed, None at its end; it begins after
+            `pieces`.
+    """
+
+    compute: Callable[[Built, Piece, Progress], xr.Dataset]
+    pieces: Callable[[Built], Iterable[Piece]] = lambda built: ({},)
+    joined: Callable[[Built, Sequence[xr.Dataset]], xr.Dataset] = _only
+    onward: Callable[[Built, xr.Dataset, Progress], xr.Dataset | None] | None = None
+
+    def parts(self, subject: Subject) -> "Iterable[Analysis]":
+        """The analysis itself, unless a case lacks something that it needs."""
+        return () if self.lacks(subject.built) else (self,)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Several(Entry):
+    """Parts of one kind, of which a case may ask for several.
+
+    Attributes:
+        each: analyses of those that it asks for.
+    """
+
+    each: Callable[[Subject], Iterable[Analysis]]
+
+    def parts(self, subject: Subject) -> Iterable[Analysis]:
+        """One for each that a case asks for."""
+        return self.each(subject)

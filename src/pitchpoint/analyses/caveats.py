@@ -1,0 +1,213 @@
+"""What is said about a mesh cycle, and what is refused: a locked mesh, say."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.failures import fails
+from pitchpoint.cases.laws import limits_words
+from pitchpoint.cases.quantities import Quantity
+from pitchpoint.cases.schema import FORCE, SPEED, TEMPERATURE, TORQUE
+from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+
+__all__ = [
+    "conformal_warning",
+    "demand_convergence",
+    "demand_motion",
+    "face_warning",
+    "jamming_words",
+    "pressure_warning",
+    "told_of_law",
+    "why_outside",
+]
+
+
+TOLERANCE = 1e-10
+"""Largest relative residual of the torque balance that counts as converged."""
+
+NEARLY_JAMMED = 1e-3
+"""Distance from the coefficient that locks the mesh, relative, at which it is said to be reached."""
+
+PRESSURE = Quantity("pressure", 0.0, 1e15, "GPa")
+
+LEAST_FACE = 3.0
+"""Mean number of slices of a contact line below which it is nearly a point, not a line."""
+
+_LOADS = {"torque": TORQUE, "force": FORCE}
+
+
+def demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:
+    """ConvergenceError if a balance [law, point] was not found: no numbers are returned."""
+    failed = ~(residual <= TOLERANCE)
+    if failed.any():
+        law, point = divmod(int(np.argmax(failed)), residual.shape[1])
+        if np.isposinf(residual[law, point]):
+            raise ConvergenceError(
+                "losses beside the teeth drive the loaded member with more than its load "
+                f"{_where(points[min(point, len(points) - 1)])}: other flanks would touch"
+            )
+        raise ConvergenceError(
+            f"the torque balance did not converge (relative residual {residual[law, point]:.2g}, "
+            f"allowed {TOLERANCE:g}) with {laws[law]} {_where(points[min(point, len(points) - 1)])}"
+        )
+
+
+def demand_motion(
+    locked: np.ndarray,
+    acting: np.ndarray,
+    limit: np.ndarray,
+    points: Sequence[Built],
+    laws: Sequence[str],
+) -> None:
+    """ConvergenceError if friction locks the mesh [law, point]: there is no balance to find."""
+    if locked.any():
+        law, point = divmod(int(np.argmax(locked)), locked.shape[1])
+        raise ConvergenceError(
+            f"friction locks the mesh with {laws[law]} {_where(points[min(point, len(points) - 1)])}: "
+            f"{jamming_words(float(acting[law, point]), float(limit[law, point]))}; no force carries the load"
+        )
+
+
+def jamming_words(acting: float, limit: float) -> str:
+    """Why friction locks a mesh, in words.
+
+    Args:
+        acting: friction coefficient, under the force without friction.
+        limit: from which on the mesh locks.
+
+    Example:
+        >>> jamming_words(0.312, 0.29)
+        'friction 0.312 reaches the 0.29 at which this mesh locks'
+        >>> jamming_words(0.25, 0.29)
+        'friction 0.25 grows with the force, and at 0.29 this mesh locks'
+    """
+    if acting < limit * (1.0 - NEARLY_JAMMED):
+        return f"friction {acting:.3g} grows with the force, and at {limit:.3g} this mesh locks"
+    return f"friction {acting:.3g} reaches the {limit:.3g} at which this mesh locks"
+
+
+def _where(built: Built) -> str:
+    point = built.case.operation
+    return ", ".join(
+        f"{name} {kind.show(value)}"
+        for name, kind, value in (
+            (f"at {built.case.gears.load}", _LOADS[built.case.gears.load], point.load),
+            ("speed", SPEED, point.speed),
+            ("temperature", TEMPERATURE, point.temperature),
+        )
+    )
+
+
+def conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
+    """Contacts whose flanks have the same curvature nearly, where the formulas of contact do not hold."""
+    loaded = np.asarray(run["load"]) > 0.0
+    largest = float(mesh.largest_radius)
+    flat = loaded & (np.asarray(run["radius"]) > largest * (1.0 - 1e-9))
+    if not flat.any():
+        return []
+    return [
+        f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
+        f"radius is cut at {largest:.3g} m, and pressure and film there say little."
+    ]
+
+
+def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
+    """Part of the contact lines that gets no load; refused where hardly any of them gets some."""
+    mesh, active = built.design.mesh, np.asarray(run["active"])
+    carries = np.asarray(run["load"]) > 0.0
+    pairs, slices = carries.any(axis=2), active.shape[2]
+    if mesh.touching or slices == 1 or not pairs.any():
+        return []
+    lines = np.sum(pairs.sum(axis=1) * run["weight"])
+    mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
+    load = _LOADS[built.case.gears.load].show(built.case.operation.load)
+    if mean < LEAST_FACE:
+        raise InputError(
+            f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "
+            "point in place of a line; less crowning, end relief or misalignment, a higher load or more "
+            "slices leave a line of contact",
+            key="gears",
+        )
+    if mean > slices * (1.0 - 1e-9):
+        return []
+    return [
+        f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: "
+        "there flanks do not touch."
+    ]
+
+
+def pressure_warning(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:
+    """A Hertz pressure that a material does not bear even once."""
+    largest = max(float(np.max(run["pressure"])) for run in runs)
+    limits = [
+        (limit.value, gear) for gear, used in enumerate(built.solids, 1) if (limit := used.bears)
+    ]
+    weakest, gear = min(limits, default=(np.inf, 0))
+    if not largest > weakest:
+        return []
+    name = built.solids[gear - 1].record.name
+    return [
+        fails(
+            f"the Hertz pressure reaches {PRESSURE.show(float(f'{largest:.3g}'))}; {name} bears about "
+            f"{PRESSURE.show(weakest)}, and that a few times only."
+        )
+    ]
+
+
+def told_of_law(law: FrictionLaw, reasons: Sequence[str]) -> list[str]:
+    """Sentences on a law."""
+    return [f"{law.title}: {reason}." for reason in reasons]
+
+
+def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
+    """Why a law does not hold at an operating point, in words; empty where it does."""
+    reasons = [
+        f"the {name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}, "
+        f"{_how_long(run[f'outside {law.name} {name}'], run['weight'])}"
+        for name, limits in law.ranges.items()
+        if np.any(run[f"outside {law.name} {name}"])
+    ]
+    if run["locked"].any():
+        reasons.append(f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh")
+    loaded = run["load"] > 0.0
+    if not loaded.any():
+        return reasons
+    highest = float(run["friction"].max(where=loaded, initial=0.0))
+    thinnest = float(run["lambda_ratio"].min(where=loaded, initial=np.inf))
+    if law.full_film and thinnest < 1.0:
+        reasons.append(
+            f"it describes contacts with a full film, but the film is down to {thinnest:.2g} of the "
+            f"composite roughness Rq; its friction coefficient, up to {highest:.2g}, is an extrapolation"
+        )
+    elif highest > law.largest:
+        reasons.append(
+            f"its friction coefficient reaches {highest:.2g}; steel in oil has at most about "
+            f"{law.largest:g}, so that this is an extrapolation"
+        )
+    rolling = ROLLING_RESISTANCE[built.case.models.rolling_resistance]
+    if law.whole and rolling.sources:
+        reasons.append(
+            "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
+            f"'{rolling.name}' beside it rolling counts twice, here with {_rolling_share(run):.2g} % of "
+            "the loss"
+        )
+    return reasons
+
+
+def _how_long(outside: np.ndarray, weight: np.ndarray) -> str:
+    share = float(np.sum(outside * weight))
+    return "throughout" if share > 1.0 - 1e-9 else f"in {100.0 * share:.2g} % of the mesh cycle"
+
+
+def _rolling_share(run: Mapping[str, np.ndarray]) -> float:
+    """Part of the loss in the teeth that rolling takes [%]."""
+    rolling, sliding = (
+        float(np.sum(np.sum(run[name], axis=(1, 2)) * run["weight"]))
+        for name in ("rolling_loss", "sliding_loss")
+    )
+    return 100.0 * rolling / (rolling + sliding)

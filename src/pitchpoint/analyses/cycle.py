@@ -1,0 +1,82 @@
+"""The mesh cycle in detail."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.caveats import (
+    conformal_warning,
+    demand_convergence,
+    demand_motion,
+    face_warning,
+    pressure_warning,
+    told_of_law,
+    why_outside,
+)
+from pitchpoint.analyses.summaries import profiles
+from pitchpoint.cases.build import Built
+from pitchpoint.gears.mesh import PATHS
+from pitchpoint.results.store import dataset
+from pitchpoint.status import locked_or_lost
+from pitchpoint.status import told as told_of
+
+__all__ = [
+    "CYCLE",
+]
+
+
+def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    runs, names = profiles(built, built.models), built.law_names
+    demand_motion(*_jammed(runs), [built], names)
+    demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)
+    lanes = ("law", "node", "pair", "slice")
+    common = {
+        "phase": (("node",), runs[0]["phase"]),
+        "weight": (("node",), runs[0]["weight"]),
+        "path": (lanes[1:], runs[0]["path"]),
+        "active": (lanes[1:], runs[0]["active"]),
+    }
+    each = {
+        name: (lanes if runs[0][name].ndim == 3 else lanes[:2], np.stack([r[name] for r in runs]))
+        for name in runs[0]
+        if name not in common and not name.startswith("outside")
+    }
+    warnings = [
+        text
+        for law, run in zip(built.laws, runs, strict=True)
+        for text in told_of_law(law, why_outside(built, law, run))
+    ]
+    warnings += conformal_warning(built.design.mesh, runs[0])
+    warnings += pressure_warning(built, runs)
+    warnings += face_warning(built, runs[0])
+    data = dataset(
+        {**common, **each},
+        {"law": names},
+        title="mesh cycle",
+        warnings=warnings,
+        solve=told_of(locked_or_lost(each["locked"][1]), each["residual"][1]),
+        film_law=built.case.models.film_thickness,
+        events=built.nominal["events"].tolist(),
+    )
+    long_name, symbol = PATHS[built.design.mesh.counts]
+    data["path"].attrs.update(long_name=long_name, symbol=symbol)
+    filled = built.design.mesh.filled
+    return data if filled is None else data.isel(pair=filled)
+
+
+def _jammed(
+    runs: Sequence[Mapping[str, np.ndarray]],
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Whether friction locks the mesh, and where it is nearest to that its coefficients [law, 1]."""
+    names = ("largest_friction", "jamming_coefficient")
+    nearest = [int(np.argmax(run[names[0]] / run[names[1]])) for run in runs]
+    acting, limit = (
+        np.array([[run[name][node]] for run, node in zip(runs, nearest, strict=True)])
+        for name in names
+    )
+    return np.stack([run["locked"].any(keepdims=True) for run in runs]), acting, limit
+
+
+CYCLE = Analysis(name="cycle", title="mesh cycle", compute=_cycle)

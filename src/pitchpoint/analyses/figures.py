@@ -1,0 +1,147 @@
+"""Main figures of the parts of a result as JSON has them."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.summaries import AT_CONTACT
+
+__all__ = [
+    "CONTACT",
+    "MAIN",
+    "REACTIONS",
+    "TEMPERATURES",
+    "VIBRATION",
+    "WIND_UP",
+    "bearing_loads",
+    "by_law",
+    "by_torque",
+    "covers",
+    "error_ranges",
+    "main_figures",
+    "numbers",
+    "of_contact",
+    "of_operation",
+    "out_of_range",
+]
+
+Parts = Mapping[str, xr.Dataset]
+
+MAIN = (
+    "mean_efficiency",
+    "min_efficiency",
+    "max_efficiency",
+    "mean_loss",
+    "mean_input_torque",
+    "torque_ripple",
+    "mean_friction",
+)
+
+CONTACT = (*AT_CONTACT, "mean_friction", "mean_loss", "mean_input_torque")
+"""Main figures of a test rig, which transmits nothing."""
+
+
+def of_contact(data: Any) -> bool:
+    """True for an operating point or a study of a test rig, whose figures are those of its contact."""
+    return AT_CONTACT[0] in data
+
+
+def main_figures(data: Any) -> tuple[str, ...]:
+    """Names of the figures that are shown first of an operating point, or of a study."""
+    return CONTACT if of_contact(data) else MAIN
+
+
+VIBRATION = (
+    "mean_stiffness",
+    "stiffness_variation",
+    "mean_transmission_error",
+    "transmission_error_range",
+    "largest_dynamic_factor",
+    "natural_frequency",
+    "mesh_frequency",
+)
+
+
+TEMPERATURES = tuple(
+    f"{name}_{gear}"
+    for gear in (1, 2)
+    for name in ("flank_temperature", "root_temperature", "young")
+)
+
+REACTIONS = tuple(f"{way}_reaction_{gear}" for gear in (1, 2) for way in ("radial", "axial"))
+
+WIND_UP = ("wind_up", "angular_transmission_error_range", "torsional_stiffness", "loaded_pairs")
+
+
+def numbers(values: Any) -> Any:
+    """Values as JSON has them, None for NaN; one alone without a list."""
+    plain = [None if isinstance(v, float) and np.isnan(v) else v for v in values.tolist()]
+    return plain if len(plain) > 1 else plain[0]
+
+
+def by_law(data: xr.Dataset, names: Sequence[str]) -> dict[str, Any]:
+    """Figures under each friction law, with those of vibration and temperature, and the axis of a sweep."""
+    every = (*names, *(name for name in (*VIBRATION, *TEMPERATURES) if name in data))
+    result: dict[str, Any] = {
+        str(law): {name: numbers(data[name].values[position]) for name in every}
+        for position, law in enumerate(data["law"].values)
+    }
+    if "axis" in data:
+        result["axis"] = {
+            "key": data.attrs["sweep_key"],
+            "unit": data["axis"].attrs.get("units", ""),
+            "values": numbers(data["axis"].values),
+        }
+    return result
+
+
+def by_torque(data: xr.Dataset | None, names: Sequence[str]) -> dict[str, Any]:
+    """Figures over torque; none of a part that does not exist."""
+    return {} if data is None else {n: numbers(data[n].values) for n in ("torque", *names)}
+
+
+def of_operation(parts: Parts) -> dict[str, Any]:
+    """Figures of the operating point."""
+    data = parts["operation"]
+    return {
+        "operation": by_law(data, main_figures(data)),
+        "efficiency_of": covers(data),
+        "reactions": by_law(data, REACTIONS),
+        "bearing_load": {
+            str(law): dict(bearing_loads(data, k)) for k, law in enumerate(data["law"].values)
+        },
+    }
+
+
+def covers(data: xr.Dataset) -> str:
+    """What the efficiency is of, where that is less than the whole drive."""
+    return str(data["mean_efficiency"].attrs.get("covers", ""))
+
+
+def out_of_range(laws: xr.Dataset) -> list[dict[str, Any]]:
+    """Laws of the library that do not hold at the operating point, with their efficiency and the reasons."""
+    found: list[dict[str, Any]] = json.loads(laws.attrs.get("outside", "[]"))
+    return found
+
+
+def bearing_loads(data: Any, law: int) -> list[tuple[str, float]]:
+    """Bearings by name and what they bear [N]."""
+    if "bearing_load" not in data:
+        return []
+    loads = data["bearing_load"].values[:, 0]
+    bears = loads.any(axis=0)
+    return [(str(place), loads[law, k]) for k, place in enumerate(data["place"].values) if bears[k]]
+
+
+def error_ranges(data: xr.Dataset | None) -> Iterator[tuple[str, list[str], Any]]:
+    """Name of each curve of the kinematic error, and its peak to peak by what causes it."""
+    if data is None:
+        return
+    causes = [str(cause) for cause in data["cause"].values]
+    for curve, values in zip(
+        data["curve"].values, data["kinematic_error_range"].values, strict=True
+    ):
+        yield str(curve), causes, values

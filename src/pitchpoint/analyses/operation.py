@@ -1,0 +1,114 @@
+"""The operating point, the friction laws of the library there, and the drive backwards."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.caveats import why_outside
+from pitchpoint.analyses.figures import (
+    CONTACT,
+    MAIN,
+    REACTIONS,
+    TEMPERATURES,
+    by_law,
+    of_operation,
+    out_of_range,
+)
+from pitchpoint.analyses.summaries import at_contact, profiles, summaries, temperatures, vibrations
+from pitchpoint.cases.build import Built
+from pitchpoint.lubrication.applicability import applies
+from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.results.store import without_nan
+
+__all__ = [
+    "BACK_DRIVING",
+    "LAWS_THERE",
+    "OPERATION",
+    "untransmitted",
+]
+
+
+def _operation(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    count = len(built.models)
+    extra = {
+        **vibrations([built], count),
+        **temperatures([built], count),
+        **at_contact([built], built.models),
+    }
+    return summaries([built], built.models, extra, title="operating point")
+
+
+def _laws(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    """Every law of the library in its range at the operating point: how far they themselves disagree.
+
+    The attribute `outside` lists the others and the laws of the case that are out of theirs, each with
+    its efficiency there and the reasons.
+    """
+    every = [law for law in LAWS if law.sources and applies(law, built.design.mesh) is None]
+    others = built.under([law for law in every if law not in built.laws])
+    under = {models.law: models for models in (*others, *built.models)}
+    considered = [under[law] for law in dict.fromkeys([*every, *built.laws])]
+    title = "friction laws that apply"
+    data = summaries([built], considered, {}, title=title, may_lock=True)
+    reasons = [
+        why_outside(built, models.law, run)
+        for models, run in zip(considered, profiles(built, considered), strict=True)
+    ]
+    outside = [
+        {
+            "law": str(data["law"].values[k]),
+            "mean_efficiency": float(data["mean_efficiency"].values[k, 0]),
+            "reasons": told,
+        }
+        for k, told in enumerate(reasons)
+        if told
+    ]
+    kept = [k for k, models in enumerate(considered) if models.law in every and not reasons[k]]
+    return data.isel(law=kept).assign_attrs(outside=json.dumps(without_nan(outside)))
+
+
+def _back_driving(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    """The loaded member drives at its own speed and carries the same power to the former driver."""
+    return summaries([built.backwards], built.models, {}, title="back-driving", may_lock=True)
+
+
+def _law_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    laws = parts["laws"]
+    return {
+        "friction_laws": by_law(laws, ("mean_efficiency",)),
+        "friction_laws_out_of_range": out_of_range(laws),
+    }
+
+
+def _backward_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Figures by law with the loaded member driving; none where nothing is transmitted."""
+    data = parts.get("back_driving")
+    names = ("mean_efficiency", "locked", "jamming_coefficient")
+    return {"back_driving": {} if data is None else by_law(data, names)}
+
+
+def untransmitted(built: Built) -> str | None:
+    """Why there is no part on the power that goes through."""
+    return None if built.transmits else "nothing is transmitted by a test rig"
+
+
+OPERATION = Analysis(
+    name="operation",
+    title="operating point",
+    compute=_operation,
+    main=(*MAIN, *CONTACT, *REACTIONS, "bearing_load", *TEMPERATURES),
+    figures=of_operation,
+)
+LAWS_THERE = Analysis(
+    name="laws", title="spread of the friction laws", compute=_laws, figures=_law_figures
+)
+BACK_DRIVING = Analysis(
+    name="back_driving",
+    title="back-driving",
+    lacks=untransmitted,
+    compute=_back_driving,
+    figures=_backward_figures,
+)

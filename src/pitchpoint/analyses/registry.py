@@ -1,0 +1,39 @@
+"""All analyses, in the order in which their parts are worth having."""
+
+from pitchpoint.analyses.along_action import RESONANCE, STIFFNESS, VIBRATIONS
+from pitchpoint.analyses.analysis import Analysis, Several
+from pitchpoint.analyses.cycle import CYCLE
+from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
+from pitchpoint.analyses.loss_map import LOSS_MAP
+from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
+from pitchpoint.analyses.running import RUNNING
+from pitchpoint.analyses.studies import STUDIES
+from pitchpoint.analyses.teeth import TEETH
+from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.registry import Registry
+from pitchpoint.results.variables import VARIABLES
+
+__all__ = ["ANALYSES", "register"]
+
+ANALYSES: Registry[Analysis | Several] = Registry(
+    "analysis",
+    TEETH,
+    CYCLE,
+    OPERATION,
+    LAWS_THERE,
+    TORSION,
+    KINEMATIC_ERROR,
+    STIFFNESS,
+    VIBRATIONS,
+    RESONANCE,
+    STUDIES,
+    RUNNING,
+    LOSS_MAP,
+    BACK_DRIVING,
+)
+
+
+def register(analysis: Analysis | Several) -> None:
+    """Add an analysis of one's own, with its variables, to all that are computed from now on."""
+    ANALYSES.add(analysis)
+    VARIABLES.update(analysis.variables)

@@ -1,0 +1,234 @@
+"""Studies of a case: points with changed values, and sweeps."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject
+from pitchpoint.analyses.figures import by_law, main_figures
+from pitchpoint.analyses.summaries import at_contact, joined, summaries, temperatures, vibrations
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.document import leaves
+from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shown
+from pitchpoint.cases.readings import readings_of
+from pitchpoint.cases.schema import Study, Sweep, quantity_at
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError, shorten
+from pitchpoint.units import si_unit
+
+__all__ = [
+    "STUDIES",
+    "is_study",
+    "sweep_values",
+]
+
+
+PIECE = 256
+"""Points of a sweep that are kept on disk together."""
+
+PREFIX = "study_"
+"""Names of parts that are studies begin with it."""
+
+SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
+"""Tables whose values may be swept; rival models stand side by side as a list in [models]."""
+
+
+@dataclass(frozen=True)
+class _Planned:
+    """A study of a case: points with values of their own.
+
+    Attributes:
+        subject: the case.
+        name, title: of the study.
+        changes: of each point, by dotted key.
+        swept: key of the axis; empty without one.
+        told: attributes on the axis.
+        where: key of the study, for messages.
+    """
+
+    subject: Subject
+    name: str
+    title: str
+    changes: list[Mapping[str, Any]]
+    swept: str
+    told: Mapping[str, str]
+    where: str
+
+    @property
+    def analysis(self) -> Analysis:
+        """The study as a part of the result."""
+        return Analysis(
+            name=f"{PREFIX}{self.name}",
+            title=self.title,
+            compute=self.compute,
+            pieces=lambda _: self.pieces,
+            joined=lambda _, parts: joined(parts),
+        )
+
+    @property
+    def pieces(self) -> list[Piece]:
+        """Ranges of points."""
+        count = len(self.changes)
+        return [{"first": n, "stop": min(n + PIECE, count)} for n in range(0, count, PIECE)]
+
+    def compute(self, _: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+        """Figures of a range of points."""
+        changes = self.changes[piece["first"] : piece["stop"]]
+        points = [self.point(change) for change in changes]
+        under = points[0].models
+        extra = {
+            **self._axis(changes),
+            **vibrations(points, len(under)),
+            **temperatures(points, len(under)),
+            **at_contact(points, under),
+            **readings_of(points, len(under)),
+        }
+        data = summaries(points, under, extra, progress, title=self.title)
+        data.attrs.update(self.told)
+        if self.told.get("axis_kind"):
+            units = si_unit(self.told["axis_kind"])
+            data["axis"].attrs.update(units=units, long_name=self.swept)
+        return data
+
+    def _axis(self, changes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        values = [_number(change[self.swept]) for change in changes if self.swept]
+        return {"axis": (("point",), np.array(values))} if self.swept else {}
+
+    def point(self, changes: Mapping[str, Any]) -> Built:
+        """Case with the changes of a point."""
+        return _point(self.subject.variant, changes, self.where, self.swept)
+
+    def demand_ends(self) -> None:
+        """InputError for what is wrong with the first point or the last."""
+        for change in (*self.changes[:1], *self.changes[1:][-1:]):
+            self.point(change)
+
+
+def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:
+    title = study.title or name
+    fixed = {key: value for key, value in leaves(study.change) if value != {}}
+    if study.sweep is None:
+        return _Planned(subject, name, title, [fixed], "", {}, where)
+    variant, key = subject.variant, study.sweep.key
+    where = where if where.startswith("--") else f"{where}.sweep"
+    values, kind = sweep_values(study.sweep, where, variant.name, variant.document().tree)
+    _demand_one(variant, study.sweep, where)
+    told = {
+        "sweep_key": key,
+        "axis_kind": kind.kind if kind else "",
+        "axis_unit": kind.unit if kind else "",
+    }
+    changes: list[Mapping[str, Any]] = [{**fixed, key: value} for value in values]
+    return _Planned(subject, name, title, changes, key, told, where)
+
+
+def _studies(subject: Subject) -> Iterator[Analysis]:
+    """All studies of a case; InputError for the ends of a sweep."""
+    own, extra = subject.built.case.studies, subject.studies
+    for name in own.keys() & extra.keys():
+        told = "is a study of the case already"
+        raise InputError(told, file=subject.variant.name, key=f"studies.{name}")
+    every = [(name, study, f"studies.{name}") for name, study in own.items()]
+    every += [(name, study, "--sweep") for name, study in extra.items()]
+    for each in every:
+        planned = _planned(subject, *each)
+        planned.demand_ends()
+        yield planned.analysis
+
+
+def _unasked(built: Built) -> str | None:
+    return None if built.case.studies else "the case has no [studies]"
+
+
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    found = {name.removeprefix(PREFIX): data for name, data in parts.items() if is_study(name)}
+    return {"studies": {name: by_law(data, main_figures(data)) for name, data in found.items()}}
+
+
+def is_study(part: str) -> bool:
+    """True for the name of a part that is a study."""
+    return part.startswith(PREFIX)
+
+
+def _demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
+    """InputError if one number would be swept over two gears to which the case gives different ones."""
+    value: Any = variant.document().tree
+    for part in sweep.key.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    several = isinstance(value, list | tuple) and len(set(map(str, value))) > 1
+    if several and any(not isinstance(one, list | tuple) for one in sweep.values or (0,)):
+        raise InputError(
+            f"{sweep.key} has different values for gear 1 and gear 2, {shown(value)}, and one number would "
+            f"set both; sweep {sweep.key}.1 or {sweep.key}.2",
+            file=variant.name,
+            key=where,
+        )
+
+
+def _point(variant: Variant, changes: Mapping[str, Any], where: str, swept: str = "") -> Built:
+    """Case with the changes of a study; what is wrong with it is told with study and value."""
+    try:
+        return variant.built(changes)
+    except InputError as error:
+        at = f"at {swept} = {_told(swept, changes[swept])}: " if swept else ""
+        inside = f"{shorten(error.key, 160)}: " if error.key and error.key != swept else ""
+        message = f"{at}{inside}{error.message}"
+        raise InputError(message, file=error.file, key=where, value=changes.get(swept)) from None
+
+
+def _told(key: str, value: Any) -> str:
+    quantity = quantity_at(key)
+    return quantity.show(value) if quantity and isinstance(value, float) else shown(value)
+
+
+def sweep_values(
+    sweep: Sweep, where: str, name: str, tree: Mapping[str, Any]
+) -> tuple[list[Any], Any]:
+    """Values of a sweep, numbers in SI, and their kind.
+
+    Args:
+        sweep: as given.
+        where, name: key and file, for messages.
+        tree: plain values of the case.
+
+    Raises:
+        InputError: an unknown key, or a value that the key does not take.
+    """
+    try:
+        quantity = quantity_at(sweep.key, tree)
+        if sweep.key.partition(".")[0] not in SWEPT:
+            raise InputError(f"cannot be swept; keys of {', '.join(SWEPT)} can")
+        if sweep.values is not None:
+            if quantity is None:
+                return list(sweep.values), None
+            return [_read(quantity, value) for value in sweep.values], quantity
+        if quantity is None:
+            raise InputError(
+                f"{shown(sweep.key)} is no number; give values in place of start and stop"
+            )
+        ends = quantity.read(sweep.start), quantity.read(sweep.stop)
+        grid = np.linspace(*ends, int(sweep.count))
+        return [SIValue(value) for value in (np.round(grid) if quantity.whole else grid)], quantity
+    except InputError as error:
+        raise error.at(file=name, key=f"{where}: {shorten(sweep.key)}") from None
+
+
+def _read(quantity: Quantity, value: Any) -> Any:
+    """Value in SI, or a list of two for the two gears."""
+    if isinstance(value, list | tuple):
+        return [SIValue(number) for number in Pair(quantity).read(value)]
+    return SIValue(quantity.read(value))
+
+
+def _number(value: Any) -> float:
+    """Place on the axis of a sweep: the number itself, or that of gear 1."""
+    first = value[0] if isinstance(value, list | tuple) and value else value
+    return float(first) if isinstance(first, int | float) else np.nan
+
+
+STUDIES = Several(
+    name="studies", title="studies and sweeps", lacks=_unasked, figures=_figures, each=_studies
+)

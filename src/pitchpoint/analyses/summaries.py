@@ -1,0 +1,213 @@
+"""Figures of operating points, under each of some friction laws."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint._jax import jax
+from pitchpoint.analyses.analysis import Progress
+from pitchpoint.analyses.caveats import demand_convergence, demand_motion
+from pitchpoint.cases.build import Built
+from pitchpoint.efficiency.profile import profile
+from pitchpoint.efficiency.quasi_static import Models
+from pitchpoint.efficiency.summary import summarise
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.results.rounding import difference
+from pitchpoint.results.store import dataset
+from pitchpoint.status import locked_or_lost
+from pitchpoint.status import told as told_of
+
+__all__ = [
+    "AT_CONTACT",
+    "at_contact",
+    "few",
+    "joined",
+    "profiles",
+    "summaries",
+    "temperatures",
+    "vibrations",
+]
+
+
+AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "sliding_velocity")
+"""Figures of a test rig, whose contact stays as it is."""
+
+_SHOWN = 3
+
+_WITH_FRICTION = {"largest_contact_force_ratio"} | {
+    f"{kind}_{name}{ending}"
+    for kind in ("mean", "min", "max")
+    for name in ("loss", "efficiency", "input_torque", "friction")
+    for ending in ("", "_path")
+}
+"""Figures that are undefined where friction locks the mesh."""
+
+_FIGURE = ("law", "point", "place")
+
+
+def summaries(
+    points: list[Built],
+    under: Sequence[Models],
+    extra: Mapping[str, Any],
+    progress: Progress = lambda _: None,
+    *,
+    title: str,
+    may_lock: bool = False,
+) -> xr.Dataset:
+    """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN."""
+    names = [models.law.name for models in under]
+    runs = [_grouped(points, models, progress) for models in under]
+    out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
+    if not may_lock and len(points) == 1:
+        ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
+        demand_motion(out["locked"], *ends, points, names)
+    for name, values in out.items():
+        if values.dtype.kind == "f" and name in _WITH_FRICTION:
+            values[out["locked"]] = np.nan
+    residual = np.where(out["locked"], 0.0, out["residual"])
+    demand_convergence(residual, points, names)
+    if points[0].case.models.averaging == "path":
+        for name in ("mean_loss", "mean_efficiency", "mean_input_torque"):
+            out[name] = out[f"{name}_path"]
+    out = {name: values for name, values in out.items() if not name.endswith("_path")}
+    out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
+    out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
+    if not points[0].design.mesh.touching:
+        del out["loss_factor"]  # of the shares of one load: no figure of the gears alone
+    else:
+        out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
+    told = dict.fromkeys(text for point in points for text in point.warnings)
+    warnings = few([*told])
+    if "vibration_status" in extra:
+        from pitchpoint.analyses.vibration import status_sentences
+
+        warnings += status_sentences(extra["vibration_status"][1][0])
+    if not may_lock:
+        for models, locked in zip(under, out["locked"], strict=True):
+            warnings += _lock_warning(models.law, locked)
+    data = dataset(
+        {**{name: (_FIGURE[: values.ndim], values) for name, values in out.items()}, **extra},
+        {"law": names, **_named_places(points[0])},
+        title=title,
+        warnings=warnings,
+        solve=_balances(out),
+    )
+    data["mean_efficiency"].attrs.update(points[0].covers)
+    if not points[0].transmits:
+        data["mean_efficiency"].attrs["note"] = "undefined (NaN): no power goes through a test rig"
+    return data
+
+
+def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
+    """What became of the balances behind the figures [law, point]."""
+    found = (np.asarray(values[name]) for name in ("locked", "residual", "iterations"))
+    locked, residual, iterations = found
+    return told_of(locked_or_lost(locked.astype(bool)), residual, iterations)
+
+
+def _named_places(built: Built) -> dict[str, list[str]]:
+    """Places beside the teeth where power is lost; none without any."""
+    return {"place": [*built.case.losses]} if built.case.losses else {}
+
+
+def joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Pieces of a sweep as one; their warnings too."""
+    if len(pieces) == 1:
+        return pieces[0]
+    data = xr.concat(pieces, "point", combine_attrs="override")
+    told = [text for piece in pieces for text in json.loads(piece.attrs["warnings"])]
+    data.attrs["warnings"] = json.dumps(few([*dict.fromkeys(told)]))
+    data.attrs["solve"] = json.dumps(
+        _balances({str(name): values for name, values in data.items()})
+    )
+    return data
+
+
+def few(sentences: list[str]) -> list[str]:
+    """The first warnings of a sweep, and how many more there are."""
+    rest = len(sentences) - _SHOWN
+    more = [f"... and {rest} more warnings of this kind in the sweep."] if rest > 0 else []
+    return sentences[:_SHOWN] + more
+
+
+def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
+    if not locked.any():
+        return []
+    return [f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."]
+
+
+def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[str, np.ndarray]:
+    """Summaries in order, points of equal static structure computed together."""
+
+    def of(group: Sequence[Built]) -> dict[str, np.ndarray]:
+        return summarise([(point.design, point.operation) for point in group], models, progress)
+
+    return _in_groups(points, of)
+
+
+def _in_groups(
+    points: Sequence[Built], compute: Callable[[Sequence[Built]], dict[str, np.ndarray]]
+) -> dict[str, np.ndarray]:
+    """Results [point ...] in order, from computations of points of equal static structure."""
+    groups: dict[Any, list[int]] = {}
+    for position, point in enumerate(points):
+        shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(point.design))
+        groups.setdefault((jax.tree.structure(point.design), shapes), []).append(position)
+    parts = [(where, compute([points[i] for i in where])) for where in groups.values()]
+    result = {
+        name: np.empty((len(points), *values.shape[1:]), values.dtype)
+        for name, values in parts[0][1].items()
+    }
+    for where, values in parts:
+        for name in result:
+            result[name][where] = values[name]
+    return result
+
+
+def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
+    """The mesh cycle under each of some models."""
+    film = FILM_THICKNESS[built.case.models.film_thickness]
+    point = built.design, built.operation
+    return [profile(*point, models, film, engaged=built.engaged) for models in under]
+
+
+def at_contact(points: Sequence[Built], under: Sequence[Models]) -> dict[str, Any]:
+    """Pressure, film and speeds at the one contact of a rig, which transmits nothing."""
+    if points[0].transmits:
+        return {}
+    runs = [profiles(point, under) for point in points]
+    return {
+        name: (
+            ("law", "point"),
+            np.array([[run[name][0, 0, 0] for run in each] for each in runs]).T,
+        )
+        for name in AT_CONTACT
+    }
+
+
+def temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
+    """Temperatures and moduli of the teeth where a model says that they warm up."""
+    if points[0].case.models.tooth_temperature == "isothermal":
+        return {}
+    values: dict[str, list[float]] = {}
+    for point in points:
+        for gear, used in enumerate(point.solids, 1):
+            flank = used.temperature if used.flank is None else used.flank
+            values.setdefault(f"flank_temperature_{gear}", []).append(flank)
+            values.setdefault(f"root_temperature_{gear}", []).append(used.temperature)
+            values.setdefault(f"young_{gear}", []).append(float(used.solid.young))
+    return {name: (("law", "point"), np.array([each] * laws)) for name, each in values.items()}
+
+
+def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
+    """Figures of stiffness and vibration, the same under every friction law."""
+    if points[0].case.dynamics is None:
+        return {}
+    from pitchpoint.analyses.vibration import figures_of
+
+    found = _in_groups(points, figures_of)
+    return {name: (("law", "point"), np.stack([values] * laws)) for name, values in found.items()}

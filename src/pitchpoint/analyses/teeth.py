@@ -1,0 +1,44 @@
+"""Teeth drawn to scale."""
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Array
+
+from pitchpoint._jax import jax
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.cases.build import Built
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.programs import program
+from pitchpoint.results.store import dataset
+
+__all__ = [
+    "TEETH",
+]
+
+
+def _teeth(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    """What a drawing of the teeth to scale needs."""
+    numbers = jax.device_get(_drawing(built.design.mesh))
+    dims, labels = built.family.drawing, built.family.coordinates
+    data = {name: (dims.get(name) or _dims(name, v), v) for name, v in numbers.items()}
+    used = {name for each, _ in data.values() for name in each}
+    return dataset(data, {k: v for k, v in labels.items() if k in used}, title="teeth")
+
+
+def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
+    """Dimensions of an array that the family does not name: two values are those of two gears."""
+    if np.shape(values) == (2,):
+        return ("gear",)
+    return tuple(f"{name}_{axis}" for axis in range(np.ndim(values)))
+
+
+@program
+def _drawing(mesh: Mesh) -> dict[str, Array]:
+    return mesh.drawing()
+
+
+def _undrawn(built: Built) -> str | None:
+    return None if _drawing(built.design.mesh) else "there are no teeth to draw"
+
+
+TEETH = Analysis(name="teeth", title="teeth", lacks=_undrawn, compute=_teeth)

@@ -1,0 +1,78 @@
+"""A case file in one variant, which can be built again with changed values."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+from pitchpoint.cases.build import Built, build
+from pitchpoint.cases.document import Document, resolve
+from pitchpoint.cases.schema import validate
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+
+__all__ = [
+    "Variant",
+]
+
+
+_TOLD = ("targets", "issues", "studies")
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A case file in one variant, with the means to build it again with changed values.
+
+    Attributes:
+        tree: tables of the file.
+        name: of the file or of the shipped case, for messages.
+        variant: one of those in the file.
+        settings: values by dotted key that replace those of the file.
+        own: friction law of the user's own.
+        recorded: name of the case whose record the file is; empty where it is the case itself.
+        warnings: about the record.
+    """
+
+    tree: Mapping[str, Any]
+    name: str
+    variant: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    own: FrictionLaw | None = None
+    recorded: str = ""
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Name of the case in its results."""
+        return self.recorded or self.name
+
+    def document(self, **changes: Any) -> Document:
+        """Plain values with further settings."""
+        return resolve(
+            dict(self.tree),
+            name=self.name,
+            variant=self.variant,
+            settings={**self.settings, **changes},
+        )
+
+    @cached_property
+    def _computed(self) -> "Variant":
+        """The tables that a point is computed from: a sweep reads them for every point."""
+        return replace(self, tree=_without(self.tree))
+
+    def built(self, changes: Mapping[str, Any]) -> Built:
+        """Case with some values changed."""
+        document = (self._computed if changes else self).document(**changes)
+        return build(validate(document), document, self.own)
+
+
+def _without(tree: Mapping[str, Any]) -> dict[str, Any]:
+    kept = {key: value for key, value in tree.items() if key not in _TOLD}
+    overlays = kept.get("variants", {})
+    if isinstance(overlays, dict):
+        kept["variants"] = {
+            name: {key: value for key, value in overlay.items() if key not in _TOLD}
+            if isinstance(overlay, dict)
+            else overlay
+            for name, overlay in overlays.items()
+        }
+    return kept

@@ -1,0 +1,95 @@
+"""Parts of a result to compute: the analyses of a case, with their pieces."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Subject
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.schema import Study
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError, shorten
+from pitchpoint.registry import nearest
+
+__all__ = ["Job", "job_of", "jobs"]
+
+
+def _silent(_: int) -> None:
+    """Progress that nobody hears."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One dataset to compute, in one piece or several: an analysis of a case."""
+
+    analysis: Analysis
+    built: Built
+
+    @property
+    def name(self) -> str:
+        """Of the part, and of its file."""
+        return self.analysis.name
+
+    @property
+    def title(self) -> str:
+        """For progress."""
+        return self.analysis.title
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Descriptions of the pieces, in order; a long sweep has several."""
+        return tuple({"analysis": self.name, **each} for each in self.analysis.pieces(self.built))
+
+    @property
+    def several(self) -> bool:
+        """True if there may be more pieces than one."""
+        return len(self.pieces) > 1 or self.analysis.onward is not None
+
+    def compute(self, piece: Piece, progress: Progress = _silent) -> xr.Dataset:
+        """Dataset of a piece."""
+        return self.analysis.compute(self.built, piece, progress)
+
+    def onward(self, last: xr.Dataset, progress: Progress = _silent) -> xr.Dataset | None:
+        """Next piece of a march after the last one, None at its end or where nothing marches."""
+        march = self.analysis.onward
+        return None if march is None else march(self.built, last, progress)
+
+    def piece(self, number: int, last: xr.Dataset | None, progress: Progress) -> xr.Dataset | None:
+        """Dataset of the piece of a number, which a march makes from the last one; None after the end."""
+        if number < len(self.pieces):
+            return self.compute(self.pieces[number], progress)
+        return None if last is None else self.onward(last, progress)
+
+    def joined(self, pieces: Sequence[xr.Dataset]) -> xr.Dataset:
+        """The whole dataset."""
+        return self.analysis.joined(self.built, pieces)
+
+
+def jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
+    """All parts of a case in the order in which they are worth having.
+
+    Args:
+        variant: the case.
+        studies: that the user added.
+
+    Raises:
+        InputError: before the first part, for the case and for the ends of every sweep.
+    """
+    built = variant.built({})
+    subject = Subject(variant, built, studies)
+    parts = (part for analysis in ANALYSES.values() for part in analysis.parts(subject))
+    return [Job(part, built) for part in parts]
+
+
+def job_of(variant: Variant, name: str) -> Job:
+    """The part of that name; InputError if the case has none, with what it lacks where that is known."""
+    made = {job.name: job for job in jobs(variant, {})}
+    if name in made:
+        return made[name]
+    known = dict(ANALYSES)
+    why = known[name].lacks(variant.built({})) if name in known else None
+    told = f": {why}" if why else nearest(name, made)
+    raise InputError(f"this case computes no part '{shorten(name)}'{told}", file=variant.name)

@@ -1,0 +1,224 @@
+"""Analyses as entries: what each lacks, pieces that other processes compute, one of a user's own."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from sound import PAIR
+
+from pitchpoint.analyses import studies
+from pitchpoint.analyses.analysis import Analysis
+from pitchpoint.analyses.registry import ANALYSES, register
+from pitchpoint.cases.library import find
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError
+from pitchpoint.results.store import dataset, load
+from pitchpoint.results.variables import VARIABLES, Variable
+from pitchpoint.runs import run as running
+from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.jobs import job_of
+from pitchpoint.runs.matrix import matrix, page
+from pitchpoint.runs.run import describe, open_result, pieces_of, run, run_piece
+
+DOCS = Path(__file__).parents[2] / "docs"
+SWEPT = f"""{PAIR}
+[models]
+friction = "constant"
+[studies.hot]
+sweep = {{ key = "operation.temperature", start = "40 degC", stop = "60 degC", count = 3 }}
+"""
+TARGET = """
+[[targets]]
+quantity = "teeth that pass"
+where = "at the driver"
+part = "passing"
+variable = "teeth_passed"
+kind = "predicted"
+printed = 2300.0
+tolerance = 1e-9
+at = ["100 rad/s"]
+"""
+
+# ---- pieces in other processes
+
+ELSEWHERE = """
+import json, sys
+from pathlib import Path
+from pitchpoint.results.store import save
+from pitchpoint.runs.run import run_piece
+save(run_piece(sys.argv[1], json.load(sys.stdin)), Path(sys.argv[2]))
+"""
+
+
+@pytest.fixture
+def swept(tmp_path: Path) -> Path:
+    path = tmp_path / "pair.toml"
+    path.write_text(SWEPT, "utf-8")
+    return path
+
+
+@pytest.fixture
+def record(swept: Path) -> Path:
+    """The record of the case, without a result yet."""
+    path = swept.with_name("manifest.json")
+    path.write_text(json.dumps(describe(str(swept))[0]), "utf-8")
+    return path
+
+
+def test_a_piece_of_a_sweep_is_computed_elsewhere_from_its_description_alone(
+    record: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(studies, "PIECE", 2)
+    job = job_of(
+        Variant(*reversed(find(str(record.with_name("pair.toml")))), "default"), "study_hot"
+    )
+    first, second = job.pieces
+    assert second == {"analysis": "study_hot", "first": 2, "stop": 3}
+    kept = record.with_name("piece.nc")
+    done = subprocess.run(
+        [sys.executable, "-c", ELSEWHERE, str(record), str(kept)],
+        input=json.dumps(second),
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    there, here = load(kept), job.compute(second)
+    xr.testing.assert_identical(there, here)
+    whole = job.joined([job.compute(first), there])
+    np.testing.assert_array_equal(whole["mean_loss"][:, 2:], there["mean_loss"])
+    assert whole["axis"].values.tolist() == pytest.approx([313.15, 323.15, 333.15])
+
+
+def test_descriptions_are_small_and_plain(swept: Path) -> None:
+    every = pieces_of(str(swept))
+    assert {one["analysis"] for one in every} >= {"cycle", "operation", "study_hot", "loss_map"}
+    for one in every:
+        text = json.dumps(one)
+        assert len(text) < 1000
+        assert json.loads(text) == one
+
+
+def test_a_part_that_a_case_does_not_have_is_told(swept: Path) -> None:
+    with pytest.raises(InputError, match=r"no part 'vibration': the case has no \[dynamics\]"):
+        run_piece(str(swept), {"analysis": "vibration"})
+    with pytest.raises(InputError, match="no part 'operatoin'; did you mean operation"):
+        run_piece(str(swept), {"analysis": "operatoin"})
+
+
+# ---- families and analyses
+
+
+def test_the_matrix_says_yes_or_why_not_and_stands_in_the_docs() -> None:
+    rows = {row["analysis"]: row for row in matrix()}
+    assert list(rows) == list(ANALYSES)
+    assert {rows["cycle"][family] for family in ("cylindrical", "strain_wave", "ball_on_disc")} == {
+        "yes"
+    }
+    assert all(row["cylindrical"] == "yes" for row in rows.values())
+    assert "no line of action" in rows["vibration"]["strain_wave"]
+    assert rows["loss_map"]["ball_on_disc"] == "nothing is transmitted by a test rig"
+    assert page() == (DOCS / "analyses.md").read_text("utf-8")
+
+
+# ---- an analysis of a user's own
+
+
+COMPUTED: list[float] = []
+
+
+def passed(built, piece, progress) -> xr.Dataset:
+    """Teeth that pass each second at one speed of the driver."""
+    COMPUTED.append(piece["speed"])
+    teeth = piece["speed"] * 23.0
+    return dataset(
+        {"teeth_passed": (("speed",), [teeth])}, {"speed": [piece["speed"]]}, warnings=[]
+    )
+
+
+def worn(built, last, progress) -> xr.Dataset | None:
+    """Half the speed of the last piece, down to an eighth."""
+    speed = float(last["speed"][0]) / 2.0
+    return None if speed < 20.0 else passed(built, {"speed": speed}, progress)
+
+
+def toy(**changes) -> Analysis:
+    return Analysis(
+        name="passing",
+        title="teeth that pass",
+        compute=passed,
+        joined=lambda built, parts: xr.concat(parts, "speed", combine_attrs="override"),
+        main=("teeth_passed",),
+        variables={"teeth_passed": Variable("teeth that pass", "n z", "1/s")},
+        **changes,
+    )
+
+
+@pytest.fixture
+def alone(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """No analyses but those that a test registers."""
+    monkeypatch.setattr(ANALYSES, "_entries", {})
+    COMPUTED.clear()
+    yield
+    VARIABLES.pop("teeth_passed", None)
+
+
+def test_an_analysis_of_ones_own_is_run_shown_compared_and_resumed(
+    alone: None, tmp_path: Path
+) -> None:
+    register(toy(pieces=lambda built: [{"speed": speed} for speed in (100.0, 200.0)]))
+    case = tmp_path / "pair.toml"
+    case.write_text(PAIR + TARGET, "utf-8")
+
+    class Stopped(running.Progress):
+        def points(self, done: int) -> None:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(str(case), folder=tmp_path / "out", progress=Stopped())
+    assert (tmp_path / "out" / "default" / "passing.0000.nc").is_file()
+    outcome = run(str(case), folder=tmp_path / "out")["default"]
+    assert COMPUTED == [100.0, 200.0]  # the first piece once, before the interruption
+    assert outcome.parts["passing"]["teeth_passed"].values.tolist() == [2300.0, 4600.0]
+    assert outcome.parts["passing"]["teeth_passed"].attrs["symbol"] == "n z"
+    shown = figures(outcome)
+    assert shown["passing"] == {"teeth_passed": [2300.0, 4600.0]}
+    assert shown["units"] == {"teeth_passed": "1/s"}
+    assert [row["verdict"] for row in shown["rows"]] == ["pass"]
+    assert open_result(tmp_path / "out")["default"].manifest["parts"] == ["passing"]
+
+
+def test_a_march_goes_on_from_its_last_piece(alone: None, tmp_path: Path) -> None:
+    register(toy(pieces=lambda built: [{"speed": 100.0}], onward=worn))
+    case = tmp_path / "pair.toml"
+    case.write_text(PAIR, "utf-8")
+
+    class Stopped(running.Progress):
+        def points(self, done: int) -> None:
+            if done == 2:
+                raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(str(case), folder=tmp_path / "out", progress=Stopped())
+    outcome = run(str(case), folder=tmp_path / "out")["default"]
+    assert COMPUTED == [100.0, 50.0, 25.0]
+    assert outcome.parts["passing"]["speed"].values.tolist() == [100.0, 50.0, 25.0]
+    begun = run_piece(str(case), {"analysis": "passing", "speed": 100.0})
+    follows = run_piece(str(case), {"analysis": "passing"}, last=begun)
+    assert follows["teeth_passed"].values.tolist() == [1150.0]
+
+
+def test_one_that_lacks_something_has_no_part(alone: None, tmp_path: Path) -> None:
+    register(toy(lacks=lambda built: "the teeth stand still"))
+    case = tmp_path / "pair.toml"
+    case.write_text(PAIR, "utf-8")
+    outcome = run(str(case))["default"]
+    assert outcome.parts == {}
+    assert figures(outcome)["passing"] == {}
+    with pytest.raises(InputError, match="no part 'passing': the teeth stand still"):
+        run_piece(str(case), {"analysis": "passing", "speed": 1.0})
