@@ -59,6 +59,7 @@ def answers(drive, point, mu):
         "efficiency": found.mean_efficiency,
         "ripple": found.ripple,
         "locked": found.locked,
+        "code": found.status.code,
         "force": [one.balance.force for one in found.states],
         "drag": found.states[0].balance.drag,
     }
@@ -86,6 +87,7 @@ def test_torque_route_equals_loss_route_at_every_meeting_of_phases():
     rounding = 1e-14 * put_in.max()
     np.testing.assert_allclose(put_in - found["out"], found["lost"], rtol=1e-10, atol=rounding)
     assert not found["locked"]
+    assert found["code"] == 0
     each = np.ptp(found["input"], axis=0).max(), np.ptp(found["input"], axis=1).max()
     assert found["ripple"] > max(each), "both stages have a part in the ripple"
     power = 300.0 * 150.0 / RATIO
@@ -185,5 +187,11 @@ def test_stages_that_do_not_follow_each_other():
         InputError, match="stage 2 turns its first shaft against the stage before it"
     ):
         chained([FIRST, wrong])
+    with pytest.raises(InputError, match="stage 2 has 2 bodies that move, and shafts"):
+        chained([FIRST, dataclasses.replace(SECOND, shafts=(1,))])
+    with pytest.raises(InputError, match="at least one stage"):
+        chained([])
+    with pytest.raises(InputError, match="1 models were given for 2 stages"):
+        drive_cycle(BOTH, POINT, [models(0.0)])
     with pytest.raises(InputError, match="a loss between two shafts"):
         chained([FIRST, SECOND], [Drag([1.0, -1.0, 0.0], seal_torque=0.1)])

@@ -82,7 +82,9 @@ def differing(surface, roll=ROLL):
 @pytest.mark.parametrize("power", [1, 2])
 def test_relief_grows_over_the_roll_length(power):
     """h = C u^n with u over the roll length L = sqrt(2 r_b s); h'' along the arc by the chain rule."""
-    gap, (along_flank, across), other = differing(Relief(number(1e-5), arc(START), arc(END), power))
+    gap, (along_flank, across), other = differing(
+        Relief(number(1e-5), number(END - START), arc(START), arc(END), power)
+    )
     up, span = np.maximum((ROLL - START) / (END - START), 0.0), END - START
     np.testing.assert_allclose(gap, 1e-5 * up**power, rtol=1e-13)
     rate = BASE / ROLL  # dL/ds
@@ -95,7 +97,7 @@ def test_relief_grows_over_the_roll_length(power):
 
 
 def test_relief_of_a_root_runs_the_other_way():
-    gap, *_ = differing(Relief(number(1e-5), arc(END), arc(START)))
+    gap, *_ = differing(Relief(number(1e-5), number(END - START), arc(END), arc(START)))
     np.testing.assert_allclose(gap, 1e-5 * (END - ROLL) / (END - START), rtol=1e-13)
 
 
@@ -317,3 +319,30 @@ def test_derivative_of_the_mean_loss_by_the_relief():
     loss, slope = _loss(jnp.asarray(5e-6), jnp.ones(()), mesh)
     assert float(slope) == pytest.approx(by_differences, rel=1e-6)
     assert abs(float(slope)) * 5e-6 > 1e-3 * float(loss)
+
+
+def test_surfaces_follow_the_flanks_when_other_dimensions_change():
+    """A derivative by another dimension sees reliefs at the new ends, over the new face."""
+    own = Modifications(
+        tip_relief=(RELIEF, RELIEF),
+        tip_relief_length=(2e-3, 2e-3),
+        root_relief=(RELIEF, 0.0),
+        root_relief_length=(1e-3, 1e-3),
+        crowning=(5e-6, 0.0),
+    )
+    mesh = modified(pair((23, 61), module=2e-3, profile_shift=(0.4, -0.2)), own, SLICES)
+    shifts = jnp.asarray([0.41, -0.2])
+    changed = dataclasses.replace(
+        mesh, profile_shift=shifts, face_width=mesh.face_width * 1.1
+    ).completed()
+    again = modified(
+        dataclasses.replace(mesh, profile_shift=shifts, surfaces=((), ())).completed(), own, SLICES
+    )
+    wide = dataclasses.replace(again, face_width=mesh.face_width * 1.1).completed()
+    for found, expected in zip(
+        jax.tree.leaves(changed.surfaces), jax.tree.leaves(wide.surfaces), strict=True
+    ):
+        np.testing.assert_allclose(found, expected, rtol=1e-10)
+    before, after = (jax.tree.leaves(one.surfaces) for one in (mesh, changed))
+    moved = sum(float(a) != float(b) for a, b in zip(before, after, strict=True))
+    assert moved >= 6  # places of reliefs, and both widths

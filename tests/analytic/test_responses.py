@@ -101,6 +101,18 @@ def test_a_solver_asks_for_conditions_of_these_contacts():
         solved_cycle(DESIGN, POINT, models("constant"), lambda *, transverse_radius: 0.0)
 
 
+def test_a_solver_that_locks_the_mesh_is_no_solution():
+    found, status = solved_cycle(DESIGN, POINT, models("constant"), lambda *, pressure: 50.0)
+    assert Code(int(status.code)) is Code.LOCKED
+    assert np.isnan(float(found.mean_efficiency))
+
+
+@pytest.mark.parametrize("answer", [-0.1, np.nan, [0.1, 0.2, 0.3]])
+def test_what_are_no_coefficients(answer):
+    with pytest.raises(InputError, match="one coefficient for each of 96 contacts, finite and not"):
+        solved_cycle(DESIGN, POINT, models("constant"), lambda *, pressure: answer)
+
+
 @eqx.filter_jit
 def vibrating(phase, shaking, speed):
     """Conditions at a rate of gear 2 that is not the nominal one, and xu_2007 there."""

@@ -1,10 +1,13 @@
 """Modifications that all teeth of a gear have: reliefs of profile and ends, crowning, slope of the lead."""
 
+from dataclasses import replace
+from typing import Self
+
 import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.surface import Lanes, Spot, Surface
+from pitchpoint.contact.surface import Flank, Lanes, Spot, Surface
 
 __all__ = ["Crowning", "EndRelief", "LeadSlope", "Relief"]
 
@@ -19,16 +22,38 @@ class Relief(Surface):
 
     Attributes:
         amount: C_αa or C_αf at its end, along the normal [m].
+        length: roll length over which it grows [m].
         start, end: arc lengths on the flank where it begins and where it has that amount [m].
         power: static; 1 for a linear relief, 2 for a parabolic one.
+        at_tip: static; False for the relief of a root.
 
     Source: ISO 21771:2007, tip and root relief.
     """
 
     amount: Float[Array, ""]
+    length: Float[Array, ""]
     start: Float[Array, ""]
     end: Float[Array, ""]
     power: int = eqx.field(static=True, default=1)
+    at_tip: bool = eqx.field(static=True, default=True)
+
+    @classmethod
+    def over(
+        cls,
+        amount: Float[Array, ""],
+        length: Float[Array, ""],
+        flank: Flank,
+        power: int = 1,
+        at_tip: bool = True,
+    ) -> Self:
+        """Relief at one end of a flank; arguments as the attributes."""
+        end, other = (flank.tip, flank.root) if at_tip else (flank.root, flank.tip)
+        start = end + jnp.sign(other - end) * length
+        return cls(amount, length, start**2 / flank.arcs, end**2 / flank.arcs, power, at_tip)
+
+    def fitted(self, flank: Flank) -> Self:
+        """The same at the end of another flank."""
+        return self.over(self.amount, self.length, flank, self.power, self.at_tip)
 
     def missing(self, spot: Spot) -> Lanes:
         """Nothing up to the start, the amount at the end, and more beyond."""
@@ -49,6 +74,10 @@ class Crowning(Surface):
 
     amount: Float[Array, ""]
     width: Float[Array, ""]
+
+    def fitted(self, flank: Flank) -> Self:
+        """The same on a face of another width."""
+        return replace(self, width=flank.width)
 
     def missing(self, spot: Spot) -> Lanes:
         """Grows with the square of the distance from the middle."""
@@ -72,6 +101,10 @@ class EndRelief(Surface):
     width: Float[Array, ""]
     power: int = eqx.field(static=True, default=1)
 
+    def fitted(self, flank: Flank) -> Self:
+        """The same on a face of another width."""
+        return replace(self, width=flank.width)
+
     def missing(self, spot: Spot) -> Lanes:
         """Nothing in the middle, the amount at the ends."""
         inside = jnp.abs(spot.across) - (self.width / 2.0 - self.length)
@@ -91,6 +124,10 @@ class LeadSlope(Surface):
 
     amount: Float[Array, ""]
     width: Float[Array, ""]
+
+    def fitted(self, flank: Flank) -> Self:
+        """The same on a face of another width."""
+        return replace(self, width=flank.width)
 
     def missing(self, spot: Spot) -> Lanes:
         """Nothing in the middle of the face, half the amount at its end."""

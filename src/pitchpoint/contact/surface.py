@@ -2,6 +2,7 @@
 
 import abc
 from dataclasses import replace
+from typing import Self
 
 import equinox as eqx
 from jaxtyping import Array, Float, Int
@@ -10,7 +11,17 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.factored import Arrays
 
-__all__ = ["Lanes", "Offset", "Spot", "Surface", "Surfaces", "Waves", "missing", "with_surfaces"]
+__all__ = [
+    "Flank",
+    "Lanes",
+    "Offset",
+    "Spot",
+    "Surface",
+    "Surfaces",
+    "Waves",
+    "missing",
+    "with_surfaces",
+]
 
 Lanes = Float[Arrays, "*#b"]
 
@@ -34,6 +45,21 @@ class Spot(eqx.Module):
     leaning: Lanes
 
 
+class Flank(eqx.Module):
+    """Where the flanks of a member end.
+
+    Attributes:
+        root, tip: roll lengths at the ends of the active profile [m].
+        arcs: arc length on the flank is the square of the roll length over it, 2 r_b [m].
+        width: of the face [m].
+    """
+
+    root: Float[Array, ""]
+    tip: Float[Array, ""]
+    arcs: Float[Array, ""]
+    width: Float[Array, ""]
+
+
 class Surface(eqx.Module):
     """One way in which flanks of a member differ from their design; those of a member add up."""
 
@@ -44,6 +70,14 @@ class Surface(eqx.Module):
         Args:
             spot: where on the member.
         """
+
+    def fitted(self, flank: Flank) -> Self:
+        """The same on flanks that end elsewhere: amounts and lengths stay as they are.
+
+        Args:
+            flank: of the member.
+        """
+        return self
 
 
 Surfaces = tuple[tuple[Surface, ...], tuple[Surface, ...]]

@@ -23,6 +23,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.programs import program
+from pitchpoint.status import Status
 
 __all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "output_wind_up"]
 
@@ -93,6 +94,15 @@ def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
         InputError: a stage is not driven by the shaft that the one before it loads, or turns it the
             other way; a loss between two shafts.
     """
+    if not stages:
+        raise InputError("a drive needs at least one stage")
+    for number, stage in enumerate(stages, 1):
+        count = len(stage.design.mesh.coordinates)
+        if len(set(stage.shafts)) != count:
+            raise InputError(
+                f"stage {number} has {count} bodies that move, and shafts = {stage.shafts} names "
+                f"{len(set(stage.shafts))} of the drive"
+            )
     links = [_ends(stage) for stage in stages]
     for number, (before, behind) in enumerate(pairwise(range(len(stages))), 2):
         if links[behind][0] != links[before][1]:
@@ -102,7 +112,10 @@ def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
             )
         first, second = (stages[k].design.mesh for k in (before, behind))
         if float((first.motion @ first.loaded) * (second.motion @ second.driver)) < 0.0:
-            raise InputError(f"stage {number} turns its first shaft against the stage before it")
+            raise InputError(
+                f"stage {number} turns its first shaft against the stage before it; the other flanks of its "
+                'gears do not, gears.flank = "right"'
+            )
     braked = tuple(map(_braked_shaft, drag))
     return Drive(tuple(stages), tuple(drag), tuple(links), braked)
 
@@ -188,6 +201,17 @@ class DriveCycle(eqx.Module):
         )
 
     @property
+    def status(self) -> Status:
+        """What became of the balances: the worst code, the largest residual and the most iterations."""
+        every = [one.balance.status for one in self.states]
+        worst = [jnp.max(one.code) for one in every]
+        return Status(
+            code=jnp.max(jnp.stack(worst)),
+            residual=jnp.max(jnp.stack([jnp.max(one.residual) for one in every])),
+            iterations=jnp.max(jnp.stack([jnp.max(one.iterations) for one in every])),
+        )
+
+    @property
     def locked(self) -> Bool[Array, "*#b"]:
         """True where friction locks a mesh at some meeting of phases."""
         each = [
@@ -211,6 +235,8 @@ def drive_cycle(
         models: laws of each stage.
         nodes: Gauss-Lobatto nodes in each segment of each period.
     """
+    if len(models) != len(drive.stages):
+        raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
     states: list[State] = []
     weights: list[Float[Array, " node"]] = []
     load, ratios = operation.load, drive.ratios
@@ -287,7 +313,7 @@ def output_wind_up(
         nodes: in each segment of each period.
 
     Returns:
-        Mean rotation [rad] and mean slope of the load over it [N m/rad].
+        Mean rotation [rad], and one over the mean compliance for a small change of the load [N m/rad].
     """
     ratios, turned, slope = drive.ratios, jnp.zeros_like(load), jnp.zeros_like(load)
     for number, (stage, laws) in enumerate(zip(drive.stages, models, strict=True)):

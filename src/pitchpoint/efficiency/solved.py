@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Array
 
-from pitchpoint._jax import array, jax
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation, cycle
+from pitchpoint.errors import InputError
 from pitchpoint.factored import as_array
 from pitchpoint.lubrication.conditions import Conditions, arguments, demand_shape
 from pitchpoint.programs import program
@@ -51,22 +52,26 @@ def solved_cycle(
 
     Returns:
         The cycle with the last coefficients, and what became of the loop: its turns, and the change in
-        the last of them. Near the coefficient that locks the mesh the turns may not converge.
+        the last of them. Near the coefficient that locks the mesh the turns may not converge; where a
+        balance is not found the loop ends with the code of that.
 
     Raises:
-        InputError: the solver asks for what is no condition, or is none at these contacts.
+        InputError: the solver asks for what is no condition, or is none at these contacts; it returns
+            what are no coefficients.
     """
     wanted, _ = arguments(solver)
     demand_shape(solver, design.mesh.shape)
     found, at = _turn(design, operation, models, engaged, tuple(wanted))
     held, change, turns = np.asarray(found.state.balance.friction), np.inf, 0
-    while tolerance < change and turns < most:  # a change that is not a number ends it too
+    balanced = int(at.pop("code"))
+    while balanced == Code.SOLVED and tolerance < change and turns < most:
         held, before = _asked(solver, at, held), held
         given = replace(models.without_friction, held=array(held))
         found, at = _turn(design, operation, given, engaged, tuple(wanted))
-        change, turns = _change(held, before), turns + 1
-    code = Code.SOLVED if change <= tolerance else Code.NOT_CONVERGED
-    return found, Status(array(int(code)), array(change), array(turns))
+        balanced, change, turns = int(at.pop("code")), _change(held, before), turns + 1
+    if balanced == Code.SOLVED and change > tolerance:
+        balanced = int(Code.NOT_CONVERGED)
+    return found, Status(array(balanced), array(change), array(turns))
 
 
 def _change(held: np.ndarray, before: np.ndarray) -> float:
@@ -79,8 +84,14 @@ def _asked(solver: Solver, at: dict[str, np.ndarray], before: np.ndarray) -> np.
     """Coefficients at the contacts that carry; elsewhere as before."""
     carries = at.pop("carries")
     values = {name: np.broadcast_to(value, carries.shape)[carries] for name, value in at.items()}
+    answer = np.asarray(solver(**values), dtype=float)
+    if answer.shape not in ((), (int(carries.sum()),)) or not np.all(answer >= 0.0):
+        raise InputError(
+            f"the friction solver {getattr(solver, '__name__', 'given')} must return one coefficient for "
+            f"each of {int(carries.sum())} contacts, finite and not negative"
+        )
     held = before.copy()
-    held[carries] = solver(**values)
+    held[carries] = answer
     return held
 
 
@@ -108,4 +119,6 @@ def _cycle(
     found = cycle(design, operation, models, engaged=engaged)
     at: Conditions = found.state.conditions
     carries = found.state.contacts.active & (found.state.balance.load > 0.0)
-    return found, {"carries": carries, **{name: as_array(getattr(at, name)) for name in wanted}}
+    told = {name: as_array(getattr(at, name)) for name in wanted}
+    code = jnp.max(found.state.balance.status.code)
+    return found, {"carries": carries, "code": code, **told}

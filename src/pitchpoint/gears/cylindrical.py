@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
-from pitchpoint.contact.surface import Offset, Spot, Surfaces
+from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.checks import check_cylindrical
@@ -257,7 +257,20 @@ class CylindricalPair(Mesh):
             change = pair.clearance_keeping_tip_alteration
             pair = dataclasses.replace(pair, tip_alteration=jnp.stack([change, change]))
             pair = dataclasses.replace(pair, tip_alteration=pair._shortened_tips())
-        return pair
+        return dataclasses.replace(pair, surfaces=pair._fitted_surfaces())
+
+    def _fitted_surfaces(self) -> Surfaces:
+        """Surfaces on the flanks as they end now."""
+        if not any(self.surfaces):
+            return self.surfaces
+        ends, arcs = self.active_flanks, 2.0 * jnp.abs(self.base_radii)
+        first, second = (
+            tuple(
+                one.fitted(Flank(ends[k, 0], ends[k, 1], arcs[k], self.face_width)) for one in own
+            )
+            for k, own in enumerate(self.surfaces)
+        )
+        return first, second
 
     @property
     def gears(self) -> tuple[InvoluteGear, InvoluteGear]:

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.contact.modifications import Crowning, EndRelief, LeadSlope, Relief
-from pitchpoint.contact.surface import Surface, Surfaces
+from pitchpoint.contact.surface import Flank, Surface, Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import CylindricalPair
 from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
@@ -119,17 +119,16 @@ def _of_gear(
 def _reliefs(
     pair: CylindricalPair, given: Modifications, flanks: np.ndarray, member: int
 ) -> Iterator[Relief]:
-    root, tip = flanks[member]
-    inwards = -1.0 if pair.internal and member == 1 else 1.0  # the tip of a ring is its inner end
-    arcs = 2.0 * abs(float(pair.base_radii[member]))
-    for amounts, lengths, end, sense in (
-        (given.tip_relief, given.tip_relief_length, tip, -inwards),
-        (given.root_relief, given.root_relief_length, root, inwards),
+    root, tip = (array(float(end)) for end in flanks[member])
+    arcs = array(2.0 * abs(float(pair.base_radii[member])))
+    flank = Flank(root, tip, arcs, pair.face_width)
+    for amounts, lengths, at_tip in (
+        (given.tip_relief, given.tip_relief_length, True),
+        (given.root_relief, given.root_relief_length, False),
     ):
         if amounts is not None and lengths is not None:
-            start = end + sense * lengths[member]
-            places = array(start**2 / arcs), array(end**2 / arcs)
-            yield Relief(array(amounts[member]), *places, power=given.relief_power)
+            amount, length = array(amounts[member]), array(lengths[member])
+            yield Relief.over(amount, length, flank, given.relief_power, at_tip)
 
 
 def _check_lengths(key: str, given: Modifications, flanks: np.ndarray) -> None:

@@ -360,7 +360,8 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
     own = uuid4().hex if manifest["own"] else ""
-    return fingerprint(package_state(), manifest["source"], given, job.name, own)
+    here = manifest["surroundings"]
+    return fingerprint(package_state(), here, manifest["source"], given, job.name, own)
 
 
 def _part(
