@@ -1,8 +1,10 @@
 """Modified and deviating cylindrical flanks from case files: keys, classes, kinematic error, refusals."""
 
 import copy
+import json
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,7 @@ from sound import PAIR
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.caveats import face_warning
 from pitchpoint.analyses.kinematic_error import FEW_PAIRS, kinematic_error_part
-from pitchpoint.analyses.vibration import stiffness_part
+from pitchpoint.analyses.vibration import _excited, _stiffness, stiffness_part, vibrating_of
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
@@ -21,6 +23,7 @@ from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.runs.jobs import jobs
+from pitchpoint.status import Code, Status
 from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)
@@ -244,6 +247,46 @@ def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> Non
     np.testing.assert_allclose(data["mesh_stiffness"], stiffness, rtol=1e-9)
     sum_of_pairs = data["pair_stiffness"].sum("pair")
     np.testing.assert_allclose(sum_of_pairs, stiffness, rtol=1e-9)
+
+
+def test_vibration_has_the_springs_that_carry() -> None:
+    """A face that carries on a third of its width vibrates on that third, in equilibrium at rest."""
+    example = Path(__file__).parents[2] / "examples" / "spur_modified.toml"
+    changes = {
+        "gears.misalignment": "60 um",
+        "operation.torque": "40 N m",
+        "dynamics.damping_ratio": 0.1,
+    }
+    built = Variant(tomllib.loads(example.read_text("utf-8")), "spur", "default", changes).built({})
+    still = stiffness_part(built)
+    given = built.design, built.operation, built.terms, vibrating_of(built)
+    stiffness, moved, _ = _excited(*given)
+    assert float(stiffness.mean) == pytest.approx(float(still["mean_stiffness"]), rel=1e-6)
+    assert float(stiffness.mean) == pytest.approx(8.87e7, rel=1e-2)
+    whole = np.asarray(stiffness.total)
+    springs, arm, gap = map(np.asarray, (stiffness.single, stiffness.arm, stiffness.error))
+    error = (float(moved.load[0]) + np.sum(springs * arm * gap, axis=0)) / whole
+    wide = np.asarray(still["weight"]) > 1e-9  # events that coincide lie either side by rounding
+    at_rest = np.asarray(still["static_transmission_error"])
+    np.testing.assert_allclose(error.ravel()[wide], at_rest[wide], rtol=1e-9)
+    solve = json.loads(still.attrs["solve"])
+    assert solve["sentence"] == "a solution was found"
+    assert 0.0 <= solve["residual"] < 1e-10
+
+
+def test_a_lost_equilibrium_gives_no_stiffness_as_a_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    built = pair(**RELIEVED, dynamics__damping_ratio=0.1).built({})
+    values, status = jax.device_get(_stiffness(built.design, built.operation, built.terms))
+    assert status is not None
+    code = np.array(status.code)
+    code.flat[:2] = Code.NOT_CONVERGED
+    lost = Status(*map(jnp.asarray, (code, status.residual, status.iterations)))
+    monkeypatch.setattr("pitchpoint.analyses.vibration._stiffness", lambda *_: (values, lost))
+    data = stiffness_part(built)
+    (told,) = (one for one in json.loads(data.attrs["warnings"]) if "Mesh stiffness" in one)
+    assert told.startswith("Mesh stiffness: at 2 of ")
+    assert told.endswith("points of the mesh cycle the iteration ended without a solution.")
+    assert json.loads(data.attrs["solve"])["code"] == Code.NOT_CONVERGED
 
 
 # ------------------------------------------------------------------ kinematic error
