@@ -12,8 +12,9 @@ import pytest
 from sound import PAIR
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.caveats import face_warning
+from pitchpoint.analyses.caveats import face_warning, faces_warning
 from pitchpoint.analyses.kinematic_error import FEW_PAIRS, kinematic_error_part
+from pitchpoint.analyses.summaries import profiles, summaries
 from pitchpoint.analyses.vibration import _excited, _stiffness, stiffness_part, vibrating_of
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
@@ -230,6 +231,32 @@ def test_part_of_the_face_without_load_is_told_and_nearly_all_of_it_refused() ->
     with pytest.raises(InputError, match="at 50 N m only 2 of 12 slices of a contact line get"):
         face_warning(built, run_with(2))
     assert face_warning(pair().built({}), run_with(2)) == []
+
+
+def test_points_of_a_study_that_carry_on_part_of_the_face_are_told() -> None:
+    crowned, plain = (
+        pair(**given).built({}) for given in ({"gears__modifications__crowning": "5 um"}, {})
+    )
+    points, slices = [crowned, crowned, crowned, plain], np.full(4, 12)
+    nearly, partly = faces_warning(points, np.array([[2.0, 9.0, np.nan, 2.0]]), slices)
+    assert nearly.startswith("At 1 of 4 points fewer than 3 slices of a contact line get load")
+    assert partly.startswith("At 1 of 4 points a part of the contact lines that carry, up to 25 %")
+    assert faces_warning(points, np.array([[12.0, 12.0, 12.0, 2.0]]), slices) == []
+    assert faces_warning([crowned], np.array([[2.0]]), slices[:1]) == []  # the mesh cycle says it
+
+
+def test_a_study_over_misalignment_tells_of_faces_that_carry_in_part() -> None:
+    sizes = ("1 um", "80 um")
+    points = [
+        pair(gears__misalignment=size, models__load_sharing="from_stiffness").built({})
+        for size in sizes
+    ]
+    data = summaries(points, points[0].models[:1], {}, title="study")
+    (told,) = (one for one in json.loads(data.attrs["warnings"]) if "contact lines" in one)
+    assert told.startswith("At 1 of 2 points a part of the contact lines that carry")
+    assert not {"slices", "carrying_slices"} & set(data)
+    carrying = face_warning(points[1], profiles(points[1], points[1].models[:1])[0])
+    assert carrying[0].split("carry, ")[1].split(" %")[0] in told
 
 
 def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> None:
