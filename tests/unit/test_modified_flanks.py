@@ -15,11 +15,17 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.caveats import face_warning, faces_warning
 from pitchpoint.analyses.kinematic_error import FEW_PAIRS, kinematic_error_part
 from pitchpoint.analyses.summaries import profiles, summaries
-from pitchpoint.analyses.vibration import _excited, _stiffness, stiffness_part, vibrating_of
+from pitchpoint.analyses.vibration import (
+    _excited,
+    _grid,
+    _stiffness,
+    stiffness_part,
+    vibrating_of,
+)
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
-from pitchpoint.errors import InputError
+from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wound_up
@@ -299,6 +305,9 @@ def test_vibration_has_the_springs_that_carry() -> None:
     solve = json.loads(still.attrs["solve"])
     assert solve["sentence"] == "a solution was found"
     assert 0.0 <= solve["residual"] < 1e-10
+    lost = replace(stiffness, single=jnp.full(stiffness.single.shape, jnp.nan))
+    with pytest.raises(ConvergenceError, match="no equilibrium of the teeth was found at 1 of 2"):
+        _grid([(part, moved) for part in (stiffness, lost)], ())
 
 
 def test_a_lost_equilibrium_gives_no_stiffness_as_a_number(monkeypatch: pytest.MonkeyPatch) -> None:
