@@ -1,8 +1,10 @@
 """Modified and deviating cylindrical flanks from case files: keys, classes, kinematic error, refusals."""
 
 import copy
+import json
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,17 +12,25 @@ import pytest
 from sound import PAIR
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.caveats import face_warning
+from pitchpoint.analyses.caveats import face_warning, faces_warning
 from pitchpoint.analyses.kinematic_error import FEW_PAIRS, kinematic_error_part
-from pitchpoint.analyses.vibration import stiffness_part
+from pitchpoint.analyses.summaries import profiles, summaries
+from pitchpoint.analyses.vibration import (
+    _excited,
+    _grid,
+    _stiffness,
+    stiffness_part,
+    vibrating_of,
+)
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
-from pitchpoint.errors import InputError
+from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.runs.jobs import jobs
+from pitchpoint.status import Code, Status
 from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)
@@ -229,6 +239,32 @@ def test_part_of_the_face_without_load_is_told_and_nearly_all_of_it_refused() ->
     assert face_warning(pair().built({}), run_with(2)) == []
 
 
+def test_points_of_a_study_that_carry_on_part_of_the_face_are_told() -> None:
+    crowned, plain = (
+        pair(**given).built({}) for given in ({"gears__modifications__crowning": "5 um"}, {})
+    )
+    points, slices = [crowned, crowned, crowned, plain], np.full(4, 12)
+    nearly, partly = faces_warning(points, np.array([[2.0, 9.0, np.nan, 2.0]]), slices)
+    assert nearly.startswith("At 1 of 4 points fewer than 3 slices of a contact line get load")
+    assert partly.startswith("At 1 of 4 points a part of the contact lines that carry, up to 25 %")
+    assert faces_warning(points, np.array([[12.0, 12.0, 12.0, 2.0]]), slices) == []
+    assert faces_warning([crowned], np.array([[2.0]]), slices[:1]) == []  # the mesh cycle says it
+
+
+def test_a_study_over_misalignment_tells_of_faces_that_carry_in_part() -> None:
+    sizes = ("1 um", "80 um")
+    points = [
+        pair(gears__misalignment=size, models__load_sharing="from_stiffness").built({})
+        for size in sizes
+    ]
+    data = summaries(points, points[0].models[:1], {}, title="study")
+    (told,) = (one for one in json.loads(data.attrs["warnings"]) if "contact lines" in one)
+    assert told.startswith("At 1 of 2 points a part of the contact lines that carry")
+    assert not {"slices", "carrying_slices"} & set(data)
+    carrying = face_warning(points[1], profiles(points[1], points[1].models[:1])[0])
+    assert carrying[0].split("carry, ")[1].split(" %")[0] in told
+
+
 def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> None:
     """Crowned and relieved: static transmission error and stiffness are those of the wind-up."""
     given = {"gears__modifications__crowning": "8 um", "models__tooth_compliance": "beam_hertz"}
@@ -244,6 +280,49 @@ def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> Non
     np.testing.assert_allclose(data["mesh_stiffness"], stiffness, rtol=1e-9)
     sum_of_pairs = data["pair_stiffness"].sum("pair")
     np.testing.assert_allclose(sum_of_pairs, stiffness, rtol=1e-9)
+
+
+def test_vibration_has_the_springs_that_carry() -> None:
+    """A face that carries on a third of its width vibrates on that third, in equilibrium at rest."""
+    example = Path(__file__).parents[2] / "examples" / "spur_modified.toml"
+    changes = {
+        "gears.misalignment": "60 um",
+        "operation.torque": "40 N m",
+        "dynamics.damping_ratio": 0.1,
+    }
+    built = Variant(tomllib.loads(example.read_text("utf-8")), "spur", "default", changes).built({})
+    still = stiffness_part(built)
+    given = built.design, built.operation, built.terms, vibrating_of(built)
+    stiffness, moved, _ = _excited(*given)
+    assert float(stiffness.mean) == pytest.approx(float(still["mean_stiffness"]), rel=1e-6)
+    assert float(stiffness.mean) == pytest.approx(8.87e7, rel=1e-2)
+    whole = np.asarray(stiffness.total)
+    springs, arm, gap = map(np.asarray, (stiffness.single, stiffness.arm, stiffness.error))
+    error = (float(moved.load[0]) + np.sum(springs * arm * gap, axis=0)) / whole
+    wide = np.asarray(still["weight"]) > 1e-9  # events that coincide lie either side by rounding
+    at_rest = np.asarray(still["static_transmission_error"])
+    np.testing.assert_allclose(error.ravel()[wide], at_rest[wide], rtol=1e-9)
+    solve = json.loads(still.attrs["solve"])
+    assert solve["sentence"] == "a solution was found"
+    assert 0.0 <= solve["residual"] < 1e-10
+    lost = replace(stiffness, single=jnp.full(stiffness.single.shape, jnp.nan))
+    with pytest.raises(ConvergenceError, match="no equilibrium of the teeth was found at 1 of 2"):
+        _grid([(part, moved) for part in (stiffness, lost)], ())
+
+
+def test_a_lost_equilibrium_gives_no_stiffness_as_a_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    built = pair(**RELIEVED, dynamics__damping_ratio=0.1).built({})
+    values, status = jax.device_get(_stiffness(built.design, built.operation, built.terms))
+    assert status is not None
+    code = np.array(status.code)
+    code.flat[:2] = Code.NOT_CONVERGED
+    lost = Status(*map(jnp.asarray, (code, status.residual, status.iterations)))
+    monkeypatch.setattr("pitchpoint.analyses.vibration._stiffness", lambda *_: (values, lost))
+    data = stiffness_part(built)
+    (told,) = (one for one in json.loads(data.attrs["warnings"]) if "Mesh stiffness" in one)
+    assert told.startswith("Mesh stiffness: at 2 of ")
+    assert told.endswith("points of the mesh cycle the iteration ended without a solution.")
+    assert json.loads(data.attrs["solve"])["code"] == Code.NOT_CONVERGED
 
 
 # ------------------------------------------------------------------ kinematic error

@@ -20,6 +20,7 @@ __all__ = [
     "demand_convergence",
     "demand_motion",
     "face_warning",
+    "faces_warning",
     "jamming_words",
     "pressure_warning",
     "told_of_law",
@@ -139,6 +140,36 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
         f"Of the contact lines that carry, {100.0 * (1.0 - mean / slices):.2g} % get no load at {load}: "
         "there flanks do not touch."
     ]
+
+
+def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndarray) -> list[str]:
+    """Points of a study whose contact lines get load along a part only; `face_warning` has one point.
+
+    Args:
+        points: of the study.
+        carrying: slices that carry of a contact line that does, the mean [law, point]; NaN where none.
+        slices: of a contact line [point].
+    """
+    if len(points) == 1:
+        return []
+    gaps = np.array([not point.design.mesh.touching for point in points])
+    known = np.where(np.isnan(carrying) | ~gaps, np.inf, carrying).min(axis=0)
+    nearly = (known < LEAST_FACE) & (slices > 1)
+    partly = (known < slices * (1.0 - 1e-9)) & ~nearly
+    told = []
+    if nearly.any():
+        told.append(
+            f"At {nearly.sum()} of {len(points)} points fewer than {LEAST_FACE:g} slices of a contact line "
+            "get load in the mean, nearly a point in place of a line: their figures say little. Less "
+            "crowning, end relief or misalignment, a higher load or more slices leave a line of contact."
+        )
+    if partly.any():
+        most = 100.0 * (1.0 - (known[partly] / slices[partly]).min())
+        told.append(
+            f"At {partly.sum()} of {len(points)} points a part of the contact lines that carry, up to "
+            f"{most:.2g} %, gets no load: there flanks do not touch."
+        )
+    return told
 
 
 def pressure_warning(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:

@@ -9,7 +9,7 @@ import xarray as xr
 
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Progress
-from pitchpoint.analyses.caveats import demand_convergence, demand_motion
+from pitchpoint.analyses.caveats import demand_convergence, demand_motion, faces_warning
 from pitchpoint.cases.build import Built
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
@@ -62,6 +62,7 @@ def summaries(
     names = [models.law.name for models in under]
     runs = [_grouped(points, models, progress) for models in under]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
+    carrying, slices = out.pop("carrying_slices"), out.pop("slices")[0]
     if not may_lock and len(points) == 1:
         ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
         demand_motion(out["locked"], *ends, points, names)
@@ -86,6 +87,7 @@ def summaries(
         from pitchpoint.analyses.vibration import status_sentences
 
         warnings += status_sentences(extra["vibration_status"][1][0])
+    warnings += faces_warning(points, np.where(out["locked"], np.nan, carrying), slices)
     if not may_lock:
         for models, locked in zip(under, out["locked"], strict=True):
             warnings += _lock_warning(models.law, locked)

@@ -11,7 +11,6 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.build import Built
-from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
@@ -28,15 +27,13 @@ from pitchpoint.dynamics.vibration import (
 )
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import in_chunks
-from pitchpoint.errors import InputError
-from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.equilibrium import Equilibrium, equilibrium
+from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
+from pitchpoint.status import DIRECT, Code, Status, summary
 from pitchpoint.status import told as told_of
 
 __all__ = [
@@ -55,6 +52,8 @@ MOST_RATIO = 1000.0
 """Natural over mesh frequency beyond which a period holds too many vibrations to be worth them."""
 
 _AT_SPEED = "Vibration against speed: at {points} {sentence}."
+
+_AT_PHASE = "Mesh stiffness: at {points} of the mesh cycle {sentence}."
 
 TOGETHER = 4
 """Vibrations solved together: one compiled program serves any number of them."""
@@ -92,25 +91,30 @@ def stiffness_part(built: Built) -> xr.Dataset:
 
     Where flanks have gaps only the springs that carry count.
     """
-    found = jax.device_get(_stiffness(built.design, built.operation, built.terms))
+    found, status = jax.device_get(_stiffness(built.design, built.operation, built.terms))
     lanes = ("pair", "node")
     data = {
         name: (lanes if np.ndim(values) == 2 else ("node",)[: np.ndim(values)], values)
         for name, values in found.items()
     }
-    standard, warnings = estimate(built.design.mesh, built.design.solids, built.operation.load)
+    standard, told = estimate(built.design.mesh, built.design.solids, built.operation.load)
     data |= {name: ((), value) for name, value in standard.items()}
+    lost = [] if status is None else status_sentences(status.code, _AT_PHASE)
     return dataset(
         data,
         {},
         title="mesh stiffness",
-        warnings=warnings,
+        warnings=[*told, *lost],
+        solve=DIRECT if status is None else summary(status),
         model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title,
     )
 
 
 @program
-def _stiffness(design: Design, operation: Operation, terms: Terms) -> dict[str, Array]:
+def _stiffness(
+    design: Design, operation: Operation, terms: Terms
+) -> tuple[dict[str, Array], Status | None]:
+    """Values by name, and what became of the equilibrium behind them, if any."""
     mesh, load = design.mesh, operation.load
     found = mesh_stiffness(mesh, design.solids, terms, load)
     contacts = mesh.contacts(found.phase)
@@ -121,10 +125,8 @@ def _stiffness(design: Design, operation: Operation, terms: Terms) -> dict[str, 
     radius = jnp.abs(action @ mesh.loaded)
     single, total = found.along_action, found.total
     error = load / radius / total
-    if not mesh.touching:
-        springs, state = _carrying(design, contacts, terms, jnp.broadcast_to(load, total.shape))
-        single = springs * found.arm**2
-        total, error = state.stiffness / radius**2, state.approach * radius
+    if found.state is not None:
+        error = found.state.approach * radius
     mean = jnp.sum(total * found.weight)
     lanes = {"entered": entered, "pair_stiffness": single, "line_length": length}
     whole = {
@@ -134,19 +136,8 @@ def _stiffness(design: Design, operation: Operation, terms: Terms) -> dict[str, 
     nodal = {"phase": found.phase, "weight": found.weight, "mesh_stiffness": total}
     nodal["static_transmission_error"] = error
     flat = {name: values.reshape(values.shape[0], -1) for name, values in lanes.items()}
-    return flat | {name: values.ravel() for name, values in nodal.items()} | whole
-
-
-def _carrying(
-    design: Design, contacts: Contacts, terms: Terms, load: Float[Array, "*b"]
-) -> tuple[Float[Array, "pair *b"], Equilibrium]:
-    """Springs of the pairs along the normal, of their slices that carry, and the equilibrium."""
-    mesh = design.mesh
-    yields = compliance(mesh, contacts, design.solids, terms, load)
-    teeth, arm = yields.of_teeth(contacts), jnp.abs(along(contacts.normal, mesh.loaded))
-    at = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
-    found = equilibrium(teeth, yields.body, **at, load=load)
-    return jnp.sum(jnp.where(found.loaded, 1.0 / teeth, 0.0), axis=1), found
+    values = flat | {name: values.ravel() for name, values in nodal.items()} | whole
+    return values, None if found.state is None else found.state.status
 
 
 def vibration_part(built: Built) -> xr.Dataset:
@@ -296,7 +287,14 @@ def _torques(built: Built) -> list[float]:
 
 def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
     """Grid for the highest of natural frequencies and profile errors, over their mesh frequency."""
-    ratio = max(float(_ratio(stiffness, moved)) for stiffness, moved, *_ in parts)
+    ratios = [float(_ratio(stiffness, moved)) for stiffness, moved, *_ in parts]
+    lost = sum(np.isnan(stiffness.single).any() for stiffness, *_ in parts)
+    if lost:
+        raise ConvergenceError(
+            f"no equilibrium of the teeth was found at {lost} of {len(parts)} points of the vibration, and "
+            "without one there are no springs to vibrate on"
+        )
+    ratio = max(ratios)
     if not ratio <= MOST_RATIO:
         raise InputError(
             f"the natural frequency is {ratio:.3g} times the mesh frequency, and a vibration is resolved "

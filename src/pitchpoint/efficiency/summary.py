@@ -100,6 +100,8 @@ def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
         "nearest_friction": acting,
         "nearest_jamming_coefficient": limit,
         "largest_contact_force_ratio": jnp.max(state.contact_force_ratio, axis=-1),
+        "carrying_slices": _carrying_slices(result),
+        "slices": jnp.asarray(state.balance.load.shape[1]),
         **_by_gear(_reactions(design.mesh, result)),
         **_bearing_loads(design, result),
         **_at_pitch_point(result),
@@ -116,6 +118,13 @@ def _at_pitch_point(result: Cycle) -> dict[str, Array]:
         "pitch_sum_speed": result.mean(at.reference_sum_speed),
         "pitch_radius": at.reference_radius,
     }
+
+
+def _carrying_slices(result: Cycle) -> Array:
+    """Mean number of slices that carry of the contact lines that carry; NaN where none does."""
+    carries = jnp.where(result.state.balance.load > 0.0, 1.0, 0.0)
+    lines = jnp.sum(jnp.max(carries, axis=1), axis=0)
+    return result.mean(total(carries)) / result.mean(lines)
 
 
 def _reactions(mesh: Mesh, result: Cycle) -> dict[str, Array]:

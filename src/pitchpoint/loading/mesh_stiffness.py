@@ -8,6 +8,7 @@ from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
+from pitchpoint.loading.equilibrium import Equilibrium, equilibrium
 from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
 from pitchpoint.materials.solids import Solid
 
@@ -19,7 +20,8 @@ Lanes = Float[Array, "pair slice *#b"]
 class MeshStiffness(eqx.Module):
     """Springs of all pairs over one period.
 
-    One arm and one separation stand for the whole contact line of a pair.
+    One arm and one separation stand for the whole contact line of a pair. Where flanks have gaps, the
+    line is as long as it carries in the equilibrium under the load.
 
     Attributes:
         edges: phases between which the stiffness is smooth [periods].
@@ -28,6 +30,7 @@ class MeshStiffness(eqx.Module):
         single: normal stiffness of each pair, the sum over its contact line; zero out of contact [N/m].
         arm: closing of each contact along its normal for a unit of transmission error.
         error: separation of the unloaded flanks, the mean over the springs of a contact line [m].
+        state: the equilibrium; None where the flanks touch along the whole of every contact line.
     """
 
     edges: Float[Array, " edge"]
@@ -36,6 +39,7 @@ class MeshStiffness(eqx.Module):
     single: Float[Array, "pair segment node"]
     arm: Float[Array, "pair segment node"]
     error: Float[Array, "pair segment node"]
+    state: Equilibrium | None = None
 
     @property
     def along_action(self) -> Float[Arrays, "pair segment node"]:
@@ -110,6 +114,10 @@ def mesh_stiffness(
     contacts = mesh.contacts(phase)
     unit = slice_stiffness(mesh, contacts, solids, terms, load)
     each = jnp.where(contacts.active, unit * contacts.weight, 0.0)
+    state = None if mesh.touching else _settled(mesh, contacts, solids, each, load)
+    if state is not None:
+        each = jnp.where(state.loaded, each, 0.0)
+        each = jnp.where(jnp.isfinite(state.approach), each, jnp.nan)
     return MeshStiffness(
         edges=edges(events),
         phase=phase,
@@ -117,6 +125,26 @@ def mesh_stiffness(
         single=jnp.sum(each, axis=1),
         arm=_action_arm(mesh, contacts)[:, 0],
         error=contacts.gap[:, 0] if mesh.touching else _mean_gap(contacts, each),
+        state=state,
+    )
+
+
+def _settled(
+    mesh: Mesh,
+    contacts: Contacts,
+    solids: tuple[Solid, Solid],
+    springs: Lanes,
+    load: Float[Array, ""],
+) -> Equilibrium:
+    """Which springs carry the load, and how far it moves them."""
+    acts = springs > 0.0
+    return equilibrium(
+        1.0 / jnp.where(acts, springs, 1.0),
+        mesh.body_compliance(contacts, solids),
+        gap=contacts.gap,
+        arm=jnp.abs(along(contacts.normal, mesh.loaded)),
+        active=acts,
+        load=jnp.broadcast_to(load, springs.shape[2:]),
     )
 
 
