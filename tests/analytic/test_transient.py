@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from pitchpoint._jax import array, jax
 from pitchpoint.dynamics.bodies import Body, Support, across
-from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.right_hand_side import Moving, contact_forces
 from pitchpoint.dynamics.transient import transient
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
@@ -85,6 +85,7 @@ def moving(bodies, knots=(0.0, 1.0), level=0.0, phase=0.4, load=100.0, relaxatio
 
 PAIR = pair()
 TIMES = np.linspace(0.0, 0.04, COUNT)
+GEARS = (Body(1e-3), Body(6e-3))
 RESISTANCE, VISCOUS, TORQUE = 59.0, 50.0 / 0.15, 55.0
 BEARING = 2e8
 
@@ -243,6 +244,39 @@ def test_a_transient_that_is_not_found_is_no_number():
     assert np.isnan(found.status.residual)
 
 
+# ---- the load of the whole mesh
+
+
+def of_mesh(*, reference_line_load):
+    """A coefficient that is the nominal load over the length of the lines of contact."""
+    return reference_line_load
+
+
+def test_laws_are_told_the_force_of_the_mesh_and_nothing_for_idle_lanes():
+    mesh = build_cylindrical_pair(
+        teeth=(18, 36),
+        module=3e-3,
+        pressure_angle=np.deg2rad(20.0),
+        face_width=26.7e-3,
+        helix_angle=np.deg2rad(20.0),
+    )
+    law = FrictionLaw("of mesh", "", of_mesh, (), ({}, 0.0))
+    given = dataclasses.replace(
+        moving(GEARS, design=design_of(mesh), phase=0.8),
+        models=models(law),
+        stiffness=array(1e6),
+    )
+    forces = program(contact_forces)
+    found = forces(given, array([0.0, 1e-4]), array([0.0, 0.0]))
+    force, carries = np.asarray(found.force), np.asarray(found.force > 0.0)
+    assert np.any(carries)
+    assert not np.all(carries)
+    expected = np.sum(force) / float(mesh.reference.line_length)
+    np.testing.assert_allclose(found.friction, np.where(carries, expected, 0.0), rtol=1e-12)
+    parted = forces(given, array([0.0, -1e-4]), array([0.0, 0.0]))
+    assert np.all(np.asarray(parted.friction) == 0.0)
+
+
 # ---- discs pressed together by a force: another program
 
 
@@ -316,9 +350,6 @@ def test_a_block_on_a_belt_slips_sticks_and_slips_the_other_way():
 
 
 # ---- what a transient cannot do
-
-
-GEARS = (Body(1e-3), Body(6e-3))
 
 
 @pytest.mark.parametrize(
