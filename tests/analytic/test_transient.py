@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from pitchpoint._jax import array, jax
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.bodies import Body, Support, across
-from pitchpoint.dynamics.right_hand_side import Moving
-from pitchpoint.dynamics.transient import transient
+from pitchpoint.dynamics.right_hand_side import Moving, contact_forces
+from pitchpoint.dynamics.transient import CLOSED, _code, _known, transient
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.errors import InputError
@@ -85,6 +85,7 @@ def moving(bodies, knots=(0.0, 1.0), level=0.0, phase=0.4, load=100.0, relaxatio
 
 PAIR = pair()
 TIMES = np.linspace(0.0, 0.04, COUNT)
+GEARS = (Body(1e-3), Body(6e-3))
 RESISTANCE, VISCOUS, TORQUE = 59.0, 50.0 / 0.15, 55.0
 BEARING = 2e8
 
@@ -241,6 +242,62 @@ def test_a_transient_that_is_not_found_is_no_number():
     assert int(found.status.code) == Code.NOT_CONVERGED
     assert np.all(np.isnan(found.rate[:, 1:]))
     assert np.isnan(found.status.residual)
+    for part in jax.tree.leaves((found.found, found.torque, found.energy)):
+        later = np.asarray(part)[..., 1:]
+        assert not np.any(later) if part.dtype == bool else np.all(np.isnan(later))
+
+
+def test_a_motion_whose_energy_does_not_close_is_no_number():
+    states = jnp.array([[0.0, 1.0, np.nan]]), jnp.array([[0.0, np.inf, 1.0]])
+    assert np.array_equal(_known(states, array(CLOSED)), [True, False, False])
+    assert np.array_equal(_known(states, array(np.nan)), [True, False, False])
+    assert not np.any(_known(states, array(2.0 * CLOSED)))
+
+
+@pytest.mark.parametrize(
+    ("reached", "closure", "code"),
+    [
+        (True, CLOSED, Code.SOLVED),
+        (True, 2.0 * CLOSED, Code.NOT_CONVERGED),
+        (True, np.nan, Code.NOT_CONVERGED),
+        (False, 0.0, Code.NOT_CONVERGED),
+    ],
+)
+def test_solved_asks_that_the_end_is_reached_and_the_energy_closes(reached, closure, code):
+    assert int(_code(jnp.asarray(reached), array(closure))) == code
+
+
+# ---- the load of the whole mesh
+
+
+def of_mesh(*, reference_line_load):
+    """A coefficient that is the nominal load over the length of the lines of contact."""
+    return reference_line_load
+
+
+def test_laws_are_told_the_force_of_the_mesh_and_nothing_for_idle_lanes():
+    mesh = build_cylindrical_pair(
+        teeth=(18, 36),
+        module=3e-3,
+        pressure_angle=np.deg2rad(20.0),
+        face_width=26.7e-3,
+        helix_angle=np.deg2rad(20.0),
+    )
+    law = FrictionLaw("of mesh", "", of_mesh, (), ({}, 0.0))
+    given = dataclasses.replace(
+        moving(GEARS, design=design_of(mesh), phase=0.8),
+        models=models(law),
+        stiffness=array(1e6),
+    )
+    forces = program(contact_forces)
+    found = forces(given, array([0.0, 1e-4]), array([0.0, 0.0]))
+    force, carries = np.asarray(found.force), np.asarray(found.force > 0.0)
+    assert np.any(carries)
+    assert not np.all(carries)
+    expected = np.sum(force) / float(mesh.reference.line_length)
+    np.testing.assert_allclose(found.friction, np.where(carries, expected, 0.0), rtol=1e-12)
+    parted = forces(given, array([0.0, -1e-4]), array([0.0, 0.0]))
+    assert np.all(np.asarray(parted.friction) == 0.0)
 
 
 # ---- discs pressed together by a force: another program
@@ -318,7 +375,9 @@ def test_a_block_on_a_belt_slips_sticks_and_slips_the_other_way():
 # ---- what a transient cannot do
 
 
-GEARS = (Body(1e-3), Body(6e-3))
+def shifting(*ways):
+    held = np.eye(len(ways))
+    return Body(1.0, support=Support(1.0, np.array(ways), held, held))
 
 
 @pytest.mark.parametrize(
@@ -332,6 +391,36 @@ GEARS = (Body(1e-3), Body(6e-3))
             "gear 2 needs a positive mass, got -1",
         ),
         ({}, [0.0, 1.0, 1.0], "times of a transient grow"),
+        (
+            {"knots": array([0.0, 2.0, 5e-5])},
+            TIMES,
+            "knots of the external torques grow with time, got 0, 2, 5e-05 s",
+        ),
+        (
+            {"bodies": (GEARS[0], Body(1.0, [1.0, 2.0, 3.0]))},
+            TIMES,
+            "gear 2 needs one torque, or one for each of the 2 knots of time; 3 are given",
+        ),
+        (
+            {"creep": array(0.0)},
+            TIMES,
+            "creep of the contacts is a sliding speed above 0 m/s, got 0",
+        ),
+        (
+            {"bodies": (Body(1.0, creep=0.0), GEARS[1])},
+            TIMES,
+            "creep of gear 1 is a speed above 0, got 0",
+        ),
+        (
+            {"bodies": (GEARS[0], shifting([0.0, 2.0, 0.0]))},
+            TIMES,
+            "gear 2 shifts along unit vectors at right angles to each other; .* are 2 long",
+        ),
+        (
+            {"bodies": (GEARS[0], shifting([0.0, 1.0, 0.0], [0.0, 0.6, 0.8]))},
+            TIMES,
+            "or not at right angles",
+        ),
         ({"design": DISCS, "bodies": (*GEARS, Body(1.0))}, TIMES, "need the stiffness"),
         (
             {"design": dataclasses.replace(PAIR, drag=(Drag([1.0, 0.0]),))},
@@ -344,3 +433,10 @@ def test_what_is_missing_is_told_in_one_sentence(changes, times, told):
     given = dataclasses.replace(moving(GEARS), **changes)
     with pytest.raises(InputError, match=told):
         transient(given, times)
+
+
+@pytest.mark.parametrize("start", [{"place": [0.0] * 3}, {"rate": np.zeros((1, 2))}])
+def test_a_start_has_one_number_for_each_coordinate(start):
+    (name,) = start
+    with pytest.raises(InputError, match=f"^{name} at the start .* each of the 2 coordinates"):
+        transient(moving(GEARS), TIMES, **start)

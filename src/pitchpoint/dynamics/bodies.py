@@ -21,7 +21,8 @@ class Support(eqx.Module):
 
     Attributes:
         mass: of the body [kg].
-        ways: unit vectors along which it may shift, in the frame of the mesh.
+        ways: unit vectors along which it may shift, at right angles to each other, in the frame of the
+            mesh.
         stiffness: of all its bearings together, symmetric [N/m].
         damping: likewise [N s/m].
     """
@@ -37,7 +38,7 @@ class Body(eqx.Module):
 
     Attributes:
         inertia: about its axis [kg m2], or mass of a body that travels [kg].
-        torque: external one at the knots of time, straight between them and constant beyond
+        torque: external one, or those at the knots of time, straight between them and constant beyond
             [N m or N].
         resistance: torque against its motion, the same at every speed but for slow ones [N m or N].
         creep: speed at which 76 % of the resistance is reached, R tanh(speed/creep) [rad/s or m/s].

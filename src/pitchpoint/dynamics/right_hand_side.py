@@ -234,11 +234,15 @@ def _friction(moving: Moving, contacts: Contacts, force: Lanes, rate: Coordinate
     driving = jnp.abs(jnp.tensordot(moving.padded(moving.design.mesh.driver), rate, axes=1))
     point = replace(moving.operation, speed=jnp.maximum(driving, STANDSTILL))
     carries = force > 0.0
-    load = jnp.where(carries, force, 1.0)
     conditions = moving.design.conditions(
-        contacts, point, load=load, nominal_load=total(load), rates=rate
+        contacts, point, load=_or_one(force), nominal_load=_or_one(total(force)), rates=rate
     )
     return jnp.where(carries, moving.models.coefficient(conditions), 0.0)
+
+
+def _or_one(force: Float[Array, "..."]) -> Float[Array, "..."]:
+    """Force, or 1 N where nothing carries: laws divide by it and take powers."""
+    return jnp.where(force > 0.0, force, 1.0)
 
 
 def _lanes(arms: Float[Array, "coordinate pair slice *b"], values: Coordinates) -> Lanes:

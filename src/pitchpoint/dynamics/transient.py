@@ -8,8 +8,8 @@ import numpy as np
 from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float, Int
 
-from pitchpoint._jax import array, jnp
-from pitchpoint.dynamics.bodies import stiffness
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.dynamics.bodies import Body, Support, stiffness
 from pitchpoint.dynamics.energy import Account
 from pitchpoint.dynamics.right_hand_side import (
     ContactForces,
@@ -27,6 +27,7 @@ __all__ = ["Transient", "transient"]
 
 Vector = Float[Array, " coordinate"]
 States = Float[Array, "coordinate time"]
+Kept = tuple[States, States, ContactForces, States, Account]
 
 TOLERANCE = 1e-10
 """Largest estimated error of a step over the amplitude at which the external torques swing."""
@@ -40,12 +41,18 @@ MOST_STEPS = 1_000_000
 SHORTEST = 1e-15
 """Step over the whole duration below which it is given up too."""
 
+CLOSED = 1e-6
+"""Largest closure of the energy of a motion that counts as found."""
+
+UNIT = 1e-9
+"""How far ways of a support may be from unit vectors at right angles."""
+
 _WORKS = 5
 """Integrals of powers, see `right_hand_side.powers`."""
 
 
 class Transient(eqx.Module):
-    """Motion at given times; what was not reached is NaN.
+    """Motion at given times; what was not reached is NaN, and all of it if the energy does not close.
 
     Attributes:
         time: [s].
@@ -54,7 +61,8 @@ class Transient(eqx.Module):
         found: forces at the contacts.
         torque: external ones on all coordinates [N m or N].
         energy: where it is and where it went.
-        status: the residual is the closure of the energy, iterations are steps.
+        status: the residual is the closure of the energy, at most `CLOSED` if solved; iterations are
+            steps.
     """
 
     time: Float[Array, " time"]
@@ -91,25 +99,70 @@ def transient(
     """
     asked = np.asarray(times, float)
     _check(moving, asked)
-    size = moving.mass.shape[0]
-    start = [jnp.asarray(np.broadcast_to(np.asarray(v, float), (size,))) for v in (place, rate)]
+    start = [_start(moving, *one) for one in (("place", place), ("rate", rate))]
     found: Transient = _travel(moving, array(asked), *start)
     return found
 
 
+def _start(moving: Moving, name: str, given: ArrayLike | Sequence[float]) -> Vector:
+    """Values of all coordinates, or InputError."""
+    values, size = np.asarray(given, float), moving.mass.shape[0]
+    if values.shape not in ((), (1,), (size,)):
+        raise InputError(
+            f"{name} at the start of a transient is one number or one for each of the {size} "
+            f"coordinates, those of the mesh and the translations of bodies; {values.size} are given"
+        )
+    return jnp.asarray(np.broadcast_to(values, (size,)))
+
+
 def _check(moving: Moving, times: np.ndarray) -> None:
     """InputError in one sentence."""
-    mesh, names = moving.design.mesh, [one.body for one in moving.design.mesh.coordinates]
+    names = [one.body for one in moving.design.mesh.coordinates]
     if len(moving.bodies) != len(names):
         told = f"{', '.join(names)}; {len(moving.bodies)} bodies are given"
         raise InputError(f"a transient asks for one body for each of {told}")
     for name, body in zip(names, moving.bodies, strict=True):
-        if not float(body.inertia) > 0.0:
-            raise InputError(f"{name} needs a positive inertia, got {float(body.inertia):g}")
-        if body.support is not None and not float(body.support.mass) > 0.0:
-            raise InputError(f"{name} needs a positive mass, got {float(body.support.mass):g}")
+        _check_body(name, body, moving.knots.size)
     if times.size < 2 or not np.all(np.diff(times) > 0.0):
         raise InputError("times of a transient grow from its start on, at least two of them")
+    if not np.all(np.diff(moving.knots) > 0.0):
+        told = ", ".join(f"{time:g}" for time in np.asarray(moving.knots))
+        raise InputError(f"knots of the external torques grow with time, got {told} s")
+    if not float(moving.creep) > 0.0:
+        raise InputError(
+            f"creep of the contacts is a sliding speed above 0 m/s, got {float(moving.creep):g}"
+        )
+    _check_effects(moving)
+
+
+def _check_body(name: str, body: Body, knots: int) -> None:
+    if not float(body.inertia) > 0.0:
+        raise InputError(f"{name} needs a positive inertia, got {float(body.inertia):g}")
+    if not float(body.creep) > 0.0:
+        raise InputError(f"creep of {name} is a speed above 0, got {float(body.creep):g}")
+    if body.torque.size not in (1, knots):
+        raise InputError(
+            f"{name} needs one torque, or one for each of the {knots} knots of time; "
+            f"{body.torque.size} are given"
+        )
+    if body.support is not None:
+        _check_support(name, body.support)
+
+
+def _check_support(name: str, support: Support) -> None:
+    if not float(support.mass) > 0.0:
+        raise InputError(f"{name} needs a positive mass, got {float(support.mass):g}")
+    ways = np.asarray(support.ways)
+    if not np.allclose(ways @ ways.T, np.eye(len(ways)), rtol=0.0, atol=UNIT):
+        told = ", ".join(f"{length:g}" for length in np.linalg.norm(ways, axis=1))
+        raise InputError(
+            f"{name} shifts along unit vectors at right angles to each other; "
+            f"the ways of its bearings are {told} long, or not at right angles"
+        )
+
+
+def _check_effects(moving: Moving) -> None:
+    mesh = moving.design.mesh
     if mesh.couples:
         raise InputError(
             "a transient takes each pair of teeth as a spring, and a ring couples these"
@@ -127,8 +180,8 @@ def _check(moving: Moving, times: np.ndarray) -> None:
 def _travel(moving: Moving, times: Array, place: Vector, rate: Vector) -> Transient:
     scale = _Scale(moving, times, place, rate)
     states, reached, steps = _integrated(moving, times, scale, scale.scaled(place, rate))
-    place, rate, works = scale.parts(states.T)
-    return _described(moving, times, (place, rate, works), reached, steps)
+    given = scale.parts(jnp.where(jnp.isfinite(states), states, jnp.nan).T)
+    return _described(moving, times, given, reached, steps)
 
 
 class _Scale:
@@ -224,7 +277,7 @@ def _described(
     steps: Int[Array, ""],
 ) -> Transient:
     """Forces and energies of states that were found."""
-    place, rate, works = (jnp.where(jnp.isfinite(part), part, jnp.nan) for part in states)
+    place, rate, works = states
     found = contact_forces(moving, place, rate)
     account = Account(
         kinetic=moving.mass @ rate**2 / 2.0,
@@ -236,7 +289,28 @@ def _described(
         drag=works[3],
         pressed=works[4],
     )
-    code = jnp.where(reached, int(Code.SOLVED), int(Code.NOT_CONVERGED))
-    status = Status(code, account.closure, steps)
-    torque = external(moving, times)
-    return Transient(times, place, rate, found, torque, account, status)
+    status = Status(_code(reached, account.closure), account.closure, steps)
+    given = place, rate, found, external(moving, times), account
+    return Transient(times, *_where(_known(states, account.closure), given), status)
+
+
+def _code(reached: Bool[Array, ""], closure: Float[Array, ""]) -> Int[Array, ""]:
+    """Solved where the end was reached and the energy closes."""
+    solved = reached & (closure <= CLOSED)
+    return jnp.where(solved, int(Code.SOLVED), int(Code.NOT_CONVERGED))
+
+
+def _known(states: tuple[Array, ...], closure: Float[Array, ""]) -> Bool[Array, " time"]:
+    """True at times that were reached, and at none if the energy does not close."""
+    return jnp.all(jnp.isfinite(jnp.concatenate(states)), axis=0) & ~(closure > CLOSED)
+
+
+def _where(known: Bool[Array, " time"], values: Kept) -> Kept:
+    """Values of the times that are known; NaN, and no contact, at others."""
+
+    def kept(value: Array) -> Array:
+        nothing = False if value.dtype == bool else jnp.nan
+        return jnp.where(known, value, nothing)
+
+    found: Kept = jax.tree.map(kept, values)
+    return found
