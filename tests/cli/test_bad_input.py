@@ -952,7 +952,7 @@ def test_a_study_that_goes_wrong_half_way() -> None:
     made = jobs(Variant(tree, "bad.toml", "default"), {})
     study = next(job for job in made if job.name == "study_shift")
     with pytest.raises(InputError) as caught:
-        study.pieces[0](lambda _: None)
+        study.compute(study.pieces[0])
     told = str(caught.value)
     assert "bad.toml: studies.shift.sweep: at gears.profile_shift.1 = 1.4: " in told
     assert "gears.addendum: the tip circle of gear 1" in told

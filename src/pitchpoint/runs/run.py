@@ -360,7 +360,7 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
     own = uuid4().hex if manifest["own"] else ""
-    here = manifest["surroundings"]
+    here = surroundings()
     return fingerprint(package_state(), here, manifest["source"], given, job.name, own)
 
 
