@@ -37,8 +37,8 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.flattening import yang_sun_1985
 from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.loading.compliance import slice_stiffness
 from pitchpoint.loading.foundation import sainsot_2004
-from pitchpoint.loading.mesh_stiffness import slice_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, beam_compliance, interpolate
 from pitchpoint.materials.solids import Solid
 

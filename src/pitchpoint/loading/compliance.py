@@ -4,13 +4,12 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.mesh_stiffness import slice_stiffness
-from pitchpoint.loading.tooth_compliance import Terms
+from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["Compliance", "compliance"]
+__all__ = ["Compliance", "compliance", "mean_line_load", "slice_stiffness"]
 
 
 class Compliance(eqx.Module):
@@ -60,3 +59,39 @@ def compliance(
     return Compliance(
         stiffness=slice_stiffness(mesh, contacts, solids, terms, load), body=body, load=load
     )
+
+
+def mean_line_load(
+    mesh: Mesh, contacts: Contacts, load: Float[Array, "*#b"]
+) -> Float[Array, "*#b"]:
+    """Load per length if all contact lines carried the same [N/m].
+
+    Args:
+        mesh: any family.
+        contacts: of the mesh.
+        load: that the driven coordinate carries [N m or N].
+    """
+    arms = jnp.abs(along(contacts.normal, mesh.loaded))
+    return load / total(jnp.where(contacts.active, contacts.weight * arms, 0.0))
+
+
+def slice_stiffness(
+    mesh: Mesh,
+    contacts: Contacts,
+    solids: tuple[Solid, Solid],
+    terms: Terms,
+    load: Float[Array, "*#b"],
+) -> Float[Array, "pair slice *#b"]:
+    """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
+
+    Args:
+        mesh: a family whose members have teeth.
+        contacts: of the mesh.
+        solids: material of each member.
+        terms: of the model of tooth compliance.
+        load: that the driven coordinate carries [N m or N].
+    """
+    sections = mesh.sections
+    assert sections is not None
+    line_load = mean_line_load(mesh, contacts, load)
+    return unit_stiffness(contacts, sections, solids, terms, line_load)

@@ -1,18 +1,19 @@
 """Stiffness of a mesh: every pair of teeth as a spring along the normal of its contacts."""
 
 import equinox as eqx
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
+from pitchpoint.loading.compliance import Compliance, compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium
-from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
+from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["MeshStiffness", "mean_line_load", "mesh_stiffness", "slice_stiffness"]
+__all__ = ["MeshStiffness", "mesh_stiffness"]
 
 Lanes = Float[Array, "pair slice *#b"]
 
@@ -57,42 +58,6 @@ class MeshStiffness(eqx.Module):
         return jnp.sum(self.total * self.weight)
 
 
-def mean_line_load(
-    mesh: Mesh, contacts: Contacts, load: Float[Array, "*#b"]
-) -> Float[Array, "*#b"]:
-    """Load per length if all contact lines carried the same [N/m].
-
-    Args:
-        mesh: any family.
-        contacts: of the mesh.
-        load: that the driven coordinate carries [N m or N].
-    """
-    arms = jnp.abs(along(contacts.normal, mesh.loaded))
-    return load / total(jnp.where(contacts.active, contacts.weight * arms, 0.0))
-
-
-def slice_stiffness(
-    mesh: Mesh,
-    contacts: Contacts,
-    solids: tuple[Solid, Solid],
-    terms: Terms,
-    load: Float[Array, "*#b"],
-) -> Lanes:
-    """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
-
-    Args:
-        mesh: a family whose members have teeth.
-        contacts: of the mesh.
-        solids: material of each member.
-        terms: of the model of tooth compliance.
-        load: that the driven coordinate carries [N m or N].
-    """
-    sections = mesh.sections
-    assert sections is not None
-    line_load = mean_line_load(mesh, contacts, load)
-    return unit_stiffness(contacts, sections, solids, terms, line_load)
-
-
 def mesh_stiffness(
     mesh: Mesh,
     solids: tuple[Solid, Solid],
@@ -112,9 +77,9 @@ def mesh_stiffness(
     events = mesh.events()
     phase, weight = nodes(events, count)
     contacts = mesh.contacts(phase)
-    unit = slice_stiffness(mesh, contacts, solids, terms, load)
-    each = jnp.where(contacts.active, unit * contacts.weight, 0.0)
-    state = None if mesh.touching else _settled(mesh, contacts, solids, each, load)
+    yields = compliance(mesh, contacts, solids, terms, load)
+    each = jnp.where(contacts.active, yields.stiffness * contacts.weight, 0.0)
+    state = None if mesh.touching else _settled(mesh, contacts, yields, each > 0.0)
     if state is not None:
         each = jnp.where(state.loaded, each, 0.0)
         each = jnp.where(jnp.isfinite(state.approach), each, jnp.nan)
@@ -130,21 +95,16 @@ def mesh_stiffness(
 
 
 def _settled(
-    mesh: Mesh,
-    contacts: Contacts,
-    solids: tuple[Solid, Solid],
-    springs: Lanes,
-    load: Float[Array, ""],
+    mesh: Mesh, contacts: Contacts, yields: Compliance, acts: Bool[Array, "pair slice *#b"]
 ) -> Equilibrium:
     """Which springs carry the load, and how far it moves them."""
-    acts = springs > 0.0
     return equilibrium(
-        1.0 / jnp.where(acts, springs, 1.0),
-        mesh.body_compliance(contacts, solids),
+        yields.of_teeth(contacts),
+        yields.body,
         gap=contacts.gap,
         arm=jnp.abs(along(contacts.normal, mesh.loaded)),
         active=acts,
-        load=jnp.broadcast_to(load, springs.shape[2:]),
+        load=yields.load,
     )
 
 
