@@ -394,10 +394,10 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 
 def _summary(name: str, outcome: "Outcome") -> None:
+    from pitchpoint.analyses.figures import of_contact
     from pitchpoint.runs.catalogue import (
         bearing_table,
         kinematic_error_table,
-        of_contact,
         summary_table,
         sweep_tables,
         vibration_table,

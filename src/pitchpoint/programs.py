@@ -36,7 +36,6 @@ __all__ = [
     "bound_programs",
     "fast_program",
     "forget",
-    "package_state",
     "program",
     "surroundings",
 ]
@@ -68,7 +67,7 @@ class _NamelessError(Exception):
 
 
 @cache
-def package_state() -> str:
+def _package_state() -> str:
     """Digest of every file of the package: changed code or data computes again."""
     root, found = Path(__file__).parent, hashlib.sha256()
     for path in sorted(root.rglob("*")):
@@ -257,7 +256,7 @@ def surroundings() -> dict[str, str]:
     device = jax.devices()[0]
     return {
         **{name: version(name) for name in _TRACED},
-        "code": package_state()[:16],
+        "code": _package_state()[:16],
         "device": f"{platform.machine()} {device.platform} {device.device_kind}",
         "XLA_FLAGS": os.environ.get("XLA_FLAGS", ""),
     }

@@ -20,6 +20,7 @@ from pitchpoint.efficiency.quasi_static import (
     cycle,
     cycle_nodes,
 )
+from pitchpoint.efficiency.rows import NODES
 from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.programs import fast_program, program
@@ -45,7 +46,7 @@ def pieces(built: Built) -> list[Piece]:
 def _start(built: Built) -> tuple[Engagement | None, int]:
     """What all torques have in common: contacts, where they are known beforehand, and how many there are."""
     models = built.models[0]
-    known = engaged(built.design, built.operation, models, _NODES)
+    known = engaged(built.design, built.operation, models, NODES)
     length = _line_length(built.design, models.sharing) if known is None else known.contacts.weight
     return known, int(np.prod(length.shape))
 
@@ -93,7 +94,7 @@ def at_torque(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     torque, (speeds, degrees) = float(piece["torque"]), map_axes(built)[1:]
     point = replace(built.operation, load=array(torque))
     like, lanes = _start(built)
-    known = engaged(built.design, point, built.models[0], _NODES, like)
+    known = engaged(built.design, point, built.models[0], NODES, like)
     known = known and known.loaded()
     together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
     runs = []
@@ -156,11 +157,8 @@ def _by_point(
 
 @program
 def _line_length(design: Design, sharing: LoadSharing) -> Array:
-    phase, _ = cycle_nodes(design.mesh, sharing, _NODES)
+    phase, _ = cycle_nodes(design.mesh, sharing, NODES)
     return design.mesh.contacts(phase).weight
-
-
-_NODES = 24
 
 
 @program
@@ -174,7 +172,7 @@ def _figures(
 ) -> tuple[Array, Array, Array]:
     speed, degree = jnp.meshgrid(speeds, degrees, indexing="ij")
     points = Operation(jnp.full(speed.shape, torque), speed, degree)
-    found = cycle(design, points, models, _NODES, known)
+    found = cycle(design, points, models, NODES, known)
     return found.mean_loss, found.mean_efficiency, found.locked
 
 

@@ -34,7 +34,7 @@ from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -281,21 +281,17 @@ def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.A
 
 
 def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
-    """InputError if a law of the case, or the user's own, holds for contacts of another shape."""
-    from pitchpoint.lubrication.conditions import Law, demand_shape
-
+    """InputError if a film, a rolling law or the user's own law holds for contacts of another shape."""
     models = case.models
-    chosen: dict[str, list[Law]] = {
-        "models.friction": [FRICTION[choice.name] for choice in models.friction],
-        "models.film_thickness": [FILM_THICKNESS[models.film_thickness]],
-        "models.rolling_resistance": [ROLLING_RESISTANCE[models.rolling_resistance]],
+    chosen: dict[str, Law] = {
+        "models.film_thickness": FILM_THICKNESS[models.film_thickness],
+        "models.rolling_resistance": ROLLING_RESISTANCE[models.rolling_resistance],
     }
-    for key, laws in chosen.items():
-        for law in laws:
-            try:
-                demand_shape(law, mesh.shape)
-            except InputError as error:
-                raise error.at(key=key) from None
+    for key, law in chosen.items():
+        try:
+            demand_shape(law, mesh.shape)
+        except InputError as error:
+            raise error.at(key=key) from None
     if own is not None:
         demand_shape(own, mesh.shape)
 

@@ -318,9 +318,8 @@ def output_wind_up(
     ratios, turned, slope = drive.ratios, jnp.zeros_like(load), jnp.zeros_like(load)
     for number, (stage, laws) in enumerate(zip(drive.stages, models, strict=True)):
         mesh, solids = stage.design.mesh, stage.design.solids
-        step = (
-            ratios[-1] / ratios[number + 1]
-        )  # rotation at the output for one of the stage's shaft
+        # Rotation at the output for one of the shaft that the stage loads.
+        step = ratios[-1] / ratios[number + 1]
         phase, weight = cycle_nodes(mesh, laws.sharing, nodes)
         found = wind_up(mesh, solids, laws.compliance, (load * step)[..., None], phase[None])
         turned = turned + step * (found.wind_up @ weight)

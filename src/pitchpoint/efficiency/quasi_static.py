@@ -653,8 +653,7 @@ def cycle_of(design: Design, operation: Operation, known: Engagement, found: Bal
     points = _at_nodes(operation)
     unloaded = _unloaded(design, points, known.contacts, known.share)
     states = _state(design, points, unloaded, found)
-    smooth = design.mesh.touching
-    return Cycle(known.phase, known.weight, states, known.nodes, smooth=smooth)
+    return Cycle(known.phase, known.weight, states, known.nodes, smooth=design.mesh.touching)
 
 
 def _at_nodes(operation: Operation) -> Operation:

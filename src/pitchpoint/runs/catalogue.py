@@ -40,11 +40,9 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 
 __all__ = [
-    "CONTACT",
     "entries",
     "figures",
     "kinematic_error_table",
-    "of_contact",
     "summary_table",
     "sweep_tables",
     "vibration_table",
@@ -105,7 +103,7 @@ def _of_power(outcome: Outcome, position: int) -> dict[str, str]:
         return {}
     locked = bool(back["locked"].values[position, 0])
     return {
-        "η of": covers(outcome.parts["operation"]),
+        "η of": covers(data),
         _LOCKS: _cell(data, "jamming_coefficient", position),
         "back-driving": "locked" if locked else _cell(back, "mean_efficiency", position),
         f"back-driving {_LOCKS}": _cell(back, "jamming_coefficient", position),

@@ -35,7 +35,7 @@ from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.programs import package_state, surroundings
+from pitchpoint.programs import surroundings
 from pitchpoint.registry import nearest
 from pitchpoint.results.store import (
     fingerprint,
@@ -360,8 +360,7 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
     own = uuid4().hex if manifest["own"] else ""
-    here = surroundings()
-    return fingerprint(package_state(), here, manifest["source"], given, job.name, own)
+    return fingerprint(surroundings(), manifest["source"], given, job.name, own)
 
 
 def _part(

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pitchpoint.analyses.caveats import jamming_words
+from pitchpoint.analyses.figures import CONTACT, MAIN, of_contact
 from pitchpoint.cases.comparison import Row, counts
 from pitchpoint.cases.inputs import OIL
 from pitchpoint.results.store import write_text
 from pitchpoint.results.variables import VARIABLES
-from pitchpoint.runs.catalogue import CONTACT, of_contact
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.cycle import cycle_panel, cycle_pitch, loss_places, path_panel
@@ -77,13 +77,7 @@ KINDS = {
 }
 _ORDER = {"miss": 0, "excluded": 1, "pass": 2}
 _SIDE_BY_SIDE = (
-    "mean_efficiency",
-    "min_efficiency",
-    "max_efficiency",
-    "mean_loss",
-    "mean_input_torque",
-    "torque_ripple",
-    "mean_friction",
+    *MAIN,
     "loss_factor",
     "contact_ratio",
     "mean_stiffness",

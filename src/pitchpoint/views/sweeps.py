@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
+from pitchpoint.analyses.figures import CONTACT, MAIN, of_contact
 from pitchpoint.results.variables import VARIABLES
-from pitchpoint.runs.catalogue import CONTACT, of_contact
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.design_chart import is_design_chart
@@ -32,16 +32,7 @@ __all__ = ["study_panels", "study_tables"]
 _SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "torque_ripple")
 _MOVING = ("mean_stiffness", "transmission_error_range", "largest_dynamic_factor")
 """Shown where a case has vibration, the same under every friction law."""
-_TABLE = (
-    "contact_ratio",
-    "mean_efficiency",
-    "min_efficiency",
-    "max_efficiency",
-    "mean_loss",
-    "mean_input_torque",
-    "torque_ripple",
-    "mean_friction",
-)
+_TABLE = ("contact_ratio", *MAIN)
 
 _WORDS = {
     "operation.torque": "output torque",
