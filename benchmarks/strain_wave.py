@@ -36,8 +36,8 @@ from pitchpoint.analyses.loss_map import at_torque, map_axes, pieces
 from pitchpoint.cases.build import Built
 from pitchpoint.efficiency import quasi_static
 from pitchpoint.efficiency.quasi_static import Engagement, Operation, cycle, engagement
-from pitchpoint.gears import strain_wave
-from pitchpoint.gears.groove import swept
+from pitchpoint.gears.strain_wave import drive as strain_wave
+from pitchpoint.gears.strain_wave.groove import swept
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.runs.run import load_case
 

@@ -303,7 +303,7 @@ def _show_matrix(as_json: bool) -> None:
 
 
 def _settings(texts: list[str]) -> dict[str, Any]:
-    from pitchpoint.cases.quantities import shown
+    from pitchpoint.input.quantities import shown
 
     settings = {}
     for text in texts:
@@ -323,8 +323,8 @@ def _value(text: str) -> Any:
 
 
 def _studies(texts: list[str]) -> dict[str, "Study"]:
-    from pitchpoint.cases.quantities import shown
     from pitchpoint.cases.schema import Study, Sweep
+    from pitchpoint.input.quantities import shown
 
     studies: dict[str, Study] = {}
     for text in texts:

@@ -9,8 +9,8 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.gears.checks import check_cylindrical
-from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.checks import check_cylindrical
+from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
 
 ANGLE = np.deg2rad(20.0)
 MODULE = 2e-3

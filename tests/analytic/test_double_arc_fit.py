@@ -8,10 +8,10 @@ import pytest
 from strain_wave_positions import DoubleArc, Drive
 
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears import double_arc_fit
-from pitchpoint.gears.double_arc_fit import fit_double_arc, merit_of
-from pitchpoint.gears.strain_wave import StrainWave
-from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, DoubleArcForm, build_strain_wave
+from pitchpoint.gears.strain_wave import double_arc_fit
+from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, DoubleArcForm, build_strain_wave
+from pitchpoint.gears.strain_wave.double_arc_fit import fit_double_arc, merit_of
+from pitchpoint.gears.strain_wave.drive import StrainWave
 
 TEETH = (100, 102)
 START = DOUBLE_ARCS["liu"]

@@ -14,7 +14,7 @@ from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.contact.modifications import Crowning, EndRelief, LeadSlope, Relief
 from pitchpoint.contact.surface import Spot, with_surfaces
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
-from pitchpoint.gears.modified import Modifications, modified
+from pitchpoint.gears.cylindrical.modified import Modifications, modified
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
-from pitchpoint.gears.ring_compliance import WAVES, ring_compliance
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
+from pitchpoint.gears.strain_wave.ring_compliance import WAVES, ring_compliance
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)

@@ -14,14 +14,14 @@ from strain_wave_positions import bend, drive, slope
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.errors import InputError
-from pitchpoint.gears.strain_wave_design import (
+from pitchpoint.gears.strain_wave.design import (
     DOUBLE_ARCS,
     DoubleArcForm,
     InvoluteForm,
     build_strain_wave,
     double_arc_flank,
 )
-from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
+from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE

@@ -11,10 +11,10 @@ from bare_contacts import line_contacts
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.contact.surface import Spot, Waves
-from pitchpoint.gears.cylindrical import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.strain_wave import places
-from pitchpoint.gears.strain_wave_design import build_strain_wave
+from pitchpoint.gears.strain_wave.design import build_strain_wave
+from pitchpoint.gears.strain_wave.drive import places
 from pitchpoint.loading import wind_up as module
 from pitchpoint.loading.balance import balance
 from pitchpoint.loading.compliance import Compliance

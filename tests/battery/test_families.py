@@ -16,12 +16,12 @@ from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import starting_torque
-from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
+from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.gears.strain_wave import StrainWave
-from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE

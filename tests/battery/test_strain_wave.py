@@ -15,8 +15,8 @@ from strain_wave_positions import drive
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
-from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
-from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
+from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE

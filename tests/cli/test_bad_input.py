@@ -25,10 +25,10 @@ from sound import PAIR
 from pitchpoint import cli, units
 from pitchpoint.cases import gear_tables, schema
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.quantities import Pair, Quantity
-from pitchpoint.cases.tables import Table, tag
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Pair, Quantity
+from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.runs.jobs import jobs
 

@@ -18,9 +18,9 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.comparison import compare
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.library import find
-from pitchpoint.cases.quantities import SIValue
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
-from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.results.store import dataset

@@ -13,12 +13,12 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
-from pitchpoint.cases.quantities import SIValue
 from pitchpoint.cases.schema import Case, quantity_at, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
-from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS, check_strain_wave
+from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, check_strain_wave
+from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.reactions import InnerBearing
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.friction_coefficient import LAWS

@@ -9,9 +9,9 @@ import pytest
 
 from pitchpoint.cases import build, families
 from pitchpoint.cases.schema import quantity_at
-from pitchpoint.gears import checks, cylindrical, strain_wave_design
+from pitchpoint.gears.cylindrical import checks
 
-MODULES = (checks, cylindrical, strain_wave_design, families)
+MODULES = (checks, pair, design, families)
 MEMBER = "driver"  # a case checks it before it builds: operation.driver
 
 
@@ -40,7 +40,7 @@ TOLD = sorted({(module.__name__, key) for module in MODULES for key in keys_told
 def test_the_checks_are_found() -> None:
     found = {key for _, key in TOLD}
     assert {"addendum", "face_width", "clearance", "form", "force_angle", "bore_diameter"} <= found
-    assert {module for module, _ in TOLD} >= {checks.__name__, strain_wave_design.__name__}
+    assert {module for module, _ in TOLD} >= {checks.__name__, design.__name__}
 
 
 @pytest.mark.parametrize(("module", "key"), TOLD)

@@ -24,6 +24,7 @@ FLOW = (
         "factored",
         "status",
     },
+    {"input"},
     {"materials"},
     {"contact"},
     {"gears"},

@@ -26,7 +26,7 @@ from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
+from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.runs.jobs import jobs

@@ -15,8 +15,8 @@ from records import entries
 from pitchpoint.analyses.kinematic_error import _turns
 from pitchpoint.cases.families import FAMILIES
 from pitchpoint.cases.gear_tables import StrainWaveGears
-from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
-from pitchpoint.gears.strain_wave import rates
+from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.drive import rates
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show

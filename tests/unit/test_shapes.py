@@ -11,7 +11,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.factored import product
-from pitchpoint.gears.flexible_ring import FlexibleRing
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959
 
 STEEL = 2.26e11

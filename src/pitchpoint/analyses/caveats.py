@@ -8,10 +8,10 @@ import numpy as np
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails
 from pitchpoint.cases.laws import limits_words
-from pitchpoint.cases.quantities import Quantity
 from pitchpoint.cases.schema import FORCE, SPEED, TEMPERATURE, TORQUE
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 

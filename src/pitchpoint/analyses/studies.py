@@ -12,11 +12,11 @@ from pitchpoint.analyses.figures import by_law, main_figures
 from pitchpoint.analyses.summaries import at_contact, joined, summaries, temperatures, vibrations
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import Study, Sweep, quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.units import si_unit
 
 __all__ = [

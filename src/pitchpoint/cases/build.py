@@ -27,7 +27,7 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.summary import engaged, heat
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical import CylindricalPair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.reactions import Bearing, InnerBearing

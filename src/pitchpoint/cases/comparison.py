@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.cases.quantities import Quantity, shown
 from pitchpoint.cases.reductions import INVERSE_SLOPE, PLAIN, REDUCTIONS, SLOPE, SPANS
 from pitchpoint.cases.schema import Target
 from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 

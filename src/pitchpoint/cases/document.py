@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pitchpoint.cases.quantities import shown, text
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.input.quantities import shown, text
 from pitchpoint.registry import nearest
 
 __all__ = [

@@ -20,19 +20,24 @@ from pitchpoint.cases.gear_tables import (
 )
 from pitchpoint.contact.surface import Surfaces, Waves
 from pitchpoint.errors import InputError
-from pitchpoint.gears.checks import check_cylindrical
-from pitchpoint.gears.cylindrical import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
+from pitchpoint.gears.cylindrical.checks import check_cylindrical
+from pitchpoint.gears.cylindrical.modified import (
+    Modifications,
+    class_deviations,
+    class_warnings,
+    modified,
+)
+from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.modified import Modifications, class_deviations, class_warnings, modified
-from pitchpoint.gears.rigs.ball_on_disc import BallOnDisc
-from pitchpoint.gears.strain_wave import StrainWave
-from pitchpoint.gears.strain_wave_design import (
+from pitchpoint.gears.strain_wave.design import (
     DOUBLE_ARCS,
     DoubleArcForm,
     InvoluteForm,
     build_strain_wave,
     check_strain_wave,
 )
+from pitchpoint.gears.strain_wave.drive import StrainWave
 
 __all__ = ["FAMILIES", "Family", "built_gears"]
 

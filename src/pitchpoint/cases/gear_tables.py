@@ -6,10 +6,10 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, Tag, model_validator
 
-from pitchpoint.cases.quantities import Pair, Quantity, named
-from pitchpoint.cases.tables import Table, by
 from pitchpoint.errors import InputError
-from pitchpoint.gears.members import BALL_ON_DISC, CYLINDRICAL, STRAIN_WAVE
+from pitchpoint.gears import ball_on_disc, cylindrical, strain_wave
+from pitchpoint.input.quantities import Pair, Quantity, named
+from pitchpoint.input.tables import Table, by
 
 __all__ = ["BallOnDiscRig", "CylindricalGears", "Gears", "StrainWaveGears"]
 
@@ -143,7 +143,7 @@ class CylindricalGears(Table):
     reaches last.
     """
 
-    members: ClassVar[tuple[str, ...]] = CYLINDRICAL
+    members: ClassVar[tuple[str, ...]] = cylindrical.MEMBERS
     load: ClassVar[Load] = "torque"
     friction: ClassVar[str] = "iso_tr_14179_2"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
@@ -215,13 +215,13 @@ class CylindricalGears(Table):
 
 
 def _double_arcs() -> list[str]:
-    from pitchpoint.gears.strain_wave_design import DOUBLE_ARCS
+    from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS
 
     return list(DOUBLE_ARCS)
 
 
 def _wave_shapes() -> list[str]:
-    from pitchpoint.gears.wave_generator import WAVE_SHAPES
+    from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
 
     return list(WAVE_SHAPES)
 
@@ -354,7 +354,7 @@ class StrainWaveGears(Table):
     spline, in this table and in that of the materials.
     """
 
-    members: ClassVar[tuple[str, ...]] = STRAIN_WAVE
+    members: ClassVar[tuple[str, ...]] = strain_wave.MEMBERS
     load: ClassVar[Load] = "torque"
     sources: ClassVar[tuple[str, ...]] = ()
     friction: ClassVar[str] = "constant"
@@ -418,7 +418,7 @@ class BallOnDiscRig(Table):
     is positive where the disc is the faster one, 2 with the ball at rest.
     """
 
-    members: ClassVar[tuple[str, ...]] = BALL_ON_DISC
+    members: ClassVar[tuple[str, ...]] = ball_on_disc.MEMBERS
     load: ClassVar[Load] = "force"
     sources: ClassVar[tuple[str, ...]] = ()
     drivers: ClassVar[tuple[str, ...]] = ("disc",)

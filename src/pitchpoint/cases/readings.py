@@ -12,7 +12,7 @@ from pitchpoint.cases.atanasiu2011 import printed as atanasiu2011
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.xu2021 import printed as xu2021
 from pitchpoint.cases.zhao2022 import printed as zhao2022
-from pitchpoint.gears.strain_wave import StrainWave
+from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.programs import program
 
 __all__ = ["READINGS", "conjugate_readings", "readings_of"]

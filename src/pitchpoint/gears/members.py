@@ -1,15 +1,10 @@
-"""Body of each coordinate by name, for every gear family; one that also approaches stands twice."""
+"""Bodies by name or number, for every gear family."""
 
 from collections.abc import Sequence
 
 from pitchpoint.errors import InputError
 
-__all__ = ["BALL_ON_DISC", "CYLINDRICAL", "STRAIN_WAVE", "number_of"]
-
-BALL_ON_DISC = ("disc", "ball", "ball")
-
-CYLINDRICAL = ("gear 1", "gear 2")
-STRAIN_WAVE = ("wave generator", "flexspline", "circular spline")
+__all__ = ["number_of"]
 
 
 def number_of(member: str | int, names: tuple[str, ...]) -> int:
@@ -23,8 +18,7 @@ def number_of(member: str | int, names: tuple[str, ...]) -> int:
         InputError: there is no such body.
 
     Example:
-        >>> from pitchpoint.gears.members import CYLINDRICAL
-        >>> number_of("gear 2", CYLINDRICAL)
+        >>> number_of("gear 2", ("gear 1", "gear 2"))
         1
     """
     known: Sequence[str | int] = names if isinstance(member, str) else range(len(names))

@@ -26,7 +26,7 @@ from pitchpoint.cases.schema import quantity_at
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
-from pitchpoint.gears.wave_generator import WAVE_SHAPES
+from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import asks_for_pitch_point

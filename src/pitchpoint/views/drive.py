@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.facts import wave

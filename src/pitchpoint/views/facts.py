@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
+from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.inputs import given, number
 

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.gear_tables import StrainWaveGears
 from pitchpoint.cases.schema import Operating
-from pitchpoint.gears.flexspline_tooth import InvoluteFlank
-from pitchpoint.gears.strain_wave import StrainWave
+from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 
 __all__ = [
     "assumed_radius",

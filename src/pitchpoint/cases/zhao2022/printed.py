@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.gear_tables import StrainWaveGears
-from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
-from pitchpoint.gears.strain_wave import StrainWave
+from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 
 __all__ = [
     "arc_distance",

@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.materials.solids import Solid
 
 __all__ = ["WAVES", "ring_compliance"]

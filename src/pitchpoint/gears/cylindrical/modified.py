@@ -13,8 +13,8 @@ from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.contact.modifications import Crowning, EndRelief, LeadSlope, Relief
 from pitchpoint.contact.surface import Flank, Surface, Surfaces
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical import CylindricalPair
-from pitchpoint.gears.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
+from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.programs import program
 
 __all__ = ["FEWEST_SLICES", "Modifications", "class_deviations", "class_warnings", "modified"]

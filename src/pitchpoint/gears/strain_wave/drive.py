@@ -13,16 +13,16 @@ from pitchpoint.contact.surface import Spot
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
-from pitchpoint.gears.flexible_ring import FlexibleRing, RingLoads
-from pitchpoint.gears.flexspline_tooth import Flank
-from pitchpoint.gears.groove import Groove, swept
-from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference
-from pitchpoint.gears.ring_compliance import ring_compliance
-from pitchpoint.gears.tooth_motion import Passing, ToothMotion
+from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
+from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
+from pitchpoint.gears.strain_wave.groove import Groove, swept
+from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance
+from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
+from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
-from pitchpoint.gears.wave_generator import NeutralLine
 from pitchpoint.materials.solids import Solid
 from pitchpoint.roots import hypot, root
 

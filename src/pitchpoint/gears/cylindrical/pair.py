@@ -14,8 +14,9 @@ from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.checks import check_cylindrical
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.cylindrical import MEMBERS
+from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.involute import (
     InvoluteGear,
     base_helix,
@@ -23,7 +24,7 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
-from pitchpoint.gears.members import CYLINDRICAL, number_of
+from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.programs import program
@@ -423,7 +424,7 @@ class CylindricalPair(Mesh):
 
     def driven_by(self, member: str | int) -> Self:
         """The pair with this gear driving the other one; the same flanks touch."""
-        wheel_drives = array(number_of(member, CYLINDRICAL) == 1)
+        wheel_drives = array(number_of(member, MEMBERS) == 1)
         return dataclasses.replace(self, wheel_drives=wheel_drives)
 
     @property
@@ -467,7 +468,7 @@ class CylindricalPair(Mesh):
         places = jnp.zeros((2, 3)).at[1, 0].set(self.line.distance)
         first, second = (
             Coordinate(name, place, jnp.asarray(AXIAL), member)
-            for member, (name, place) in enumerate(zip(CYLINDRICAL, places, strict=True))
+            for member, (name, place) in enumerate(zip(MEMBERS, places, strict=True))
         )
         return first, second
 

@@ -5,8 +5,8 @@ from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.flexspline_tooth import Flank
-from pitchpoint.gears.wave_generator import NeutralLine
+from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
+from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 
 __all__ = ["Passing", "ToothMotion"]
 

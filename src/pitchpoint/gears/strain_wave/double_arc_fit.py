@@ -9,18 +9,18 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears.flexspline_tooth import DoubleArcFlank
-from pitchpoint.gears.groove import Groove, swept, tip_with_land
-from pitchpoint.gears.strain_wave import StrainWave, nearest_points
-from pitchpoint.gears.strain_wave_design import (
+from pitchpoint.gears.strain_wave.design import (
     DOUBLE_ARCS,
     LEAST_LAND,
     SWEPT_ACCURACY,
     DoubleArcForm,
     build_strain_wave,
 )
-from pitchpoint.gears.tooth_motion import ToothMotion
-from pitchpoint.gears.wave_generator import TERMS, NeutralLine
+from pitchpoint.gears.strain_wave.drive import StrainWave, nearest_points
+from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
+from pitchpoint.gears.strain_wave.groove import Groove, swept, tip_with_land
+from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
+from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
 from pitchpoint.programs import program
 
 __all__ = ["DoubleArcFit", "Merit", "fit_double_arc", "merit_of"]
@@ -137,7 +137,7 @@ def fit_double_arc(
 
     Example: a short search; the default one tries 1700 teeth, in about a minute.
 
-        >>> from pitchpoint.gears.strain_wave_design import build_strain_wave
+        >>> from pitchpoint.gears.strain_wave.design import build_strain_wave
         >>> found = fit_double_arc(teeth=(100, 102), freedom=0.05, generations=1, population=1)
         >>> found.merit.objective < found.start.objective
         True

@@ -8,13 +8,13 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.gears.flexible_ring import FlexibleRing
-from pitchpoint.gears.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
-from pitchpoint.gears.groove import NODES, Groove, given, swept, tip_with_land
-from pitchpoint.gears.members import STRAIN_WAVE as MEMBERS
-from pitchpoint.gears.strain_wave import WINDOW, StrainWave, Survey, lanes_for, rates, survey
-from pitchpoint.gears.tooth_motion import ToothMotion
-from pitchpoint.gears.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
+from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, rates, survey
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
+from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.strain_wave.groove import NODES, Groove, given, swept, tip_with_land
+from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
+from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 from pitchpoint.programs import program
 
 __all__ = [

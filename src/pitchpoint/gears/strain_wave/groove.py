@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.gears.flexspline_tooth import InvoluteFlank
-from pitchpoint.gears.tooth_motion import ToothMotion
+from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
+from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.roots import hypot
 
 __all__ = ["Groove", "given", "swept", "tip_with_land"]

@@ -15,7 +15,7 @@ from pitchpoint.programs import program
 from pitchpoint.roots import root
 
 if TYPE_CHECKING:
-    from pitchpoint.gears.cylindrical import CylindricalPair
+    from pitchpoint.gears.cylindrical.pair import CylindricalPair
 
 __all__ = ["check_cylindrical"]
 

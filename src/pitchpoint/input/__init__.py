@@ -1,0 +1,1 @@
+"""Numbers with units, and tables, as a user writes them."""
