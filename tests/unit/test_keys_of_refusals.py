@@ -9,6 +9,8 @@ import pytest
 
 from pitchpoint.cases import build, families
 from pitchpoint.cases.schema import quantity_at
+from pitchpoint.gears.cylindrical import checks, pair
+from pitchpoint.gears.strain_wave import design
 from pitchpoint.gears.cylindrical import checks
 
 MODULES = (checks, pair, design, families)
