@@ -11,7 +11,6 @@ from pitchpoint.cases import build, families
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.gears.cylindrical import checks, pair
 from pitchpoint.gears.strain_wave import design
-from pitchpoint.gears.cylindrical import checks
 
 MODULES = (checks, pair, design, families)
 MEMBER = "driver"  # a case checks it before it builds: operation.driver
