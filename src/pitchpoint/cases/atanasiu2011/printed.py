@@ -7,7 +7,7 @@ import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.gear_tables import CylindricalGears
+from pitchpoint.gears.cylindrical.table import CylindricalGears
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]
 
