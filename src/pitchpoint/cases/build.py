@@ -26,7 +26,6 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.summary import engaged, heat
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.families import built_gears, family_of
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import Mesh
@@ -108,12 +107,6 @@ class Built:
         """Nominal motion, who drives, who is loaded, period and events of the mesh, as plain numbers."""
         found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
         return found
-
-    @property
-    def pair(self) -> CylindricalPair:
-        """The gears where they are a cylindrical pair."""
-        assert isinstance(self.design.mesh, CylindricalPair)
-        return self.design.mesh
 
     @property
     def family(self) -> Family:
