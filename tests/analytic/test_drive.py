@@ -193,5 +193,17 @@ def test_stages_that_do_not_follow_each_other():
         chained([])
     with pytest.raises(InputError, match="1 models were given for 2 stages"):
         drive_cycle(BOTH, POINT, [models(0.0)])
-    with pytest.raises(InputError, match="a loss between two shafts"):
-        chained([FIRST, SECOND], [Drag([1.0, -1.0, 0.0], seal_torque=0.1)])
+    with pytest.raises(InputError, match="between shafts that no stage of the drive has in common"):
+        chained([FIRST, SECOND], [Drag([1.0, 0.0, -1.0], seal_torque=0.1)])
+
+
+def test_a_loss_between_two_shafts_of_a_stage_is_overcome_by_that_stage():
+    """Torque times the difference of speeds; the shafts of an external pair turn against each other."""
+    braked = chained([FIRST, SECOND], [Drag([0.0, 1.0, -1.0], seal_torque=0.1)])
+    found, free = solved(braked, 0.0), solved(BOTH, 0.0)
+    lost = 0.1 * 150.0 * (23 / 61 + 1.0 / RATIO)
+    np.testing.assert_allclose(found["losses"], [0.0, lost], rtol=1e-12, atol=1e-12)
+    own = dataclasses.replace(SECOND.design, drag=(Drag([1.0, -1.0], seal_torque=0.1),))
+    same = solved(chained([FIRST, dataclasses.replace(SECOND, design=own)]), 0.0)
+    np.testing.assert_allclose(same["input"], found["input"], rtol=1e-14)
+    assert np.all(found["input"] > free["input"])

@@ -3,20 +3,22 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Self
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.efficiency.drag import Drag
+from pitchpoint.efficiency.drag import Drag, bearing_loads
 from pitchpoint.efficiency.quasi_static import (
+    ROUNDING,
     Design,
+    Engagement,
     Models,
     Operation,
     State,
     cycle_nodes,
+    extremes,
     state,
 )
 from pitchpoint.errors import InputError
@@ -34,7 +36,8 @@ class Stage(eqx.Module):
     """One mesh at its place in a drive.
 
     Attributes:
-        design: mesh, materials, oil, surfaces; what brakes the shafts is the drive's.
+        design: mesh, materials, oil, surfaces, and what brakes its bodies against each other; what brakes
+            the shafts is the drive's.
         shafts: of the drive, one for each coordinate of the mesh; static.
         turn: angle about the shafts of the frame of the mesh against that of the drive [rad].
         place: of the middle of the face along the shafts [m].
@@ -51,16 +54,18 @@ class Drive(eqx.Module):
 
     Attributes:
         stages: from the input to the output.
-        drag: places where a shaft is braked against the housing; `between` and `seat.coordinate` count
-            shafts, places of bearings along them are those of the drive.
+        drag: places where a shaft is braked against the housing, or against another of its stage;
+            `between` and `seat.coordinate` count shafts, places of bearings along them are those of the
+            drive.
         links: for each stage the shaft that drives it and the one that it loads; static.
-        braked: shaft of each place; static.
+        owners: for each place the stage that overcomes it: the one that loads the shaft, the first one for
+            the input; static.
     """
 
     stages: tuple[Stage, ...]
     drag: tuple[Drag, ...]
     links: tuple[tuple[int, int], ...] = eqx.field(static=True)
-    braked: tuple[int, ...] = eqx.field(static=True)
+    owners: tuple[int, ...] = eqx.field(static=True)
 
     @property
     def ratios(self) -> Float[Array, " stage"]:
@@ -70,12 +75,11 @@ class Drive(eqx.Module):
         ]
         return jnp.cumprod(jnp.stack([jnp.ones(()), *steps]))
 
-    def driven_backwards(self) -> Self:
+    def driven_backwards(self) -> "Drive":
         """The same drive with its output driving; the same flanks touch."""
         every = zip(self.stages, self.links, strict=True)
-        stages = tuple(_driven_by(stage, output) for stage, (_, output) in every)
-        links = tuple((output, first) for first, output in reversed(self.links))
-        return replace(self, stages=stages[::-1], links=links)
+        stages = [_driven_by(stage, output) for stage, (_, output) in every]
+        return chained(stages[::-1], self.drag)
 
 
 def _driven_by(stage: Stage, shaft: int) -> Stage:
@@ -92,7 +96,7 @@ def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
 
     Raises:
         InputError: a stage is not driven by the shaft that the one before it loads, or turns it the
-            other way; a loss between two shafts.
+            other way; a loss between shafts that no stage has in common.
     """
     if not stages:
         raise InputError("a drive needs at least one stage")
@@ -116,8 +120,8 @@ def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
                 f"stage {number} turns its first shaft against the stage before it; the other flanks of its "
                 'gears do not, gears.flank = "right"'
             )
-    braked = tuple(map(_braked_shaft, drag))
-    return Drive(tuple(stages), tuple(drag), tuple(links), braked)
+    owners = tuple(_owner(one, stages, links) for one in drag)
+    return Drive(tuple(stages), tuple(drag), tuple(links), owners)
 
 
 def _ends(stage: Stage) -> tuple[int, int]:
@@ -127,12 +131,14 @@ def _ends(stage: Stage) -> tuple[int, int]:
     return first, last
 
 
-def _braked_shaft(drag: Drag) -> int:
-    """The shaft that is braked against the housing."""
-    shafts = np.flatnonzero(np.asarray(drag.between))
-    if shafts.size != 1:
-        raise InputError("a loss between two shafts does not belong to one stage of a drive")
-    return int(shafts[0])
+def _owner(drag: Drag, stages: Sequence[Stage], links: Sequence[tuple[int, int]]) -> int:
+    """Number of the stage that overcomes a loss."""
+    shafts = {int(shaft) for shaft in np.flatnonzero(np.asarray(drag.between))}
+    having = [number for number, stage in enumerate(stages) if shafts <= {*stage.shafts}]
+    if not having:
+        raise InputError("is between shafts that no stage of the drive has in common")
+    loading = [number for number in having if links[number][1] in shafts]
+    return (loading or having)[0]
 
 
 class DriveCycle(eqx.Module):
@@ -145,13 +151,20 @@ class DriveCycle(eqx.Module):
     Attributes:
         states: of the stages from the input to the output, batch axes `*b`, then the nodes of the last
             stage, of the one before it, and so on down to the own.
+        pressed: for each stage the loads on the bearings of the places that it overcomes: those of the
+            drive in order, then its own [N].
         weights: of the nodes of each stage; they sum to one.
         speed: of the input [rad/s].
+        nodes: static, nodes in each segment between events.
+        smooth: static, for each stage True if its states are smooth between events.
     """
 
     states: tuple[State, ...]
+    pressed: tuple[tuple[Each, ...], ...]
     weights: tuple[Float[Array, " node"], ...]
     speed: Each
+    nodes: int = eqx.field(static=True)
+    smooth: tuple[bool, ...] = eqx.field(static=True)
 
     def mean(self, values: Float[Array, "*#b"], stage: int = 0) -> Each:
         """Mean over the periods of a stage and of those behind it.
@@ -160,9 +173,15 @@ class DriveCycle(eqx.Module):
             values: of that stage, see `states`.
             stage: counted from zero.
         """
+        every = self.states[stage].input_torque
+        values = jnp.broadcast_to(values, jnp.broadcast_shapes(values.shape, every.shape))
         for weight in self.weights[stage:]:
             values = values @ weight
         return values
+
+    def over(self, stage: int) -> tuple[int, ...]:
+        """Axes of the values of a stage along which phases meet."""
+        return tuple(range(stage - len(self.states), 0))
 
     @property
     def input_torque(self) -> Float[Array, "*#b"]:
@@ -174,11 +193,29 @@ class DriveCycle(eqx.Module):
         """Mean torque at the input [N m]."""
         return self.mean(self.input_torque)
 
+    def extremes(self, values: Float[Array, "*#b"]) -> tuple[Each, Each]:
+        """Smallest and largest value over all meetings of phases, between the nodes too.
+
+        Args:
+            values: of the first stage, see `states`.
+        """
+        low = high = values
+        for smooth in self.smooth:
+            low = extremes(low, self.nodes, smooth=smooth)[0]
+            high = extremes(high, self.nodes, smooth=smooth)[1]
+        return low, high
+
     @property
     def ripple(self) -> Each:
-        """Largest less smallest torque at the input [N m], at the nodes."""
-        axes = tuple(range(-len(self.weights), 0))
-        return jnp.max(self.input_torque, axis=axes) - jnp.min(self.input_torque, axis=axes)
+        """Largest less smallest torque at the input [N m]."""
+        low, high = self.extremes(self.input_torque)
+        return high - low
+
+    @property
+    def efficiency(self) -> Float[Array, "*#b"]:
+        """Power out over power in at every meeting of phases; NaN where no power is transmitted."""
+        power_out = self.states[-1].output_power[(..., *(None for _ in self.states[1:]))]
+        return _quotient(power_out, self.states[0].input_power)
 
     @property
     def mean_losses(self) -> Float[Array, "stage *#b"]:
@@ -194,10 +231,16 @@ class DriveCycle(eqx.Module):
     @property
     def mean_efficiency(self) -> Each:
         """Energy out over energy in; NaN where no power is transmitted."""
-        power_in = self.mean_input_torque * self.speed
-        transmits = self.mean_output_power > 0.0
-        return jnp.where(
-            transmits, self.mean_output_power / jnp.where(transmits, power_in, 1.0), jnp.nan
+        return _quotient(self.mean_output_power, self.mean(self.states[0].input_power))
+
+    @property
+    def stage_efficiencies(self) -> Float[Array, "stage *#b"]:
+        """Energy out over energy in of each stage with its shaft; their product is that of the drive."""
+        return jnp.stack(
+            [
+                _quotient(self.mean(one.output_power, k), self.mean(one.input_power, k))
+                for k, one in enumerate(self.states)
+            ]
         )
 
     @property
@@ -214,16 +257,22 @@ class DriveCycle(eqx.Module):
     @property
     def locked(self) -> Bool[Array, "*#b"]:
         """True where friction locks a mesh at some meeting of phases."""
-        each = [
-            jnp.any(one.balance.locked, axis=tuple(range(k - len(self.states), 0)))
-            for k, one in enumerate(self.states)
-        ]
+        each = [jnp.any(one.balance.locked, axis=self.over(k)) for k, one in enumerate(self.states)]
         return jnp.any(jnp.stack(each), axis=0)
+
+
+def _quotient(power_out: Each, power_in: Each) -> Each:
+    transmits = power_out > ROUNDING * power_in
+    return jnp.where(transmits, power_out / jnp.where(transmits, power_in, 1.0), jnp.nan)
 
 
 @program
 def drive_cycle(
-    drive: Drive, operation: Operation, models: Sequence[Models], nodes: int = 12
+    drive: Drive,
+    operation: Operation,
+    models: Sequence[Models],
+    nodes: int = 12,
+    engaged: Engagement | None = None,
 ) -> DriveCycle:
     """States of all meshes of a drive, from its output to its input.
 
@@ -234,46 +283,56 @@ def drive_cycle(
         operation: load at the output, speed of the input, temperature of the oil [*b].
         models: laws of each stage.
         nodes: Gauss-Lobatto nodes in each segment of each period.
+        engaged: contacts and shares of the last stage at so many nodes, where all loads at the output are
+            one and they are known already.
     """
     if len(models) != len(drive.stages):
         raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
     states: list[State] = []
+    pressed: list[tuple[Each, ...]] = []
     weights: list[Float[Array, " node"]] = []
     load, ratios = operation.load, drive.ratios
     for number in reversed(range(len(drive.stages))):
         stage, laws = drive.stages[number], models[number]
-        phase, weight = cycle_nodes(stage.design.mesh, laws.sharing, nodes)
+        known, engaged = engaged, None
+        if known is None:
+            phase, weight = cycle_nodes(stage.design.mesh, laws.sharing, nodes)
+        else:
+            phase, weight = known.phase, known.weight
         behind = (1,) * (len(states) + 1)
         point = Operation(
             load=load[..., None],
             speed=(operation.speed * ratios[number]).reshape(*operation.speed.shape, *behind),
             temperature=operation.temperature.reshape(*operation.temperature.shape, *behind),
         )
-        braked = _braked(drive, number, states[0] if states else None)
-        found = state(replace(stage.design, drag=braked), point, phase, laws)
+        drag = (*_braked(drive, number, states[0] if states else None), *stage.design.drag)
+        found = state(replace(stage.design, drag=drag), point, phase, laws, engaged=known)
+        loads = bearing_loads(drag, stage.design.mesh, found.contacts, found.balance.load)
         states.insert(0, found)
+        pressed.insert(0, tuple(loads))
         weights.insert(0, weight)
         load = found.input_torque
-    return DriveCycle(tuple(states), tuple(weights), operation.speed)
+    smooth = tuple(stage.design.mesh.touching for stage in drive.stages)
+    return DriveCycle(tuple(states), tuple(pressed), tuple(weights), operation.speed, nodes, smooth)
 
 
 def _braked(drive: Drive, number: int, behind: State | None) -> tuple[Drag, ...]:
-    """Losses of the shaft that a stage loads, and of the input with the first stage, in its coordinates.
+    """Losses of the drive that a stage overcomes, in its coordinates.
 
     Args:
         drive: of which.
         number: of the stage.
         behind: state of the stage behind it, which loads the bearings of the same shaft.
     """
-    stage, (first, last) = drive.stages[number], drive.links[number]
+    stage, (_, last) = drive.stages[number], drive.links[number]
     found = []
-    for shaft, drag in zip(drive.braked, drive.drag, strict=True):
-        if shaft != last and (number > 0 or shaft != first):
+    for owner, drag in zip(drive.owners, drive.drag, strict=True):
+        if owner != number:
             continue
         seat = drag.seat
         if isinstance(seat, Bearing):
             beside = None
-            if behind is not None and shaft == last:
+            if behind is not None and seat.coordinate == last:
                 beside = _beside(seat, stage, drive.stages[number + 1], behind)
             seat = replace(_seated(seat, stage), beside=beside)
         between = jnp.stack([drag.between[one] for one in stage.shafts])

@@ -43,6 +43,7 @@ __all__ = [
     "cycle_of",
     "engagement",
     "engagement_alone",
+    "extremes",
     "state",
 ]
 
@@ -543,22 +544,8 @@ class Cycle(eqx.Module):
         nodes. Where pairs with gaps come and go between the events, values have kinks that no
         polynomial follows, and the nodes alone are read. Values that are undefined at a node have none.
         """
-        segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
-        known = ~jnp.any(jnp.isnan(segments), axis=-1)
-        low, high = self._ends(segments)
-        return jnp.where(known, low, jnp.nan), jnp.where(known, high, jnp.nan)
-
-    def _ends(self, segments: Float[Array, "*b node"]) -> tuple[Each, Each]:
-        if not self.smooth:
-            return jnp.min(segments, axis=-1), jnp.max(segments, axis=-1)
-        segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
-        at, *derivatives, spacing = between(self.nodes)
-        dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
-        level = jnp.abs(slope) < jnp.abs(curve) * spacing
-        step = -slope / jnp.where(level, curve, 1.0)
-        vertex = dense + slope * step / 2.0 + third * step**3 / 6.0
-        found = jnp.stack([dense, jnp.where(level, vertex, dense)])
-        return jnp.min(found, axis=(0, -2, -1)), jnp.max(found, axis=(0, -2, -1))
+        every = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
+        return extremes(every, self.nodes, smooth=self.smooth)
 
     @property
     def mean_loss(self) -> Each:
@@ -608,6 +595,32 @@ class Cycle(eqx.Module):
         nearest = jnp.argmax(each[0] / each[1], axis=-1)[..., None]
         acting, limit = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in each)
         return acting, limit
+
+
+def extremes(values: Float[Array, "*b node"], nodes: int, *, smooth: bool) -> tuple[Each, Each]:
+    """Smallest and largest value over one period, see `Cycle.extremes`.
+
+    Args:
+        values: at the nodes of the period.
+        nodes: in each segment between events.
+        smooth: False where values have kinks between events.
+    """
+    known = ~jnp.any(jnp.isnan(values), axis=-1)
+    low, high = _ends(values, nodes, smooth)
+    return jnp.where(known, low, jnp.nan), jnp.where(known, high, jnp.nan)
+
+
+def _ends(values: Float[Array, "*b node"], nodes: int, smooth: bool) -> tuple[Each, Each]:
+    if not smooth:
+        return jnp.min(values, axis=-1), jnp.max(values, axis=-1)
+    segments = values.reshape(*values.shape[:-1], -1, nodes)
+    at, *derivatives, spacing = between(nodes)
+    dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
+    level = jnp.abs(slope) < jnp.abs(curve) * spacing
+    step = -slope / jnp.where(level, curve, 1.0)
+    vertex = dense + slope * step / 2.0 + third * step**3 / 6.0
+    found = jnp.stack([dense, jnp.where(level, vertex, dense)])
+    return jnp.min(found, axis=(0, -2, -1)), jnp.max(found, axis=(0, -2, -1))
 
 
 def cycle(

@@ -18,6 +18,7 @@ from pitchpoint.efficiency.quasi_static import (
     Engagement,
     Models,
     Operation,
+    State,
     cycle,
     cycle_nodes,
     cycle_of,
@@ -30,7 +31,16 @@ from pitchpoint.loading.reactions import radial_and_axial
 from pitchpoint.loading.sharing import equal
 from pitchpoint.programs import program
 
-__all__ = ["at_points", "engaged", "heat", "in_chunks", "loss_factor", "summarise", "summary"]
+__all__ = [
+    "at_points",
+    "engaged",
+    "heat",
+    "in_chunks",
+    "loss_factor",
+    "mean_friction",
+    "summarise",
+    "summary",
+]
 
 Point = tuple[Design, Operation]
 Prepared = tuple[Design, Operation, Engagement | None]
@@ -92,7 +102,7 @@ def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
         "mean_input_torque_path": result.path_mean(state.input_torque),
         "min_input_torque": torque_low,
         "max_input_torque": torque_high,
-        "mean_friction": _mean_friction(result),
+        "mean_friction": result.mean(mean_friction(result.state)),
         "residual": result.residual,
         "iterations": state.balance.iterations,
         "locked": result.locked,
@@ -158,7 +168,10 @@ def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:
 def heat(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
     """Mean friction coefficient and loss factor at one operating point: what heats the teeth."""
     found = cycle(design, operation, models, nodes=6)
-    return {"mean_friction": _mean_friction(found), "loss_factor": loss_factor(design, models)}
+    return {
+        "mean_friction": found.mean(mean_friction(found.state)),
+        "loss_factor": loss_factor(design, models),
+    }
 
 
 def summarise(
@@ -327,10 +340,10 @@ def _chunks(points: Sequence[Any], size: int) -> Iterator[tuple[Any, int]]:
         yield stacked(padded), len(part)
 
 
-def _mean_friction(result: Cycle) -> Array:
-    """Friction coefficient weighted with the load of the contacts."""
-    balance = result.state.balance
+def mean_friction(state: State) -> Array:
+    """Friction coefficient weighted with the load of the contacts, at phases `*b`."""
+    balance = state.balance
     normal = total(balance.load)
     weighted = total(balance.load * balance.friction)
     loaded = normal > 0.0
-    return result.mean(jnp.where(loaded, weighted / jnp.where(loaded, normal, 1.0), 0.0))
+    return jnp.where(loaded, weighted / jnp.where(loaded, normal, 1.0), 0.0)

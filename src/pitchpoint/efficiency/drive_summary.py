@@ -1,0 +1,194 @@
+"""Figures of drives of several meshes over all meetings of their phases, by one program for many points."""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+
+import numpy as np
+from jaxtyping import Array
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.efficiency.drive import Drive, DriveCycle, drive_cycle
+from pitchpoint.efficiency.quasi_static import Engagement, Models, Operation, State
+from pitchpoint.efficiency.rows import CHUNK, NODES
+from pitchpoint.efficiency.summary import engaged, mean_friction
+from pitchpoint.programs import program
+
+__all__ = ["drive_figures", "drive_nodes"]
+
+FEWEST_NODES = 4
+"""Nodes in each segment of each period below which no drive goes, however many stages it has."""
+
+Point = tuple[Drive, Operation]
+
+
+def drive_nodes(stages: int) -> int:
+    """Nodes in each segment of each period; phases of more stages meet at fewer of them.
+
+    Example:
+        >>> drive_nodes(1), drive_nodes(2)
+        (24, 12)
+    """
+    return max(NODES // stages, FEWEST_NODES)
+
+
+def drive_figures(
+    points: Sequence[Point],
+    models: Sequence[Models],
+    progress: Callable[[int], None] | None = None,
+) -> dict[str, np.ndarray]:
+    """Figures of many points, each quantity [point], [point, place] or [point, stage].
+
+    Args:
+        points: drives and operating points of equal static structure.
+        models: laws of each stage.
+        progress: told the number of finished points after each chunk.
+    """
+    parts: list[dict[str, np.ndarray]] = []
+    done = 0
+    for drive, operations in _of_one_drive(points, models):
+        for start in range(0, len(operations), CHUNK):
+            some = operations[start : start + CHUNK]
+            parts.append(_chunk(drive, some, models))
+            done += len(some)
+            if progress is not None:
+                progress(done)
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _of_one_drive(
+    points: Sequence[Point], models: Sequence[Models]
+) -> Iterator[tuple[Drive, list[Operation]]]:
+    """Neighbours that differ by their operating point alone: one program computes them together."""
+    before: list[np.ndarray] = []
+    group, number = [], 0
+    for drive, operation in points:
+        fixed = [*map(np.asarray, jax.tree.leaves(drive))]
+        if not drive.stages[-1].design.mesh.touching:
+            fixed.append(np.asarray(operation.load))  # its shares are those of one load
+        number += not (before and all(map(np.array_equal, before, fixed)))
+        before = fixed
+        group.append((number, drive, operation))
+    for _, same in groupby(group, key=lambda one: one[0]):
+        each = list(same)
+        yield each[0][1], [operation for _, _, operation in each]
+
+
+def _chunk(
+    drive: Drive, operations: Sequence[Operation], models: Sequence[Models]
+) -> dict[str, np.ndarray]:
+    """Figures of a few operating points of one drive, filled up by repetition."""
+    filled = [*operations, *([operations[-1]] * (CHUNK - len(operations)))]
+    stacked: Operation = jax.tree.map(lambda *v: array(np.stack(v)), *filled)
+    nodes, last = drive_nodes(len(drive.stages)), drive.stages[-1].design
+    known = engaged(last, operations[0], models[-1], nodes)
+    found = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
+    return {name: np.asarray(values)[: len(operations)] for name, values in found.items()}
+
+
+@program
+def _figures(
+    drive: Drive,
+    operation: Operation,
+    models: tuple[Models, ...],
+    nodes: int,
+    known: Engagement | None,
+) -> dict[str, Array]:
+    found = drive_cycle.function(drive, operation, models, nodes, known)
+    points = operation.load.shape
+    every = {**_of_drive(found), **_of_stages(drive, found), **_of_places(drive, found)}
+    return {
+        name: jnp.broadcast_to(values, (*points, *values.shape[len(points) :]))
+        for name, values in every.items()
+    }
+
+
+def _of_drive(found: DriveCycle) -> dict[str, Array]:
+    """Figures of the whole drive [point]."""
+    low, high = found.extremes(found.efficiency)
+    # Between the nodes the interpolation may overshoot; no state is better than free of loss.
+    most = jnp.max(found.efficiency, axis=found.over(0))
+    torque_low, torque_high = found.extremes(found.input_torque)
+    acting, limit = _nearest_to_jamming(found)
+    drag = [found.mean(one.drag_loss, k) for k, one in enumerate(found.states)]
+    return {
+        "mean_loss": jnp.sum(found.mean_losses, axis=0),
+        "mean_drag_loss": sum(drag, jnp.zeros(())),
+        "mean_efficiency": found.mean_efficiency,
+        "min_efficiency": low,
+        "max_efficiency": jnp.minimum(high, jnp.maximum(1.0, most)),
+        "mean_input_torque": found.mean_input_torque,
+        "min_input_torque": torque_low,
+        "max_input_torque": torque_high,
+        "residual": _worst(found, jnp.max, lambda one: one.balance.residual),
+        "iterations": jnp.max(jnp.stack([jnp.max(s.balance.iterations) for s in found.states])),
+        "locked": found.locked,
+        "jamming_coefficient": _worst(found, jnp.min, lambda one: one.balance.jamming),
+        "nearest_friction": acting,
+        "nearest_jamming_coefficient": limit,
+        "largest_contact_force_ratio": _worst(found, jnp.max, lambda one: one.contact_force_ratio),
+    }
+
+
+def _worst(
+    found: DriveCycle, reduce: Callable[..., Array], values: Callable[[State], Array]
+) -> Array:
+    """Worst value of all stages and meetings [point]."""
+    every = [_met(one, values(one)) for one in found.states]
+    each = [reduce(one, axis=found.over(k)) for k, one in enumerate(every)]
+    return reduce(jnp.stack(each), axis=0)
+
+
+def _met(state: State, values: Array) -> Array:
+    """Values of a stage at every meeting of phases."""
+    return jnp.broadcast_to(values, state.input_torque.shape)
+
+
+def _nearest_to_jamming(found: DriveCycle) -> tuple[Array, Array]:
+    """Friction coefficient where a stage is nearest to locking, and the one at which it locks there."""
+    ends: list[tuple[Array, Array]] = []
+    for k, one in enumerate(found.states):
+        count = len(found.over(k))
+        acting, limit = (
+            _met(one, values).reshape(*one.input_torque.shape[:-count], -1)
+            for values in (one.balance.largest_friction, one.balance.jamming)
+        )
+        ends.append((acting, limit))
+    acting, limit = (jnp.concatenate(each, axis=-1) for each in zip(*ends, strict=True))
+    nearest = jnp.argmax(acting / limit, axis=-1)[..., None]
+    first, second = (jnp.take_along_axis(v, nearest, axis=-1)[..., 0] for v in (acting, limit))
+    return first, second
+
+
+def _of_stages(drive: Drive, found: DriveCycle) -> dict[str, Array]:
+    """Figures of each stage [point, stage]."""
+    every = list(enumerate(found.states))
+    torque = [found.mean(one.input_torque, k) for k, one in every]
+    speed = [found.speed * ratio for ratio in drive.ratios[:-1]]
+    friction = [found.mean(mean_friction(one), k) for k, one in every]
+    drag = [found.mean(one.drag_loss, k) for k, one in every]
+    return {
+        name: jnp.stack(jnp.broadcast_arrays(*values), axis=-1)
+        for name, values in {
+            "stage_loss": [*found.mean_losses],
+            "stage_drag_loss": drag,
+            "stage_efficiency": [*found.stage_efficiencies],
+            "stage_friction": friction,
+            "stage_input_torque": torque,
+            "stage_speed": speed,
+        }.items()
+    }
+
+
+def _of_places(drive: Drive, found: DriveCycle) -> dict[str, Array]:
+    """Mean load on the bearing of each place [point, place]: those of the drive, then of its stages."""
+    of_drive: dict[int, Array] = {}
+    own: list[Array] = []
+    for k, loads in enumerate(found.pressed):
+        means = [found.mean(jnp.asarray(load), k) for load in loads]
+        mine = [place for place, owner in enumerate(drive.owners) if owner == k]
+        of_drive |= dict(zip(mine, means, strict=False))
+        own += means[len(mine) :]
+    every = [*(of_drive[place] for place in sorted(of_drive)), *own]
+    if not every:
+        return {}
+    return {"bearing_load": jnp.stack(jnp.broadcast_arrays(*every), axis=-1)}
