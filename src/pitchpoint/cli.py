@@ -398,6 +398,7 @@ def _summary(name: str, outcome: "Outcome") -> None:
     from pitchpoint.runs.catalogue import (
         bearing_table,
         kinematic_error_table,
+        stage_table,
         summary_table,
         sweep_tables,
         vibration_table,
@@ -412,7 +413,13 @@ def _summary(name: str, outcome: "Outcome") -> None:
     rows, columns, note = summary_table(outcome)
     _table(rows, columns)
     _console().print(_plain(note))
-    for table in (bearing_table, vibration_table, wind_up_table, kinematic_error_table):
+    for table in (
+        stage_table,
+        bearing_table,
+        vibration_table,
+        wind_up_table,
+        kinematic_error_table,
+    ):
         rows, columns = table(outcome)
         if rows:
             _table(rows, columns)

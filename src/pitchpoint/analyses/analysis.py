@@ -6,15 +6,18 @@ from typing import Any
 
 import xarray as xr
 
-from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import Study
+from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.variables import Variable
 
-__all__ = ["Analysis", "Piece", "Progress", "Several", "Subject"]
+__all__ = ["ALONE", "Analysis", "Piece", "Progress", "Several", "Subject"]
 
 Piece = Mapping[str, Any]
 """Where a piece lies, as plain data of less than 1 kB: a torque, a range of points; empty for the whole."""
+
+ALONE = "it is computed for one mesh; a stage in a file of its own has it"
+"""Why a drive of several meshes has no part of a kind."""
 
 Progress = Callable[[int], None]
 """Told the number of points that are done."""
@@ -31,11 +34,11 @@ class Subject:
     """
 
     variant: Variant
-    built: Built
+    built: Ready
     studies: Mapping[str, Study] = field(default_factory=dict)
 
 
-def _only(_: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+def _only(_: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     (whole,) = parts
     return whole
 
@@ -48,6 +51,7 @@ class Entry:
         name: of the part, and of its file.
         title: for progress and figures.
         lacks: None, or why the part does not exist for a case: what its gears or its file do not have.
+        alone: why it is for one mesh alone, and not for a drive of several; empty where it is for both.
         main: variables that are shown first.
         figures: entries of `--json` from all parts that exist; by default the main variables under the
             name of the part.
@@ -56,10 +60,16 @@ class Entry:
 
     name: str
     title: str
-    lacks: Callable[[Built], str | None] = lambda built: None
+    lacks: Callable[[Any], str | None] = lambda built: None
+    alone: str = ALONE
     main: tuple[str, ...] = ()
     figures: Callable[[Mapping[str, xr.Dataset]], Mapping[str, Any]] | None = None
     variables: Mapping[str, Variable] = field(default_factory=dict)
+
+    def why_not(self, built: Ready) -> str | None:
+        """Why the part does not exist for a case; None where it does."""
+        several = isinstance(built, BuiltDrive)
+        return self.alone if several and self.alone else self.lacks(built)
 
     def shown(self, parts: Mapping[str, xr.Dataset]) -> Mapping[str, Any]:
         """Entries of `--json`."""
@@ -83,14 +93,14 @@ class Analysis(Entry):
             `pieces`.
     """
 
-    compute: Callable[[Built, Piece, Progress], xr.Dataset]
-    pieces: Callable[[Built], Iterable[Piece]] = lambda built: ({},)
-    joined: Callable[[Built, Sequence[xr.Dataset]], xr.Dataset] = _only
-    onward: Callable[[Built, xr.Dataset, Progress], xr.Dataset | None] | None = None
+    compute: Callable[[Any, Piece, Progress], xr.Dataset]
+    pieces: Callable[[Any], Iterable[Piece]] = lambda built: ({},)
+    joined: Callable[[Any, Sequence[xr.Dataset]], xr.Dataset] = _only
+    onward: Callable[[Any, xr.Dataset, Progress], xr.Dataset | None] | None = None
 
     def parts(self, subject: Subject) -> "Iterable[Analysis]":
         """The analysis itself, unless a case lacks something that it needs."""
-        return () if self.lacks(subject.built) else (self,)
+        return () if self.why_not(subject.built) else (self,)
 
 
 @dataclass(frozen=True, kw_only=True)

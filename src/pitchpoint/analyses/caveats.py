@@ -9,6 +9,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails
 from pitchpoint.cases.laws import limits_words
 from pitchpoint.cases.schema import FORCE, SPEED, TEMPERATURE, TORQUE
+from pitchpoint.cases.stages import Ready
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
@@ -42,7 +43,7 @@ LEAST_FACE = 3.0
 _LOADS = {"torque": TORQUE, "force": FORCE}
 
 
-def demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:
+def demand_convergence(residual: np.ndarray, points: Sequence[Ready], laws: Sequence[str]) -> None:
     """ConvergenceError if a balance [law, point] was not found: no numbers are returned."""
     failed = ~(residual <= TOLERANCE)
     if failed.any():
@@ -62,7 +63,7 @@ def demand_motion(
     locked: np.ndarray,
     acting: np.ndarray,
     limit: np.ndarray,
-    points: Sequence[Built],
+    points: Sequence[Ready],
     laws: Sequence[str],
 ) -> None:
     """ConvergenceError if friction locks the mesh [law, point]: there is no balance to find."""
@@ -92,12 +93,12 @@ def jamming_words(acting: float, limit: float) -> str:
     return f"friction {acting:.3g} reaches the {limit:.3g} at which this mesh locks"
 
 
-def _where(built: Built) -> str:
+def _where(built: Ready) -> str:
     point = built.case.operation
     return ", ".join(
         f"{name} {kind.show(value)}"
         for name, kind, value in (
-            (f"at {built.case.gears.load}", _LOADS[built.case.gears.load], point.load),
+            (f"at {built.case.carries}", _LOADS[built.case.carries], point.load),
             ("speed", SPEED, point.speed),
             ("temperature", TEMPERATURE, point.temperature),
         )
@@ -126,7 +127,7 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
         return []
     lines = np.sum(pairs.sum(axis=1) * run["weight"])
     mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
-    load = _LOADS[built.case.gears.load].show(built.case.operation.load)
+    load = _LOADS[built.case.carries].show(built.case.operation.load)
     if mean < LEAST_FACE:
         raise InputError(
             f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "

@@ -13,6 +13,7 @@ __all__ = [
     "CONTACT",
     "MAIN",
     "REACTIONS",
+    "STAGES",
     "TEMPERATURES",
     "VIBRATION",
     "WIND_UP",
@@ -21,6 +22,7 @@ __all__ = [
     "by_torque",
     "covers",
     "error_ranges",
+    "json_figures",
     "main_figures",
     "numbers",
     "of_contact",
@@ -51,7 +53,12 @@ def of_contact(data: Any) -> bool:
 
 def main_figures(data: Any) -> tuple[str, ...]:
     """Names of the figures that are shown first of an operating point, or of a study."""
-    return CONTACT if of_contact(data) else MAIN
+    return CONTACT if of_contact(data) else tuple(name for name in MAIN if name in data)
+
+
+def json_figures(data: Any) -> tuple[str, ...]:
+    """The same, and those of each stage of a drive."""
+    return (*main_figures(data), *(name for name in STAGES if name in data))
 
 
 VIBRATION = (
@@ -73,6 +80,16 @@ TEMPERATURES = tuple(
 
 REACTIONS = tuple(f"{way}_reaction_{gear}" for gear in (1, 2) for way in ("radial", "axial"))
 
+STAGES = (
+    "stage_loss",
+    "stage_drag_loss",
+    "stage_efficiency",
+    "stage_friction",
+    "stage_input_torque",
+    "stage_speed",
+)
+"""Figures of each stage of a drive."""
+
 WIND_UP = ("wind_up", "angular_transmission_error_range", "torsional_stiffness", "loaded_pairs")
 
 
@@ -84,7 +101,7 @@ def numbers(values: Any) -> Any:
 
 def by_law(data: xr.Dataset, names: Sequence[str]) -> dict[str, Any]:
     """Figures under each friction law, with those of vibration and temperature, and the axis of a sweep."""
-    every = (*names, *(name for name in (*VIBRATION, *TEMPERATURES) if name in data))
+    every = [name for name in (*names, *VIBRATION, *TEMPERATURES) if name in data]
     result: dict[str, Any] = {
         str(law): {name: numbers(data[name].values[position]) for name in every}
         for position, law in enumerate(data["law"].values)
@@ -100,14 +117,16 @@ def by_law(data: xr.Dataset, names: Sequence[str]) -> dict[str, Any]:
 
 def by_torque(data: xr.Dataset | None, names: Sequence[str]) -> dict[str, Any]:
     """Figures over torque; none of a part that does not exist."""
-    return {} if data is None else {n: numbers(data[n].values) for n in ("torque", *names)}
+    if data is None:
+        return {}
+    return {n: numbers(data[n].values) for n in ("torque", *names) if n in data}
 
 
 def of_operation(parts: Parts) -> dict[str, Any]:
     """Figures of the operating point."""
     data = parts["operation"]
     return {
-        "operation": by_law(data, main_figures(data)),
+        "operation": by_law(data, json_figures(data)),
         "efficiency_of": covers(data),
         "reactions": by_law(data, REACTIONS),
         "bearing_load": {

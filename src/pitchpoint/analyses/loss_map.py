@@ -1,6 +1,6 @@
 """The loss map of a case: mean loss and efficiency over torque, speed and temperature."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 
@@ -12,6 +12,8 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.operation import untransmitted
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
@@ -37,7 +39,7 @@ MANY = 100
 """Points of each torque from which on a program that takes longer to compile saves time."""
 
 
-def pieces(built: Built) -> list[Piece]:
+def pieces(built: Ready) -> list[Piece]:
     """One for each torque; its share of the load serves all speeds and temperatures."""
     return [{"torque": float(torque)} for torque in map_axes(built)[0]]
 
@@ -51,15 +53,14 @@ def _start(built: Built) -> tuple[Engagement | None, int]:
     return known, int(np.prod(length.shape))
 
 
-def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def map_axes(built: Ready) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Torques [N m], speeds [rad/s] and temperatures [K]."""
     asked, point = built.case.loss_map, built.case.operation
     count = int(asked.count) if asked else 9
     torque = (asked and asked.torque) or 1.5 * point.load or 1.0
     speed = (asked and asked.speed) or 1.5 * point.speed
-    oil = built.lubricant
     around = point.temperature + np.array([-20.0, 0.0, 20.0])
-    degrees = np.unique(np.clip(around, oil.T_min.value, oil.T_max.value))
+    degrees = np.unique(np.clip(around, *built.temperatures))
     if asked and asked.temperatures:
         degrees = np.array(asked.temperatures)
     loads = int(asked.torque_count or count) if asked else count
@@ -67,7 +68,7 @@ def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.linspace(0.0, torque, loads), np.linspace(0.0, speed, speeds), degrees
 
 
-def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """The whole map, with what there is to say about it."""
     data = xr.concat(parts, "torque", combine_attrs="override")
     locked = data["locked"].values & (data["torque"].values > 0.0)[:, None, None]
@@ -89,17 +90,12 @@ def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     )
 
 
-def at_torque(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
     """The map at one torque."""
     torque, (speeds, degrees) = float(piece["torque"]), map_axes(built)[1:]
-    point = replace(built.operation, load=array(torque))
-    like, lanes = _start(built)
-    known = engaged(built.design, point, built.models[0], NODES, like)
-    known = known and known.loaded()
-    together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
     runs = []
-    for count, models in enumerate(built.models, 1):
-        runs.append(_map(built.design, torque, speeds, degrees, models, known, together))
+    for count, one in enumerate(_maps(built, torque, speeds, degrees), 1):
+        runs.append(one)
         progress(count * speeds.size * degrees.size)
     found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
     return dataset(
@@ -114,6 +110,47 @@ def at_torque(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     )
 
 
+Map = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
+
+
+def _maps(built: Ready, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Iterator[Map]:
+    """The map at one torque under each friction law; at rest nothing is lost, whatever the laws say."""
+    moving = np.where(speeds > 0.0, speeds, 1.0)
+    if isinstance(built, BuiltDrive):
+        found = _of_drive(built, torque, moving, degrees)
+    else:
+        found = _of_mesh(built, torque, moving, degrees)
+    turns = (speeds > 0.0)[:, None]
+    for loss, efficiency, locked in found:
+        yield np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
+
+
+def _of_mesh(built: Built, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Iterator[Map]:
+    point = replace(built.operation, load=array(torque))
+    like, lanes = _start(built)
+    known = engaged(built.design, point, built.models[0], NODES, like)
+    known = known and known.loaded()
+    together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
+    for models in built.models:
+        yield _map(built.design, torque, speeds, degrees, models, known, together)
+
+
+def _of_drive(
+    built: BuiltDrive, torque: float, speeds: np.ndarray, degrees: np.ndarray
+) -> Iterator[Map]:
+    """The same for a drive, by the program of its operating points."""
+    points = [
+        (built.design, Operation(array(torque), array(speed), array(degree)))
+        for speed in speeds
+        for degree in degrees
+    ]
+    for models in built.models:
+        found = drive_figures(points, models.stages)
+        loss, efficiency, locked = (found[n].reshape(speeds.size, degrees.size) for n in _NAMES)
+        yield loss, efficiency, locked
+
+
 _DIMS = ("law", "torque", "speed", "temperature")
 _NAMES = ("mean_loss", "mean_efficiency", "locked")
 
@@ -126,23 +163,20 @@ def _map(
     models: Models,
     known: Engagement | None,
     together: int,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
-    moving = np.where(speeds > 0.0, speeds, 1.0)  # at rest nothing is lost, whatever the laws say
+) -> Map:
     few = speeds.size * degrees.size < MANY
     if few and known is None:
-        loss, efficiency, locked = _by_point(design, torque, moving, degrees, models)
+        loss, efficiency, locked = _by_point(design, torque, speeds, degrees, models)
     else:
         compute = partial(_figures if few else _figures_of_many, design, array(torque))
         parts = []
         for start in range(0, speeds.size, together):
-            part = moving[start : start + together]
+            part = speeds[start : start + together]
             filled = np.concatenate([part, np.full(together - part.size, part[-1])])
             found = compute(array(filled), array(degrees), models, known)
             parts.append([np.asarray(each)[: part.size] for each in jax.device_get(found)])
         loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
-    turns = (speeds > 0.0)[:, None]
-    return np.where(turns, loss, 0.0), np.where(turns, efficiency, np.nan), locked
+    return loss, efficiency, locked
 
 
 def _by_point(
@@ -181,6 +215,7 @@ _figures_of_many = fast_program(_figures.function)
 LOSS_MAP = Analysis(
     name="loss_map",
     title="loss map",
+    alone="",
     lacks=untransmitted,
     compute=at_torque,
     pieces=pieces,

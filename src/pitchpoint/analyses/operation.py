@@ -1,7 +1,7 @@
 """The operating point, the friction laws of the library there, and the drive backwards."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
@@ -17,10 +17,9 @@ from pitchpoint.analyses.figures import (
     of_operation,
     out_of_range,
 )
-from pitchpoint.analyses.summaries import at_contact, profiles, summaries, temperatures, vibrations
+from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
-from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.cases.stages import Ready
 from pitchpoint.results.store import without_nan
 
 __all__ = [
@@ -31,32 +30,23 @@ __all__ = [
 ]
 
 
-def _operation(built: Built, _: Piece, __: Progress) -> xr.Dataset:
-    count = len(built.models)
-    extra = {
-        **vibrations([built], count),
-        **temperatures([built], count),
-        **at_contact([built], built.models),
-    }
-    return summaries([built], built.models, extra, title="operating point")
+def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+    return summaries([built], built.models, beside([built]), title="operating point")
 
 
-def _laws(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """Every law of the library in its range at the operating point: how far they themselves disagree.
 
     The attribute `outside` lists the others and the laws of the case that are out of theirs, each with
     its efficiency there and the reasons.
     """
-    every = [law for law in LAWS if law.sources and applies(law, built.design.mesh) is None]
+    every = built.applicable
     others = built.under([law for law in every if law not in built.laws])
     under = {models.law: models for models in (*others, *built.models)}
     considered = [under[law] for law in dict.fromkeys([*every, *built.laws])]
     title = "friction laws that apply"
     data = summaries([built], considered, {}, title=title, may_lock=True)
-    reasons = [
-        why_outside(built, models.law, run)
-        for models, run in zip(considered, profiles(built, considered), strict=True)
-    ]
+    reasons = _why_outside(built, considered)
     outside = [
         {
             "law": str(data["law"].values[k]),
@@ -70,9 +60,24 @@ def _laws(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     return data.isel(law=kept).assign_attrs(outside=json.dumps(without_nan(outside)))
 
 
-def _back_driving(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _why_outside(built: Ready, under: Sequence[Any]) -> list[list[str]]:
+    """Why each of some laws does not hold; in a drive the stages where it acts, with their numbers."""
+    if isinstance(built, Built):
+        runs = zip(under, profiles(built, under), strict=True)
+        return [why_outside(built, models.law, run) for models, run in runs]
+    found: list[list[str]] = [[] for _ in under]
+    for k, (number, one) in enumerate(zip(built.numbers, built.stages, strict=True)):
+        if not built.own_friction[k]:
+            each = _why_outside(one, [acting.stages[k] for acting in under])
+            for reasons, told in zip(found, each, strict=True):
+                reasons += [f"in stage {number} {reason}" for reason in told]
+    return found
+
+
+def _back_driving(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The loaded member drives at its own speed and carries the same power to the former driver."""
-    return summaries([built.backwards], built.models, {}, title="back-driving", may_lock=True)
+    back = built.backwards
+    return summaries([back], back.models, {}, title="back-driving", may_lock=True)
 
 
 def _law_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -90,7 +95,7 @@ def _backward_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     return {"back_driving": {} if data is None else by_law(data, names)}
 
 
-def untransmitted(built: Built) -> str | None:
+def untransmitted(built: Ready) -> str | None:
     """Why there is no part on the power that goes through."""
     return None if built.transmits else "nothing is transmitted by a test rig"
 
@@ -98,16 +103,18 @@ def untransmitted(built: Built) -> str | None:
 OPERATION = Analysis(
     name="operation",
     title="operating point",
+    alone="",
     compute=_operation,
     main=(*MAIN, *CONTACT, *REACTIONS, "bearing_load", *TEMPERATURES),
     figures=of_operation,
 )
 LAWS_THERE = Analysis(
-    name="laws", title="spread of the friction laws", compute=_laws, figures=_law_figures
+    name="laws", title="spread of the friction laws", alone="", compute=_laws, figures=_law_figures
 )
 BACK_DRIVING = Analysis(
     name="back_driving",
     title="back-driving",
+    alone="",
     lacks=untransmitted,
     compute=_back_driving,
     figures=_backward_figures,

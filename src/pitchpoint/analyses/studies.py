@@ -8,12 +8,12 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject
-from pitchpoint.analyses.figures import by_law, main_figures
-from pitchpoint.analyses.summaries import at_contact, joined, summaries, temperatures, vibrations
-from pitchpoint.cases.build import Built
+from pitchpoint.analyses.figures import by_law, json_figures
+from pitchpoint.analyses.summaries import beside, joined, summaries
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import Study, Sweep, quantity_at
+from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
@@ -32,7 +32,7 @@ PIECE = 256
 PREFIX = "study_"
 """Names of parts that are studies begin with it."""
 
-SWEPT = ("gears", "materials", "lubricant", "roughness", "operation")
+SWEPT = ("gears", "stages", "materials", "lubricant", "roughness", "operation")
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
 
 
@@ -74,18 +74,12 @@ class _Planned:
         count = len(self.changes)
         return [{"first": n, "stop": min(n + PIECE, count)} for n in range(0, count, PIECE)]
 
-    def compute(self, _: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    def compute(self, _: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
         """Figures of a range of points."""
         changes = self.changes[piece["first"] : piece["stop"]]
         points = [self.point(change) for change in changes]
         under = points[0].models
-        extra = {
-            **self._axis(changes),
-            **vibrations(points, len(under)),
-            **temperatures(points, len(under)),
-            **at_contact(points, under),
-            **readings_of(points, len(under)),
-        }
+        extra = {**self._axis(changes), **beside(points), **readings_of(points, len(under))}
         data = summaries(points, under, extra, progress, title=self.title)
         data.attrs.update(self.told)
         if self.told.get("axis_kind"):
@@ -97,7 +91,7 @@ class _Planned:
         values = [_number(change[self.swept]) for change in changes if self.swept]
         return {"axis": (("point",), np.array(values))} if self.swept else {}
 
-    def point(self, changes: Mapping[str, Any]) -> Built:
+    def point(self, changes: Mapping[str, Any]) -> Ready:
         """Case with the changes of a point."""
         return _point(self.subject.variant, changes, self.where, self.swept)
 
@@ -139,13 +133,13 @@ def _studies(subject: Subject) -> Iterator[Analysis]:
         yield planned.analysis
 
 
-def _unasked(built: Built) -> str | None:
+def _unasked(built: Ready) -> str | None:
     return None if built.case.studies else "the case has no [studies]"
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     found = {name.removeprefix(PREFIX): data for name, data in parts.items() if is_study(name)}
-    return {"studies": {name: by_law(data, main_figures(data)) for name, data in found.items()}}
+    return {"studies": {name: by_law(data, json_figures(data)) for name, data in found.items()}}
 
 
 def is_study(part: str) -> bool:
@@ -168,7 +162,7 @@ def _demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
         )
 
 
-def _point(variant: Variant, changes: Mapping[str, Any], where: str, swept: str = "") -> Built:
+def _point(variant: Variant, changes: Mapping[str, Any], where: str, swept: str = "") -> Ready:
     """Case with the changes of a study; what is wrong with it is told with study and value."""
     try:
         return variant.built(changes)
@@ -230,5 +224,10 @@ def _number(value: Any) -> float:
 
 
 STUDIES = Several(
-    name="studies", title="studies and sweeps", lacks=_unasked, figures=_figures, each=_studies
+    name="studies",
+    title="studies and sweeps",
+    alone="",
+    lacks=_unasked,
+    figures=_figures,
+    each=_studies,
 )

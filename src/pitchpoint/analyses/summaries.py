@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,8 @@ from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Progress
 from pitchpoint.analyses.caveats import demand_convergence, demand_motion, faces_warning
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.stages import Acting, BuiltDrive, Ready
+from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.summary import summarise
@@ -24,6 +26,7 @@ from pitchpoint.status import told as told_of
 __all__ = [
     "AT_CONTACT",
     "at_contact",
+    "beside",
     "few",
     "joined",
     "profiles",
@@ -32,6 +35,8 @@ __all__ = [
     "vibrations",
 ]
 
+
+Point = TypeVar("Point", bound=Ready)
 
 AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "sliding_velocity")
 """Figures of a test rig, whose contact stays as it is."""
@@ -46,12 +51,26 @@ _WITH_FRICTION = {"largest_contact_force_ratio"} | {
 }
 """Figures that are undefined where friction locks the mesh."""
 
-_FIGURE = ("law", "point", "place")
+
+def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
+    """Dimensions of a figure; the last one of three is that of the places, or of the stages."""
+    last = "place" if name == "bearing_load" else "stage"
+    return ("law", "point", last)[: values.ndim]
+
+
+def _touching(point: Ready) -> bool:
+    """True for one mesh whose rigid flanks all touch."""
+    return isinstance(point, Built) and point.design.mesh.touching
+
+
+def _meshes(points: Sequence[Ready]) -> list[Built]:
+    """Points of one mesh; none where they are drives of several."""
+    return [point for point in points if isinstance(point, Built)]
 
 
 def summaries(
-    points: list[Built],
-    under: Sequence[Models],
+    points: Sequence[Ready],
+    under: Sequence[Models | Acting],
     extra: Mapping[str, Any],
     progress: Progress = lambda _: None,
     *,
@@ -62,7 +81,7 @@ def summaries(
     names = [models.law.name for models in under]
     runs = [_grouped(points, models, progress) for models in under]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
-    carrying, slices = out.pop("carrying_slices"), out.pop("slices")[0]
+    carrying, slices = (out.pop(name, None) for name in ("carrying_slices", "slices"))
     if not may_lock and len(points) == 1:
         ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
         demand_motion(out["locked"], *ends, points, names)
@@ -77,8 +96,8 @@ def summaries(
     out = {name: values for name, values in out.items() if not name.endswith("_path")}
     out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
     out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
-    if not points[0].design.mesh.touching:
-        del out["loss_factor"]  # of the shares of one load: no figure of the gears alone
+    if not _touching(points[0]):
+        out.pop("loss_factor", None)  # of the shares of one load: no figure of the gears alone
     else:
         out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
     told = dict.fromkeys(text for point in points for text in point.warnings)
@@ -87,13 +106,15 @@ def summaries(
         from pitchpoint.analyses.vibration import status_sentences
 
         warnings += status_sentences(extra["vibration_status"][1][0])
-    warnings += faces_warning(points, np.where(out["locked"], np.nan, carrying), slices)
+    if carrying is not None and slices is not None:
+        carried = np.where(out["locked"], np.nan, carrying)
+        warnings += faces_warning(_meshes(points), carried, slices[0])
     if not may_lock:
         for models, locked in zip(under, out["locked"], strict=True):
             warnings += _lock_warning(models.law, locked)
     data = dataset(
-        {**{name: (_FIGURE[: values.ndim], values) for name, values in out.items()}, **extra},
-        {"law": names, **_named_places(points[0])},
+        {**{name: (_dims(name, values), values) for name, values in out.items()}, **extra},
+        {"law": names, **_labels(points[0])},
         title=title,
         warnings=warnings,
         solve=_balances(out),
@@ -111,9 +132,11 @@ def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
     return told_of(locked_or_lost(locked.astype(bool)), residual, iterations)
 
 
-def _named_places(built: Built) -> dict[str, list[str]]:
-    """Places beside the teeth where power is lost; none without any."""
-    return {"place": [*built.case.losses]} if built.case.losses else {}
+def _labels(built: Ready) -> dict[str, Any]:
+    """Places beside the teeth where power is lost, where there are some, and numbers of stages."""
+    places = {"place": built.places} if built.places else {}
+    stages = {"stage": [*built.numbers]} if isinstance(built, BuiltDrive) else {}
+    return {**places, **stages}
 
 
 def joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -142,17 +165,22 @@ def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
     return [f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."]
 
 
-def _grouped(points: list[Built], models: Models, progress: Progress) -> dict[str, np.ndarray]:
+def _grouped(
+    points: Sequence[Ready], models: Models | Acting, progress: Progress
+) -> dict[str, np.ndarray]:
     """Summaries in order, points of equal static structure computed together."""
 
-    def of(group: Sequence[Built]) -> dict[str, np.ndarray]:
-        return summarise([(point.design, point.operation) for point in group], models, progress)
+    def of(group: Sequence[Ready]) -> dict[str, np.ndarray]:
+        each: list[Any] = [(point.design, point.operation) for point in group]
+        if isinstance(models, Acting):
+            return drive_figures(each, models.stages, progress)
+        return summarise(each, models, progress)
 
     return _in_groups(points, of)
 
 
 def _in_groups(
-    points: Sequence[Built], compute: Callable[[Sequence[Built]], dict[str, np.ndarray]]
+    points: Sequence[Point], compute: Callable[[Sequence[Point]], dict[str, np.ndarray]]
 ) -> dict[str, np.ndarray]:
     """Results [point ...] in order, from computations of points of equal static structure."""
     groups: dict[Any, list[int]] = {}
@@ -175,6 +203,19 @@ def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray
     film = FILM_THICKNESS[built.case.models.film_thickness]
     point = built.design, built.operation
     return [profile(*point, models, film, engaged=built.engaged) for models in under]
+
+
+def beside(points: Sequence[Ready]) -> dict[str, Any]:
+    """Figures of points beside those of their cycle: vibration, temperatures, the contact of a rig."""
+    alone = _meshes(points)
+    if not alone:
+        return {}
+    under = alone[0].models
+    return {
+        **vibrations(alone, len(under)),
+        **temperatures(alone, len(under)),
+        **at_contact(alone, under),
+    }
 
 
 def at_contact(points: Sequence[Built], under: Sequence[Models]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import WIND_UP, by_torque
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import TORQUE
+from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.quasi_static import coupling, engagement
 from pitchpoint.efficiency.summary import summarise
@@ -30,9 +31,53 @@ SHOWN = 3
 """Every so many phases the load on every tooth is kept."""
 
 
-def torsion_part(built: Built) -> xr.Dataset:
+def torsion_part(built: Ready) -> xr.Dataset:
     """Wind-up, stiffness and load on every pair for torques up to twice that of the operating point."""
     torques = np.linspace(0.0, 2.0 * built.case.operation.load or 1.0, TORQUES)
+    return _of_drive(built, torques) if isinstance(built, BuiltDrive) else _of_mesh(built, torques)
+
+
+def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
+    """Wind-up and stiffness at the output: stages are springs one behind the other.
+
+    Each adds its rotation times the ratio between it and the output, and carries the load times the
+    same ratio. Of the phases the worst meeting counts.
+    """
+    steps = np.abs(built.motion[-1] / np.array(built.motion[1:]))
+    unloaded = np.zeros(len(built.models))
+    each = [
+        _torsion(one, torques * step, unloaded)
+        for one, step in zip(built.stages, steps, strict=True)
+    ]
+
+    def at_output(name: str) -> np.ndarray:
+        return np.stack([step * found[name] for step, found in zip(steps, each, strict=True)], -1)
+
+    stiffness = np.stack([found["torsional_stiffness"] for found in each], -1) / steps**2
+    turned = at_output("wind_up")
+    data = dataset(
+        {
+            "wind_up": (("torque",), turned.sum(axis=-1)),
+            "stage_wind_up": (("torque", "stage"), turned),
+            "torsional_stiffness": (("torque",), 1.0 / np.sum(1.0 / stiffness, axis=-1)),
+            "stage_torsional_stiffness": (("torque", "stage"), stiffness),
+            "angular_transmission_error_range": (
+                ("torque",),
+                at_output("angular_transmission_error_range").sum(axis=-1),
+            ),
+            "lost_motion": ((), at_output("lost_motion").sum()),
+        },
+        {"torque": ("torque", torques), "stage": [*built.numbers]},
+        title="torsion",
+        warnings=_lost(turned.sum(axis=-1), torques),
+        note="teeth and what is under them yield; shafts, bearings and housing are not in it",
+        solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
+    )
+    data["torsional_stiffness"].attrs.update(covers=built.stages[0].design.mesh.yielding[0])
+    return data
+
+
+def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     friction = _mean_friction(built)
     found = _torsion(built, torques, friction)
     dims = {
@@ -152,8 +197,11 @@ def _lost_motion(mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"]) -
     )
 
 
-def rigid(built: Built) -> str | None:
-    """Why nothing is computed of how teeth yield."""
+def rigid(built: Ready) -> str | None:
+    """Why nothing is computed of how teeth yield; of a drive that of the first stage where nothing is."""
+    if isinstance(built, BuiltDrive):
+        each = zip(built.numbers, map(rigid, built.stages), strict=True)
+        return next((f"stage {number}: {why}" for number, why in each if why), None)
     by_stiffness = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
     dynamics, touching = built.case.dynamics, built.design.mesh.touching
     if by_stiffness or dynamics is not None or not touching or any(built.deviations):
@@ -166,7 +214,7 @@ def rigid(built: Built) -> str | None:
     )
 
 
-def _torsion_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _torsion_of(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     return torsion_part(built)
 
 
@@ -180,6 +228,7 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 TORSION = Analysis(
     name="torsion",
     title="torsion",
+    alone="",
     lacks=rigid,
     compute=_torsion_of,
     main=(*WIND_UP, "lost_motion"),

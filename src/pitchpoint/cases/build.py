@@ -1,6 +1,6 @@
 """From a validated case to the design, the operating point and the laws that compute it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import isfinite
@@ -11,7 +11,7 @@ import numpy as np
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Operating, Surface
+from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Operating, Surface, bearings_of
 from pitchpoint.cases.solids import (
     SolidInUse,
     datum,
@@ -42,7 +42,7 @@ from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 
-__all__ = ["Built", "build"]
+__all__ = ["TEETH_ALONE", "Built", "build", "drags", "operation_at"]
 
 TEETH_ALONE = (
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
@@ -86,6 +86,37 @@ class Built:
     def law_names(self) -> list[str]:
         """Names of the friction laws."""
         return [law.name for law in self.laws]
+
+    @property
+    def meshes(self) -> "tuple[Built, ...]":
+        """Meshes that the case has: itself."""
+        return (self,)
+
+    @property
+    def driver(self) -> str:
+        """Name of the member that drives."""
+        return self.case.operation.driver
+
+    @property
+    def motion(self) -> list[float]:
+        """Rates of the members for a radian of the driver."""
+        rates: list[float] = self.nominal["motion"].tolist()
+        return rates
+
+    @property
+    def places(self) -> list[str]:
+        """Names of the places beside the teeth where power is lost."""
+        return [*self.case.losses]
+
+    @property
+    def applicable(self) -> list[FrictionLaw]:
+        """Fitted friction laws of the library that hold for these contacts."""
+        return [law for law in LAWS if law.sources and applies(law, self.design.mesh) is None]
+
+    @property
+    def temperatures(self) -> tuple[float, float]:
+        """Lowest and highest temperature of the oil [K]."""
+        return self.lubricant.T_min.value, self.lubricant.T_max.value
 
     @property
     def terms(self) -> Terms:
@@ -164,7 +195,7 @@ class Built:
             self,
             case=self.case.model_copy(update={"operation": point}),
             design=replace(self.design, mesh=self.design.mesh.driven_by(self.loaded)),
-            operation=_operation(point),
+            operation=operation_at(point),
         )
         return warmed(other)
 
@@ -172,7 +203,8 @@ class Built:
 _ENDS = ("driver", "loaded")
 
 
-def _operation(point: Operating) -> Operation:
+def operation_at(point: Operating) -> Operation:
+    """Operating point as the kernels take it."""
     return Operation(array(point.load), array(point.speed), array(point.temperature))
 
 
@@ -203,11 +235,11 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         solids=(used[0].solid, used[1].solid),
         lubricant=_built_oil(record),
         roughness=_roughness(case.roughness),
-        drag=tuple(_drag(loss, case, mesh) for loss in case.losses.values()),
+        drag=drags(case.losses, case.bodies, {mesh.inner_bearing}),
     )
     told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
     models = _models(case, own)
-    built = Built(case, design, _operation(case.operation), models, record, used, tuple(told))
+    built = Built(case, design, operation_at(case.operation), models, record, used, tuple(told))
     try:
         return warmed(replace(built, told=(*told, *_left_out(built))))
     except InputError as error:
@@ -315,13 +347,29 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         )
 
 
-def _drag(loss: Loss, case: Case, mesh: Mesh) -> Drag:
-    """Place beside the teeth where power is lost."""
-    members = case.gears.members
-    between = np.zeros(len(members))
+def drags(
+    losses: Mapping[str, Loss], bodies: Sequence[str], inner: Collection[frozenset[str]]
+) -> tuple[Drag, ...]:
+    """Places beside the teeth where power is lost.
+
+    Args:
+        losses: by name.
+        bodies: of each coordinate, by name.
+        inner: pairs of bodies with a bearing between them on which a wave of teeth presses.
+    """
+    return tuple(_drag(loss, losses, bodies, inner) for loss in losses.values())
+
+
+def _drag(
+    loss: Loss,
+    losses: Mapping[str, Loss],
+    bodies: Sequence[str],
+    inner: Collection[frozenset[str]],
+) -> Drag:
+    between = np.zeros(len(bodies))
     for body, side in zip(loss.between, (1.0, -1.0), strict=True):
-        if body in members:
-            between[members.index(body)] = side
+        if body in bodies:
+            between[bodies.index(body)] = side
     bearing = BEARING_LOSS[loss.bearing]
     return Drag(
         between=array(between),
@@ -329,7 +377,7 @@ def _drag(loss: Loss, case: Case, mesh: Mesh) -> Drag:
         mean_diameter=array(loss.mean_diameter or 0.0),
         factors={name: array(value) for name, value in loss.factors.items()},
         preload=array(loss.preload),
-        seat=_seat(loss, case, mesh),
+        seat=InnerBearing() if _inside(loss, inner) else _seat(loss, losses, bodies),
         seal_torque=array(loss.seal_torque),
         churning_torque=array(loss.churning_torque),
         churning_speed=array(loss.churning_speed or 1.0),
@@ -338,17 +386,18 @@ def _drag(loss: Loss, case: Case, mesh: Mesh) -> Drag:
     )
 
 
-def _seat(loss: Loss, case: Case, mesh: Mesh) -> Bearing | InnerBearing | None:
+def _inside(loss: Loss, inner: Collection[frozenset[str]]) -> bool:
+    """True for the bearing inside a drive on which a wave of teeth presses."""
+    return loss.bearing != "none" and frozenset(loss.between) in inner
+
+
+def _seat(loss: Loss, losses: Mapping[str, Loss], bodies: Sequence[str]) -> Bearing | None:
     """Where a bearing sits; None for a place without one, or between bodies that nothing holds apart."""
-    if loss.bearing == "none":
-        return None
-    if frozenset(loss.between) == mesh.inner_bearing:
-        return InnerBearing()
-    if "housing" not in loss.between:
+    if loss.bearing == "none" or "housing" not in loss.between:
         return None
     body = next(name for name in loss.between if name != "housing")
-    coordinate = case.gears.members.index(body)
-    first, *others = case.bearings_of(body).values()
+    coordinate = bodies.index(body)
+    first, *others = bearings_of(losses, body).values()
     if not others:
         return Bearing(coordinate)
     other = others[0] if loss is first else first

@@ -13,6 +13,7 @@ from pitchpoint.input.quantities import shown, text
 from pitchpoint.registry import nearest
 
 __all__ = [
+    "STAGES",
     "Document",
     "Provenance",
     "check_name",
@@ -29,6 +30,9 @@ MAX_BYTES = 1_000_000
 
 MAX_DEPTH = 16
 """Deepest nesting of tables and lists that is read; real ones have about five levels."""
+
+STAGES = "stages"
+"""Table of the meshes of a drive, a list of them from the input to the output."""
 
 MAX_VARIANTS = 50
 """Most variants of a case; each is computed by itself."""
@@ -188,11 +192,19 @@ def resolve(
             key="variants",
         )
     base = {key: value for key, value in tree.items() if key != "variants"}
-    merged = _merged(base, _overlays(tree).get(variant, {}))
+    merged = _merged(_numbered(base), _numbered(_overlays(tree).get(variant, {})))
     for key, value in (settings or {}).items():
         merged = setting(merged, key, {"value": value, "status": "set"}, name=name)
     provenance: dict[str, Provenance] = {}
     return Document(name, strip(merged, provenance, name=name), provenance)
+
+
+def _numbered(tree: Tree) -> Tree:
+    """Tables with a list of stages as tables by number, so that each value has a dotted key."""
+    given = tree.get(STAGES)
+    if not isinstance(given, list) or not given:
+        return tree
+    return {**tree, STAGES: {str(number): one for number, one in enumerate(given, 1)}}
 
 
 def setting(tree: Tree, key: str, value: Any, *, name: str = "--set") -> Tree:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-__all__ = ["fails", "worst_first"]
+__all__ = ["fails", "in_stage", "worst_first"]
 
 _FAILS = "Fails: "
 
@@ -15,6 +15,21 @@ def fails(sentence: str) -> str:
         'Fails: the teeth of gear 2 melt.'
     """
     return f"{_FAILS}{sentence}"
+
+
+def in_stage(number: int, sentence: str) -> str:
+    """Sentence on one stage of a drive.
+
+    Example:
+        >>> from pitchpoint.cases.failures import fails
+        >>> in_stage(2, fails("the teeth of gear 2 melt."))
+        'Fails: stage 2: the teeth of gear 2 melt.'
+        >>> in_stage(1, "Tips are pointed.")
+        'Stage 1: tips are pointed.'
+    """
+    if sentence.startswith(_FAILS):
+        return fails(f"stage {number}: {sentence.removeprefix(_FAILS)}")
+    return f"Stage {number}: {sentence[:1].lower()}{sentence[1:]}"
 
 
 def worst_first(sentences: Iterable[str]) -> list[str]:

@@ -7,8 +7,9 @@ import numpy as np
 from pydantic import BaseModel
 
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.document import Document, Provenance, leaves
-from pitchpoint.cases.schema import FrictionChoice, Study, quantity_at
+from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
+from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
+from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = ["DIMENSIONS", "OIL", "SOLIDS", "STUDIES", "resolved"]
@@ -63,7 +64,7 @@ Row = dict[str, Any]
 
 
 def resolved(
-    built: Built, document: Document, studies: Mapping[str, Study] | None = None
+    built: Ready, document: Document, studies: Mapping[str, Study] | None = None
 ) -> list[Row]:
     """Rows of table, key, value, kind, status, where and note for every input.
 
@@ -78,16 +79,99 @@ def resolved(
     """
     every = {**built.case.studies, **(studies or {})}
     return [
-        *(row for table in _TABLES for row in _rows(built, document, table)),
+        *_given(built, document),
         *(row for name, study in every.items() for row in _of_study(name, study, document)),
-        *_dimensions(built),
-        *(row for gear in (1, 2) for row in _of_solid(built, gear)),
-        *(
-            _row(OIL, name, datum.value, kind, Provenance(datum.status, datum.source, datum.note))
-            for name, kind in _OIL.items()
-            for datum in [built.lubricant.data()[name]]
-        ),
+        *_following(built),
     ]
+
+
+def _given(built: Ready, document: Document) -> Iterator[Row]:
+    if isinstance(built, BuiltDrive):
+        return _of_drive(built, document)
+    return _of_mesh(built, document)
+
+
+def _of_mesh(built: Built, document: Document) -> Iterator[Row]:
+    for table in _TABLES:
+        yield from _rows(built.case, document, table, built.following)
+
+
+def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
+    """Rows of the stages, then those of the tables that they share."""
+    for number, one, inside in zip(built.numbers, built.stages, built.documents, strict=True):
+        own = document.tree[STAGES][str(number)]
+        for table in ("gears", *(key for key in _OF_STAGE if key in own)):
+            for row in _rows(one.case, inside, table, one.following):
+                yield _in_stage(row, number, given=_holds(own, table, row["key"]))
+        for key in ("driver", "place", "turn"):
+            if key in own:
+                path, value = f"{number}.{key}", getattr(built.case.stages[str(number)], key)
+                mark = document.provenance.get(f"{STAGES}.{path}", Provenance())
+                yield _row(STAGES, path, value, _kind(f"{STAGES}.{path}", value), mark, given=True)
+    for table in _TABLES:
+        if table == "models":
+            yield from _models(built, document)
+        elif hasattr(built.case, table):
+            yield from (row for row in _rows(built.case, document, table) if row["value"] != "")
+
+
+def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
+    """Rows of the models, once where no stage has its own."""
+    whole = {row["key"]: row for row in _rows(built.case, document, "models") if row["given"]}
+    each = [
+        {row["key"]: row for row in _rows(one.case, inside, "models")}
+        for one, inside in zip(built.stages, built.documents, strict=True)
+    ]
+    trees = [document.tree[STAGES][str(number)] for number in built.numbers]
+    for key in each[0]:
+        rows, own = [one[key] for one in each], [_holds(tree, "models", key) for tree in trees]
+        if not any(own) and all(row["value"] == rows[0]["value"] for row in rows):
+            yield rows[0]
+            continue
+        yield from (whole[key] for _ in range(key in whole))
+        for number, row, given in zip(built.numbers, rows, own, strict=True):
+            yield _in_stage(row, number, given=given)
+
+
+_OF_STAGE = ("materials", "lubricant", "roughness", "losses")
+"""Tables that a stage may have of its own, beside gears and models."""
+
+
+def _holds(tree: Mapping[str, Any], table: str, key: str) -> bool:
+    """True if a stage has a value of its own at a key of a table."""
+    asked = dict(leaves({table: tree.get(table, {})}))
+    path = f"{table}.{key}"
+    return any(one == path or one.startswith(f"{path}.") for one in asked)
+
+
+def _in_stage(row: Row, number: int, *, given: bool) -> Row:
+    """Row of a stage; which flanks touch follows from the stages before it where it is left open."""
+    status = "derived" if row["key"] == "flank" and not given else row["status"]
+    changed = {"table": STAGES, "key": f"{number}.{row['table']}.{row['key']}"}
+    return {**row, **changed, "given": given, "status": status}
+
+
+def _following(built: Ready) -> Iterator[Row]:
+    """What follows from gears, materials and oil; of a drive by stage."""
+    several = len(built.meshes) > 1
+    one_oil = all(one.lubricant == built.meshes[0].lubricant for one in built.meshes)
+    for number, one in enumerate(built.meshes, 1):
+        rows = [*_dimensions(one), *(row for gear in (1, 2) for row in _of_solid(one, gear))]
+        rows += [] if one_oil else _of_oil(one)
+        yield from (_numbered(row, number) if several else row for row in rows)
+    if one_oil:
+        yield from _of_oil(built.meshes[0])
+
+
+def _numbered(row: Row, number: int) -> Row:
+    return {**row, "key": f"stage {number}.{row['key']}"}
+
+
+def _of_oil(built: Built) -> Iterator[Row]:
+    for name, kind in _OIL.items():
+        datum = built.lubricant.data()[name]
+        mark = Provenance(datum.status, datum.source, datum.note)
+        yield _row(OIL, name, datum.value, kind, mark)
 
 
 def _row(
@@ -105,12 +189,17 @@ def _row(
     }
 
 
-def _rows(built: Built, document: Document, table: str) -> Iterator[Row]:
-    """Rows of a table of the case file."""
+def _rows(
+    case: Case | DriveCase,
+    document: Document,
+    table: str,
+    following: Mapping[str, Any] | None = None,
+) -> Iterator[Row]:
+    """Rows of a table of the case file; `following` are values that the gears leave open."""
     asked = dict(leaves({table: document.tree[table]})) if table in document.tree else {}
-    following = built.following if table == "gears" else {}
-    for key, left in _leaves(getattr(built.case, table)):
-        path, value = f"{table}.{key}", following.get(key) if left is None else left
+    derived = (following or {}) if table == "gears" else {}
+    for key, left in _leaves(getattr(case, table)):
+        path, value = f"{table}.{key}", derived.get(key) if left is None else left
         if value is None:
             continue
         if any(one == path or one.startswith(f"{path}.") for one in asked):

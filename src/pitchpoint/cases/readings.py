@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.atanasiu2011 import printed as atanasiu2011
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.xu2021 import printed as xu2021
 from pitchpoint.cases.zhao2022 import printed as zhao2022
 from pitchpoint.gears.strain_wave.drive import StrainWave
@@ -37,12 +38,13 @@ _TOUCHING = 1e-5  # modules
 Points = Float[Array, "branch place"]
 
 
-def readings_of(points: Sequence[Built], laws: int) -> dict[str, Any]:
+def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     """Variables [law, point] that belong to the source of a case; none for most."""
     reading = READINGS.get(points[0].case.source)
-    if reading is None:
+    alone = [point for point in points if isinstance(point, Built)]
+    if reading is None or not alone:
         return {}
-    found = [reading(point) for point in points]
+    found = [reading(point) for point in alone]
     return {
         name: (("law", "point"), np.array([[one[name] for one in found]] * laws))
         for name in found[0]

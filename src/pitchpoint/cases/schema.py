@@ -1,8 +1,8 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import inf
-from typing import Annotated, Any, Literal, get_args, get_origin
+from math import inf, pi
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import (
     AfterValidator,
@@ -16,7 +16,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from pitchpoint import units
-from pitchpoint.cases.document import Document, check_name
+from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, Deviation
@@ -24,7 +24,16 @@ from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, forms
 from pitchpoint.registry import nearest
 
-__all__ = ["Case", "keys", "quantity_at", "validate"]
+__all__ = [
+    "Case",
+    "DriveCase",
+    "StageTable",
+    "bearings_of",
+    "keys",
+    "quantity_at",
+    "validate",
+    "validated",
+]
 
 _ZERO_CELSIUS = 273.15
 
@@ -53,6 +62,7 @@ MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
 FORCE = Quantity("force", 0.0, 1e7, "N")
 PLACE = Quantity("length", -10.0, 10.0, "mm")
+TURN = Quantity("angle", -2 * pi, 2 * pi, "deg")
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
@@ -560,6 +570,12 @@ def _too_many(count: int, most: int) -> str:
     return f"{count} were given; allowed are at most {most}"
 
 
+Losses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20))]
+Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
+Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
+Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
+
+
 class Case(Table):
     """A whole case file, one variant of it."""
 
@@ -573,46 +589,33 @@ class Case(Table):
     operation: Operating
     models: Choices = Choices()
     housing: Housing = Housing()
-    losses: Annotated[dict[str, Loss], BeforeValidator(_at_most(20))] = Field(default_factory=dict)
+    losses: Losses = Field(default_factory=dict)
     dynamics: Dynamics | None = None
-    studies: Annotated[dict[str, Study], BeforeValidator(_at_most(200))] = Field(
-        default_factory=dict
-    )
+    studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
-    targets: Annotated[tuple[Target, ...], Field(max_length=2000)] = ()
-    issues: Annotated[tuple[Issue, ...], Field(max_length=500)] = ()
+    targets: Targets = ()
+    issues: Issues = ()
 
-    def bearings_of(self, body: str) -> dict[str, Loss]:
-        """Bearings between a body and the housing, by name of their loss."""
-        return {
-            name: loss
-            for name, loss in self.losses.items()
-            if loss.bearing != "none" and {*loss.between} == {body, "housing"}
-        }
+    @property
+    def carries(self) -> str:
+        """What the loaded member carries: torque or force."""
+        return self.gears.load
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Bodies between which, and the housing, losses may arise."""
+        return self.gears.members
 
     @model_validator(mode="after")
     def _aimed(self) -> "Case":
-        for position, target in enumerate(self.targets):
-            if target.kind == "excluded" or target.part:
-                continue
-            if target.study not in self.studies:
-                raise InputError(
-                    f"there is no study {shown(target.study)}{nearest(target.study, self.studies)}",
-                    key=f"targets.{position}.study",
-                )
-            try:
-                _check_places(target, self.studies[target.study].sweep)
-            except InputError as error:
-                raise InputError(error.message, key=f"targets.{position}.at") from None
+        _check_aims(self.targets, self.studies)
         return self
 
     @model_validator(mode="after")
     def _of_family(self) -> "Case":
         """What is not given stands as is usual for the family; bodies are those that it has."""
         _check_load(self)
-        _check_bodies(self)
-        for body in self.gears.members:
-            _check_span(body, self.bearings_of(body))
+        _check_losses(self.losses, self.bodies)
         _check_meant(self)
         _check_driver(self)
         operation, models = self.operation, self.models
@@ -629,6 +632,144 @@ class Case(Table):
                 "models": models.model_copy(update=left),
             }
         )
+
+
+MOST_STAGES = 5
+"""Stages of a drive: the meetings of their phases multiply."""
+
+
+class StageTable(Table):
+    """One mesh of a drive; what it leaves out is as the tables of the same name say for all stages.
+
+    Its losses are those between two of its own bodies; those of shafts against the housing are the
+    drive's.
+
+    Attributes:
+        driver: member that the stage before it drives; the first one that is not fixed, by default.
+        place: of the middle of its face along the shafts.
+        turn: angle of its line of centres about the shafts.
+    """
+
+    gears: Gears
+    driver: Text = ""
+    materials: Materials = Materials()
+    lubricant: Oil | None = None
+    roughness: Surface | None = None
+    models: Choices = Choices()
+    losses: Losses = Field(default_factory=dict)
+    place: Annotated[float, PLACE] = 0.0
+    turn: Annotated[float, TURN] = 0.0
+
+
+class _Numbered:
+    """Annotation of tables by number, 1, 2, ..., in a table or a list."""
+
+
+def _stages(value: Any) -> Any:
+    """Stages by number, from a list or a table of them."""
+    given = value if isinstance(value, dict) else {}
+    if not given:
+        told = "no stage was given" if value in ([], {}) else f"{shown(value)} was given"
+        raise InputError(f"{told}; write a table [[stages]] for each mesh, input first")
+    if len(given) > MOST_STAGES:
+        raise InputError(_too_many(len(given), MOST_STAGES))
+    for number in range(1, len(given) + 1):
+        if str(number) not in given:
+            raise InputError(f"there is no stage {number} before {shown(max(given))}")
+    return dict(sorted(given.items()))
+
+
+class DriveCase(Table):
+    """A case file of a drive of several meshes on common shafts.
+
+    Torque is that at the output, speed that of the input. Shaft 1 is the input, shaft 2 carries the last
+    gear of the first stage and the first one of the second, and so on.
+    """
+
+    title: Text = ""
+    summary: Text = ""
+    source: Text = ""
+    stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), _Numbered()]
+    materials: Materials = Materials()
+    lubricant: Oil
+    roughness: Surface
+    operation: Operating
+    models: Choices = Choices()
+    housing: Housing = Housing()
+    losses: Losses = Field(default_factory=dict)
+    studies: Studies = Field(default_factory=dict)
+    loss_map: LossMap | None = None
+    targets: Targets = ()
+    issues: Issues = ()
+
+    @property
+    def carries(self) -> str:
+        """What the output carries."""
+        return "torque"
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """Shafts from the input to the output."""
+        return tuple(f"shaft {number}" for number in range(1, len(self.stages) + 2))
+
+    @model_validator(mode="after")
+    def _whole(self) -> "DriveCase":
+        _check_aims(self.targets, self.studies)
+        point = self.operation
+        if point.force is not None:
+            raise InputError(
+                "gears carry a torque; give torque in place of force", key="operation.force"
+            )
+        if point.torque is None:
+            raise InputError(
+                f"is missing{_needed(('operation', 'torque'), DriveCase)}", key="operation.torque"
+            )
+        if point.driver:
+            raise InputError(
+                "the first stage drives; the member that drives a stage is its own key, "
+                'driver = "gear 2" under [[stages]]',
+                key="operation.driver",
+            )
+        if self.models.averaging != "base_pitch":
+            raise InputError(
+                "the path of one pair does not stand for several meshes; leave it out",
+                key="models.averaging",
+            )
+        _check_losses(self.losses, self.bodies)
+        for number, stage in self.stages.items():
+            for name, loss in stage.losses.items():
+                if "housing" in loss.between:
+                    raise InputError(
+                        "a shaft that turns in the housing may carry two meshes; give this loss under "
+                        '[losses], between = ["shaft 2", "housing"], say',
+                        key=f"stages.{number}.losses.{name}.between",
+                    )
+        return self
+
+
+def bearings_of(losses: Mapping[str, Loss], body: str) -> dict[str, Loss]:
+    """Bearings between a body and the housing, by name of their loss."""
+    return {
+        name: loss
+        for name, loss in losses.items()
+        if loss.bearing != "none" and {*loss.between} == {body, "housing"}
+    }
+
+
+def _check_aims(targets: Sequence[Target], studies: Mapping[str, Study]) -> None:
+    """InputError if a target reads a study that does not exist, or no place of its axis."""
+    for position, target in enumerate(targets):
+        if target.kind == "excluded" or target.part:
+            continue
+        if target.study not in studies:
+            raise InputError(
+                f"there is no study {shown(target.study)}{nearest(target.study, studies)}",
+                key=f"targets.{position}.study",
+            )
+        try:
+            _check_places(target, studies[target.study].sweep)
+        except InputError as error:
+            raise InputError(error.message, key=f"targets.{position}.at") from None
 
 
 def _check_places(target: Target, sweep: Sweep | None) -> None:
@@ -657,7 +798,7 @@ def _check_load(case: Case) -> None:
         told = f"{_CARRIED[wanted]}; give {wanted} in place of {other}"
         raise InputError(told, key=f"operation.{other}")
     if getattr(point, wanted) is None:
-        missing = f"is missing{_needed(('operation', wanted))}"
+        missing = f"is missing{_needed(('operation', wanted), Case)}"
         raise InputError(missing, key=f"operation.{wanted}")
     if wanted == "force" and case.loss_map is not None:
         raise InputError(
@@ -696,10 +837,17 @@ def _check_driver(case: Case) -> None:
         )
 
 
-def _check_bodies(case: Case) -> None:
-    """InputError if losses arise between bodies that the gears do not have."""
-    known = (*case.gears.members, "housing")
-    for name, loss in case.losses.items():
+def _check_losses(losses: Mapping[str, Loss], bodies: Sequence[str]) -> None:
+    """InputError if losses arise between bodies that do not exist, or bearings have no span."""
+    _check_bodies(losses, bodies)
+    for body in bodies:
+        _check_span(body, bearings_of(losses, body))
+
+
+def _check_bodies(losses: Mapping[str, Loss], bodies: Sequence[str]) -> None:
+    """InputError if losses arise between bodies that the drive does not have."""
+    known = (*bodies, "housing")
+    for name, loss in losses.items():
         first, second = loss.between
         strange = next((body for body in loss.between if body not in known), None)
         told = (
@@ -752,16 +900,35 @@ def _out_of_place(body: str, one: Loss, others: Sequence[Loss]) -> tuple[str, st
     return None
 
 
-def validate(document: Document) -> Case:
+def validate(document: Document) -> Case | DriveCase:
     """Case out of a document.
 
     Raises:
         InputError: the first value that is wrong, with file, key, value and what is allowed.
     """
+    if STAGES not in document.tree:
+        return validated(Case, document)
+    for key, why in _OF_ONE_MESH.items():
+        if key in document.tree:
+            raise InputError(why, file=document.name, key=key)
+    return validated(DriveCase, document)
+
+
+_OF_ONE_MESH = {
+    "gears": "was given with [[stages]]; gears belong to a stage, or are all that the file has",
+    "dynamics": "vibration is computed for one mesh; give the stage a file of its own",
+}
+
+
+Whole = TypeVar("Whole", Case, DriveCase)
+
+
+def validated(model: type[Whole], document: Document) -> Whole:
+    """Case of one mesh or of several out of a document; InputError as from `validate`."""
     try:
-        return Case.model_validate(_in_form(document))
+        return model.model_validate(_in_form(document))
     except ValidationError as error:
-        raise _sentence(error, document) from None
+        raise _sentence(error, document, model) from None
 
 
 def _in_form(document: Document) -> dict[str, Any]:
@@ -779,9 +946,12 @@ def _in_form(document: Document) -> dict[str, Any]:
 
 def _without_former(tree: dict[str, Any], above: list[str], document: Document) -> dict[str, Any]:
     """Copy in which one table has lost the keys that its form does not have, unless they were set too."""
-    model: type[BaseModel] = Case
+    model: type[BaseModel] = DriveCase if STAGES in tree else Case
     copied = table = dict(tree)
     for part in above:
+        if part.isdecimal() and isinstance(table.get(part), dict):
+            table[part] = table = dict(table[part])
+            continue
         info, inner = model.model_fields.get(part), table.get(part)
         meant = forms(info.annotation, inner) if info is not None else []
         if not meant or not isinstance(inner, dict):
@@ -805,7 +975,7 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
     Raises:
         InputError: there is no such key.
     """
-    models: list[type[BaseModel]] = [Case]
+    models: list[type[BaseModel]] = [Case, DriveCase]
     parts = [part for part in key.split(".") if not part.isdigit()]
     named = False
     for position, part in enumerate(parts):
@@ -822,6 +992,8 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         if position == len(parts) - 1:
             return _quantity(holding[0])
         tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
+        if part == STAGES:
+            tree = None
         models = [model for info in holding for model in forms(info.annotation, tree)]
         named = _named_tables(holding[0])
         if not models:
@@ -843,7 +1015,8 @@ def keys(table: type[BaseModel] = Case) -> Iterator[str]:
 
 def _named_tables(info: FieldInfo) -> bool:
     """True if a field holds tables under names of the user's own."""
-    return get_origin(info.annotation) is dict
+    numbered = any(isinstance(mark, _Numbered) for mark in info.metadata)
+    return get_origin(info.annotation) is dict and not numbered
 
 
 def _quantity(info: FieldInfo) -> Quantity | None:
@@ -862,7 +1035,7 @@ def _marks(annotation: Any) -> Iterator[Any]:
         yield from _marks(option)
 
 
-def _sentence(error: ValidationError, document: Document) -> InputError:
+def _sentence(error: ValidationError, document: Document, model: type[BaseModel]) -> InputError:
     """The first complaint of pydantic in gear words."""
     detail = _clearest(error.errors())
     words = _words(document, detail)
@@ -870,7 +1043,7 @@ def _sentence(error: ValidationError, document: Document) -> InputError:
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         return cause.at(file=document.name, key=".".join(filter(None, (key, cause.key))))
-    return InputError(_message(detail), file=document.name, key=key)
+    return InputError(_message(detail, model), file=document.name, key=key)
 
 
 def _clearest(details: list[Any]) -> Any:
@@ -903,15 +1076,17 @@ def _words(document: Document, detail: Any) -> set[str]:
     return words
 
 
-def _message(detail: Any) -> str:
+def _message(detail: Any, model: type[BaseModel]) -> str:
     kind, given, context = detail["type"], detail.get("input"), detail.get("ctx", {})
     if kind == "missing":
-        return f"is missing{_needed(detail['loc'])}"
+        return f"is missing{_needed(detail['loc'], model)}"
     if kind == "extra_forbidden":
         what = "table" if isinstance(given, dict) else "key"
-        return f"is not a known {what}{nearest(str(detail['loc'][-1]), _fields(detail['loc']))}"
+        return (
+            f"is not a known {what}{nearest(str(detail['loc'][-1]), _fields(detail['loc'], model))}"
+        )
     if kind == "literal_error":
-        allowed = _options(detail["loc"]) or context["expected"]
+        allowed = _options(detail["loc"], model) or context["expected"]
         return f"{shown(given)} is not allowed; use {allowed}"
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return f"{shown(given)} was given where a table belongs"
@@ -922,18 +1097,18 @@ def _message(detail: Any) -> str:
     return f"{shown(given)} is not allowed: {detail['msg'].lower()}"
 
 
-def _options(location: tuple[Any, ...]) -> str:
+def _options(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     """Forms that a deciding key may name, those of all tables that stand there; else nothing."""
     *above, _, key = location
     if key not in DECIDING:
         return ""
-    info = _fields(tuple(above)).get(above[-1]) if above else None
+    info = _fields(tuple(above), model).get(above[-1]) if above else None
     return " or ".join(f"'{name}'" for name in alternatives(info.annotation)) if info else ""
 
 
-def _fields(location: tuple[Any, ...]) -> Mapping[str, FieldInfo]:
+def _fields(location: tuple[Any, ...], model: type[BaseModel]) -> Mapping[str, FieldInfo]:
     """Fields of the table in which the last part of a location stands."""
-    fields: Mapping[str, FieldInfo] = Case.model_fields
+    fields: Mapping[str, FieldInfo] = model.model_fields
     tables: Mapping[str, type[BaseModel]] = {}
     named = False
     for part in location[:-1]:
@@ -948,8 +1123,8 @@ def _fields(location: tuple[Any, ...]) -> Mapping[str, FieldInfo]:
     return fields
 
 
-def _needed(location: tuple[Any, ...]) -> str:
-    fields = _fields(location)
+def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
+    fields = _fields(location, model)
     info = fields.get(str(location[-1]))
     if info is None:
         return ""

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from pitchpoint.cases.build import Built, build
 from pitchpoint.cases.document import Document, resolve
 from pitchpoint.cases.schema import validate
+from pitchpoint.cases.stages import Ready, ready
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 
 __all__ = [
@@ -59,10 +59,10 @@ class Variant:
         """The tables that a point is computed from: a sweep reads them for every point."""
         return replace(self, tree=_without(self.tree))
 
-    def built(self, changes: Mapping[str, Any]) -> Built:
+    def built(self, changes: Mapping[str, Any]) -> Ready:
         """Case with some values changed."""
         document = (self._computed if changes else self).document(**changes)
-        return build(validate(document), document, self.own)
+        return ready(validate(document), document, self.own)
 
 
 def _without(tree: Mapping[str, Any]) -> dict[str, Any]:

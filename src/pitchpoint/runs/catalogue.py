@@ -11,6 +11,7 @@ from pitchpoint import units
 from pitchpoint.analyses.figures import (
     CONTACT,
     REACTIONS,
+    STAGES,
     VIBRATION,
     WIND_UP,
     bearing_loads,
@@ -43,6 +44,7 @@ __all__ = [
     "entries",
     "figures",
     "kinematic_error_table",
+    "stage_table",
     "summary_table",
     "sweep_tables",
     "vibration_table",
@@ -195,12 +197,25 @@ def vibration_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, 
     return rows, tuple(rows[0])
 
 
+def stage_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
+    """Rows and columns: figures of each stage of a drive by law; none of one mesh."""
+    data = outcome.parts["operation"]
+    names = [name for name in STAGES if name in data and np.any(data[name])]
+    rows = [
+        {"friction law": str(law), "stage": str(stage)}
+        | {_head(name): _shown(name, float(data[name].values[k, 0, at])) for name in names}
+        for k, law in enumerate(data["law"].values)
+        for at, stage in enumerate(data["stage"].values if names else ())
+    ]
+    return (rows, tuple(rows[0])) if rows else ([], ())
+
+
 def bearing_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ...]]:
     """Rows and columns: load on the bearings by law, those that are nothing anywhere left out."""
     data = outcome.parts["operation"]
     rows = [
         {"friction law": str(law)}
-        | {_head(name): _cell(data, name, k) for name in REACTIONS if np.any(data[name])}
+        | {_head(n): _cell(data, n, k) for n in REACTIONS if n in data and np.any(data[n])}
         | {
             f"{_head('bearing_load')} {place}": _shown("bearing_load", float(load))
             for place, load in bearing_loads(data, k)
@@ -218,7 +233,11 @@ def wind_up_table(outcome: Outcome) -> tuple[list[dict[str, str]], tuple[str, ..
     torques = data["torque"].values
     rows = [
         {_head("torque"): f"{torques[k]:.5g}"}
-        | {_head(name): _shown(name, float(data[name].values[k])) for name in WIND_UP}
+        | {
+            _head(name): _shown(name, float(data[name].values[k]))
+            for name in WIND_UP
+            if name in data
+        }
         | {"K is that of": str(data["torsional_stiffness"].attrs.get("covers", ""))}
         for k in range(torques.size // 4, torques.size, torques.size // 4)
     ]

@@ -8,8 +8,8 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Subject
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import Study
+from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import nearest
@@ -26,7 +26,7 @@ class Job:
     """One dataset to compute, in one piece or several: an analysis of a case."""
 
     analysis: Analysis
-    built: Built
+    built: Ready
 
     @property
     def name(self) -> str:
@@ -90,6 +90,6 @@ def job_of(variant: Variant, name: str) -> Job:
     if name in made:
         return made[name]
     known = dict(ANALYSES)
-    why = known[name].lacks(variant.built({})) if name in known else None
+    why = known[name].why_not(variant.built({})) if name in known else None
     told = f": {why}" if why else nearest(name, made)
     raise InputError(f"this case computes no part '{shorten(name)}'{told}", file=variant.name)

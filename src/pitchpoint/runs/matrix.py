@@ -1,14 +1,20 @@
 """Which analysis there is for which family, asked of a sample of each."""
 
+from importlib import resources
+
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.input.tables import tag
 from pitchpoint.runs.run import load_case
 
 __all__ = ["matrix", "page"]
 
+_SEVERAL = resources.files("pitchpoint.cases") / "stages.toml"
+
 _PAGE = """# Families and analyses
 
-What is computed for a case of each family that holds every table which analyses ask for: yes, or why not.
+What is computed for a case of each family, and for a drive of several stages, that holds every table which
+analyses ask for: yes, or why not.
 Printed by `pitchpoint models --matrix` from the registries of families and analyses.
 
 """
@@ -16,10 +22,11 @@ Printed by `pitchpoint models --matrix` from the registries of families and anal
 
 def matrix() -> list[dict[str, str]]:
     """A row for each analysis: its name and title, and for each family yes, or why it is not there."""
-    samples = [load_case(str(sample_of(table))) for table in TABLES]
+    samples = {tag(table): load_case(str(sample_of(table))) for table in TABLES}
+    samples["several stages"] = load_case(str(_SEVERAL))
     return [
         {"analysis": analysis.name, "title": analysis.title}
-        | {sample.case.gears.family: analysis.lacks(sample) or "yes" for sample in samples}
+        | {name: analysis.why_not(sample) or "yes" for name, sample in samples.items()}
         for analysis in ANALYSES.values()
     ]
 

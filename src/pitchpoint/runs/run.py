@@ -22,7 +22,8 @@ from pitchpoint.cases.document import variants
 from pitchpoint.cases.failures import worst_first
 from pitchpoint.cases.library import as_text, find, names
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
-from pitchpoint.cases.schema import Study, validate
+from pitchpoint.cases.schema import Loss, Study, validate
+from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
@@ -249,7 +250,7 @@ def manifests(result: str) -> list[dict[str, Any]]:
 
 def load_case(
     case: str, variant: str | None = None, settings: Mapping[str, Any] | None = None
-) -> Built:
+) -> Ready:
     """A case ready for computations of one's own: its design, operating point and inputs.
 
     Args:
@@ -464,20 +465,18 @@ def _measured(variant: Variant) -> bool:
     return variant.variant in ("as_published", "default") or "targets" in own
 
 
-def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
+def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> list[Row]:
     return compare(built.case.targets, parts, variant.name) if _measured(variant) else []
 
 
-def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> dict[str, Any]:
+def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> dict[str, Any]:
     case, document = built.case, variant.document()
-    laws = [models.law for models in built.models]
-    others = _models(built)
+    laws, others, meshes = built.laws, _models(built), built.meshes
+    solids = [used for mesh in meshes for used in mesh.solids]
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
-    keys += case.gears.sources
-    keys += [datum.source for datum in built.lubricant.data().values() if datum.source]
-    keys += [
-        one.source for used in built.solids for one in used.record.data().values() if one.source
-    ]
+    keys += [key for mesh in meshes for key in mesh.case.gears.sources]
+    data = [mesh.lubricant.data() for mesh in meshes] + [used.record.data() for used in solids]
+    keys += [one.source for values in data for one in values.values() if one.source]
     if case.source:
         keys.insert(0, case.source)
     return {
@@ -497,7 +496,7 @@ def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> d
             [
                 *variant.warnings,
                 *built.warnings,
-                *(used.told for used in built.solids if used.told),
+                *(used.told for used in solids if used.told),
             ]
         ),
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
@@ -505,15 +504,17 @@ def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> d
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}
             for effect, law in others.items()
         ],
-        "family": case.gears.family,
-        "driver": case.operation.driver,
+        "family": " + ".join(mesh.case.gears.family for mesh in meshes),
+        "driver": built.driver,
         "loaded": built.loaded,
-        "members": list(case.gears.members),
-        "motion": built.nominal["motion"].tolist(),
-        "period": float(built.nominal["period"]),
+        "members": list(case.bodies),
+        "motion": built.motion,
+        "period": float(meshes[0].nominal["period"]),
         "averaging": case.models.averaging,
-        "plastic": any(used.plastic for used in built.solids),
-        "oil": built.lubricant.title or built.lubricant.name,
+        "plastic": any(used.plastic for used in solids),
+        "oil": ", ".join(
+            dict.fromkeys(mesh.lubricant.title or mesh.lubricant.name for mesh in meshes)
+        ),
         "sources": [{"key": key, "text": cite(key)} for key in dict.fromkeys(keys)],
         "issues": [issue.model_dump() for issue in case.issues],
         "rows": [],
@@ -522,8 +523,34 @@ def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> d
     }
 
 
-def _models(built: Built) -> dict[str, Any]:
-    """Models that the case uses beside friction, by effect."""
+def _models(built: Ready) -> dict[str, Any]:
+    """Models that the case uses beside friction, by effect; with the stage where they differ."""
+    each = [_of_mesh(mesh) for mesh in built.meshes]
+    if len(each) == 1:
+        return each[0]
+    bearings = _bearings(built.case.losses)
+    found = {effect: law for effect, law in each[0].items() if _everywhere(effect, law, each)}
+    for number, models in enumerate(each, 1):
+        apart = {effect: law for effect, law in models.items() if effect not in found}
+        found |= {f"{effect}, stage {number}": law for effect, law in apart.items()}
+    return {**found, **bearings}
+
+
+def _everywhere(effect: str, law: Any, each: Sequence[Mapping[str, Any]]) -> bool:
+    return all(models.get(effect) is law for models in each)
+
+
+def _bearings(losses: Mapping[str, Loss]) -> dict[str, Any]:
+    """Models of bearings by name of their place."""
+    return {
+        f"bearing {name}".replace("_", " "): BEARING_LOSS[loss.bearing]
+        for name, loss in losses.items()
+        if loss.bearing != "none"
+    }
+
+
+def _of_mesh(built: Built) -> dict[str, Any]:
+    """Models of one mesh, by effect."""
     case = built.case
     found: dict[str, Any] = {
         "load sharing": LOAD_SHARING[case.models.load_sharing],
@@ -534,9 +561,7 @@ def _models(built: Built) -> dict[str, Any]:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
     if case.dynamics is not None:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
-    for name, loss in case.losses.items():
-        if loss.bearing != "none":
-            found[f"bearing {name}".replace("_", " ")] = BEARING_LOSS[loss.bearing]
+    found |= _bearings(case.losses)
     if case.models.tooth_temperature != "isothermal":
         found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
     return found

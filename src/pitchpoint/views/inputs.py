@@ -125,7 +125,7 @@ def _words(row: Row) -> str:
         return _one(value, row)
     if value and all(isinstance(one, float) for one in value):
         shown = [_one(one, row) for one in value]
-        alike = _path(row) != "gears.profile_shift" and len(set(shown)) == 1
+        alike = not _path(row).endswith("gears.profile_shift") and len(set(shown)) == 1
         return " / ".join(shown[:1] if alike else shown)
     return ", ".join(_item(one, row) for one in value) or "none"
 
@@ -135,7 +135,7 @@ def _item(value: Any, row: Row) -> str:
     if not isinstance(value, dict):
         return _one(value, row)
     shown = {name: _one(one, row, name) for name, one in value.items()}
-    if _path(row) != "models.friction":
+    if not _path(row).endswith("models.friction"):
         return " ".join(f"{name} {one}" for name, one in shown.items())
     law = shown.pop("name", "")
     own = ", ".join(f"{name} {one}" for name, one in shown.items())

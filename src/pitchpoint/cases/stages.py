@@ -1,0 +1,432 @@
+"""From a validated case of several meshes to one built case a stage, and the drive that they make."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from math import gcd, pi
+from typing import Any
+
+import numpy as np
+
+from pitchpoint._jax import array
+from pitchpoint.cases.build import TEETH_ALONE, Built, build, drags, operation_at
+from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
+from pitchpoint.cases.failures import in_stage
+from pitchpoint.cases.schema import Case, DriveCase, Operating, StageTable, validated
+from pitchpoint.efficiency.drive import Drive, Stage, chained
+from pitchpoint.efficiency.quasi_static import Models, Operation
+from pitchpoint.errors import InputError
+from pitchpoint.gears.families import built_gears
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+
+__all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
+
+_SHARED = ("materials", "models")
+"""Tables that stages share key by key; of the others a stage has its own or that of the drive."""
+
+_OF_STAGE = ("lubricant", "roughness", "housing")
+
+SEVERAL_MEETINGS = 10
+"""Meshes of one gear of a shaft, over the common divisor, from which on nearly all phases meet."""
+
+
+@dataclass(frozen=True)
+class Acting:
+    """Laws that act together in all stages, under one friction law of the case.
+
+    Attributes:
+        law: friction law by which it is named: that of the case, or those of the stages.
+        stages: models of each stage.
+    """
+
+    law: FrictionLaw
+    stages: tuple[Models, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class BuiltDrive:
+    """A case of several meshes ready to compute.
+
+    Attributes:
+        case: as validated.
+        stages: each built as a case of its own, at the load and speed that it has without losses.
+        numbers: of the stages in the file, in the order of the power.
+        documents: each stage came from, in the same order.
+        design: the drive.
+        operation: torque at the output, speed of the input.
+        told: sentences about the drive.
+    """
+
+    case: DriveCase
+    stages: tuple[Built, ...]
+    numbers: tuple[int, ...]
+    documents: tuple[Document, ...]
+    design: Drive
+    operation: Operation
+    told: tuple[str, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about the drive, about all stages, and about one of them."""
+        each = [[text for text in one.warnings if text != TEETH_ALONE] for one in self.stages]
+        common = [text for text in each[0] if all(text in other for other in each[1:])]
+        apart = [
+            in_stage(number, text)
+            for number, texts in zip(self.numbers, each, strict=True)
+            for text in texts
+            if text not in common
+        ]
+        return (*self.told, *common, *apart)
+
+    @cached_property
+    def models(self) -> tuple[Acting, ...]:
+        """Laws that act together, once under each friction law of the case."""
+        count = max(len(one.models) for one in self.stages)
+        each = [one.models * count if len(one.models) == 1 else one.models for one in self.stages]
+        return tuple(self._acting(models) for models in zip(*each, strict=True))
+
+    def under(self, laws: Sequence[FrictionLaw]) -> tuple[Acting, ...]:
+        """The models of the case under other friction laws; stages with one of their own keep it."""
+        each = [
+            one.models[:1] * len(laws) if own else one.under(laws)
+            for one, own in zip(self.stages, self.own_friction, strict=True)
+        ]
+        return tuple(self._acting(models) for models in zip(*each, strict=True))
+
+    def _acting(self, models: Sequence[Models]) -> Acting:
+        own = self.own_friction
+        free = [one.law for one, mine in zip(models, own, strict=True) if all(own) or not mine]
+        named = list(dict.fromkeys(free))
+        if len(named) == 1:
+            return Acting(named[0], tuple(models))
+        name, title = (" + ".join(getattr(law, key) for law in named) for key in ("name", "title"))
+        sources = tuple(dict.fromkeys(key for law in named for key in law.sources))
+        joined = replace(named[0], name=name, title=title, sources=sources)
+        return Acting(joined, tuple(models))
+
+    @property
+    def own_friction(self) -> tuple[bool, ...]:
+        """For each stage whether it has a friction law of its own."""
+        tables = (self.case.stages[str(number)].models for number in self.numbers)
+        return tuple("friction" in table.model_fields_set for table in tables)
+
+    @property
+    def laws(self) -> list[FrictionLaw]:
+        """Friction laws of the case, in order."""
+        return [models.law for models in self.models]
+
+    @property
+    def law_names(self) -> list[str]:
+        """Names of the friction laws."""
+        return [law.name for law in self.laws]
+
+    @property
+    def applicable(self) -> list[FrictionLaw]:
+        """Fitted friction laws of the library that hold for all stages without one of their own."""
+        pairs = zip(self.stages, self.own_friction, strict=True)
+        each = [one.applicable for one, own in pairs if not own]
+        return [law for law in (each[0] if each else []) if all(law in other for other in each)]
+
+    @property
+    def temperatures(self) -> tuple[float, float]:
+        """Lowest and highest temperature of all oils [K]."""
+        low, high = zip(*(one.temperatures for one in self.stages), strict=True)
+        return max(low), min(high)
+
+    @property
+    def meshes(self) -> tuple[Built, ...]:
+        """Meshes that the case has: its stages."""
+        return self.stages
+
+    @property
+    def driver(self) -> str:
+        """Name of the shaft that drives."""
+        return f"shaft {1 if self.numbers[0] == 1 else len(self.numbers) + 1}"
+
+    @property
+    def loaded(self) -> str:
+        """Name of the shaft that carries the load."""
+        return f"shaft {1 if self.numbers[-1] == 1 else len(self.numbers) + 1}"
+
+    @property
+    def transmits(self) -> bool:
+        """True: power goes through every drive."""
+        return True
+
+    @property
+    def covers(self) -> dict[str, str]:
+        """What the efficiency holds, see `Built.covers`."""
+        alone = not self.case.losses and any(one.covers for one in self.stages)
+        return {"covers": "teeth alone"} if alone else {}
+
+    @property
+    def places(self) -> list[str]:
+        """Names of the places beside the teeth where power is lost: of the drive, then of its stages."""
+        own = [
+            f"stage {number} {name}"
+            for number, one in zip(self.numbers, self.stages, strict=True)
+            for name in one.case.losses
+        ]
+        return [*self.case.losses, *own]
+
+    @property
+    def motion(self) -> list[float]:
+        """Rates of the shafts for a radian of the input."""
+        rates = [_ends(self.stages[0].design.mesh)[0]]
+        for one in self.stages:
+            first, last = _ends(one.design.mesh)
+            rates.append(rates[-1] * last / first)
+        return rates
+
+    @cached_property
+    def backwards(self) -> "BuiltDrive":
+        """The same drive with its output driving, see `Built.backwards`."""
+        step = float(np.abs(self.motion[-1] / self.motion[0]))
+        point = self.case.operation
+        changed = point.model_copy(
+            update={"torque": point.load * step, "speed": point.speed * step}
+        )
+        turned = self.design.driven_backwards()
+        stages = tuple(one.backwards for one in reversed(self.stages))
+        warm = [
+            replace(place, design=replace(place.design, solids=one.design.solids))
+            for place, one in zip(turned.stages, stages, strict=True)
+        ]
+        return replace(
+            self,
+            case=self.case.model_copy(update={"operation": changed}),
+            stages=stages,
+            numbers=self.numbers[::-1],
+            documents=self.documents[::-1],
+            design=replace(turned, stages=tuple(warm)),
+            operation=operation_at(changed),
+        )
+
+
+Ready = Built | BuiltDrive
+
+
+def ready(case: Case | DriveCase, document: Document, own: FrictionLaw | None = None) -> Ready:
+    """A case of one mesh or of several, ready to compute.
+
+    Raises:
+        InputError: see `build`; stages that do not follow each other.
+    """
+    if isinstance(case, Case):
+        return build(case, document, own)
+    try:
+        return _built(case, document, own)
+    except InputError as error:
+        raise error.at(file=document.name) from None
+
+
+def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> BuiltDrive:
+    numbers = range(1, len(case.stages) + 1)
+    documents = [_of_stage(document, number) for number in numbers]
+    alone: list[Case] = []
+    for number, inside in zip(numbers, documents, strict=True):
+        with _told_of_stage(document, number):
+            alone.append(validated(Case, inside))
+    _check_laws(alone)
+    alone = _following(alone, document)
+    points = _points(case.operation, alone, document)
+    built = []
+    for number, one, point in zip(numbers, alone, points, strict=True):
+        with _told_of_stage(document, number):
+            loaded = one.model_copy(update={"operation": point})
+            built.append(build(loaded, documents[number - 1], own))
+    drive = _drive(case, built)
+    made = BuiltDrive(
+        case,
+        tuple(built),
+        tuple(numbers),
+        tuple(documents),
+        drive,
+        operation_at(case.operation),
+        tuple(_few_meetings(built)),
+    )
+    return replace(made, told=(*made.told, *[TEETH_ALONE] * bool(made.covers)))
+
+
+def _of_stage(document: Document, number: int) -> Document:
+    """A stage as a case of its own: its tables, and those of the drive for what it leaves out."""
+    whole, stage = document.tree, document.tree[STAGES][str(number)]
+    tree: Tree = {key: stage.get(key, whole[key]) for key in _OF_STAGE if key in {*stage, *whole}}
+    tree |= {key: {**whole.get(key, {}), **stage.get(key, {})} for key in _SHARED}
+    tree |= {key: stage[key] for key in ("gears", "losses") if key in stage}
+    tree["operation"] = dict(whole["operation"])
+    if "driver" in stage:
+        tree["operation"]["driver"] = stage["driver"]
+    return Document(document.name, tree, _marks(document.provenance, number, stage))
+
+
+def _marks(given: Mapping[str, Provenance], number: int, stage: Tree) -> dict[str, Provenance]:
+    """Where values of a stage come from, by its own keys."""
+    inside = f"{STAGES}.{number}."
+    replaced = [key for key in stage if key not in _SHARED]
+    found = {
+        key: mark
+        for key, mark in given.items()
+        if not key.startswith(f"{STAGES}.") and key.partition(".")[0] not in replaced
+    }
+    own = {key.removeprefix(inside): mark for key, mark in given.items() if key.startswith(inside)}
+    return {**found, **own}
+
+
+@contextmanager
+def _told_of_stage(document: Document, number: int) -> Iterator[None]:
+    """What is wrong with a stage is told under its key in the file of the drive."""
+    try:
+        yield
+    except InputError as error:
+        key = error.key or ""
+        if key == "operation.driver":
+            raise error.at(key=_key(number, "driver")) from None
+        node: Any = document.tree[STAGES][str(number)]
+        for part in key.split(".")[: 2 if key.partition(".")[0] in _SHARED else 1]:
+            node = node.get(part) if isinstance(node, Mapping) else None
+        if node is not None:
+            raise error.at(key=_key(number, key)) from None
+        message = f"stage {number}: {error.message}"
+        raise InputError(message, file=error.file, key=error.key, value=error.value) from None
+
+
+def _key(number: int, key: str) -> str:
+    return f"{STAGES}.{number}.{key}"
+
+
+def _check_laws(alone: Sequence[Case]) -> None:
+    """InputError if stages have several friction laws, but not as many as the others."""
+    counts = [len(one.models.friction) for one in alone]
+    for number, count in enumerate(counts, 1):
+        if count not in (1, max(counts)):
+            raise InputError(
+                f"{count} friction laws were given where another stage has {max(counts)}; give one, which "
+                "stands beside each of them, or as many",
+                key=_key(number, "models.friction"),
+            )
+
+
+def _following(alone: Sequence[Case], document: Document) -> list[Case]:
+    """Stages with the flanks by which each turns its first shaft as the one before it does.
+
+    Raises:
+        InputError: no choice of those that were left open does so.
+    """
+    found: list[Case] = []
+    for number, one in enumerate(alone, 1):
+        first, _ = _ends(_mesh(one, number, document))
+        last = _ends(_mesh(found[-1], number - 1, document))[1] if found else first
+        if first * last < 0.0:
+            if _open(one):
+                one = _turned(one)
+            elif all(map(_open, found)):
+                found = [*map(_turned, found)]
+            else:
+                raise InputError(_against(one, number), key=_key(number, "gears.flank"))
+        found.append(one)
+    return found
+
+
+def _open(one: Case) -> bool:
+    """True if the flanks are left to the reader."""
+    return hasattr(one.gears, "flank") and "flank" not in one.gears.model_fields_set
+
+
+def _turned(one: Case) -> Case:
+    """The stage with its other flanks in contact, so that all turns the other way."""
+    assert hasattr(one.gears, "flank")
+    other = {"left": "right", "right": "left"}[one.gears.flank]
+    return one.model_copy(update={"gears": one.gears.model_copy(update={"flank": other})})
+
+
+def _against(one: Case, number: int) -> str:
+    given = getattr(one.gears, "flank", None)
+    if given is None:
+        return (
+            f"these gears carry on the flanks for one sense of rotation alone, and shaft {number} turns "
+            "the other way; leave the flanks of the stages before them open"
+        )
+    return (
+        f"with the {given} flanks in contact shaft {number} turns against the stage before it; leave flank "
+        "out, or take the others"
+    )
+
+
+def _mesh(one: Case, number: int, document: Document) -> Mesh:
+    with _told_of_stage(document, number):
+        try:
+            return built_gears(one.gears, one.operation.driver, int(one.models.slices))[0]
+        except InputError as error:
+            raise error.at(key=f"gears.{error.key or ''}".rstrip(".")) from None
+
+
+def _ends(mesh: Mesh) -> tuple[float, float]:
+    """Rates of the driver and of the loaded member."""
+    motion = np.asarray(mesh.motion)
+    return float(np.asarray(mesh.driver) @ motion), float(np.asarray(mesh.loaded) @ motion)
+
+
+def _points(point: Operating, alone: Sequence[Case], document: Document) -> list[Operating]:
+    """Operating point of each stage where nothing is lost."""
+    ends = [_ends(_mesh(one, number, document)) for number, one in enumerate(alone, 1)]
+    steps = np.array([abs(last / first) for first, last in ends])
+    speeds = point.speed * np.cumprod([1.0, *steps[:-1]])
+    loads = point.load * np.cumprod([1.0, *steps[:0:-1]])[::-1]
+    return [
+        one.operation.model_copy(update={"torque": float(load), "speed": float(speed)})
+        for one, load, speed in zip(alone, loads, speeds, strict=True)
+    ]
+
+
+def _drive(case: DriveCase, built: Sequence[Built]) -> Drive:
+    """The stages on their shafts, with what brakes these."""
+    count = len(built) + 1
+    held = 0
+    stages, inner = [], set()
+    for first, (one, table) in enumerate(zip(built, case.stages.values(), strict=True)):
+        names = _on_shafts(one, first, count + held)
+        held += len(names) - 2
+        stages.append(_stage(one, table, tuple(names.values())))
+        bearing = [f"shaft {names[body] + 1}" for body in one.design.mesh.inner_bearing]
+        inner.add(frozenset(bearing))
+    still = [f"held {number}" for number in range(held)]
+    bodies = (*case.bodies, *still)
+    return chained(stages, drags(case.losses, bodies, inner - {frozenset()}))
+
+
+def _on_shafts(one: Built, first: int, free: int) -> dict[str, int]:
+    """Shaft of each member of a stage; a member that is held has a number of its own."""
+    found: dict[str, int] = {}
+    for number, name in enumerate(one.case.gears.members):
+        drives, loaded = (one.nominal[end][number] for end in ("driver", "loaded"))
+        found[name] = first if drives else first + 1 if loaded else free
+        free += not (drives or loaded)
+    return found
+
+
+def _stage(one: Built, table: StageTable, shafts: tuple[int, ...]) -> Stage:
+    return Stage(one.design, shafts, array(table.turn), array(table.place))
+
+
+def _few_meetings(built: Sequence[Built]) -> Iterator[str]:
+    """Shafts on which few phases of two meshes meet, where all are assumed to."""
+    for shaft, (before, behind) in enumerate(pairwise(built), 2):
+        meshes = [_per_turn(before, "loaded"), _per_turn(behind, "driver")]
+        first, second = (round(count) for count in meshes)
+        common = gcd(first, second)
+        if min(first, second) // common < SEVERAL_MEETINGS:
+            yield (
+                f"On shaft {shaft} {first} and {second} teeth mesh in a turn, with the common divisor "
+                f"{common}: few of their phases meet. The ripple shown is that of the worst meeting of "
+                "phases, and means are those over all of them."
+            )
+
+
+def _per_turn(one: Built, end: str) -> float:
+    """Mesh periods in a turn of the driver or of the loaded member of a stage."""
+    rate = abs(float(one.nominal[end] @ one.nominal["motion"]))
+    return 2.0 * pi / (float(one.nominal["period"]) * rate)
