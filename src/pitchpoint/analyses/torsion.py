@@ -11,7 +11,6 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import WIND_UP, by_torque
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import TORQUE
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.quasi_static import coupling, engagement
@@ -69,7 +68,8 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
         },
         {"torque": ("torque", torques), "stage": [*built.numbers]},
         title="torsion",
-        warnings=_lost(turned.sum(axis=-1), torques),
+        travels=built.travels,
+        warnings=_lost(built, turned.sum(axis=-1), torques),
         note="teeth and what is under them yield; shafts, bearings and housing are not in it",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
@@ -101,7 +101,8 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
             "phase": ("phase", phase),
         },
         title="torsion",
-        warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
+        travels=built.travels,
+        warnings=[*_lost(built, found["wind_up"], torques), *_loopless(built, friction)],
         note=f"{yields} yield; {rigid} are not in it",
         solve=solve,
     )
@@ -112,12 +113,14 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     return whole if mesh.filled is None else whole.isel(pair=mesh.filled)
 
 
-def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
+def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     """Torques at which teeth, ring and cup found no equilibrium."""
     lost = torques[np.isnan(wind_up)]
     if not lost.size:
         return []
-    between = " to ".join(dict.fromkeys(TORQUE.show(torque) for torque in (lost[0], lost[-1])))
+    between = " to ".join(
+        dict.fromkeys(built.carried.show(torque) for torque in (lost[0], lost[-1]))
+    )
     return [
         f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they are "
         "left out."

@@ -19,7 +19,7 @@ from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import Gears
-from pitchpoint.gears.table import BORE, DEVIATION, Deviation
+from pitchpoint.gears.table import BORE, DEVIATION, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, forms
 from pitchpoint.registry import nearest
@@ -61,6 +61,7 @@ COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
 FORCE = Quantity("force", 0.0, 1e7, "N")
+PRESSED = Quantity("force", 0.0, 1e7, "N", open_low=True)
 PLACE = Quantity("length", -10.0, 10.0, "mm")
 TURN = Quantity("angle", -2 * pi, 2 * pi, "deg")
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
@@ -450,13 +451,14 @@ class Speeds(Table):
 
 
 class Dynamics(Table):
-    """Vibration of the pair along its line of action."""
+    """Vibration of the pair along its line of action, under torques or forces as `operation` has them."""
 
     damping_ratio: Annotated[float, RATIO] = 0.1
     inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
     profile_error: Annotated[tuple[ProfileError, ...], Field(max_length=41)] = ()
     backlash: Annotated[float, DEVIATION] | None = None
     torques: Annotated[tuple[Annotated[float, LOADED], ...], Field(max_length=50)] = ()
+    forces: Annotated[tuple[Annotated[float, PRESSED], ...], Field(max_length=50)] = ()
     speeds: Speeds | None = None
 
 
@@ -487,12 +489,13 @@ class Study(Table):
 
 
 class LossMap(Table):
-    """Axes of the loss map; zero torque and zero speed are allowed.
+    """Axes of the loss map; zero torque and zero speed are allowed. A force stands for a torque of travel.
 
     `count` is that of both axes, `torque_count` and `speed_count` are those of one.
     """
 
     torque: Annotated[float, TORQUE] | None = None
+    force: Annotated[float, FORCE] | None = None
     speed: Annotated[float, MAP_SPEED] | None = None
     temperatures: (
         Annotated[tuple[Annotated[float, TEMPERATURE], ...], Field(max_length=50)] | None
@@ -597,13 +600,8 @@ class Case(Table):
     issues: Issues = ()
 
     @property
-    def carries(self) -> str:
-        """What the loaded member carries: torque or force."""
-        return self.gears.load
-
-    @property
     def bodies(self) -> tuple[str, ...]:
-        """Bodies between which, and the housing, losses may arise."""
+        """Bodies that move or are held, one for each coordinate."""
         return self.gears.members
 
     @model_validator(mode="after")
@@ -614,8 +612,8 @@ class Case(Table):
     @model_validator(mode="after")
     def _of_family(self) -> "Case":
         """What is not given stands as is usual for the family; bodies are those that it has."""
-        _check_load(self)
-        _check_losses(self.losses, self.bodies)
+        _check_load(self, self.gears)
+        _check_losses(self.losses, self.gears.shafts, self.bodies)
         _check_meant(self)
         _check_driver(self)
         operation, models = self.operation, self.models
@@ -703,28 +701,21 @@ class DriveCase(Table):
     issues: Issues = ()
 
     @property
-    def carries(self) -> str:
-        """What the output carries."""
-        return "torque"
+    def bodies(self) -> tuple[str, ...]:
+        """Shafts from the input to the output; the last one may travel."""
+        return tuple(f"shaft {number}" for number in range(1, len(self.stages) + 2))
 
     @property
-    def bodies(self) -> tuple[str, ...]:
-        """Shafts from the input to the output."""
-        return tuple(f"shaft {number}" for number in range(1, len(self.stages) + 2))
+    def last(self) -> GearsTable:
+        """Gears of the stage that carries the load."""
+        return self.stages[str(len(self.stages))].gears
 
     @model_validator(mode="after")
     def _whole(self) -> "DriveCase":
         _check_aims(self.targets, self.studies)
-        point = self.operation
-        if point.force is not None:
-            raise InputError(
-                "gears carry a torque; give torque in place of force", key="operation.force"
-            )
-        if point.torque is None:
-            raise InputError(
-                f"is missing{_needed(('operation', 'torque'), DriveCase)}", key="operation.torque"
-            )
-        if point.driver:
+        _check_passing(self.stages)
+        _check_load(self, self.last)
+        if self.operation.driver:
             raise InputError(
                 "the first stage drives; the member that drives a stage is its own key, "
                 'driver = "gear 2" under [[stages]]',
@@ -735,16 +726,28 @@ class DriveCase(Table):
                 "the path of one pair does not stand for several meshes; leave it out",
                 key="models.averaging",
             )
-        _check_losses(self.losses, self.bodies)
-        for number, stage in self.stages.items():
-            for name, loss in stage.losses.items():
-                if "housing" in loss.between:
-                    raise InputError(
-                        "a shaft that turns in the housing may carry two meshes; give this loss under "
-                        '[losses], between = ["shaft 2", "housing"], say',
-                        key=f"stages.{number}.losses.{name}.between",
-                    )
+        travels = self.last.load == "force"
+        _check_losses(self.losses, self.bodies[: len(self.bodies) - travels], self.bodies)
         return self
+
+
+def _check_passing(stages: Mapping[str, StageTable]) -> None:
+    """InputError if a stage passes no torque on, or has losses that are those of a shaft."""
+    for number, stage in stages.items():
+        told = None
+        if not stage.gears.transmits:
+            told = "a test rig transmits nothing and is no stage of a drive"
+        elif stage.gears.load != "torque" and number != str(len(stages)):
+            told = f"{stage.gears.carries} and turns no shaft; such gears are the last stage of a drive"
+        if told is not None:
+            raise InputError(told, key=f"stages.{number}.gears.family")
+        for name, loss in stage.losses.items():
+            if "housing" in loss.between:
+                raise InputError(
+                    "a shaft in the housing may carry two meshes; give this loss under [losses], "
+                    'between = ["shaft 2", "housing"], say',
+                    key=f"stages.{number}.losses.{name}.between",
+                )
 
 
 def bearings_of(losses: Mapping[str, Loss], body: str) -> dict[str, Loss]:
@@ -790,28 +793,28 @@ def _given(table: Table, key: str) -> bool:
     return key in table.model_fields_set
 
 
-def _check_load(case: Case) -> None:
+def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
     """InputError unless the load is given that the driven member takes, and no table asks for the other."""
-    point, wanted = case.operation, case.gears.load
+    point, wanted = case.operation, gears.load
     other = "force" if wanted == "torque" else "torque"
-    if getattr(point, other) is not None:
-        told = f"{_CARRIED[wanted]}; give {wanted} in place of {other}"
-        raise InputError(told, key=f"operation.{other}")
+    asked = {
+        f"operation.{other}": getattr(point, other),
+        f"dynamics.{other}s": getattr(getattr(case, "dynamics", None), f"{other}s", ()) or None,
+        f"loss_map.{other}": getattr(case.loss_map, other, None),
+    }
+    for key in (key for key, given in asked.items() if given is not None):
+        plural = "s" * key.endswith("s")
+        told = f"{gears.carries}; give {wanted}{plural} in place of {other}{plural}"
+        raise InputError(told, key=key)
     if getattr(point, wanted) is None:
         missing = f"is missing{_needed(('operation', wanted), Case)}"
         raise InputError(missing, key=f"operation.{wanted}")
-    if wanted == "force" and case.loss_map is not None:
+    if not gears.transmits and case.loss_map is not None:
         raise InputError(
             "a loss map runs over the torque of an output, which a test rig does not have; leave this "
             "table out",
             key="loss_map",
         )
-
-
-_CARRIED = {
-    "torque": "gears carry a torque",
-    "force": "a test rig is loaded by a normal force",
-}
 
 
 def _check_meant(case: Case) -> None:
@@ -837,21 +840,28 @@ def _check_driver(case: Case) -> None:
         )
 
 
-def _check_losses(losses: Mapping[str, Loss], bodies: Sequence[str]) -> None:
-    """InputError if losses arise between bodies that do not exist, or bearings have no span."""
-    _check_bodies(losses, bodies)
-    for body in bodies:
+def _check_losses(
+    losses: Mapping[str, Loss], turning: Sequence[str], bodies: Sequence[str]
+) -> None:
+    """InputError if losses arise between bodies that do not turn, or bearings have no span."""
+    _check_bodies(losses, turning, bodies)
+    for body in turning:
         _check_span(body, bearings_of(losses, body))
 
 
-def _check_bodies(losses: Mapping[str, Loss], bodies: Sequence[str]) -> None:
-    """InputError if losses arise between bodies that the drive does not have."""
-    known = (*bodies, "housing")
+def _check_bodies(
+    losses: Mapping[str, Loss], turning: Sequence[str], bodies: Sequence[str]
+) -> None:
+    """InputError if losses arise between bodies that the drive does not have, or that travel."""
+    known = (*turning, "housing")
     for name, loss in losses.items():
         first, second = loss.between
         strange = next((body for body in loss.between if body not in known), None)
         told = (
-            f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
+            f"{shown(strange)} travels, and losses are torques between bodies that turn; name two of "
+            f"{', '.join(known)}"
+            if strange in bodies
+            else f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
             if strange is not None
             else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
         )

@@ -20,7 +20,9 @@ from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.input.quantities import Quantity, SIValue
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.results.variables import End
 
 __all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
 
@@ -142,6 +144,17 @@ class BuiltDrive:
         return self.stages
 
     @property
+    def travels(self) -> frozenset[End]:
+        """Those of driver and loaded shaft that travel in place of turning."""
+        ends: dict[End, Built] = {"driver": self.stages[0], "loaded": self.stages[-1]}
+        return frozenset(end for end, one in ends.items() if end in one.travels)
+
+    @property
+    def carried(self) -> Quantity:
+        """What the output takes, torque or force."""
+        return self.stages[-1].carried
+
+    @property
     def driver(self) -> str:
         """Name of the shaft that drives."""
         return f"shaft {1 if self.numbers[0] == 1 else len(self.numbers) + 1}"
@@ -186,11 +199,10 @@ class BuiltDrive:
         """The same drive with its output driving, see `Built.backwards`."""
         step = float(np.abs(self.motion[-1] / self.motion[0]))
         point = self.case.operation
-        changed = point.model_copy(
-            update={"torque": point.load * step, "speed": point.speed * step}
-        )
-        turned = self.design.driven_backwards()
         stages = tuple(one.backwards for one in reversed(self.stages))
+        load = {"torque": None, "force": None, stages[-1].carried.kind: point.load * step}
+        changed = point.model_copy(update={**load, "speed": point.speed * step})
+        turned = self.design.driven_backwards()
         warm = [
             replace(place, design=replace(place.design, solids=one.design.solids))
             for place, one in zip(turned.stages, stages, strict=True)
@@ -225,7 +237,7 @@ def ready(case: Case | DriveCase, document: Document, own: FrictionLaw | None = 
 
 def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> BuiltDrive:
     numbers = range(1, len(case.stages) + 1)
-    documents = [_of_stage(document, number) for number in numbers]
+    documents = [_of_stage(case, document, number) for number in numbers]
     alone: list[Case] = []
     for number, inside in zip(numbers, documents, strict=True):
         with _told_of_stage(document, number):
@@ -251,13 +263,15 @@ def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> Buil
     return replace(made, told=(*made.told, *[TEETH_ALONE] * bool(made.covers)))
 
 
-def _of_stage(document: Document, number: int) -> Document:
+def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     """A stage as a case of its own: its tables, and those of the drive for what it leaves out."""
     whole, stage = document.tree, document.tree[STAGES][str(number)]
     tree: Tree = {key: stage.get(key, whole[key]) for key in _OF_STAGE if key in {*stage, *whole}}
     tree |= {key: {**whole.get(key, {}), **stage.get(key, {})} for key in _SHARED}
     tree |= {key: stage[key] for key in ("gears", "losses") if key in stage}
-    tree["operation"] = dict(whole["operation"])
+    load = case.stages[str(number)].gears.load
+    kept = {key: whole["operation"][key] for key in ("speed", "temperature")}
+    tree["operation"] = {**kept, load: SIValue(case.operation.load)}
     if "driver" in stage:
         tree["operation"]["driver"] = stage["driver"]
     return Document(document.name, tree, _marks(document.provenance, number, stage))
@@ -377,7 +391,7 @@ def _points(point: Operating, alone: Sequence[Case], document: Document) -> list
     speeds = point.speed * np.cumprod([1.0, *steps[:-1]])
     loads = point.load * np.cumprod([1.0, *steps[:0:-1]])[::-1]
     return [
-        one.operation.model_copy(update={"torque": float(load), "speed": float(speed)})
+        one.operation.model_copy(update={one.gears.load: float(load), "speed": float(speed)})
         for one, load, speed in zip(alone, loads, speeds, strict=True)
     ]
 

@@ -29,7 +29,7 @@ class OperatingPoint:
     """Where a variant is run.
 
     Attributes:
-        torque: of the loaded member [N m].
+        torque: of the loaded member [N m], or force on one that travels [N].
         speed: of the driver [rad/s].
         temperature: of the oil [K].
     """
@@ -188,8 +188,9 @@ def same_geometry(first: Outcome, second: Outcome) -> bool:
 
 
 def _point(outcome: Outcome) -> dict[str, float]:
-    names = ("torque", "speed", "temperature")
-    return {name: number(outcome, "operation", name) for name in names}
+    load = "torque" if given(outcome, "operation", "torque") is not None else "force"
+    names = {"torque": load, "speed": "speed", "temperature": "temperature"}
+    return {name: number(outcome, "operation", key) for name, key in names.items()}
 
 
 def _period(outcome: Outcome) -> dict[str, Any]:

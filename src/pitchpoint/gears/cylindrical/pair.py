@@ -12,8 +12,8 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
-from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, contact_lines, lanes_for
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
@@ -32,21 +32,11 @@ from pitchpoint.roots import hypot, root
 
 __all__ = ["CylindricalPair", "zero_backlash_centre_distance"]
 
-# Few values, so that few programs are compiled for many pairs.
-_LANES_FOR_RATIO_BELOW = (2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 24.0)
-
-SLICES = 12
-"""Slices of each contact line of helical gears, an even number: midpoints, so errors fall with its square."""
-
 RIM_RATIO = 1.0 / 0.3
 """Root radius over bore radius where no bore is given."""
 
 RING_RIM_RATIO = 1.2
 """Outer over root radius of a ring where it is not given."""
-
-# Share of the face width that a contact line has at least while it is in mesh: a length of zero has
-# no load per length.
-_SHORTEST = 1e-9
 
 
 def zero_backlash_centre_distance(
@@ -502,7 +492,13 @@ class CylindricalPair(Mesh):
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
         line, side = self.line, self._side
-        across, share = self._lines(entered, line)
+        across, share = contact_lines(
+            entered,
+            transverse_ratio=line.transverse_contact_ratio,
+            overlap_ratio=line.overlap_ratio if self.helical else None,
+            pitch_path=line.pitch_path,
+            slices=self.slices,
+        )
         path = jnp.broadcast_to(entered, jnp.shape(across))
         if self.helical:
             path = entered - line.overlap_ratio * across
@@ -651,33 +647,6 @@ class CylindricalPair(Mesh):
         start, end = self.limits
         return jnp.stack([start, self.tangent_length - end])
 
-    def _lines(
-        self, entered: Float[Array, "pair 1 *b"], line: LineOfAction
-    ) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
-        """Middles of the slices of each contact line, and the share of the face that each slice takes.
-
-        Both are parts of the face width, counted from the end that enters first. Half of the slices
-        lie on each side of the pitch line, so that sliding changes its sense in no slice.
-
-        Args:
-            entered: base pitches since the pair entered.
-            line: of the pair.
-        """
-        if not self.helical:
-            whole = jnp.zeros_like(entered)
-            return _sliced(whole, whole + 1.0, self.slices)
-        overlap = line.overlap_ratio
-        low = jnp.clip((entered - line.transverse_contact_ratio) / overlap, 0.0, 1.0)
-        high = jnp.clip(entered / overlap, 0.0, 1.0)
-        if self.slices == 1:
-            return (low + high) / 2.0, jnp.maximum(high - low, _SHORTEST)
-        pitch_line = jnp.clip((entered - line.pitch_path) / overlap, low, high)
-        parts = [
-            _sliced(*ends, self.slices // 2) for ends in ((low, pitch_line), (pitch_line, high))
-        ]
-        middles, shares = zip(*parts, strict=True)
-        return jnp.concatenate(middles, axis=1), jnp.concatenate(shares, axis=1)
-
     @property
     def _side(self) -> Float[Array, ""]:
         return jnp.where(self.right_flank, -1.0, 1.0)
@@ -716,24 +685,6 @@ class CylindricalPair(Mesh):
             crossing=self.crossing[index],
             internal=self.internal and index == 1,
         )
-
-
-def _sliced(
-    low: Float[Array, "pair 1 *b"], high: Float[Array, "pair 1 *b"], count: int
-) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
-    """Middles and lengths of equal slices between two ends."""
-    share = jnp.maximum(high - low, _SHORTEST) / count
-    middle = (jnp.arange(count) + 0.5).reshape(-1, *([1] * (low.ndim - 2)))
-    return low + middle * share, jnp.broadcast_to(share, (low.shape[0], count, *low.shape[2:]))
-
-
-def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
-    """Static count of pairs to hold for a contact ratio: few values, so that few programs are compiled."""
-    for limit in _LANES_FOR_RATIO_BELOW:
-        if contact_ratio < limit:
-            return max(int(limit), 3) if helical else int(limit)
-    message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
-    raise InputError(message, value=contact_ratio)
 
 
 def build_cylindrical_pair(
@@ -819,7 +770,7 @@ def build_cylindrical_pair(
     short = tuple(asked and bool(one < least_tip) for one in np.asarray(thickness))
     if any(short):
         pair, ratio, _, _ = _complete(dataclasses.replace(pair, shortened=(short[0], short[1])))
-    if not 0.0 < float(ratio) < _LANES_FOR_RATIO_BELOW[-1]:
+    if not 0.0 < float(ratio) < LARGEST_CONTACT_RATIO:
         check_cylindrical(pair)  # says why, in gear words
     return dataclasses.replace(pair, lanes=lanes_for(float(ratio), helical=helical))
 
