@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.drive import Drive, DriveCycle, drive_cycle
 from pitchpoint.efficiency.quasi_static import Engagement, Models, Operation, State
 from pitchpoint.efficiency.rows import CHUNK, NODES
@@ -119,6 +120,7 @@ def _of_drive(found: DriveCycle) -> dict[str, Array]:
         "mean_input_torque": found.mean_input_torque,
         "min_input_torque": torque_low,
         "max_input_torque": torque_high,
+        "mean_friction": _mean_friction(found),
         "residual": _worst(found, jnp.max, lambda one: one.balance.residual),
         "iterations": jnp.max(jnp.stack([jnp.max(s.balance.iterations) for s in found.states])),
         "locked": found.locked,
@@ -127,6 +129,18 @@ def _of_drive(found: DriveCycle) -> dict[str, Array]:
         "nearest_jamming_coefficient": limit,
         "largest_contact_force_ratio": _worst(found, jnp.max, lambda one: one.contact_force_ratio),
     }
+
+
+def _mean_friction(found: DriveCycle) -> Array:
+    """Friction coefficient weighted with the load of the contacts of all stages [point]."""
+    normal = weighted = jnp.zeros(())
+    for k, one in enumerate(found.states):
+        ahead = (..., *(None for _ in range(k)))
+        load = one.balance.load
+        normal = normal + total(load)[ahead]
+        weighted = weighted + total(load * one.balance.friction)[ahead]
+    loaded = normal > 0.0
+    return found.mean(jnp.where(loaded, weighted / jnp.where(loaded, normal, 1.0), 0.0))
 
 
 def _worst(

@@ -29,6 +29,7 @@ from pitchpoint.views.maps import efficiency_panel, map_panel
 from pitchpoint.views.plane_of_action import plane_of_action
 from pitchpoint.views.running import bearing_answer, drag_answer, drag_panel, starting_answer
 from pitchpoint.views.sliding import sliding_figure
+from pitchpoint.views.stages import has_stages, stage_answer
 from pitchpoint.views.stiffness import (
     outside_standard,
     pair_key,
@@ -111,12 +112,13 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
     drawn = {name: one for name, one in outcomes.items() if has_path(one)}
     waves = {name: one for name, one in outcomes.items() if has_wave(one)}
     toothed = drawn | waves
+    staged = {name: one for name, one in outcomes.items() if has_stages(one)}
     panels = {
         "path": path_panel(drawn, known) if drawn else Panel("", []),
         "arc": arc_panel(waves, known),
         "cycle": cycle_panel(toothed, known) if toothed else Panel("", []),
         "drag": drag_panel(outcomes, known),
-        "map": map_panel(toothed, known) if toothed else Panel("", []),
+        "map": map_panel(toothed | staged, known) if toothed | staged else Panel("", []),
         "efficiency": efficiency_panel(_lossy(toothed), known),
     }
     sweeps = study_panels(outcomes, known)
@@ -318,7 +320,7 @@ def _answer(outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str
             for name in _at_contact(data)
         ],
         "drag": drag_answer(outcome, position),
-        "bearings": bearing_answer(outcome, position),
+        "bearings": [*stage_answer(outcome, position), *bearing_answer(outcome, position)],
         "starting": starting_answer(outcome, law),
     }
 

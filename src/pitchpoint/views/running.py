@@ -66,6 +66,8 @@ def bearing_answer(outcome: Outcome, law: int) -> list[tuple[str, str]]:
         ("radial load on the shafts", "radial"),
         ("axial load on the shafts", "axial"),
     ):
+        if f"{name}_reaction_1" not in data:
+            continue
         both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
         if any(both):
             shown = dict.fromkeys(show.quantity(f"{name}_reaction_1", value) for value in both)

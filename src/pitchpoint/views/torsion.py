@@ -25,6 +25,7 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
+from pitchpoint.views.stages import stage_wind_up
 from pitchpoint.views.wave import ANGLE
 
 __all__ = ["torsion_answer", "torsion_panels"]
@@ -59,13 +60,19 @@ def torsion_answer(outcome: Outcome) -> str:
     values = {
         name: float(np.interp(at, data["torque"], data[name]))
         for name in ("torsional_stiffness", "wind_up", "loaded_pairs")
+        if name in data
     }
     if not np.isfinite([*values.values()]).all():
         return "no equilibrium was found at the operating point"
     told = {name: level(name, value) for name, value in values.items()}
     return (
         f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
-        f"{told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in the mean"
+        f"{told['wind_up']}"
+        + (
+            f" and {told['loaded_pairs'].strip()} pairs carry in the mean"
+            if "loaded_pairs" in told
+            else ""
+        )
         + _free(float(data["lost_motion"]))
         + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
     )
@@ -81,13 +88,18 @@ def _free(lost_motion: float) -> str:
 def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
     data = outcome.parts["torsion"]
     figures = [
-        _distribution(f"{name}_load", data),
-        _loop(f"{name}_loop", variant, data, known),
+        *([_distribution(f"{name}_load", data)] if "tooth_force" in data else []),
+        *([_loop(f"{name}_loop", variant, data, known)] if "loading_torque" in data else []),
         _against(
             f"{name}_stiffness", "torsional_stiffness", "Torsional stiffness", data, _STIFFNESS
         ),
-        _against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS),
-        _over_cycle(f"{name}_error", data),
+        *(
+            [_against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS)]
+            if "loaded_pairs" in data
+            else []
+        ),
+        *stage_wind_up(f"{name}_stages", data),
+        *([_over_cycle(f"{name}_error", data)] if "phase" in data else []),
         _against(
             f"{name}_range",
             "angular_transmission_error_range",
