@@ -73,7 +73,8 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
         note="teeth and what is under them yield; shafts, bearings and housing are not in it",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
-    data["torsional_stiffness"].attrs.update(covers=built.stages[0].design.mesh.yielding[0])
+    yields = dict.fromkeys(one.design.mesh.yielding[0] for one in built.stages)
+    data["torsional_stiffness"].attrs.update(covers="; ".join(yields))
     return data
 
 

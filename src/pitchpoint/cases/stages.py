@@ -100,7 +100,8 @@ class BuiltDrive:
 
     def _acting(self, models: Sequence[Models]) -> Acting:
         own = self.own_friction
-        free = [one.law for one, mine in zip(models, own, strict=True) if all(own) or not mine]
+        each = sorted(zip(self.numbers, models, own, strict=True), key=lambda one: one[0])
+        free = [one.law for _, one, mine in each if all(own) or not mine]
         named = list(dict.fromkeys(free))
         if len(named) == 1:
             return Acting(named[0], tuple(models))

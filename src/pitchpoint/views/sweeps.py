@@ -169,4 +169,4 @@ def _ratio(data: xr.Dataset) -> tuple[np.ndarray, str]:
 
 
 def _ratio_varies(data: xr.Dataset) -> bool:
-    return bool(np.ptp(data["contact_ratio"].values) > 1e-6)
+    return "contact_ratio" in data and bool(np.ptp(data["contact_ratio"].values) > 1e-6)
