@@ -200,8 +200,55 @@ speed = "200 rpm"
 temperature = "60 degC"
 """)
 
+DRIVE = tomllib.loads("""
+[stages.1]
+driver = "gear 1"
+place = "0 mm"
+turn = "0 deg"
+
+[stages.1.gears]
+flank = "left"
+teeth = [23, 61]
+module = "2 mm"
+face_width = "20 mm"
+
+[stages.1.materials]
+gear_1 = "steel"
+
+[stages.1.lubricant]
+name = "pao-vg-100"
+
+[stages.1.roughness]
+ra = "0.3 um"
+
+[stages.1.models]
+friction = "constant"
+
+[stages.1.losses.between_its_gears]
+between = ["gear 1", "gear 2"]
+seal_torque = "0.1 N m"
+
+[stages.2.gears]
+teeth = [19, 70]
+module = "3 mm"
+face_width = "30 mm"
+
+[losses.seal]
+between = ["shaft 3", "housing"]
+seal_torque = "0.1 N m"
+
+[loss_map]
+count = 3
+""")
+DRIVE |= {key: BASE[key] for key in ("title", "summary", "source", "lubricant", "roughness")}
+DRIVE |= {key: BASE[key] for key in ("materials", "housing", "issues")}
+DRIVE |= {"operation": {k: v for k, v in BASE["operation"].items() if k != "driver"}}
+DRIVE |= {"models": {"friction": "constant"}, "studies": {"cold": {"title": "cold"}}}
+DRIVE |= {"targets": [{**BASE["targets"][0], "study": "cold", "variable": "mean_loss"}]}
+
 BASES = {
     "cylindrical": BASE,
+    "drive": DRIVE,
     "strain wave": STRAIN_WAVE,
     "involute": INVOLUTE,
     "rack": GANTRY,
@@ -315,6 +362,10 @@ def put(bad: Bad) -> dict[str, Any]:
 
 
 TABLES = [table for walk in WALKS for table in tables(*walk)]
+TABLES += [
+    (schema.DriveCase, "drive", ()),
+    (schema.StageTable, "drive", ("stages", "1")),
+]
 SITES = [site for model, base, path in TABLES for site in places(base, model, path)]
 
 
@@ -542,6 +593,83 @@ def bad_names() -> Iterator[Bad]:
     yield Bad("variant", ("variants",), {"a": 3}, ("3", "table"), "variants.a")
 
 
+def bad_stages() -> Iterator[Bad]:
+    """What is wrong with stages that are sound each by itself."""
+    second, ball = ("stages", "2", "gears"), RIG["gears"]
+    rack = {key: value for key, value in GANTRY["gears"].items() if key != "mass"}
+    seal = {"seal_torque": "0.1 N m"}
+    for name, path, value, words, key in [
+        ("none", ("stages",), [], ("no stage was given", "[[stages]]"), "stages: "),
+        ("six", ("stages",), [{}] * 6, ("6 were given; allowed are at most 5",), "stages: "),
+        ("a gap", ("stages",), {"1": {}, "3": {}}, ("there is no stage 2",), "stages: "),
+        ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
+        ("dynamics", ("dynamics",), {}, ("computed for one mesh",), "dynamics: "),
+        (
+            "left",
+            (*second, "flank"),
+            "left",
+            ("turns against", "leave flank"),
+            "stages.2.gears.flank",
+        ),
+        (
+            "teeth",
+            (*second, "teeth"),
+            [1, 70],
+            ("gear 1 was given 1 teeth",),
+            "stages.2.gears.teeth",
+        ),
+        (
+            "pointed",
+            (*second, "profile_shift"),
+            [1.6, 0],
+            ("tip circle",),
+            "stages.2.gears.addendum",
+        ),
+        ("width", (*second, "face_widht"), 1, ("face_width",), "stages.2.gears.face_widht"),
+        ("rig", second, ball, ("a test rig transmits nothing",), "stages.2.gears.family"),
+        ("rack", ("stages", "1", "gears"), rack, ("turns no shaft",), "stages.1.gears.family"),
+        ("force", ("operation", "force"), "3 N", ("carry a torque",), "operation.force"),
+        ("path", ("models", "averaging"), "path", ("several meshes",), "models.averaging"),
+        ("driver", ("operation", "driver"), "gear 1", ("[[stages]]",), "operation.driver"),
+        ("member", ("stages", "2", "driver"), "gear 3", ("gear 1 or gear 2",), "stages.2.driver"),
+        (
+            "sharing",
+            ("models", "load_sharing"),
+            "sanchez",
+            ("sanchez_2017",),
+            "models.load_sharing",
+        ),
+        (
+            "shaft",
+            ("losses",),
+            {"oil": {"between": ["shaft 4", "housing"], **seal}},
+            ('"shaft 4" is no body of this drive', "shaft 2"),
+            "losses.oil.between",
+        ),
+        (
+            "far shafts",
+            ("losses",),
+            {"oil": {"between": ["shaft 1", "shaft 3"], **seal}},
+            ("between shafts that no stage of the drive has in common",),
+            "losses.oil.between",
+        ),
+        (
+            "in the housing",
+            ("stages", "1", "losses"),
+            {"oil": {"between": ["gear 2", "housing"], **seal}},
+            ("may carry two meshes", "[losses]"),
+            "stages.1.losses.oil.between",
+        ),
+    ]:
+        yield Bad(f"stages {name}", path, value, words, key, "drive")
+    three = ["constant", "xu_2007", "iso_tr_14179_2"]
+    told = ("2 friction laws were given where another stage has 3",)
+    stages = copy.deepcopy(DRIVE["stages"])
+    stages["1"]["models"]["friction"] = three[:2]
+    stages["2"]["models"] = {"friction": three}
+    yield Bad("stages laws", ("stages",), stages, told, "stages.1.models.friction", "drive")
+
+
 def bad_drives() -> Iterator[Bad]:
     for name, path, value, words in [
         ("fixed", ("operation", "driver"), "circular spline", ("fixed", "wave generator or flex")),
@@ -601,12 +729,13 @@ LISTED = [
     *bad_targets(),
     *bad_names(),
     *bad_drives(),
+    *bad_stages(),
 ]
 REQUIRED = [
     (base, (*path, name))
     for model, base, path in TABLES
     for name, info in model.model_fields.items()
-    if info.is_required()
+    if info.is_required() and name != "stages"  # without it a case has one mesh
 ] + [("cylindrical", ("operation", "torque")), ("rig", ("operation", "force"))]
 
 
@@ -949,7 +1078,10 @@ def test_nothing_to_cite(name: str, refuse: Callable[..., str], tmp_path: Path) 
         (["--sweep", "gears.module"], ["--sweep: ", "KEY=START:STOP:COUNT"]),
         (["--sweep", "=1 mm:2 mm:3"], ["--sweep: ", "known are", "gears"]),
         (["--sweep", "operation.driver=1:2:3"], ["--sweep: operation.driver: ", "no number"]),
-        (["--sweep", "title=1:2:3"], ["--sweep: title: cannot be swept", "gears, materials"]),
+        (
+            ["--sweep", "title=1:2:3"],
+            ["--sweep: title: cannot be swept", "gears, stages, materials"],
+        ),
         (["--sweep", "models.friction=1:2:3"], ["--sweep: models.friction: cannot be swept"]),
         (["--sweep", "gears.addendum=1:2.1:3"], ["--sweep: at gears.addendum = 2.1: ", "2.158"]),
         (["--bogus"], ["No such option: --bogus; see pitchpoint --help"]),

@@ -202,7 +202,7 @@ def resolve(
 def _numbered(tree: Tree) -> Tree:
     """Tables with a list of stages as tables by number, so that each value has a dotted key."""
     given = tree.get(STAGES)
-    if not isinstance(given, list) or not given:
+    if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
         return tree
     return {**tree, STAGES: {str(number): one for number, one in enumerate(given, 1)}}
 

@@ -1146,5 +1146,7 @@ def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
         return f"; a case file needs the tables {', '.join(needed)}"
     if get_origin(info.annotation) is tuple:
         return "; write a list"
+    if alternatives(info.annotation):
+        return "; write a table"
     options = getattr(info.annotation, "__args__", ())
     return f"; use one of {', '.join(options)}" if options else "; write text"

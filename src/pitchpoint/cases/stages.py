@@ -15,7 +15,7 @@ from pitchpoint.cases.build import TEETH_ALONE, Built, build, drags, operation_a
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.schema import Case, DriveCase, Operating, StageTable, validated
-from pitchpoint.efficiency.drive import Drive, Stage, chained
+from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import built_gears
@@ -410,7 +410,13 @@ def _drive(case: DriveCase, built: Sequence[Built]) -> Drive:
         inner.add(frozenset(bearing))
     still = [f"held {number}" for number in range(held)]
     bodies = (*case.bodies, *still)
-    return chained(stages, drags(case.losses, bodies, inner - {frozenset()}))
+    placed = drags(case.losses, bodies, inner - {frozenset()})
+    for name, drag in zip(case.losses, placed, strict=True):
+        try:
+            owner(drag, stages)
+        except InputError as error:
+            raise error.at(key=f"losses.{name}.between") from None
+    return chained(stages, placed)
 
 
 def _on_shafts(one: Built, first: int, free: int) -> dict[str, int]:

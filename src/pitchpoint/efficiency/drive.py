@@ -27,9 +27,10 @@ from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.programs import program
 from pitchpoint.status import Status
 
-__all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "output_wind_up"]
+__all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "output_wind_up", "owner"]
 
 Each = Float[Array, "*#b"]
+Meetings = Float[Array, "..."]
 
 
 class Stage(eqx.Module):
@@ -120,7 +121,7 @@ def chained(stages: Sequence[Stage], drag: Sequence[Drag] = ()) -> Drive:
                 f"stage {number} turns its first shaft against the stage before it; the other flanks of its "
                 'gears do not, gears.flank = "right"'
             )
-    owners = tuple(_owner(one, stages, links) for one in drag)
+    owners = tuple(owner(one, stages) for one in drag)
     return Drive(tuple(stages), tuple(drag), tuple(links), owners)
 
 
@@ -131,13 +132,21 @@ def _ends(stage: Stage) -> tuple[int, int]:
     return first, last
 
 
-def _owner(drag: Drag, stages: Sequence[Stage], links: Sequence[tuple[int, int]]) -> int:
-    """Number of the stage that overcomes a loss."""
+def owner(drag: Drag, stages: Sequence[Stage]) -> int:
+    """Number of the stage that overcomes a loss, see `Drive.owners`.
+
+    Args:
+        drag: where it arises, in the shafts of the drive.
+        stages: from the input to the output.
+
+    Raises:
+        InputError: it is between shafts that no stage has in common.
+    """
     shafts = {int(shaft) for shaft in np.flatnonzero(np.asarray(drag.between))}
     having = [number for number, stage in enumerate(stages) if shafts <= {*stage.shafts}]
     if not having:
         raise InputError("is between shafts that no stage of the drive has in common")
-    loading = [number for number in having if links[number][1] in shafts]
+    loading = [number for number in having if _ends(stages[number])[1] in shafts]
     return (loading or having)[0]
 
 
@@ -166,7 +175,7 @@ class DriveCycle(eqx.Module):
     nodes: int = eqx.field(static=True)
     smooth: tuple[bool, ...] = eqx.field(static=True)
 
-    def mean(self, values: Float[Array, "*#b"], stage: int = 0) -> Each:
+    def mean(self, values: Meetings, stage: int = 0) -> Meetings:
         """Mean over the periods of a stage and of those behind it.
 
         Args:
@@ -193,7 +202,7 @@ class DriveCycle(eqx.Module):
         """Mean torque at the input [N m]."""
         return self.mean(self.input_torque)
 
-    def extremes(self, values: Float[Array, "*#b"]) -> tuple[Each, Each]:
+    def extremes(self, values: Meetings) -> tuple[Meetings, Meetings]:
         """Smallest and largest value over all meetings of phases, between the nodes too.
 
         Args:
@@ -326,8 +335,8 @@ def _braked(drive: Drive, number: int, behind: State | None) -> tuple[Drag, ...]
     """
     stage, (_, last) = drive.stages[number], drive.links[number]
     found = []
-    for owner, drag in zip(drive.owners, drive.drag, strict=True):
-        if owner != number:
+    for own, drag in zip(drive.owners, drive.drag, strict=True):
+        if own != number:
             continue
         seat = drag.seat
         if isinstance(seat, Bearing):

@@ -1,0 +1,213 @@
+"""Drives of several meshes from a case file, beside their stages from files of their own."""
+
+import tomllib
+from functools import cache
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+from pitchpoint.analyses.loss_map import LOSS_MAP
+from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
+from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.cases.stages import BuiltDrive
+from pitchpoint.cases.variant import Variant
+from pitchpoint.efficiency.drive import drive_cycle
+
+COMMON = """
+[lubricant]
+name = "pao-vg-150"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "300 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+[models.friction]
+name = "constant"
+coefficient = 0.06
+[loss_map]
+torque = "300 N m"
+speed = "1500 rpm"
+temperatures = ["60 degC"]
+count = 2
+"""
+FIRST = "teeth = [23, 61]\nmodule = '2 mm'\nface_width = '18 mm'\n"
+SECOND = "teeth = [19, 70]\nmodule = '3 mm'\nface_width = '30 mm'\n"
+TWO = f"[[stages]]\n[stages.gears]\n{FIRST}[[stages]]\n[stages.gears]\n{SECOND}{COMMON}"
+RATIOS = 61 / 23, 70 / 19
+RATIO = RATIOS[0] * RATIOS[1]
+SPEED, LOAD = 1500.0 * np.pi / 30.0, 300.0
+
+
+def built(text, **settings):
+    return Variant(tomllib.loads(text), "drive.toml", "default", settings).built({})
+
+
+@cache
+def two():
+    return built(TWO)
+
+
+def part(analysis, case, piece=None):
+    return analysis.compute(case, piece or {}, lambda _: None)
+
+
+@cache
+def operation():
+    return part(OPERATION, two())
+
+
+def alone(gears, **settings):
+    """A stage in a file of its own."""
+    return built(f"[gears]\n{gears}{COMMON}", **settings)
+
+
+def figure(data, name):
+    return float(data[name].values[0, 0])
+
+
+def test_the_second_stage_turns_the_other_way_and_so_presses_its_right_flanks():
+    case = two()
+    assert [one.case.gears.flank for one in case.stages] == ["left", "right"]
+    np.testing.assert_allclose(case.motion, [1.0, -1.0 / RATIOS[0], 1.0 / RATIO], rtol=1e-14)
+    assert [one.case.operation.load for one in case.stages] == pytest.approx(
+        [LOAD / RATIOS[1], LOAD]
+    )
+    assert case.stages[1].case.operation.speed == pytest.approx(SPEED / RATIOS[0])
+
+
+def test_a_ring_needs_no_other_flank():
+    ring = "teeth = [20, -61]\nmodule = '2 mm'\nface_width = '18 mm'\naddendum = [1.0, 0.8]\n"
+    case = built(TWO.replace(FIRST, ring))
+    assert [one.case.gears.flank for one in case.stages] == ["left", "left"]
+
+
+@eqx.filter_jit
+def meetings(drive, operation, models):
+    found = drive_cycle(drive, operation, models, nodes=4)
+    lost = sum(one.loss[(..., *[None] * k)] for k, one in enumerate(found.states))
+    return found.input_torque, lost, found.states[-1].output_power[..., None]
+
+
+def test_torque_route_equals_loss_route_at_every_meeting_of_phases():
+    case = two()
+    at_meetings = meetings(case.design, case.operation, case.models[0].stages)
+    torque, lost, out = map(np.asarray, at_meetings)
+    assert torque.shape == (12, 12)
+    rounding = 1e-14 * np.max(torque * SPEED)
+    np.testing.assert_allclose(torque * SPEED - out, lost, rtol=1e-10, atol=rounding)
+
+
+def test_with_a_constant_coefficient_the_efficiency_is_the_product_of_those_of_the_stages():
+    slow = f"{1500.0 / RATIOS[0]!r} rpm"
+    second = {"operation.speed": slow, "gears.flank": "right"}
+    cases = alone(FIRST, **{"operation.torque": "81 N m"}), alone(SECOND, **second)
+    first, last = (figure(part(OPERATION, one), "mean_efficiency") for one in cases)
+    data = operation()
+    assert figure(data, "mean_efficiency") == pytest.approx(first * last, rel=1e-12)
+    np.testing.assert_allclose(data["stage_efficiency"].values[0, 0], [first, last], rtol=1e-12)
+
+
+def test_losses_of_the_stages_are_what_goes_in_and_does_not_come_out():
+    data = operation()
+    put_in = figure(data, "mean_input_torque") * SPEED
+    lost = figure(data, "mean_loss")
+    assert put_in - LOAD * SPEED / RATIO == pytest.approx(lost, rel=1e-10)
+    assert float(data["stage_loss"].sum()) == pytest.approx(lost, rel=1e-12)
+    ripple = figure(data, "max_input_torque") - figure(data, "min_input_torque")
+    assert figure(data, "torque_ripple") == pytest.approx(ripple, rel=1e-12)
+    assert figure(data, "mean_friction") == pytest.approx(0.06, rel=1e-12)
+
+
+def test_one_stage_is_the_plain_case():
+    case = built(f"[[stages]]\n[stages.gears]\n{FIRST}{COMMON}")
+    plain = alone(FIRST)
+    assert isinstance(case, BuiltDrive)
+    found, beside = part(OPERATION, case), part(OPERATION, plain)
+    shared = [name for name in found if name in beside]
+    assert {"mean_efficiency", "torque_ripple", "min_efficiency", "mean_friction"} <= {*shared}
+    for name in shared:
+        np.testing.assert_allclose(found[name], beside[name], rtol=1e-12, atol=1e-15, err_msg=name)
+
+
+def test_the_loss_map_is_the_operating_point_at_its_node():
+    case, data = two(), operation()
+    pieces = LOSS_MAP.pieces(case)
+    whole = LOSS_MAP.joined(case, [part(LOSS_MAP, case, piece) for piece in pieces])
+    for name in ("mean_loss", "mean_efficiency"):
+        corner = float(whole[name].values[0, -1, -1, 0])
+        assert corner == pytest.approx(figure(data, name), rel=1e-12)
+    assert np.isnan(whole["mean_efficiency"].values[0, 0, 0, 0])
+    assert not whole["mean_loss"].values[0, :, 0].any()
+
+
+def test_the_drive_backwards_locks_before_it_does_forwards():
+    shifted = {"stages.1.gears.profile_shift": [0.3, 0.1], "stages.2.gears.profile_shift": [0.4, 0]}
+    case = built(TWO, **shifted)
+    data = part(BACK_DRIVING, case)
+    assert not data["locked"].values.any()
+    assert data["stage"].values.tolist() == [2, 1]
+    limit = figure(data, "jamming_coefficient")
+    assert limit < figure(part(OPERATION, case), "jamming_coefficient")
+    level = "models.friction.coefficient"
+    locked = {
+        factor: part(BACK_DRIVING, built(TWO, **shifted, **{level: factor * limit}))
+        for factor in (0.999, 1.001)
+    }
+    assert not locked[0.999]["locked"].values.any()
+    assert locked[1.001]["locked"].values.all()
+    assert np.isnan(figure(locked[1.001], "mean_efficiency"))
+
+
+def test_stiffness_at_the_output_is_that_of_springs_in_series():
+    by_stiffness = {"models.load_sharing": "from_stiffness"}
+    whole = part(TORSION, built(TWO, **by_stiffness))
+    load = f"{LOAD / RATIOS[1]!r} N m"
+    first = part(TORSION, alone(FIRST, **by_stiffness, **{"operation.torque": load}))
+    second = part(TORSION, alone(SECOND, **by_stiffness, **{"gears.flank": "right"}))
+    springs = [one["torsional_stiffness"].values for one in (first, second)]
+    series = 1.0 / (1.0 / (springs[0] * RATIOS[1] ** 2) + 1.0 / springs[1])
+    np.testing.assert_allclose(whole["torsional_stiffness"], series, rtol=1e-10)
+    turned = first["wind_up"].values / RATIOS[1] + second["wind_up"].values
+    np.testing.assert_allclose(whole["wind_up"], turned, rtol=1e-10)
+    np.testing.assert_allclose(whole["stage_wind_up"].sum("stage"), turned, rtol=1e-10)
+
+
+def test_torsion_says_which_stage_does_not_yield():
+    assert TORSION.why_not(two()).startswith("stage 1: nothing in the case asks how teeth yield")
+    one = {"stages.1.models.load_sharing": "from_stiffness"}
+    assert TORSION.why_not(built(TWO, **one)).startswith("stage 2: ")
+
+
+WAVE = """[stages.gears]
+family = "strain_wave"
+teeth = [100, 102]
+module = "0.4 mm"
+face_width = "10 mm"
+[stages.losses.inside]
+between = ["wave generator", "flexspline"]
+seal_torque = "0.02 N m"
+"""
+
+
+def test_a_spur_pair_before_a_strain_wave_gear_keeps_its_power():
+    text = f"[[stages]]\n[stages.gears]\n{FIRST}[[stages]]\n{WAVE}{COMMON}"
+    text = text.replace("300 N m", "25 N m")
+    case = built(text)
+    # The wave generator turns positively, so the pinion before it turns the other way.
+    assert case.stages[0].case.gears.flank == "right"
+    np.testing.assert_allclose(case.motion, [-1.0, 23 / 61, -23 / 61 / 50], rtol=1e-12)
+    data = part(OPERATION, case)
+    put_in, out = figure(data, "mean_input_torque") * SPEED, 25.0 * SPEED * 23 / 61 / 50
+    assert put_in - out == pytest.approx(figure(data, "mean_loss"), rel=1e-10)
+    inside = 0.02 * SPEED * 23 / 61 * (1.0 + 1.0 / 50)
+    np.testing.assert_allclose(data["stage_drag_loss"].values[0, 0], [0.0, inside], rtol=1e-10)
+    assert case.places == ["stage 2 inside"]
+
+
+def test_few_meetings_of_phases_are_told():
+    assert not [text for text in two().warnings if "meet" in text]
+    text = TWO.replace("[23, 61]", "[23, 60]").replace("[19, 70]", "[20, 70]")
+    (told,) = [text for text in built(text).warnings if "meet" in text]
+    assert told.startswith("On shaft 2 60 and 20 teeth mesh in a turn, with the common divisor 20")
