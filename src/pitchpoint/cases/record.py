@@ -182,6 +182,9 @@ class Manifest(_Kept):
         members: body of each coordinate.
         motion: nominal rate of each coordinate for one radian of the driver.
         period: driver angle after which the mesh repeats [rad].
+        pitch: what a period is.
+        against: why time runs against the phase of the mesh; empty where it does not.
+        lacks: by analysis why there is no such part, where the gears are the reason.
     """
 
     case: str
@@ -202,6 +205,9 @@ class Manifest(_Kept):
     members: list[str]
     motion: list[float]
     period: float
+    pitch: str = "period"
+    against: str = ""
+    lacks: dict[str, str] = {}
     averaging: str
     plastic: bool
     oil: str

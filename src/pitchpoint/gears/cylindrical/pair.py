@@ -24,6 +24,7 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
+from pitchpoint.gears.layers import DrawnBody, layers
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
@@ -40,6 +41,9 @@ SLICES = 12
 
 RIM_RATIO = 1.0 / 0.3
 """Root radius over bore radius where no bore is given."""
+
+_DRAWN_RIM = 0.8
+"""Thickness of the rim of a ring as drawn over the height of its teeth."""
 
 RING_RIM_RATIO = 1.2
 """Outer over root radius of a ring where it is not given."""
@@ -598,7 +602,7 @@ class CylindricalPair(Mesh):
         }
 
     def drawing(self) -> dict[str, Float[Array, "..."]]:
-        """Outline of one tooth of each gear, circles, points of the path; radii without sign [m]."""
+        """Layers of the picture, circles, points of the path; radii without sign [m]."""
         gears = self.gears
         radii = {
             "base_radius": self.base_radii,
@@ -612,7 +616,7 @@ class CylindricalPair(Mesh):
             "active_root_radius": hypot(self.base_radii, self._innermost),
         }
         return {
-            "outline": jnp.stack([gear.outline() for gear in gears]),
+            **self._layers(),
             "points": self.points,
             "teeth": self.teeth,
             **{name: jnp.abs(values) for name, values in radii.items()},
@@ -626,6 +630,60 @@ class CylindricalPair(Mesh):
             "specific_sliding_E": self.specific_sliding(self.limits[1]),
             **self.dimensions(),
         }
+
+    def _layers(self) -> dict[str, Float[Array, "..."]]:
+        """The transverse section at the middle of the face, gear 2 above gear 1, a ring below.
+
+        A contact line reaches that section half of the overlap ratio after it entered.
+        """
+        line, side = self.line, self._side
+
+        def on_line(position: Array) -> Array:
+            x = line.base_radii[0] * line.sine - position * line.cosine
+            return jnp.stack([side * x, line.base_radii[0] * line.cosine + position * line.sine])
+
+        path_start, path_end = line.limits
+        ends = jnp.stack([jnp.zeros(()), line.tangent_length])
+        both = jnp.concatenate([ends, line.limits])
+        action = jnp.stack([on_line(jnp.min(both)), on_line(jnp.max(both))])
+        path = jnp.stack([on_line(place) for place in line.limits])
+        edge = 1e-9 * line.base_pitch
+        inside = (self.points >= path_start - edge) & (self.points <= path_end + edge)
+        points = jnp.where(inside, self.points, jnp.nan)
+        step = on_line(line.base_pitch) - on_line(jnp.zeros(()))
+        return layers(
+            [self._body(member, on_line(line.limits[0])) for member in (0, 1)],
+            lines=jnp.stack([action, path]),
+            marks=jnp.stack([on_line(place) for place in (*points, *ends)]),
+            start=path[0] - line.overlap_ratio / 2.0 * step,
+            step=step,
+        )
+
+    def _body(self, member: int, entry: Float[Array, "2"]) -> DrawnBody:
+        """A gear in the picture, one tooth of which goes through the contact at A when that is there.
+
+        Args:
+            member: 0 or 1.
+            entry: place of the point A in the picture [m].
+        """
+        gear, line = self.gears[member], self.line
+        place = jnp.stack([jnp.zeros(()), member * line.distance])
+        x, y = entry - place
+        half = gear.side * gear.half_thickness_angle(hypot(x, y))
+        later = (1.0, -1.0)[member] * jnp.pi * line.overlap_ratio / gear.teeth
+        tip, root = (jnp.abs(radius) for radius in (gear.tip_radius, gear.root_radius))
+        rim = root + _DRAWN_RIM * jnp.abs(root - tip) if gear.internal else jnp.zeros(())
+        own = (jnp.abs(radii[member]) for radii in (self.working_radii, self.base_radii))
+        count = jnp.abs(gear.teeth)
+        return DrawnBody(
+            tooth=gear.outline(),
+            place=place,
+            turned=jnp.arctan2(-x, y) - self._side * (half + later),
+            levels=jnp.stack([tip, *own, root, rim]),
+            count=count,
+            pitch=2.0 * jnp.pi / count,
+            travel=jnp.zeros(2),
+        )
 
     def _frame(
         self, line: LineOfAction, position: Array, width: Array
