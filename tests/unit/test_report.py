@@ -435,6 +435,7 @@ def shown(**changes: Any) -> Outcome:
         "members": ["gear 1", "gear 2"],
         "motion": pair.motion.tolist(),
         "period": float(pair.period),
+        "travels": [],
         "pitch": "base pitch",
         "against": f"{driver} drives" if pair.onward < 0.0 else "",
     }

@@ -273,6 +273,7 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
         "members": list(MEMBERS),
         "motion": turning.tolist(),
         "period": 2.0 * pi / Z1 / abs(turning[1] - turning[0]),
+        "travels": [],
         "pitch": PATHS["wave"].pitch,
         "against": PATHS["wave"].against if turning[1] < turning[0] else "",
         "averaging": "base_pitch",

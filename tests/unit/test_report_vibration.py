@@ -179,6 +179,7 @@ def outcome(parts: Mapping[str, xr.Dataset], driver: str = "gear 1") -> Outcome:
         "members": ["gear 1", "gear 2"],
         "motion": [1.0, -4.0 / 51.0],
         "period": np.pi / 2.0,  # four teeth
+        "travels": [],
         "pitch": "base pitch",
         "against": "gear 2 drives" if driver == "gear 2" else "",
         "models": [{"effect": "load sharing", "name": "equal", "title": "equal", "note": ""}],

@@ -55,6 +55,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         {**common, **each},
         {"law": names},
         title="mesh cycle",
+        travels=built.travels,
         warnings=warnings,
         solve=told_of(locked_or_lost(each["locked"][1]), each["residual"][1]),
         film_law=built.case.models.film_thickness,

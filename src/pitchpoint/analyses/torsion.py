@@ -11,7 +11,6 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import WIND_UP, by_torque
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import TORQUE
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.quasi_static import coupling, engagement
 from pitchpoint.efficiency.summary import summarise
@@ -56,7 +55,8 @@ def torsion_part(built: Built) -> xr.Dataset:
             "phase": ("phase", phase),
         },
         title="torsion",
-        warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
+        travels=built.travels,
+        warnings=[*_lost(built, found["wind_up"], torques), *_loopless(built, friction)],
         note=f"{yields} yield; {rigid} are not in it",
         solve=solve,
     )
@@ -66,12 +66,14 @@ def torsion_part(built: Built) -> xr.Dataset:
     return whole if mesh.filled is None else whole.isel(pair=mesh.filled)
 
 
-def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
+def _lost(built: Built, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     """Torques at which teeth, ring and cup found no equilibrium."""
     lost = torques[np.isnan(wind_up)]
     if not lost.size:
         return []
-    between = " to ".join(dict.fromkeys(TORQUE.show(torque) for torque in (lost[0], lost[-1])))
+    between = " to ".join(
+        dict.fromkeys(built.carried.show(torque) for torque in (lost[0], lost[-1]))
+    )
     return [
         f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they are "
         "left out."

@@ -155,6 +155,7 @@ def vibration_part(built: Built) -> xr.Dataset:
         data,
         {"torque": ("torque", _torques(built)), "order": ("order", np.array(ORDERS))},
         title="vibration",
+        travels=built.travels,
         warnings=[*_warnings(built, told), *_moduli(built)],
         status=[status.sentence for status in told],
         solve=told_of(found["vibration_status"].astype(int)),
@@ -197,6 +198,7 @@ def resonance_part(built: Built) -> xr.Dataset:
         data,
         {"direction": ["rising", "falling"], "torque": _torques(built), "speed": speeds},
         title="vibration against speed",
+        travels=built.travels,
         warnings=[*status_sentences(data["vibration_status"][1], _AT_SPEED), *_moduli(built)],
         sentences=[code.sentence for code in Code],
         solve=told_of(data["vibration_status"][1].astype(int)),
@@ -282,7 +284,8 @@ def _loads(built: Built) -> list[Operation]:
 
 def _torques(built: Built) -> list[float]:
     assert built.case.dynamics is not None
-    return list(built.case.dynamics.torques or (built.case.operation.load,))
+    asked = built.case.dynamics
+    return list(asked.torques or asked.forces or (built.case.operation.load,))
 
 
 def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
@@ -333,7 +336,7 @@ def status_sentences(
 
 def _warnings(built: Built, statuses: Sequence[Code]) -> list[str]:
     return [
-        f"Vibration at {torque:.4g} N m: {status.sentence}."
+        f"Vibration at {built.carried.show(float(f'{torque:.4g}'))}: {status.sentence}."
         for torque, status in zip(_torques(built), statuses, strict=True)
         if not status.ok
     ]

@@ -7,8 +7,10 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.gears.involute import InvoluteGear
+from pitchpoint.roots import hypot
 
-__all__ = ["LAYERS", "LEVELS", "DrawnBody", "layers"]
+__all__ = ["LAYERS", "LEVELS", "RIM", "DrawnBody", "DrawnPath", "drawn_gear", "layers"]
 
 LEVELS = ("tip", "working", "base", "root", "rim")
 """Circles of a body that turns, and lines of one that travels; the body itself lies between root and rim."""
@@ -25,8 +27,16 @@ LAYERS: Mapping[str, tuple[str, ...]] = {
     "layer_mark": ("mark", "xy"),
     "contact_start": ("xy",),
     "contact_step": ("xy",),
+    "rolling": ("body", "power"),
 }
-"""Dimensions of the arrays of `layers`."""
+"""Dimensions of the arrays of `layers`, and of the rolling speeds of both flanks along the line of action.
+
+Those are polynomials of the position on it, by rising powers and up to a common factor.
+"""
+
+
+RIM = 0.8
+"""Thickness of the rim of a ring or rack as drawn, whose outside is not known, over its tooth height."""
 
 
 class DrawnBody(eqx.Module):
@@ -55,25 +65,83 @@ class DrawnBody(eqx.Module):
     travel: Float[Array, "2"]
 
 
-def layers(
-    bodies: Sequence[DrawnBody],
+def drawn_gear(
+    gear: InvoluteGear,
     *,
-    lines: Float[Array, "line end 2"],
-    marks: Float[Array, "mark 2"],
-    start: Float[Array, "2"],
-    step: Float[Array, "2"],
-) -> dict[str, Float[Array, "..."]]:
+    place: Float[Array, "2"],
+    contact: Float[Array, "2"],
+    side: Float[Array, ""],
+    earlier: Float[Array, ""],
+    working_radius: Float[Array, ""],
+) -> DrawnBody:
+    """An involute gear, one tooth of which goes through a contact.
+
+    Args:
+        gear: its dimensions.
+        place: of its centre [m].
+        contact: on the flank of that tooth [m].
+        side: on which its axis lies of the contact: 1 if clockwise, -1 if counter-clockwise.
+        earlier: rotation in which it gets there from where it is at phase zero [rad].
+        working_radius: of the pitch circle in operation [m].
+    """
+    x, y = contact - place
+    half = gear.side * gear.half_thickness_angle(hypot(x, y))
+    tip, root = jnp.abs(gear.tip_radius), jnp.abs(gear.root_radius)
+    rim = root + RIM * jnp.abs(root - tip) if gear.internal else jnp.zeros(())
+    count = jnp.abs(gear.teeth)
+    return DrawnBody(
+        tooth=gear.outline(),
+        place=place,
+        turned=jnp.arctan2(-x, y) - side * half - earlier,
+        levels=jnp.stack([tip, jnp.abs(working_radius), jnp.abs(gear.base_radius), root, rim]),
+        count=count,
+        pitch=2.0 * jnp.pi / count,
+        travel=jnp.zeros(2),
+    )
+
+
+class DrawnPath(eqx.Module):
+    """A straight path of contact in the picture.
+
+    Attributes:
+        origin: place from which positions on the line of action are counted [m].
+        along: direction of growing positions.
+        limits: positions of its ends A and E [m].
+        points: positions of A to E [m].
+        ends: positions at which the line touches base circles [m].
+        base_pitch: way of a contact in one period [m].
+        behind: periods from the entry of a pair until it touches in the section drawn.
+    """
+
+    origin: Float[Array, "2"]
+    along: Float[Array, "2"]
+    limits: Float[Array, "2"]
+    points: Float[Array, "5"]
+    ends: Float[Array, " end"]
+    base_pitch: Float[Array, ""]
+    behind: Float[Array, ""]
+
+    def at(self, position: Float[Array, ""]) -> Float[Array, "2"]:
+        """Place of a position [m]."""
+        return self.origin + position * self.along
+
+
+def layers(bodies: Sequence[DrawnBody], path: DrawnPath) -> dict[str, Float[Array, "..."]]:
     """Arrays of a picture by name, with the dimensions of `LAYERS`.
 
-    Names of bodies, lines and marks are the labels along `body`, `line` and `mark` that the family gives.
+    Names of bodies and marks are the labels along `body` and `mark` that the family gives; lines are the
+    line of action and the path of contact. Points that lie beyond the path are not numbers.
 
     Args:
         bodies: in the order of those labels.
-        lines: that stay: the line of action and the path of contact.
-        marks: points with a letter; not a number where one is not there.
-        start: place of the contact of a pair as it enters, at phase zero [m].
-        step: its way in one period [m].
+        path: of contact.
     """
+    both = jnp.concatenate([path.ends, path.limits])
+    action = jnp.stack([path.at(jnp.min(both)), path.at(jnp.max(both))])
+    start, end = path.limits
+    edge = 1e-9 * path.base_pitch
+    inside = (path.points >= start - edge) & (path.points <= end + edge)
+    points = jnp.where(inside, path.points, jnp.nan)
 
     def stacked(name: str) -> Any:
         return jnp.stack([getattr(body, name) for body in bodies])
@@ -86,8 +154,8 @@ def layers(
         "layer_count": stacked("count"),
         "layer_pitch": stacked("pitch"),
         "layer_travel": stacked("travel"),
-        "layer_line": lines,
-        "layer_mark": marks,
-        "contact_start": start,
-        "contact_step": step,
+        "layer_line": jnp.stack([action, jnp.stack([path.at(start), path.at(end)])]),
+        "layer_mark": jnp.stack([path.at(place) for place in (*points, *path.ends)]),
+        "contact_start": path.at(start - path.behind * path.base_pitch),
+        "contact_step": path.base_pitch * path.along,
     }

@@ -516,6 +516,7 @@ def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> d
         "period": float(built.nominal["period"]),
         "pitch": way.pitch,
         "against": way.against.format(case.operation.driver) if backwards else "",
+        "travels": sorted(built.travels),
         "lacks": {},
         "averaging": case.models.averaging,
         "plastic": any(used.plastic for used in built.solids),

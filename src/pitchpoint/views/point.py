@@ -1,11 +1,13 @@
 """Where a result was run, and the period of its mesh."""
 
 from dataclasses import dataclass
+from math import degrees
 
 import numpy as np
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.inputs import number
+from pitchpoint.views import show
+from pitchpoint.views.inputs import given, number
 
 __all__ = ["OperatingPoint", "Period", "of_geometry", "operating_point", "period_of"]
 
@@ -15,7 +17,7 @@ class OperatingPoint:
     """Where a variant is run.
 
     Attributes:
-        torque: of the loaded member [N m].
+        torque: of the loaded member [N m], or force on one that travels [N].
         speed: of the driver [rad/s].
         temperature: of the oil [K].
     """
@@ -30,13 +32,15 @@ class Period:
     """What the phase of a mesh counts.
 
     Attributes:
-        angle: driver angle after which the state of the mesh repeats [rad].
+        angle: driver angle after which the state of the mesh repeats [rad]; its way [m] where it travels.
+        travels: True if the driver travels.
         time: after which it does [s].
         pitch: what it is called.
         against: why time runs against the phase; empty where it does not.
     """
 
     angle: float
+    travels: bool
     time: float
     pitch: str
     against: str
@@ -47,6 +51,13 @@ class Period:
         return bool(self.against)
 
     @property
+    def words(self) -> str:
+        """How far the driver moves in a period."""
+        if self.travels:
+            return f"{show.number(1e3 * self.angle)} mm of the driver"
+        return f"{show.number(degrees(self.angle))}° of the driver"
+
+    @property
     def axis(self) -> str:
         """Title of an axis of the phase."""
         return f"phase of the mesh cycle [{self.pitch}es]"
@@ -54,8 +65,11 @@ class Period:
 
 def operating_point(outcome: Outcome) -> OperatingPoint:
     """Where a result was run, whatever its gears."""
-    names = ("torque", "speed", "temperature")
-    return OperatingPoint(**{name: number(outcome, "operation", name) for name in names})
+    load = "torque" if given(outcome, "operation", "torque") is not None else "force"
+    names = {"torque": load, "speed": "speed", "temperature": "temperature"}
+    return OperatingPoint(
+        **{name: number(outcome, "operation", key) for name, key in names.items()}
+    )
 
 
 def period_of(outcome: Outcome) -> Period:
@@ -64,6 +78,7 @@ def period_of(outcome: Outcome) -> Period:
     angle = float(manifest["period"])
     return Period(
         angle,
+        "driver" in manifest["travels"],
         angle / number(outcome, "operation", "speed"),
         str(manifest["pitch"]),
         str(manifest["against"]),

@@ -1,7 +1,6 @@
 """A pair of cylindrical gears from its table in a case file."""
 
 from dataclasses import replace
-from math import cos, pi, sin, tan
 from typing import Any
 
 from pitchpoint._jax import jnp
@@ -18,12 +17,12 @@ from pitchpoint.gears.cylindrical.modified import (
 from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.family import Family, waves
+from pitchpoint.gears.involute import usual_fillet
 from pitchpoint.gears.layers import LAYERS, LEVELS
 from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["FAMILY"]
 
-_AVAILABLE_FILLET = 0.38
 USUAL_TIP = 0.25
 """Tip thickness of helical teeth that is kept where none is given, in normal modules."""
 _RING_FILLET = 0.2  # fits the narrow spaces of most rings
@@ -92,9 +91,7 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
 def _pair(gears: CylindricalGears, driver: int, slices: int) -> CylindricalPair:
     dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
     fillet = gears.fillet_radius or tuple(
-        _RING_FILLET
-        if teeth < 0
-        else min(_AVAILABLE_FILLET, _largest_fillet(depth, gears.pressure_angle))
+        _RING_FILLET if teeth < 0 else usual_fillet(depth, gears.pressure_angle)
         for teeth, depth in zip(gears.teeth, dedendum, strict=True)
     )
     pair = build_cylindrical_pair(
@@ -134,11 +131,6 @@ def _rim_ratios(pair: CylindricalPair, bores: tuple[float, float]) -> list[float
             )
         found.append(ratio)
     return found
-
-
-def _largest_fillet(dedendum: float, angle: float) -> float:
-    """Corner rounding of the rack that leaves no flat on its tip, in modules (ISO 53)."""
-    return max((pi / 4 - dedendum * tan(angle)) * cos(angle) / (1.0 - sin(angle)), 0.0)
 
 
 _FOLLOWING = {

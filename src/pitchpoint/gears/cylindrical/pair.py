@@ -12,8 +12,8 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
-from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, contact_lines, lanes_for
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
@@ -24,7 +24,7 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
-from pitchpoint.gears.layers import DrawnBody, layers
+from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
@@ -33,24 +33,11 @@ from pitchpoint.roots import hypot, root
 
 __all__ = ["CylindricalPair", "zero_backlash_centre_distance"]
 
-# Few values, so that few programs are compiled for many pairs.
-_LANES_FOR_RATIO_BELOW = (2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 24.0)
-
-SLICES = 12
-"""Slices of each contact line of helical gears, an even number: midpoints, so errors fall with its square."""
-
 RIM_RATIO = 1.0 / 0.3
 """Root radius over bore radius where no bore is given."""
 
-_DRAWN_RIM = 0.8
-"""Thickness of the rim of a ring as drawn over the height of its teeth."""
-
 RING_RIM_RATIO = 1.2
 """Outer over root radius of a ring where it is not given."""
-
-# Share of the face width that a contact line has at least while it is in mesh: a length of zero has
-# no load per length.
-_SHORTEST = 1e-9
 
 
 def zero_backlash_centre_distance(
@@ -506,7 +493,13 @@ class CylindricalPair(Mesh):
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
         line, side = self.line, self._side
-        across, share = self._lines(entered, line)
+        across, share = contact_lines(
+            entered,
+            transverse_ratio=line.transverse_contact_ratio,
+            overlap_ratio=line.overlap_ratio if self.helical else None,
+            pitch_path=line.pitch_path,
+            slices=self.slices,
+        )
         path = jnp.broadcast_to(entered, jnp.shape(across))
         if self.helical:
             path = entered - line.overlap_ratio * across
@@ -636,54 +629,32 @@ class CylindricalPair(Mesh):
 
         A contact line reaches that section half of the overlap ratio after it entered.
         """
-        line, side = self.line, self._side
-
-        def on_line(position: Array) -> Array:
-            x = line.base_radii[0] * line.sine - position * line.cosine
-            return jnp.stack([side * x, line.base_radii[0] * line.cosine + position * line.sine])
-
-        path_start, path_end = line.limits
-        ends = jnp.stack([jnp.zeros(()), line.tangent_length])
-        both = jnp.concatenate([ends, line.limits])
-        action = jnp.stack([on_line(jnp.min(both)), on_line(jnp.max(both))])
-        path = jnp.stack([on_line(place) for place in line.limits])
-        edge = 1e-9 * line.base_pitch
-        inside = (self.points >= path_start - edge) & (self.points <= path_end + edge)
-        points = jnp.where(inside, self.points, jnp.nan)
-        step = on_line(line.base_pitch) - on_line(jnp.zeros(()))
-        return layers(
-            [self._body(member, on_line(line.limits[0])) for member in (0, 1)],
-            lines=jnp.stack([action, path]),
-            marks=jnp.stack([on_line(place) for place in (*points, *ends)]),
-            start=path[0] - line.overlap_ratio / 2.0 * step,
-            step=step,
+        line, side, gears = self.line, self._side, self.gears
+        first = line.base_radii[0]
+        path = DrawnPath(
+            origin=first * jnp.stack([side * line.sine, line.cosine]),
+            along=jnp.stack([-side * line.cosine, line.sine]),
+            limits=line.limits,
+            points=self.points,
+            ends=jnp.stack([jnp.zeros(()), line.tangent_length]),
+            base_pitch=line.base_pitch,
+            behind=line.overlap_ratio / 2.0,
         )
-
-    def _body(self, member: int, entry: Float[Array, "2"]) -> DrawnBody:
-        """A gear in the picture, one tooth of which goes through the contact at A when that is there.
-
-        Args:
-            member: 0 or 1.
-            entry: place of the point A in the picture [m].
-        """
-        gear, line = self.gears[member], self.line
-        place = jnp.stack([jnp.zeros(()), member * line.distance])
-        x, y = entry - place
-        half = gear.side * gear.half_thickness_angle(hypot(x, y))
-        later = (1.0, -1.0)[member] * jnp.pi * line.overlap_ratio / gear.teeth
-        tip, root = (jnp.abs(radius) for radius in (gear.tip_radius, gear.root_radius))
-        rim = root + _DRAWN_RIM * jnp.abs(root - tip) if gear.internal else jnp.zeros(())
-        own = (jnp.abs(radii[member]) for radii in (self.working_radii, self.base_radii))
-        count = jnp.abs(gear.teeth)
-        return DrawnBody(
-            tooth=gear.outline(),
-            place=place,
-            turned=jnp.arctan2(-x, y) - self._side * (half + later),
-            levels=jnp.stack([tip, *own, root, rim]),
-            count=count,
-            pitch=2.0 * jnp.pi / count,
-            travel=jnp.zeros(2),
-        )
+        bodies = [
+            drawn_gear(
+                gear,
+                place=jnp.stack([jnp.zeros(()), member * line.distance]),
+                contact=path.at(line.limits[0]),
+                side=side,
+                earlier=(1.0, -1.0)[member] * side * 2.0 * jnp.pi / gear.teeth * path.behind,
+                working_radius=line.working_radii[member],
+            )
+            for member, gear in enumerate(gears)
+        ]
+        z1, z2 = self.teeth
+        none = jnp.zeros(())
+        rolling = [[none, 1.0 / z1], [line.tangent_length / z2, -1.0 / z2]]
+        return layers(bodies, path) | {"rolling": jnp.array(rolling)}
 
     def _frame(
         self, line: LineOfAction, position: Array, width: Array
@@ -708,33 +679,6 @@ class CylindricalPair(Mesh):
         """Roll lengths at which the path of contact ends nearest to the root of each gear [m]."""
         start, end = self.limits
         return jnp.stack([start, self.tangent_length - end])
-
-    def _lines(
-        self, entered: Float[Array, "pair 1 *b"], line: LineOfAction
-    ) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
-        """Middles of the slices of each contact line, and the share of the face that each slice takes.
-
-        Both are parts of the face width, counted from the end that enters first. Half of the slices
-        lie on each side of the pitch line, so that sliding changes its sense in no slice.
-
-        Args:
-            entered: base pitches since the pair entered.
-            line: of the pair.
-        """
-        if not self.helical:
-            whole = jnp.zeros_like(entered)
-            return _sliced(whole, whole + 1.0, self.slices)
-        overlap = line.overlap_ratio
-        low = jnp.clip((entered - line.transverse_contact_ratio) / overlap, 0.0, 1.0)
-        high = jnp.clip(entered / overlap, 0.0, 1.0)
-        if self.slices == 1:
-            return (low + high) / 2.0, jnp.maximum(high - low, _SHORTEST)
-        pitch_line = jnp.clip((entered - line.pitch_path) / overlap, low, high)
-        parts = [
-            _sliced(*ends, self.slices // 2) for ends in ((low, pitch_line), (pitch_line, high))
-        ]
-        middles, shares = zip(*parts, strict=True)
-        return jnp.concatenate(middles, axis=1), jnp.concatenate(shares, axis=1)
 
     @property
     def _side(self) -> Float[Array, ""]:
@@ -774,24 +718,6 @@ class CylindricalPair(Mesh):
             crossing=self.crossing[index],
             internal=self.internal and index == 1,
         )
-
-
-def _sliced(
-    low: Float[Array, "pair 1 *b"], high: Float[Array, "pair 1 *b"], count: int
-) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
-    """Middles and lengths of equal slices between two ends."""
-    share = jnp.maximum(high - low, _SHORTEST) / count
-    middle = (jnp.arange(count) + 0.5).reshape(-1, *([1] * (low.ndim - 2)))
-    return low + middle * share, jnp.broadcast_to(share, (low.shape[0], count, *low.shape[2:]))
-
-
-def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
-    """Static count of pairs to hold for a contact ratio: few values, so that few programs are compiled."""
-    for limit in _LANES_FOR_RATIO_BELOW:
-        if contact_ratio < limit:
-            return max(int(limit), 3) if helical else int(limit)
-    message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
-    raise InputError(message, value=contact_ratio)
 
 
 def build_cylindrical_pair(
@@ -877,7 +803,7 @@ def build_cylindrical_pair(
     short = tuple(asked and bool(one < least_tip) for one in np.asarray(thickness))
     if any(short):
         pair, ratio, _, _ = _complete(dataclasses.replace(pair, shortened=(short[0], short[1])))
-    if not 0.0 < float(ratio) < _LANES_FOR_RATIO_BELOW[-1]:
+    if not 0.0 < float(ratio) < LARGEST_CONTACT_RATIO:
         check_cylindrical(pair)  # says why, in gear words
     return dataclasses.replace(pair, lanes=lanes_for(float(ratio), helical=helical))
 

@@ -698,5 +698,5 @@ def _section(
         root_radius=jnp.ones(()),
         root_half_angle=jnp.ones(()),
         rim_ratio=jnp.ones(()),
-        internal=True,
+        body="ring",
     )

@@ -1,7 +1,6 @@
 """Over the mesh cycle: efficiency and input torque, friction of the pairs."""
 
 from collections.abc import Iterator, Mapping
-from math import degrees
 
 import numpy as np
 import xarray as xr
@@ -202,8 +201,8 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
     seen: dict[str, list[str]] = {}
     for variant, outcome in outcomes.items():
         period = period_of(outcome)
-        angle, time = show.number(degrees(period.angle)), show.number(1e3 * period.time)
-        seen.setdefault(f"{angle}° of the driver, {time} ms", []).append(variant)
+        time = show.number(1e3 * period.time)
+        seen.setdefault(f"{period.words}, {time} ms", []).append(variant)
     if len(seen) < 2:
         return next(iter(seen), "")
     return "; ".join(f"{words} ({', '.join(names)})" for words, names in seen.items())

@@ -47,7 +47,7 @@ def specific_sliding(teeth: xr.Dataset, position: np.ndarray) -> np.ndarray:
         teeth: part `teeth` of a result.
         position: on the line of action, from N1 [m].
     """
-    z1, z2 = teeth["teeth"].values
-    rolling = np.stack([position / z1, (float(teeth["tangent_length"]) - position) / z2], axis=-1)
+    constant, slope = teeth["rolling"].values.T
+    rolling = constant + slope * np.asarray(position)[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(1.0 - rolling[..., ::-1] / rolling)

@@ -95,6 +95,7 @@ _LENGTHS = {
     "specific_sliding_A": ("specific sliding at A", 1.0, 4),
     "specific_sliding_E": ("specific sliding at E", 1.0, 4),
     "centre_distance": ("centre distance a [mm]", 1e3, 6),
+    "mounting_distance": ("distance from the axis to the reference line a [mm]", 1e3, 6),
 }
 _OVERLAP = {
     "overlap_ratio": ("overlap ratio ε_β", 1.0, 4),
@@ -107,10 +108,15 @@ Row = tuple[str, ...]
 def _numbers(teeth: xr.Dataset, named: dict[str, tuple[str, float, int]]) -> list[Row]:
     """Rows of the dimensions that there are: title, factor and digits by name."""
     return [
-        (title, *(show.number(factor * float(v), digits) for v in np.ravel(teeth[name].values)))
+        (title, *(_number(factor * float(v), digits) for v in np.ravel(teeth[name].values)))
         for name, (title, factor, digits) in named.items()
         if name in teeth
     ]
+
+
+def _number(value: float, digits: int) -> str:
+    """A dimension; a dash for a member that does not have it."""
+    return show.number(value, digits) if np.isfinite(value) else "–"
 
 
 def _given(outcome: Outcome, key: str, title: str) -> list[Row]:
@@ -156,7 +162,7 @@ def _undercut_limits(teeth: xr.Dataset) -> list[Row]:
     """Smallest profile shifts without undercut; a ring is not cut by a rack."""
     if "undercut_limit" not in teeth:
         return []
-    limits = [show.number(float(value), 4) for value in teeth["undercut_limit"].values]
+    limits = [_number(float(value), 4) for value in teeth["undercut_limit"].values]
     if _internal(teeth):
         limits[1] = "not cut by a rack"
     return [("smallest x without undercut x_min", *limits)]
