@@ -29,6 +29,7 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
+from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
@@ -572,7 +573,7 @@ class CylindricalPair(Mesh):
         }
 
     def drawing(self) -> dict[str, Float[Array, "..."]]:
-        """Outline of one tooth of each gear, circles, points of the path; radii without sign [m]."""
+        """Layers of the picture, circles, points of the path; radii without sign [m]."""
         gears = self.gears
         radii = {
             "base_radius": self.base_radii,
@@ -586,7 +587,7 @@ class CylindricalPair(Mesh):
             "active_root_radius": hypot(self.base_radii, self._innermost),
         }
         return {
-            "outline": jnp.stack([gear.outline() for gear in gears]),
+            **self._layers(),
             "points": self.points,
             "teeth": self.teeth,
             **{name: jnp.abs(values) for name, values in radii.items()},
@@ -600,6 +601,38 @@ class CylindricalPair(Mesh):
             "specific_sliding_E": self.specific_sliding(self.limits[1]),
             **self.dimensions(),
         }
+
+    def _layers(self) -> dict[str, Float[Array, "..."]]:
+        """The transverse section at the middle of the face, gear 2 above gear 1, a ring below.
+
+        A contact line reaches that section half of the overlap ratio after it entered.
+        """
+        line, side, gears = self.line, self._side, self.gears
+        first = line.base_radii[0]
+        path = DrawnPath(
+            origin=first * jnp.stack([side * line.sine, line.cosine]),
+            along=jnp.stack([-side * line.cosine, line.sine]),
+            limits=line.limits,
+            points=self.points,
+            ends=jnp.stack([jnp.zeros(()), line.tangent_length]),
+            base_pitch=line.base_pitch,
+            behind=line.overlap_ratio / 2.0,
+        )
+        bodies = [
+            drawn_gear(
+                gear,
+                place=jnp.stack([jnp.zeros(()), member * line.distance]),
+                contact=path.at(line.limits[0]),
+                side=side,
+                earlier=(1.0, -1.0)[member] * side * 2.0 * jnp.pi / gear.teeth * path.behind,
+                working_radius=line.working_radii[member],
+            )
+            for member, gear in enumerate(gears)
+        ]
+        z1, z2 = self.teeth
+        none = jnp.zeros(())
+        rolling = [[none, 1.0 / z1], [line.tangent_length / z2, -1.0 / z2]]
+        return layers(bodies, path) | {"rolling": jnp.array(rolling)}
 
     def _frame(
         self, line: LineOfAction, position: Array, width: Array
