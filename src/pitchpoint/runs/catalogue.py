@@ -20,7 +20,7 @@ from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
-from pitchpoint.results.variables import VARIABLES, variable_of
+from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
 
 __all__ = ["entries", "figures"]
