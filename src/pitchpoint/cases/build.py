@@ -419,7 +419,7 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
         return ()
     sections = _sections(mesh)
     assert sections is not None
-    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections)
+    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections, case.gears.members)
 
 
 @program
