@@ -139,7 +139,7 @@ def test_nothing_heavy_is_loaded(code: str) -> None:
 
 
 PHYSICS = ("contact", "loading", "lubrication", "efficiency", "dynamics")
-FAMILIES = {"CylindricalPair", "StrainWave", "TwinDisc", "BallOnDisc"}
+FAMILIES = {"CylindricalPair", "StrainWave", "RackAndPinion", "TwinDisc", "BallOnDisc"}
 
 
 def test_physics_does_not_ask_for_the_family() -> None:

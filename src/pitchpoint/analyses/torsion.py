@@ -8,7 +8,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import WIND_UP, by_torque
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
@@ -109,8 +109,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
     mesh = built.design.mesh
-    long_name, symbol = PATHS[mesh.counts]
-    whole["path"].attrs.update(long_name=long_name, symbol=symbol)
+    whole["path"].attrs.update(PATHS[mesh.counts].attributes)
     return whole if mesh.filled is None else whole.isel(pair=mesh.filled)
 
 
@@ -212,7 +211,7 @@ def rigid(built: Ready) -> str | None:
         return None
     if not built.transmits:
         return "nothing is transmitted by a test rig, so that nothing winds up"
-    return (
+    return Unasked(
         "nothing in the case asks how teeth yield, as gaps and deviations of flanks, [dynamics] and "
         'load_sharing = "from_stiffness" do'
     )

@@ -149,7 +149,7 @@ class Built:
 
     @cached_property
     def nominal(self) -> dict[str, Any]:
-        """Nominal motion, who drives, who is loaded, period and events of the mesh, as plain numbers."""
+        """Nominal motion, driver, loaded member, period, sense and events of the mesh, as plain numbers."""
         found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
         return found
 
@@ -478,7 +478,7 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
         return ()
     sections = _sections(mesh)
     assert sections is not None
-    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections)
+    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections, case.gears.members)
 
 
 @program
@@ -493,6 +493,7 @@ def _nominal(mesh: Mesh) -> dict[str, Any]:
         "driver": mesh.driver,
         "loaded": mesh.loaded,
         "period": mesh.period,
+        "onward": mesh.onward,
         "events": mesh.events(),
     }
 

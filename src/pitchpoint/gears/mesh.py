@@ -2,6 +2,7 @@
 
 import abc
 from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from math import inf
 from typing import ClassVar, Literal, Self
 
@@ -17,17 +18,71 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["PATHS", "Mesh", "Reference", "StandardPair"]
+__all__ = ["PATHS", "Mesh", "Reference", "StandardPair", "Way"]
 
 
 Path = Literal["action", "wave", "turn"]
 
-PATHS: Mapping[Path, tuple[str, str]] = {
-    "action": ("position on the path of contact from A, in base pitches", "x/p_b"),
-    "wave": ("angle from the long axis, in turns", "p/2π"),
-    "turn": ("turns of the driver", "θ/2π"),
+
+@dataclass(frozen=True)
+class Way:
+    """Words of the way of a pair through the mesh, which `Contacts.path` counts.
+
+    Attributes:
+        long_name, symbol: of a place on it.
+        axis: title of an axis of it.
+        scale: of one in the unit of that axis.
+        pitch: what a period of the phase is.
+        against: why time runs against the phase, where it does; {} is the driver.
+        title: of figures along it; empty where there is no way to show.
+        told: what stands above them.
+        origin: what lies at zero, where it has a name.
+        zones: number of zones of mesh that are alike, in which pairs stand one zone after the other.
+    """
+
+    long_name: str
+    symbol: str
+    axis: str
+    scale: float
+    pitch: str
+    against: str = "{} drives"
+    title: str = ""
+    told: str = ""
+    origin: str = ""
+    zones: int = 1
+
+    @property
+    def attributes(self) -> dict[str, str | float]:
+        """What a figure along it needs, for the places in a dataset."""
+        return asdict(self)
+
+
+PATHS: Mapping[Path, Way] = {
+    "action": Way(
+        "position on the path of contact from A, in base pitches",
+        "x/p_b",
+        "place on the path from A [base pitches]",
+        1.0,
+        "base pitch",
+        title="Along the path of contact",
+    ),
+    "wave": Way(
+        "angle from the long axis, in turns",
+        "p/2π",
+        "angle from the long axis p [°]",
+        360.0,
+        "tooth pitch",
+        "teeth come from positive angles",
+        title="Along the wave",
+        told="One tooth on its way through the zone of mesh, over its angle from the end of the long axis "
+        "that is nearest; the dotted line is the long axis. Values stand where the tooth carries; both ends "
+        "of the long axis are alike.",
+        origin="the long axis",
+        zones=2,
+    ),
+    "turn": Way("turns of the driver", "θ/2π", "angle of the driver [°]", 360.0, "period"),
 }
-"""Long name and symbol of what `Contacts.path` counts."""
+"""The ways of pairs that families have."""
 
 
 class Reference(eqx.Module):

@@ -400,7 +400,8 @@ VARIABLES.update(
 
 
 def variable_of(data: Any, name: str) -> Variable:
-    """The quantity of that name in a dataset: of a member that travels where its unit says so."""
+    """The quantity of that name in a dataset, or none; of a member that travels where its unit says so."""
     known = VARIABLES[name]
-    travels = known.travel is not None and data[name].attrs.get("units") == known.travel.unit
-    return known.where((known.end,) if travels and known.end else ())
+    if known.travel is None or name not in data:
+        return known
+    return known.travel if data[name].attrs.get("units") == known.travel.unit else known

@@ -13,7 +13,8 @@ from uuid import uuid4
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece
+from pitchpoint.analyses.analysis import Piece, Unasked
+from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
@@ -30,6 +31,7 @@ from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
@@ -189,7 +191,7 @@ def run_variant(
 ) -> Outcome:
     """Compute all parts of one variant; finished parts found in the folder are read."""
     built = variant.built({})
-    outcome = Outcome(_manifest(variant, built, studies))
+    outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
     for job in work:
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
@@ -471,6 +473,8 @@ def _rows(built: Ready, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
 
 def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> dict[str, Any]:
     case, document = built.case, variant.document()
+    first = built.meshes[0]
+    way, backwards = PATHS[first.design.mesh.counts], first.nominal["onward"] < 0.0
     laws, others, meshes = built.laws, _models(built), built.meshes
     solids = [used for mesh in meshes for used in mesh.solids]
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
@@ -510,6 +514,10 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "members": list(case.bodies),
         "motion": built.motion,
         "period": float(meshes[0].nominal["period"]),
+        "pitch": way.pitch,
+        "against": way.against.format(first.driver) if backwards else "",
+        "travels": sorted(built.travels),
+        "lacks": {},
         "averaging": case.models.averaging,
         "plastic": any(used.plastic for used in solids),
         "oil": ", ".join(
@@ -521,6 +529,12 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "parts": [],
         "finished": False,
     }
+
+
+def _lacking(built: Ready) -> dict[str, str]:
+    """By analysis why its part does not exist, those left out that a case file does not ask for."""
+    told = {name: analysis.why_not(built) for name, analysis in ANALYSES.items()}
+    return {name: why for name, why in told.items() if why and not isinstance(why, Unasked)}
 
 
 def _models(built: Ready) -> dict[str, Any]:

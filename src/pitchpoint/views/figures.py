@@ -8,7 +8,7 @@ import html
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import floor, isfinite, log10
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -42,6 +42,7 @@ __all__ = [
     "level",
     "line",
     "merged",
+    "pair_key",
     "plain",
     "rounded",
     "short_axis",
@@ -122,6 +123,7 @@ class Panel:
     choices: list[Choice] = field(default_factory=list)
     note: str = ""
     menu: str = ""
+    block: ClassVar[str] = "panel"
 
 
 def curves(outcomes: Mapping[str, Outcome]) -> dict[tuple[str, str], Curve]:
@@ -140,6 +142,16 @@ def curves(outcomes: Mapping[str, Outcome]) -> dict[tuple[str, str], Curve]:
         )
         for position, (variant, law) in enumerate(names)
     }
+
+
+PAIRS = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
+"""Names of the pairs: I entered in this period, II one period before, and so on."""
+
+
+def pair_key(position: int) -> Key:
+    """Entry of a pair in a legend, the same colour wherever it is shown."""
+    name = PAIRS[position] if position < len(PAIRS) else str(position + 1)
+    return Key(f"pair {name}", PALETTE[position % len(PALETTE)])
 
 
 def law_title(outcome: Outcome, law: str) -> str:

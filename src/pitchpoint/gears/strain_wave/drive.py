@@ -237,8 +237,8 @@ class StrainWave(Mesh):
 
     @property
     def onward(self) -> Float[Array, ""]:
-        """A wave generator that turns on meets teeth of growing angle, and phases fall."""
-        return -jnp.ones(())
+        """A wave that runs ahead of the flexspline meets teeth of growing angle, and phases fall."""
+        return jnp.sign(self.motion[1] - self.motion[0])
 
     @property
     def touching(self) -> bool:

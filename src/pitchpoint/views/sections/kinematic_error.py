@@ -1,11 +1,12 @@
 """Kinematic error by deviations of the teeth: over a turn, and by order."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.figures import error_ranges
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -24,8 +25,15 @@ from pitchpoint.views.figures import (
     short_axis,
     text,
 )
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
 
-__all__ = ["kinematic_error_answer", "kinematic_error_panels"]
+__all__ = [
+    "KINEMATIC_ERROR",
+    "error_rows",
+    "kinematic_error_answer",
+    "kinematic_error_panels",
+]
 
 _KEYS = {
     "geometry": Key("rigid teeth without load", GREY),
@@ -109,15 +117,15 @@ def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> Figure
     """Amplitudes of the orders that the deviations of one member make."""
     lines = display("kinematic_error_spectrum", data["kinematic_error_spectrum"][:, position])
     alone = float(data["kinematic_error_range"].values[-1, position])
-    shown = _orders(lines)
+    orders = _orders(lines)
     return Figure(
         name,
         f"Orders by {_the(member)}",
-        [_bars(key, lines[k], shown) for k, key in enumerate(_KEYS.values())],
+        [_bars(key, lines[k], orders) for k, key in enumerate(_KEYS.values())],
         layout(
             f"order, per {data.attrs['own_turn'].format(member)}",
             short_axis("kinematic_error_spectrum"),
-            xaxis={"range": [0.4, shown[-1] + 0.6], "dtick": 1 if shown.size < 25 else None},
+            xaxis={"range": [0.4, orders[-1] + 0.6], "dtick": 1 if orders.size < 25 else None},
             yaxis={"rangemode": "tozero"},
             barmode="group",
         ),
@@ -136,14 +144,53 @@ def _orders(lines: np.ndarray) -> np.ndarray:
     return np.arange(1, max(int(seen[-1]) if seen.size else 0, _FEWEST) + 1)
 
 
-def _bars(key: Key, amplitudes: np.ndarray, shown: np.ndarray) -> Trace:
+def _bars(key: Key, amplitudes: np.ndarray, orders: np.ndarray) -> Trace:
     unit = show.unit(VARIABLES["kinematic_error_spectrum"].display)
     return {
         "type": "bar",
         "name": text(key.label),
         "meta": "",
-        "x": shown.tolist(),
-        "y": rounded(amplitudes[shown]),
+        "x": orders.tolist(),
+        "y": rounded(amplitudes[orders]),
         "marker": {"color": key.colour},
         "hovertemplate": f"%{{y:.4~g}} {unit}<br>order %{{x}}",
     }
+
+
+def error_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Kinematic error, peak to peak, by the deviations of each member and of both."""
+    name = "kinematic_error_range"
+    return [
+        {f"kinematic error {head(name)}": curve}
+        | {cause: shown(name, float(v)) for cause, v in zip(causes, values, strict=True)}
+        for curve, causes, values in error_ranges(outcome.parts.get("kinematic_error"))
+    ]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield Paragraph(
+        "By the deviations that the case gives for the teeth, which differ from tooth to tooth: the mesh "
+        "cycle, its losses and stiffness are those of teeth without them."
+    )
+    for it in kinematic_error_panels(page.outcomes):
+        if it.title:
+            yield Heading(it.title)
+        yield Paragraph(it.note)
+        yield it
+
+
+def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+    told = kinematic_error_answer(outcome)
+    return [("Kinematic error", told)] if told else []
+
+
+KINEMATIC_ERROR = Section(
+    name="kinematic",
+    title="Kinematic error",
+    short="Kinematic error",
+    order=310.0,
+    parts=("kinematic_error",),
+    blocks=_blocks,
+    answer=_answer,
+    screen=lambda outcome: [Printed(rows=error_rows(outcome))],
+)

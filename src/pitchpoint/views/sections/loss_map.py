@@ -9,7 +9,6 @@ import xarray as xr
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (
     DASHES,
     INK,
@@ -28,8 +27,10 @@ from pitchpoint.views.figures import (
     rounded,
     short_axis,
 )
+from pitchpoint.views.point import operating_point
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
-__all__ = ["efficiency_panel", "map_panel"]
+__all__ = ["LOSS_MAP", "efficiency_panel", "map_panel"]
 
 _SHOWN = ("mean_loss", "mean_efficiency")
 _MOST = 60
@@ -183,3 +184,37 @@ def _spread(axes: list[np.ndarray], name: str) -> list[float]:
         every = every[every > 0.0]
     count = min(every.size, len(DASHES))
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
+
+
+_LOSSY = 0.95
+"""Efficiency at the operating point below which lines of it say more than the map does."""
+
+
+def _lossy(outcome: Outcome) -> bool:
+    point = outcome.parts.get("operation")
+    lost = point is not None and bool((point["mean_efficiency"] < _LOSSY).any())
+    return "running" in outcome.parts or lost
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    there = page.having("loss_map")
+    yield Paragraph(
+        "Mean loss and mean efficiency over driver speed and output torque. At zero torque or zero speed no "
+        "power is transmitted and the efficiency is undefined; those cells are blank. Every choice has its "
+        "own colour scale."
+    )
+    yield map_panel(there, page.curves)
+    lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)
+    if lines.figures:
+        yield Heading("Efficiency against torque, speed and temperature")
+        yield lines
+
+
+LOSS_MAP = Section(
+    name="map",
+    title="Loss map",
+    short="Loss map",
+    order=700.0,
+    parts=("loss_map",),
+    blocks=_blocks,
+)

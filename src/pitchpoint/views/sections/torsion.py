@@ -1,14 +1,14 @@
 """Wind-up of a drive under torque: load on every tooth, torque loop, stiffness, load on the bearing."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.figures import WIND_UP
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (
     GREY,
     INK,
@@ -25,10 +25,12 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
-from pitchpoint.views.stages import stage_wind_up
-from pitchpoint.views.wave import ANGLE
+from pitchpoint.views.point import operating_point
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
+from pitchpoint.views.way import beside, place_of
 
-__all__ = ["torsion_answer", "torsion_panels"]
+__all__ = ["TORSION", "torsion_answer", "torsion_panels", "wind_up_rows"]
 
 _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 """Colours from small to large torque, which differ in lightness alone."""
@@ -68,14 +70,15 @@ def torsion_answer(outcome: Outcome) -> str:
     return (
         f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
         f"{told['wind_up']}"
-        + (
-            f" and {told['loaded_pairs'].strip()} pairs carry in the mean"
-            if "loaded_pairs" in told
-            else ""
-        )
+        + _carrying(told.get("loaded_pairs", ""))
         + _free(float(data["lost_motion"]))
         + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
     )
+
+
+def _carrying(pairs: str) -> str:
+    """How many pairs carry, in words; empty for a drive of several meshes."""
+    return f" and {pairs.strip()} pairs carry in the mean" if pairs else ""
 
 
 def _free(lost_motion: float) -> str:
@@ -87,19 +90,19 @@ def _free(lost_motion: float) -> str:
 
 def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
     data = outcome.parts["torsion"]
+    one_mesh = "tooth_force" in data
     figures = [
-        *([_distribution(f"{name}_load", data)] if "tooth_force" in data else []),
-        *([_loop(f"{name}_loop", variant, data, known)] if "loading_torque" in data else []),
+        *([_distribution(f"{name}_load", data)] if one_mesh else []),
+        *([_loop(f"{name}_loop", variant, data, known)] if one_mesh else []),
         _against(
             f"{name}_stiffness", "torsional_stiffness", "Torsional stiffness", data, _STIFFNESS
         ),
         *(
             [_against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS)]
-            if "loaded_pairs" in data
+            if one_mesh
             else []
         ),
-        *stage_wind_up(f"{name}_stages", data),
-        *([_over_cycle(f"{name}_error", data)] if "phase" in data else []),
+        *([_over_cycle(f"{name}_error", data)] if one_mesh else []),
         _against(
             f"{name}_range",
             "angular_transmission_error_range",
@@ -115,10 +118,9 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
 def _distribution(name: str, data: xr.Dataset) -> Figure:
     """Force on every tooth at one end of the long axis at several torques, all phases together."""
     force = display("tooth_force", data["tooth_force"])
-    zones = data.sizes.get("zone", 1)
-    half = data.sizes["pair"] // zones
-    place = data["path"].values[:, :half].ravel()
-    angle = 360.0 * place if zones > 1 else place
+    zones, origin = (data["path"].attrs[name] for name in ("zones", "origin"))
+    half = data.sizes["pair"] // int(zones)
+    angle = place_of(data)[:, :half].ravel()
     order = np.argsort(angle, kind="stable")
     drawn = _shades(data)
     traces = [_course(key, angle[order], force[k, :, :half].ravel()[order]) for k, key in drawn]
@@ -127,16 +129,16 @@ def _distribution(name: str, data: xr.Dataset) -> Figure:
     edge = 0.06 * (ends[1] - ends[0])
     return Figure(
         name,
-        "Load on the teeth at one end of the long axis" if zones > 1 else "Load on the teeth",
+        f"Load on the teeth at one end of {origin}" if zones > 1 else "Load on the teeth",
         traces,
         layout(
-            ANGLE if zones > 1 else f"{data['path'].attrs['long_name']}",
+            data["path"].attrs["axis"],
             short_axis("tooth_force"),
             xaxis={"range": [ends[0] - edge, ends[1] + edge]},
             yaxis={"rangemode": "tozero"},
         ),
         "Without friction. Every line is the way of a tooth through the zone; the teeth stand one pitch "
-        f"apart on it.{' The other end of the long axis carries alike.' if zones > 1 else ''}",
+        f"apart on it.{f' The other end of {origin} carries alike.' if zones > 1 else ''}",
         tuple(key for _, key in drawn),
         missing="No tooth carries.",
     )
@@ -171,10 +173,7 @@ def _over_cycle(name: str, data: xr.Dataset) -> Figure:
 
 def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
     unit = show.unit(VARIABLES["tooth_force"].display)
-    carries = force > 0.0
-    near = carries.copy()
-    near[1:] |= carries[:-1]
-    near[:-1] |= carries[1:]
+    near = beside(force > 0.0)
     return plain(key, angle[near], force[near], unit)
 
 
@@ -252,3 +251,43 @@ def _bearing(name: str, data: xr.Dataset) -> Figure:
         "Inwards, sum over the teeth of one end.",
         keys,
     )
+
+
+def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Wind-up, transmission error and stiffness at some torques."""
+    data = outcome.parts["torsion"]
+    torques = data["torque"].values
+    return [
+        {head("torque"): f"{torques[k]:.5g}"}
+        | {head(name): shown(name, float(data[name].values[k])) for name in WIND_UP if name in data}
+        | {"K is that of": str(data["torsional_stiffness"].attrs.get("covers", ""))}
+        for k in range(torques.size // 4, torques.size, torques.size // 4)
+    ]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    for it in torsion_panels(page.outcomes, page.curves):
+        if it.title:
+            yield Heading(it.title)
+        note = f"In it: {it.note}." if it.note else ""
+        yield Paragraph(
+            f"Wind-up of the loaded member with the other members held, mean over the mesh cycle. {note}"
+        )
+        yield it
+
+
+def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+    told = torsion_answer(outcome)
+    return [("Torsional stiffness", told)] if told else []
+
+
+TORSION = Section(
+    name="torsion",
+    title="Torsion",
+    short="Torsion",
+    order=300.0,
+    parts=("torsion",),
+    blocks=_blocks,
+    answer=_answer,
+    screen=lambda one: [Printed(rows=wind_up_rows(one))] if "torsion" in one.parts else [],
+)

@@ -9,7 +9,6 @@ import xarray as xr
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (
     DASHES,
     INK,
@@ -28,8 +27,10 @@ from pitchpoint.views.figures import (
     rounded,
     text,
 )
+from pitchpoint.views.point import operating_point
+from pitchpoint.views.section import Block, Page, Section, reason
 
-__all__ = ["bearing_answer", "drag_answer", "drag_panel", "starting_answer"]
+__all__ = ["BESIDE", "drag_panel", "loss_split", "starting_answer"]
 
 _TEETH = Key("in the teeth", PALETTE[5], "")
 _BESIDE = Key("beside the teeth", "#9aa5ad", "")
@@ -47,39 +48,6 @@ def drag_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
             figures.append(_starting("back_driving_torque", seen))
     curves = [curve for curve, *_ in seen]
     return Panel("Losses beside the teeth", figures, curves)
-
-
-def drag_answer(outcome: Outcome, law: int) -> str:
-    """Loss in and beside the teeth in words; empty where there is none beside."""
-    found = _parts(outcome.parts["operation"], law)
-    if found is None or not found[1] > 0.0:
-        return ""
-    teeth, beside = (show.quantity("mean_loss", value) for value in found)
-    return f"{teeth} in the teeth, {beside} beside them"
-
-
-def bearing_answer(outcome: Outcome, law: int) -> list[tuple[str, str]]:
-    """What the teeth put on the shafts, and each bearing beside them bears: names and words."""
-    data = outcome.parts["operation"]
-    found = []
-    for words, name in (
-        ("radial load on the shafts", "radial"),
-        ("axial load on the shafts", "axial"),
-    ):
-        if f"{name}_reaction_1" not in data:
-            continue
-        both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
-        if any(both):
-            shown = dict.fromkeys(show.quantity(f"{name}_reaction_1", value) for value in both)
-            found.append((words, " and ".join(shown)))
-    if "bearing_load" in data:
-        loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
-        found += [
-            (f"load on {place}", show.quantity("bearing_load", load))
-            for place, load in loads
-            if load > 0.0
-        ]
-    return found
 
 
 def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
@@ -105,7 +73,7 @@ def _held(name: str, value: float) -> str:
     return show.quantity(name, value) if np.isfinite(value) else "friction holds the drive"
 
 
-def _parts(data: xr.Dataset, law: int) -> tuple[float, float] | None:
+def loss_split(data: xr.Dataset, law: int) -> tuple[float, float] | None:
     """Loss in the teeth and beside them [W]."""
     if "mean_drag_loss" not in data:
         return None
@@ -120,7 +88,7 @@ def _split(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[Cur
             continue
         data = outcome.parts["operation"]
         for position, law in enumerate(laws(data)):
-            found = _parts(data, position)
+            found = loss_split(data, position)
             if found is not None:
                 yield known[variant, law], *found
 
@@ -235,3 +203,23 @@ def _chosen(axes: list[np.ndarray]) -> list[float]:
     every = common if common.size else np.unique(np.concatenate(axes))
     count = min(every.size, len(DASHES))
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
+
+
+def _lacks(page: Page) -> str | None:
+    there = drag_panel(page.outcomes, page.curves).figures
+    return None if there else reason(page, "running")
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield drag_panel(page.outcomes, page.curves)
+
+
+BESIDE = Section(
+    name="beside",
+    title="Losses beside the teeth",
+    short="Beside the teeth",
+    order=320.0,
+    lacks=_lacks,
+    blocks=_blocks,
+    card=starting_answer,
+)

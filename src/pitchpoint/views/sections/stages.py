@@ -1,0 +1,112 @@
+"""Stages of a drive: what each loses, and how far it lets the output turn."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.figures import STAGES as FIGURES
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    DASHES,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    display,
+    laws,
+    layout,
+    plain,
+    short_axis,
+)
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Heading, Page, Printed, Section, Table
+
+__all__ = ["STAGES", "stage_rows"]
+
+
+def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Figures of each stage by law, those that are nothing anywhere left out; none of one mesh."""
+    data = outcome.parts.get("operation")
+    if data is None or "stage" not in data.coords:
+        return []
+    names = [name for name in FIGURES if np.any(data[name])]
+    return [
+        {"friction law": law, "stage": str(stage)}
+        | {head(name): shown(name, float(data[name].values[k, 0, at])) for name in names}
+        for k, law in enumerate(laws(data))
+        for at, stage in enumerate(data["stage"].values)
+    ]
+
+
+def _card(outcome: Outcome, law: str) -> Iterator[tuple[str, str]]:
+    """What each stage loses at the operating point under one friction law."""
+    data = outcome.parts["operation"]
+    if "stage" not in data.coords:
+        return
+    position = laws(data).index(law)
+    for at, stage in enumerate(data["stage"].values):
+        loss, efficiency = (
+            show.quantity(name, float(data[name].values[position, 0, at]))
+            for name in ("stage_loss", "stage_efficiency")
+        )
+        yield f"stage {stage}", f"{efficiency}, {loss} lost"
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    for _, title, outcome in page.each("operation.stage_loss"):
+        if title:
+            yield Heading(title)
+        data = outcome.parts["operation"]
+        rows = [
+            (str(stage), law, *(show.quantity(n, float(data[n].values[k, 0, at])) for n in FIGURES))
+            for k, law in enumerate(laws(data))
+            for at, stage in enumerate(data["stage"].values)
+        ]
+        titles = [VARIABLES[name].long_name for name in FIGURES]
+        yield Table(["Stage", "Friction law", *titles], rows)
+    for position, title, outcome in page.each("torsion.stage_wind_up"):
+        figure = _wind_up(f"stages{position}", outcome.parts["torsion"])
+        yield Panel(title, [figure])
+
+
+def _wind_up(name: str, data: xr.Dataset) -> Figure:
+    """Wind-up at the output by each stage against torque."""
+    variable = "stage_wind_up"
+    unit = show.unit(VARIABLES[variable].display)
+    keys = tuple(
+        Key(f"stage {stage}", PALETTE[at % len(PALETTE)], DASHES[at % len(DASHES)])
+        for at, stage in enumerate(data["stage"].values)
+    )
+    torque, turned = display("torque", data["torque"]), display(variable, data[variable])
+    return Figure(
+        name,
+        "Wind-up at the output by stage",
+        [plain(key, torque, turned[:, at], unit) for at, key in enumerate(keys)],
+        layout(
+            "torque T [N\u00a0m]",
+            short_axis(variable),
+            xaxis={"rangemode": "tozero"},
+            yaxis={"rangemode": "tozero"},
+        ),
+        "Stages are springs one behind the other: the wind-up of the drive is their sum.",
+        keys,
+    )
+
+
+def _lacks(page: Page) -> str | None:
+    return None if page.having("operation.stage_loss") else ""
+
+
+STAGES = Section(
+    name="stages",
+    title="Stages",
+    short="Stages",
+    order=50.0,
+    blocks=_blocks,
+    lacks=_lacks,
+    card=_card,
+    screen=lambda one: [Printed(rows=rows)] if (rows := stage_rows(one)) else [],
+)
