@@ -1,0 +1,155 @@
+"""A drive of two meshes from its file through the command line: parts, sweeps, record, report."""
+
+import json
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pitchpoint import cli
+from pitchpoint.cases.variant import Variant
+from pitchpoint.results.store import load
+from pitchpoint.runs.run import describe
+
+TWO = """
+title = "Two stages"
+[[stages]]
+gears = { teeth = [23, 61], module = "2 mm", face_width = "18 mm" }
+[[stages]]
+gears = { teeth = [19, 70], module = "3 mm", face_width = "30 mm" }
+place = "40 mm"
+[lubricant]
+name = "pao-vg-150"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "300 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+[models]
+friction = ["iso_tr_14179_2", "xu_2007"]
+load_sharing = "from_stiffness"
+[losses.seal]
+between = ["shaft 3", "housing"]
+seal_torque = "0.5 N m"
+[loss_map]
+count = 2
+temperatures = ["60 degC"]
+"""
+PARTS = ["operation", "laws", "torsion", "study_sweep_operation_speed"]
+PARTS += ["study_sweep_stages_1_gears_profile_shift_1", "loss_map", "back_driving"]
+SWEEPS = ["--sweep", "operation.speed=500 rpm:1500 rpm:2"]
+SWEEPS += ["--sweep", "stages.1.gears.profile_shift.1=0:0.3:2"]
+SPEED = 1500.0 * np.pi / 30.0
+RATIO = (61 / 23) * (70 / 19)
+
+
+def call(*arguments: object) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["pitchpoint", *map(str, arguments)])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+    assert caught.value.code == 0
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of the drive, and of its record fed back."""
+    place = tmp_path_factory.mktemp("stages")
+    (place / "two.toml").write_text(TWO)
+    setting = ["--set", 'stages.2.roughness.ra="0.3 um"']
+    call("run", place / "two.toml", "-o", place / "out", *SWEEPS, *setting)
+    call("run", place / "out" / "default" / "manifest.json", "-o", place / "again")
+    return place
+
+
+def test_all_parts_are_there_and_the_record_repeats_them_bit_for_bit(folder: Path) -> None:
+    first, again = folder / "out" / "default", folder / "again" / "default"
+    manifest = json.loads((first / "manifest.json").read_text())
+    assert manifest["parts"] == PARTS
+    for part in PARTS:
+        assert load(first / f"{part}.nc").identical(load(again / f"{part}.nc")), part
+    lacks = manifest["lacks"]
+    assert lacks["vibration"] == "it is computed for one mesh; a stage in a file of its own has it"
+    assert manifest["members"] == ["shaft 1", "shaft 2", "shaft 3"]
+    np.testing.assert_allclose(manifest["motion"], [1.0, -23 / 61, 1.0 / RATIO], rtol=1e-14)
+
+
+def test_what_is_set_for_a_stage_is_its_own(folder: Path) -> None:
+    rows = json.loads((folder / "out" / "default" / "manifest.json").read_text())["inputs"]
+    every = {f"{row['table']}.{row['key']}": row for row in rows}
+    assert every["stages.2.roughness.ra"]["value"] == [3e-7, 3e-7]
+    assert every["stages.2.roughness.ra"]["status"] == "set"
+    assert every["roughness.ra"]["value"] == [4e-7, 4e-7]
+    assert "stages.1.roughness.ra" not in every
+    flank = every["stages.2.gears.flank"]
+    assert (flank["value"], flank["status"], flank["given"]) == ("right", "derived", False)
+
+
+def test_the_loss_of_a_seal_is_that_of_its_shaft(folder: Path) -> None:
+    data = load(folder / "out" / "default" / "operation.nc")
+    lost = 0.5 * SPEED / RATIO
+    np.testing.assert_allclose(data["stage_drag_loss"].values[:, 0], [[0.0, lost]] * 2, rtol=1e-10)
+    put_in = data["mean_input_torque"].values * SPEED
+    np.testing.assert_allclose(put_in - 300.0 * SPEED / RATIO, data["mean_loss"].values, rtol=1e-10)
+    product = data["stage_efficiency"].values.prod(axis=-1)
+    np.testing.assert_allclose(product, data["mean_efficiency"].values, rtol=1e-12)
+
+
+def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
+    where = folder / "out" / "default"
+    point, speeds = load(where / "operation.nc"), load(where / f"{PARTS[3]}.nc")
+    shifts = load(where / f"{PARTS[4]}.nc")
+    for name in ("mean_efficiency", "torque_ripple", "stage_loss"):
+        expected = point[name].values[:, 0]
+        np.testing.assert_allclose(speeds[name].values[:, -1], expected, rtol=1e-10)
+        np.testing.assert_allclose(shifts[name].values[:, 0], expected, rtol=1e-10)
+    assert np.all(np.abs(np.diff(shifts["mean_efficiency"].values)) > 1e-5)
+
+
+def test_the_report_shows_the_stages(folder: Path) -> None:
+    page = (folder / "out" / "report.html").read_text()
+    for words in ('id="stages"', 'id="torsion"', 'id="map"', "Wind-up at the output by stage"):
+        assert words in page, words
+    assert "shaft 1 drives at 1500 rpm, shaft 3 carries 300" in page
+
+
+def test_json_of_a_case_on_disk_has_the_figures_by_stage(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    call("run", folder / "out" / "default" / "manifest.json", "-o", folder / "again", "--json")
+    told = capsys.readouterr()
+    assert "(on disk)" in told.err
+    found = json.loads(told.out)["default"]
+    each = found["operation"]["xu_2007"]
+    assert len(each["stage_loss"]) == 2
+    assert sum(each["stage_loss"]) == pytest.approx(each["mean_loss"], rel=1e-12)
+    assert found["torsion"]["torsional_stiffness"][-1] > 1e6
+
+
+def test_the_screen_has_a_row_for_each_stage(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    call("run", folder / "out" / "default" / "manifest.json", "-o", folder / "again")
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("friction law") and "stage" in line for line in lines)
+
+
+def test_variants_change_one_stage() -> None:
+    tree: dict[str, Any] = tomllib.loads(TWO)
+    tree["variants"] = {"wide": {"stages": {"2": {"gears": {"face_width": "40 mm"}}}}}
+    case = Variant(tree, "two.toml", "wide").built({}).case
+    widths = [stage.gears.face_width for stage in case.stages.values()]
+    assert widths == pytest.approx([0.018, 0.04])
+
+
+def test_show_tells_where_values_of_a_stage_come_from(tmp_path: Path) -> None:
+    path = tmp_path / "two.toml"
+    marked = '{ value = "2 mm", status = "printed", where = "Table 1" }'
+    path.write_text(TWO.replace('module = "2 mm"', f"module = {marked}"))
+    (manifest,) = describe(str(path))
+    (row,) = (one for one in manifest["inputs"] if one["key"] == "1.gears.module")
+    assert (row["status"], row["where"], row["value"]) == ("printed", "Table 1", 0.002)
