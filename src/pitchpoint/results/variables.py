@@ -364,7 +364,9 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "wind_up": _deviation("deflection of the loaded member", "Δs"),
         "wind_up_range": _deviation("change of the deflection with the phase", "Δs range"),
         "torsional_stiffness": _stiffness("stiffness at the output", "K"),
-        "mesh_torsional_stiffness": _stiffness("stiffness at the output over the mesh cycle", "K(φ)"),
+        "mesh_torsional_stiffness": _stiffness(
+            "stiffness at the output over the mesh cycle", "K(φ)"
+        ),
         "lost_motion": _deviation("play of the loaded member without load", "Δs_0"),
         "angular_transmission_error": _deviation("travel of the loaded member under load", "s_e"),
         "angular_transmission_error_range": _deviation(
