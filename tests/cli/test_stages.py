@@ -112,7 +112,7 @@ def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
 
 def test_the_report_shows_the_stages(folder: Path) -> None:
     page = (folder / "out" / "report.html").read_text()
-    for words in ('id="stages"', 'id="torsion"', 'id="map"', "Wind-up at the output by stage"):
+    for words in ('id="stages"', 'id="torsion"', 'id="map"', "Wind-up at the output by the stage"):
         assert words in page, words
     assert "shaft 1 drives at 1500 rpm, shaft 3 carries 300" in page
 

@@ -16,6 +16,10 @@ from records import entries
 
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.family import Family
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.views import show
@@ -413,31 +417,47 @@ def shown(**changes: Any) -> Outcome:
     pair = build_cylindrical_pair(
         module=0.002, pressure_angle=np.deg2rad(20.0), face_width=0.016, **changes
     )
-    numbers = {name: np.asarray(value) for name, value in pair.drawing().items()}
-    dims, labels = FAMILY.drawing, FAMILY.coordinates
+    driver = f"gear {changes.get('driver', 1)}"
+    outcome = drawn_teeth(pair, FAMILY, driver, ["gear 1", "gear 2"])
+    outcome.manifest["inputs"] += entries(
+        {"gears.module": 0.002, "gears.profile_shift": [0.74, -0.05]}
+    )
+    return outcome
+
+
+RACK = RackAndPinionGears.model_validate(
+    {"teeth": 20.0, "module": "3 mm", "face_width": "25 mm", "helix_angle": "12 deg"}
+)
+
+
+def racked(driver: str = "pinion") -> Outcome:
+    """A result that holds nothing but the teeth of a rack and pinion."""
+    mesh, _ = RACK_FAMILY.build(RACK, "pinion", 2)
+    return drawn_teeth(mesh.driven_by(driver), RACK_FAMILY, driver, ["pinion", "rack"])
+
+
+def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> Outcome:
+    """The part `teeth` of a mesh, and the record that a picture needs."""
+    numbers = {name: np.asarray(value) for name, value in mesh.drawing().items()}
     teeth = dataset(
-        {name: (dims.get(name, ("gear",)[: v.ndim]), v) for name, v in numbers.items()},
-        dict(labels),
+        {n: (family.drawing.get(n, ("gear",)[: v.ndim]), v) for n, v in numbers.items()},
+        dict(family.coordinates),
         title="teeth",
     )
     inputs = {
         "operation.torque": 5.0,
         "operation.speed": 60.0 * pi,
         "operation.temperature": 333.15,
-        "gears.flank": "right" if changes.get("right_flank") else "left",
-        "gears.module": 0.002,
-        "gears.profile_shift": [0.74, -0.05],
     }
-    driver = f"gear {changes.get('driver', 1)}"
     manifest = {
         "inputs": entries(inputs),
         "driver": driver,
-        "members": ["gear 1", "gear 2"],
-        "motion": pair.motion.tolist(),
-        "period": float(pair.period),
-        "travels": [],
+        "members": members,
+        "motion": mesh.motion.tolist(),
+        "period": float(mesh.period),
+        "travels": ["driver"] if driver == "rack" else [],
         "pitch": "base pitch",
-        "against": f"{driver} drives" if pair.onward < 0.0 else "",
+        "against": f"{driver} drives" if mesh.onward < 0.0 else "",
     }
     return Outcome(manifest, {"teeth": teeth})
 
@@ -447,10 +467,12 @@ def outside() -> Outcomes:
     return {name: shown(**changes) for name, changes in OUTSIDE.items()}
 
 
-@pytest.fixture(params=["published", "idle", "wheel", *OUTSIDE])
+@pytest.fixture(params=["published", "idle", "wheel", *OUTSIDE, "rack"])
 def drawn(request: pytest.FixtureRequest, outside: Outcomes) -> Picture:
     if request.param in OUTSIDE:
         return picture_of(outside[request.param])
+    if request.param == "rack":
+        return picture_of(racked())
     outcomes: Outcomes = request.getfixturevalue(request.param)
     return picture_of(next(iter(outcomes.values())))
 
@@ -459,11 +481,14 @@ def teeth(drawn: Picture, phase: float) -> Iterator[tuple[int, np.ndarray]]:
     """Gear and corners in mm of every tooth as the page places it, y downwards."""
     for gear, placed in enumerate(drawn.svg("p")["bodies"]):
         corners = np.array([p.split(",") for p in placed["tooth"].split()], float)
+        place = np.array(placed["place"]) + phase * np.array(placed["travel"])
         for repeat in placed["repeats"]:
-            turn = float(repeat.removeprefix("rotate(").removesuffix(")"))
+            kind, _, numbers = repeat.rstrip(")").partition("(")
+            turn = float(numbers) if kind == "rotate" else 0.0
+            moved = np.array(numbers.split(), float) if kind == "translate" else np.zeros(2)
             angle = np.deg2rad(placed["turn"] + phase * placed["spin"] + turn)
             turned = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
-            yield gear, corners @ turned.T + placed["place"]
+            yield gear, (corners + moved) @ turned.T + place
 
 
 def distance(point: np.ndarray, corners: np.ndarray) -> float:
@@ -531,12 +556,13 @@ def half_angle(body: Body, radius: float) -> float:
 
 
 def test_the_line_of_action_is_tangent_to_both_base_circles(drawn: Picture) -> None:
-    marks = dict(drawn.marks)
-    first, last = np.array(marks["N1"]), np.array(marks["N2"])
-    for body, point in zip(drawn.bodies, (first, last), strict=True):
-        arm = point - body.place
-        assert np.hypot(*arm) == pytest.approx(body.levels["base"], rel=1e-12)
-        assert arm @ (last - first) == pytest.approx(0.0, abs=1e-12)
+    marks, step = dict(drawn.marks), drawn.teeth["contact_step"].values
+    assert ("N2" in marks) == drawn.bodies[1].turns
+    for body, mark in zip(drawn.bodies, ("N1", "N2"), strict=True):
+        if body.turns:
+            arm = np.array(marks[mark]) - body.place
+            assert np.hypot(*arm) == pytest.approx(body.levels["base"], rel=1e-12)
+            assert arm @ step == pytest.approx(0.0, abs=1e-9 * np.hypot(*arm) * np.hypot(*step))
     assert (drawn.bodies[1].place[1] < 0.0) == drawn.bodies[1].ring
 
 
@@ -544,9 +570,10 @@ def test_contact_moves_with_the_driving_flank(drawn: Picture) -> None:
     """Both flanks move along the line of action at the speed of the contact."""
     step = drawn.teeth["contact_step"].values
     along = step / np.hypot(*step)
-    for body, mark in zip(drawn.bodies, ("N1", "N2"), strict=True):
-        x, y = np.array(dict(drawn.marks)[mark]) - body.place
-        moved = body.spin * np.array([-y, x])
+    point = drawn.teeth["contact_start"].values
+    for body in drawn.bodies:
+        x, y = point - body.place
+        moved = body.spin * np.array([-y, x]) + body.travel
         assert moved @ along == pytest.approx(np.hypot(*step), rel=1e-9)
 
 
@@ -567,6 +594,8 @@ def test_who_turns_where(outside: Outcomes) -> None:
     assert words["helical, four teeth"] == "Gear 1 drives, turning counter-clockwise"
     assert words["helical, right flanks"] == "Gear 1 drives, turning clockwise"
     assert words["helical ring, gear 2 drives"] == "Gear 2 drives, turning clockwise"
+    assert picture_of(racked()).svg("p")["moves"] == "Pinion drives, turning counter-clockwise"
+    assert picture_of(racked("rack")).svg("p")["moves"] == "Rack drives, travelling to the right"
 
 
 def test_a_pinion_with_few_teeth_is_drawn_whole(outside: Outcomes) -> None:

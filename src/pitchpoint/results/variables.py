@@ -377,9 +377,13 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "loading_torque": _force("force while the deflection grows", "F"),
         "unloading_torque": _force("force while the deflection shrinks", "F"),
         "wind_up": _deviation("deflection of the loaded member", "Δs"),
+        "stage_wind_up": _deviation("deflection at the output by the stage", "Δs"),
+        "stage_torsional_stiffness": _stiffness("stiffness of the stage, at the output", "K"),
         "wind_up_range": _deviation("change of the deflection with the phase", "Δs range"),
-        "torsional_stiffness": _stiffness("stiffness against the load", "K"),
-        "mesh_torsional_stiffness": _stiffness("stiffness over the mesh cycle", "K(φ)"),
+        "torsional_stiffness": _stiffness("stiffness at the output", "K"),
+        "mesh_torsional_stiffness": _stiffness(
+            "stiffness at the output over the mesh cycle", "K(φ)"
+        ),
         "lost_motion": _deviation("play of the loaded member without load", "Δs_0"),
         "angular_transmission_error": _deviation("travel of the loaded member under load", "s_e"),
         "angular_transmission_error_range": _deviation(

@@ -16,7 +16,6 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.results.rounding import ROUNDING
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 
@@ -197,9 +196,9 @@ def _decimals(value: float, digits: int) -> int:
     return digits - 1 - floor(log10(abs(value))) if value else 0
 
 
-def display(name: str, values: Any) -> np.ndarray:
-    """SI values of a variable in its display unit."""
-    variable = VARIABLES[name]
+def display(name: str, values: Any, of: Any = None) -> np.ndarray:
+    """SI values of a variable in its display unit, see `show.described`."""
+    variable = show.described(name, of)
     array = np.asarray(values, dtype=float)
     return np.asarray(units.convert(array, variable.display, variable.kind))
 
@@ -266,15 +265,14 @@ def layout(x: str, y: str, **more: Any) -> dict[str, Any]:
     }
 
 
-def level(name: str, value: float) -> str:
-    """A value at which a line holds, with its unit, for a legend [SI in]."""
-    unit = show.unit(VARIABLES[name].display)
-    return f"{show.number(float(display(name, value)))}\u00a0{unit}"
+def level(name: str, value: float, of: Any = None) -> str:
+    """A value at which a line holds, with its unit, for a legend [SI in], see `show.described`."""
+    return f"{show.number(float(display(name, value, of)))}\u00a0{show.unit_of(name, of)}"
 
 
-def short_axis(name: str) -> str:
+def short_axis(name: str, of: Any = None) -> str:
     """Title of an axis: symbol and unit; the figure has the long name above it."""
-    variable = VARIABLES[name]
+    variable = show.described(name, of)
     unit = show.unit(variable.display)
     return f"{variable.symbol} [{unit}]" if unit else variable.symbol
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views.figures import Trace
+from pitchpoint.views.show import described
 
 __all__ = ["SHORT", "Points", "gapped", "regimes", "titled", "values_of"]
 
@@ -44,9 +44,9 @@ def values_of(data: xr.Dataset, name: str) -> np.ndarray:
     return np.asarray(data[name].values)
 
 
-def titled(name: str) -> str:
-    """Long name of a variable as a title."""
-    words = VARIABLES[name].long_name
+def titled(name: str, of: Any = None) -> str:
+    """Long name of a variable as a title, see `show.described`."""
+    words = described(name, of).long_name
     return words[0].upper() + words[1:]
 
 

@@ -213,10 +213,11 @@ class Picture:
         """Who drives, and which way."""
         name, rate = self.driver
         body = next(body for body in self.bodies if body.name == name)
+        left = (body.travel[0] < 0.0) != self.path.backwards
         way = (
             f"turning {'counter-clockwise' if rate > 0.0 else 'clockwise'}"
             if body.turns
-            else f"travelling to the {'left' if body.travel[0] < 0.0 else 'right'}"
+            else f"travelling to the {'left' if left else 'right'}"
         )
         return f"{name.capitalize()} drives, {way}"
 

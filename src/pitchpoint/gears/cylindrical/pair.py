@@ -200,6 +200,7 @@ class CylindricalPair(Mesh):
 
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
     counts: ClassVar[Path] = "action"
 
     teeth: Float[Array, "2"]
@@ -543,8 +544,12 @@ class CylindricalPair(Mesh):
             transverse_contact_ratio=self.transverse_contact_ratio,
             face_width=self.face_width,
             reference_arm=jnp.sum(self.loaded * radii),
-            internal=self.internal,
         )
+
+    @property
+    def standardised(self) -> bool:
+        """The standards are for external gears."""
+        return not self.internal
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].

@@ -106,6 +106,7 @@ class RackAndPinion(Mesh):
 
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
     counts: ClassVar[Path] = "action"
 
     pinion: InvoluteGear
@@ -298,7 +299,7 @@ class RackAndPinion(Mesh):
             Spot(flank[1], across, turned, tooth, ones),
         )
 
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"] | None:
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moment of inertia of the pinion as a disc [kg m2], and the mass that the rack moves [kg]."""
         root = self.pinion.root_radius
         outer, bore = self.pinion.reference_radius, root / self.rim_ratio

@@ -108,17 +108,21 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
         "title": law_title(outcome, law),
         "defined": defined,
         "efficiency": show.quantity("mean_efficiency", value("mean_efficiency")),
-        "range": _range("efficiency", value),
+        "range": _range(data, "efficiency", value),
         "loss": show.quantity("mean_loss", value("mean_loss")),
-        "torque": show.quantity("mean_input_torque", value("mean_input_torque")),
-        "torque_range": _range("input_torque", value),
-        "ripple": show.quantity("torque_ripple", value("torque_ripple")),
+        "torque": show.quantity("mean_input_torque", value("mean_input_torque"), of=data),
+        "input": show.described("mean_input_torque", data).long_name,
+        "rippling": "force ripple"
+        if show.described("torque_ripple", data).unit == "N"
+        else "torque ripple",
+        "torque_range": _range(data, "input_torque", value),
+        "ripple": show.quantity("torque_ripple", value("torque_ripple"), of=data),
         "covers": str(data["mean_efficiency"].attrs.get("covers", "")),
         "locked": bool(data["locked"].values[position, 0]),
         "jamming": jamming(data, position),
         "back": back_driving(outcome, law),
         "contact": [
-            (VARIABLES[name].long_name, show.quantity(name, value(name)))
+            (VARIABLES[name].long_name, show.quantity(name, value(name), of=data))
             for name in _at_contact(data)
         ],
         "drag": _drag(data, position),
@@ -132,9 +136,9 @@ def _at_contact(data: Any) -> tuple[str, ...]:
     return CONTACT if of_contact(data) else ()
 
 
-def _range(name: str, value: Callable[[str], float]) -> str:
+def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
     ends = f"min_{name}", f"max_{name}"
-    return show.span(*ends, [value(end) for end in ends])
+    return show.span(*ends, [value(end) for end in ends], data)
 
 
 def _warnings(page: Page, outcome: Outcome) -> list[str]:
@@ -202,7 +206,7 @@ def summary(outcome: Outcome) -> Printed:
     rows = [
         {
             "friction law": str(law),
-            **{head(name): cell(data, name, position) for name in main_figures(data)},
+            **{head(name, data): cell(data, name, position) for name in main_figures(data)},
             **_of_power(outcome, position),
         }
         for position, law in enumerate(data["law"].values)

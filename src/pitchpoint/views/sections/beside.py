@@ -6,7 +6,6 @@ from functools import reduce
 import numpy as np
 import xarray as xr
 
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -25,8 +24,10 @@ from pitchpoint.views.figures import (
     level,
     line,
     rounded,
+    short_axis,
     text,
 )
+from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Page, Section, reason
 
@@ -60,7 +61,7 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     # The operating point is on both axes; where it is read from words it is so up to rounding.
     there = own.sel(speed=at.speed, temperature=at.temperature, method="nearest")
     return [
-        (words, _held(name, float(there[name])))
+        (words, _held(data, name, float(there[name])))
         for words, name in (
             ("torque without load", "no_load_torque"),
             ("starting torque", "starting_torque"),
@@ -69,8 +70,8 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     ]
 
 
-def _held(name: str, value: float) -> str:
-    return show.quantity(name, value) if np.isfinite(value) else "friction holds the drive"
+def _held(data: xr.Dataset, name: str, value: float) -> str:
+    return show.quantity(name, value, of=data) if np.isfinite(value) else "friction holds the drive"
 
 
 def loss_split(data: xr.Dataset, law: int) -> tuple[float, float] | None:
@@ -143,57 +144,50 @@ def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
 
 def _no_load(axis: str, other: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> Figure:
     values = _chosen([data[other].values for _, data, *_ in seen])
-    unit = show.unit(VARIABLES["no_load_torque"].display)
+    like = seen[0][1]
     traces = [
-        _dashed(curve, data[axis], data["no_load_torque"][law].sel({other: value}), dash, unit)
+        _dashed(curve, data.isel(law=law).sel({other: value}), axis, "no_load_torque", dash)
         for curve, data, law, _ in seen
         for dash, value in zip(DASHES, values, strict=False)
         if value in data[other].values
     ]
     return Figure(
         f"no_load_{axis}",
-        f"Input torque without load against {_WORDS[axis]}",
+        f"{titled('no_load_torque', like)} against {axis}",
         traces,
-        _look(axis, "T_0"),
+        _look(like, axis, "no_load_torque"),
         keys=tuple(
-            Key(level(other, value), INK, dash) for dash, value in zip(DASHES, values, strict=False)
+            Key(level(other, value, like), INK, dash)
+            for dash, value in zip(DASHES, values, strict=False)
         ),
         missing="Friction holds the drive whatever the torque.",
     )
 
 
-_WORDS = {"speed": "speed", "temperature": "temperature"}
-_TITLES = {
-    "starting_torque": ("Input torque that starts the drive", "T_start"),
-    "back_driving_torque": ("Output torque that starts the drive backwards", "T_back"),
-}
-
-
 def _starting(name: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> Figure:
-    title, symbol = _TITLES[name]
-    unit = show.unit(VARIABLES[name].display)
+    like = seen[0][1]
     traces = [
-        _dashed(curve, data["temperature"], data[name][law], curve.dash, unit)
+        _dashed(curve, data.isel(law=law), "temperature", name, curve.dash)
         for curve, data, law, _ in seen
     ]
     return Figure(
         f"running_{name}",
-        title,
+        titled(name, like),
         traces,
-        _look("temperature", symbol),
+        _look(like, "temperature", name),
         "From rest, without load, at the worst phase of the mesh.",
         missing="Friction holds the drive whatever the torque.",
     )
 
 
-def _look(axis: str, symbol: str) -> dict[str, object]:
-    words, unit = VARIABLES[axis].long_name, show.unit(VARIABLES[axis].display)
+def _look(data: xr.Dataset, axis: str, name: str) -> dict[str, object]:
     axes = {"yaxis": {"rangemode": "tozero"}}
-    return layout(f"{words} [{unit}]", f"{symbol} [{show.unit('N m')}]", **axes)
+    return layout(show.axis_title(axis, data), short_axis(name, data), **axes)
 
 
-def _dashed(curve: Curve, x: xr.DataArray, y: xr.DataArray, dash: str, unit: str) -> Trace:
-    trace = line(curve, display(str(x.name), x), display("no_load_torque", y), unit)
+def _dashed(curve: Curve, data: xr.Dataset, axis: str, name: str, dash: str) -> Trace:
+    x, y = (display(each, data[each], data) for each in (axis, name))
+    trace = line(curve, x, y, show.unit_of(name, data))
     return {**trace, "line": {"color": curve.colour, "dash": dash, "width": 2}}
 
 

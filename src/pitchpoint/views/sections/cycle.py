@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import xarray as xr
 
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -81,19 +80,20 @@ def _timed(
 def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
     first = seen[0][3]
     abscissa = _phase if axis == "phase" else _time
-    unit = show.unit(VARIABLES[name].display)
+    like = seen[0][1]
+    unit = show.unit_of(name, like)
     traces = []
     for curve, data, law, period in seen:
         x, y = abscissa(data, data[name].values[law], period)
-        traces.append(line(curve, x, display(name, y), unit))
+        traces.append(line(curve, x, display(name, y, data), unit))
     words = {"phase": first.axis, "time": "time [ms]"}[axis]
     title = {"phase": f"over one {first.pitch}", "time": f"over time, two {first.pitch}es"}[axis]
     note = f"Time runs against the phase: {first.against}." if first.backwards else ""
     return Figure(
         f"cycle_{name}_{axis}",
-        f"{titled(name)} {title}",
+        f"{titled(name, like)} {title}",
         traces,
-        layout(words, short_axis(name)),
+        layout(words, short_axis(name, like)),
         note if axis == "time" else "",
     )
 
@@ -119,7 +119,7 @@ def _against(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
         order = np.argsort(data["input_torque"].values[law], kind="stable")
         trace = line(
             curve,
-            display("input_torque", data["input_torque"].values[law][order]),
+            display("input_torque", data["input_torque"].values[law][order], data),
             display("efficiency", data["efficiency"].values[law][order]),
             "%",
         )
@@ -130,7 +130,7 @@ def _against(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
         "cycle_against",
         "Instantaneous efficiency against input torque",
         traces,
-        layout(short_axis("input_torque"), short_axis("efficiency")),
+        layout(short_axis("input_torque", seen[0][1]), short_axis("efficiency")),
         "With the output torque held, all laws lie on one curve and cover different parts of it; "
         "the first laws are drawn wider.",
     )

@@ -45,7 +45,7 @@ def _side_by_side(page: Page) -> Table:
     ]
     lines = [
         (
-            show.axis_title(name),
+            show.axis_title(name, columns[0][1].parts["operation"]),
             *(_told(one.parts["operation"], name, k) for _, one, k, _ in columns),
         )
         for name in _SIDE_BY_SIDE
@@ -72,7 +72,7 @@ def _told(data: Any, name: str, law: int) -> str:
         return "not computed"
     if name in _STEADY and "vibration_status" in data and data["vibration_status"].values[law, 0]:
         return "none"
-    return show.quantity(name, float(data[name].values[law, 0]), with_unit=False)
+    return show.quantity(name, float(data[name].values[law, 0]), with_unit=False, of=data)
 
 
 def _titled(page: Page) -> str:

@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.figures import STAGES as FIGURES
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -35,7 +34,10 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
     names = [name for name in FIGURES if np.any(data[name])]
     return [
         {"friction law": law, "stage": str(stage)}
-        | {head(name): shown(name, float(data[name].values[k, 0, at])) for name in names}
+        | {
+            head(name, data): shown(name, float(data[name].values[k, 0, at]), data)
+            for name in names
+        }
         for k, law in enumerate(laws(data))
         for at, stage in enumerate(data["stage"].values)
     ]
@@ -49,7 +51,7 @@ def _card(outcome: Outcome, law: str) -> Iterator[tuple[str, str]]:
     position = laws(data).index(law)
     for at, stage in enumerate(data["stage"].values):
         loss, efficiency = (
-            show.quantity(name, float(data[name].values[position, 0, at]))
+            show.quantity(name, float(data[name].values[position, 0, at]), of=data)
             for name in ("stage_loss", "stage_efficiency")
         )
         yield f"stage {stage}", f"{efficiency}, {loss} lost"
@@ -61,11 +63,15 @@ def _blocks(page: Page) -> Iterator[Block]:
             yield Heading(title)
         data = outcome.parts["operation"]
         rows = [
-            (str(stage), law, *(show.quantity(n, float(data[n].values[k, 0, at])) for n in FIGURES))
+            (
+                str(stage),
+                law,
+                *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in FIGURES),
+            )
             for k, law in enumerate(laws(data))
             for at, stage in enumerate(data["stage"].values)
         ]
-        titles = [VARIABLES[name].long_name for name in FIGURES]
+        titles = [show.described(name, data).long_name for name in FIGURES]
         yield Table(["Stage", "Friction law", *titles], rows)
     for position, title, outcome in page.each("torsion.stage_wind_up"):
         figure = _wind_up(f"stages{position}", outcome.parts["torsion"])
@@ -75,23 +81,25 @@ def _blocks(page: Page) -> Iterator[Block]:
 def _wind_up(name: str, data: xr.Dataset) -> Figure:
     """Wind-up at the output by each stage against torque."""
     variable = "stage_wind_up"
-    unit = show.unit(VARIABLES[variable].display)
+    unit = show.unit_of(variable, data)
+    words = show.described(variable, data).long_name
     keys = tuple(
         Key(f"stage {stage}", PALETTE[at % len(PALETTE)], DASHES[at % len(DASHES)])
         for at, stage in enumerate(data["stage"].values)
     )
-    torque, turned = display("torque", data["torque"]), display(variable, data[variable])
+    load = display("torque", data["torque"], data)
+    turned = display(variable, data[variable], data)
     return Figure(
         name,
-        "Wind-up at the output by stage",
-        [plain(key, torque, turned[:, at], unit) for at, key in enumerate(keys)],
+        f"{words[0].upper()}{words[1:]}",
+        [plain(key, load, turned[:, at], unit) for at, key in enumerate(keys)],
         layout(
-            "torque T [N\u00a0m]",
-            short_axis(variable),
+            short_axis("torque", data),
+            short_axis(variable, data),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),
-        "Stages are springs one behind the other: the wind-up of the drive is their sum.",
+        "Stages are springs one behind the other: that of the drive is their sum.",
         keys,
     )
 

@@ -11,7 +11,6 @@ from pitchpoint import units
 from pitchpoint.analyses.figures import CONTACT, MAIN, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -28,6 +27,7 @@ from pitchpoint.views.figures import (
     short_axis,
     text,
 )
+from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
 from pitchpoint.views.sections.design_chart import design_charts, is_design_chart
@@ -64,7 +64,7 @@ def _tables(page: Page) -> Iterator[Block]:
             columns = _columns(seen)
             yield Heading(str(seen[0][1].attrs["title"]))
             yield Table(
-                ["Friction law", *map(show.axis_title, columns)],
+                ["Friction law", *(show.axis_title(name, seen[0][1]) for name in columns)],
                 [(curve.label, *_cells(data, law, columns)) for curve, data, law in seen],
             )
 
@@ -95,7 +95,8 @@ def _columns(seen: Seen) -> list[str]:
 
 def _cells(data: xr.Dataset, law: int, columns: list[str]) -> list[str]:
     return [
-        show.quantity(name, float(_valid(data, name)[law, 0]), with_unit=False) for name in columns
+        show.quantity(name, float(_valid(data, name)[law, 0]), with_unit=False, of=data)
+        for name in columns
     ]
 
 
@@ -132,18 +133,18 @@ def _panel(name: str, seen: Seen) -> Panel:
 
 
 def _figure(name: str, variable: str, seen: Seen, axis: Any) -> Figure:
-    unit = show.unit(VARIABLES[variable].display)
-    title = VARIABLES[variable].long_name
+    like = seen[0][1]
+    unit = show.unit_of(variable, like)
     return Figure(
         name,
-        title[0].upper() + title[1:],
+        titled(variable, like),
         [_trace(curve, data, law, variable, axis, unit) for curve, data, law in seen],
-        layout(text(axis(seen[0][1])[1]), short_axis(variable)),
+        layout(text(axis(like)[1]), short_axis(variable, like)),
     )
 
 
 def _trace(curve: Curve, data: xr.Dataset, law: int, variable: str, axis: Any, unit: str) -> Trace:
-    values = display(variable, _valid(data, variable)[law])
+    values = display(variable, _valid(data, variable)[law], data)
     marks = {"mode": "lines+markers", "marker": {"size": 5, "color": curve.colour}}
     return line(curve, axis(data)[0], values, unit, **marks)
 
@@ -238,7 +239,9 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
     key = data.attrs["sweep_key"]
     place = {key: _place(data["axis"].values[point], key)}
     names = CONTACT if of_contact(data) else SWEPT
-    cells = {head(n): shown(n, float(data[n].values[law, point])) for n in names if n in data}
+    cells = {
+        head(n, data): shown(n, float(data[n].values[law, point]), data) for n in names if n in data
+    }
     return {**place, "friction law": str(data["law"].values[law]), **cells}
 
 

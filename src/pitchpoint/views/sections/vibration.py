@@ -3,7 +3,6 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import pi
 from typing import Any
 
 import numpy as np
@@ -102,8 +101,9 @@ def _found(data: xr.Dataset) -> list[bool]:
 
 
 def _torques(data: xr.Dataset) -> list[str]:
-    unit = show.unit(VARIABLES["torque"].display)
-    return [f"{show.number(float(value))} {unit}" for value in display("torque", data["torque"])]
+    unit = show.unit_of("torque", data)
+    values = display("torque", data["torque"], data)
+    return [f"{show.number(float(value))} {unit}" for value in values]
 
 
 def _cell(data: xr.Dataset, name: str, torque: int) -> str:
@@ -269,7 +269,7 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
     data = outcome.parts["resonance"]
     values = np.where(data["vibration_status"].values == 0, data[variable].values, np.nan)
     rising, falling = display(variable, values)
-    speed, unit = display("speed", data["speed"].values), show.unit(VARIABLES[variable].display)
+    speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable)
     same = np.allclose(rising, falling, rtol=1e-6, equal_nan=True)
     traces = []
     for key, up, down in zip(_keys(data), rising, falling, strict=True):
@@ -297,7 +297,7 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
         f"{name}_{variable}",
         f"{title[0].upper()}{title[1:]} against speed",
         traces,
-        layout("driver speed [rpm]", short_axis(variable), yaxis={"rangemode": "tozero"})
+        layout(show.axis_title("speed", data), short_axis(variable), yaxis={"rangemode": "tozero"})
         | _verticals(marks),
         note,
         tuple(keys),
@@ -312,17 +312,17 @@ def _dots(colour: str, branch: str) -> dict[str, Any]:
 
 
 def _resonances(outcome: Outcome, speed: np.ndarray) -> list[tuple[str, float]]:
-    """Driver speeds in rpm at which a part of the natural frequency is the mesh frequency."""
+    """Driver speeds, as shown, at which a part of the natural frequency is the mesh frequency."""
     if "vibration" not in outcome.parts:
         return []
     natural = float(outcome.parts["vibration"]["natural_frequency"].values[-1])
     angle = period_of(outcome).angle
     found: list[tuple[str, float]] = []
     for part in range(1, _FEW + 1):
-        rpm = natural / part * angle * 60.0 / (2.0 * pi)
-        near = found and abs(found[-1][1] - rpm) < 0.13 * np.ptp(speed)
-        if speed.min() <= rpm <= speed.max() and not near:
-            found.append(("f_n" if part == 1 else f"f_n/{part}", rpm))
+        there = float(display("speed", natural / part * angle, outcome.parts["resonance"]))
+        near = found and abs(found[-1][1] - there) < 0.13 * np.ptp(speed)
+        if speed.min() <= there <= speed.max() and not near:
+            found.append(("f_n" if part == 1 else f"f_n/{part}", there))
     return found
 
 
@@ -345,13 +345,13 @@ def _gaps(data: xr.Dataset) -> Iterator[str]:
     """For each direction and torque how many speeds have no steady state, and why."""
     told = json.loads(data.attrs.get("sentences", "[]"))
     codes = data["vibration_status"].values
-    speed = display("speed", data["speed"].values)
+    speed, unit = display("speed", data["speed"].values, data), show.unit_of("speed", data)
     for way, by_torque in zip(data["direction"].values, codes, strict=True):
         for torque, found in zip(_torques(data), by_torque, strict=True):
             for code in np.unique(found[found != 0]):
                 where = speed[found == code]
-                ends = f"{show.number(where[0])} to {show.number(where[-1])} rpm"
-                words = ends if where.size > 1 else f"{show.number(where[0])} rpm"
+                ends = f"{show.number(where[0])} to {show.number(where[-1])} {unit}"
+                words = ends if where.size > 1 else f"{show.number(where[0])} {unit}"
                 yield (
                     f"At {torque}, speed {way}: {where.size} of {speed.size} speeds ({words}) "
                     f"are left out, {told[int(code)] if int(code) < len(told) else 'not solved'}."
@@ -399,7 +399,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("vibration")
     if data is not None:
         rows = [
-            {head("torque"): f"{torque:.5g}"}
+            {head("torque", data): f"{torque:.5g}"}
             | {head(name): shown(name, float(data[name].values[k])) for name in FIGURES}
             for k, torque in enumerate(data["torque"].values)
         ]
