@@ -23,7 +23,7 @@ from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-PAIR, MODIFIED, PLASTIC, RACK, WAVE, BALL, TARGETS = (
+PAIR, MODIFIED, PLASTIC, RACK, WAVE, STAGES, BALL, TARGETS = (
     text for kind, text in BLOCKS if kind == "toml"
 )
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
@@ -37,6 +37,7 @@ CASES = {
     "plastic": (PAIR, PLASTIC),
     "rack": (PAIR, RACK),
     "wave": WAVE,
+    "stages": STAGES,
     "ball": BALL,
     "targets": (WAVE, TARGETS),
 }

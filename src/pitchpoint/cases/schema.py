@@ -986,6 +986,8 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         InputError: there is no such key.
     """
     models: list[type[BaseModel]] = [Case, DriveCase]
+    if isinstance(tree, Mapping):
+        models = [DriveCase if STAGES in tree else Case]
     parts = [part for part in key.split(".") if not part.isdigit()]
     named = False
     for position, part in enumerate(parts):
