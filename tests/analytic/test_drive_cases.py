@@ -13,6 +13,7 @@ from pitchpoint.analyses.torsion import TORSION
 from pitchpoint.cases.stages import BuiltDrive
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.drive import drive_cycle
+from pitchpoint.errors import InputError
 
 COMMON = """
 [lubricant]
@@ -204,6 +205,16 @@ def test_a_spur_pair_before_a_strain_wave_gear_keeps_its_power():
     inside = 0.02 * SPEED * 23 / 61 * (1.0 + 1.0 / 50)
     np.testing.assert_allclose(data["stage_drag_loss"].values[0, 0], [0.0, inside], rtol=1e-10)
     assert case.places == ["stage 2 inside"]
+
+
+def test_all_stages_before_one_of_a_single_sense_turn_over():
+    ring = "teeth = [20, -61]\nmodule = '2 mm'\nface_width = '18 mm'\naddendum = [1.0, 0.8]\n"
+    first, second = (f"[[stages]]\n[stages.gears]\n{gears}" for gears in (FIRST, ring))
+    case = built(f"{first}{second}[[stages]]\n{WAVE}{COMMON}")
+    assert [one.case.gears.flank for one in case.stages[:2]] == ["right", "right"]
+    held = f"{first}flank = 'left'\n{second}flank = 'left'\n[[stages]]\n{WAVE}{COMMON}"
+    with pytest.raises(InputError, match=r"stages.3.gears: .* for one sense of rotation alone"):
+        built(held)
 
 
 def test_few_meetings_of_phases_are_told():

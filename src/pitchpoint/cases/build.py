@@ -92,6 +92,11 @@ class Built:
         return (*failures(self.solids), *self.told)
 
     @property
+    def heated(self) -> list[str]:
+        """Sentences on teeth that their own loss warms."""
+        return [used.told for used in self.solids if used.told]
+
+    @property
     def laws(self) -> list[FrictionLaw]:
         """Friction laws of the case, in order."""
         return [models.law for models in self.models]

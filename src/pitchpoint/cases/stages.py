@@ -83,6 +83,12 @@ class BuiltDrive:
         ]
         return (*self.told, *common, *apart)
 
+    @property
+    def heated(self) -> list[str]:
+        """Sentences on teeth that their own loss warms, by stage."""
+        each = zip(self.numbers, self.stages, strict=True)
+        return [in_stage(number, text) for number, one in each for text in one.heated]
+
     @cached_property
     def models(self) -> tuple[Acting, ...]:
         """Laws that act together, once under each friction law of the case."""
@@ -268,7 +274,8 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     """A stage as a case of its own: its tables, and those of the drive for what it leaves out."""
     whole, stage = document.tree, document.tree[STAGES][str(number)]
     tree: Tree = {key: stage.get(key, whole[key]) for key in _OF_STAGE if key in {*stage, *whole}}
-    tree |= {key: {**whole.get(key, {}), **stage.get(key, {})} for key in _SHARED}
+    both = {key: {**whole.get(key, {}), **stage.get(key, {})} for key in _SHARED}
+    tree |= {key: table for key, table in both.items() if table}
     tree |= {key: stage[key] for key in ("gears", "losses") if key in stage}
     load = case.stages[str(number)].gears.load
     kept = {key: whole["operation"][key] for key in ("speed", "temperature")}
@@ -338,10 +345,10 @@ def _following(alone: Sequence[Case], document: Document) -> list[Case]:
         if first * last < 0.0:
             if _open(one):
                 one = _turned(one)
-            elif all(map(_open, found)):
+            elif all(map(_open, alone[: number - 1])):
                 found = [*map(_turned, found)]
             else:
-                raise InputError(_against(one, number), key=_key(number, "gears.flank"))
+                raise _against(one, number)
         found.append(one)
     return found
 
@@ -358,17 +365,19 @@ def _turned(one: Case) -> Case:
     return one.model_copy(update={"gears": one.gears.model_copy(update={"flank": other})})
 
 
-def _against(one: Case, number: int) -> str:
+def _against(one: Case, number: int) -> InputError:
     given = getattr(one.gears, "flank", None)
     if given is None:
-        return (
+        told = (
             f"these gears carry on the flanks for one sense of rotation alone, and shaft {number} turns "
             "the other way; leave the flanks of the stages before them open"
         )
-    return (
+        return InputError(told, key=_key(number, "gears"))
+    told = (
         f"with the {given} flanks in contact shaft {number} turns against the stage before it; leave flank "
         "out, or take the others"
     )
+    return InputError(told, key=_key(number, "gears.flank"))
 
 
 def _mesh(one: Case, number: int, document: Document) -> Mesh:

@@ -81,7 +81,7 @@ def _chunk(
     filled = [*operations, *([operations[-1]] * (CHUNK - len(operations)))]
     stacked: Operation = jax.tree.map(lambda *v: array(np.stack(v)), *filled)
     nodes, last = drive_nodes(len(drive.stages)), drive.stages[-1].design
-    known = engaged(last, operations[0], models[-1])
+    known = engaged(last, operations[0], models[-1], nodes)
     found = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
     return {name: np.asarray(values)[: len(operations)] for name, values in found.items()}
 

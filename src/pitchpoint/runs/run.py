@@ -500,7 +500,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
             [
                 *variant.warnings,
                 *built.warnings,
-                *(used.told for used in solids if used.told),
+                *built.heated,
             ]
         ),
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
