@@ -91,7 +91,7 @@ def _tangent(function: Callable[[Each], Each], at: Each) -> tuple[Each, Each]:
 
 
 def third_order_step(function: Callable[[Each], Each], at: Each) -> Each:
-    """One step towards the root of each state: Newton's with the curvature."""
+    """One step towards the root of each state: Newton's with the curvature (Halley's)."""
     (value, slope), (_, curve) = jax.jvp(
         lambda x: _tangent(function, x), (at,), (jnp.ones_like(at),)
     )

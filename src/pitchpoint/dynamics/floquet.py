@@ -16,6 +16,8 @@ def multipliers(monodromy: Float[Array, "state state"]) -> Complex[Array, " stat
     Args:
         monodromy: derivative of the state after a period with respect to that before. Zero stands in
             for what is not a finite number, so that a failed lane disturbs no other.
+
+    Source: Nayfeh and Mook (1979), chapter 5, Floquet theory.
     """
     finite = jnp.where(jnp.isfinite(monodromy), monodromy, 0.0)
     if monodromy.shape[0] > 2:

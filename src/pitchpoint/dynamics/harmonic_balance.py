@@ -35,6 +35,8 @@ def harmonic_balance(
 
     Returns:
         The response, in the same form as that of `steady_state`.
+
+    Source: Nayfeh and Mook (1979), section 2.3.4; here of a linear system with periodic stiffness.
     """
     course = excitation.on(grid or Grid.resolving(harmonics))
     scaled = equations(system, course)

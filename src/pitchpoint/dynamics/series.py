@@ -38,6 +38,8 @@ def by_series(
 
     Returns:
         Fundamental matrices and, last, the states reached from rest; whether the last terms are small.
+
+    From equal powers of time on both sides of z'' + C z' + K z = f.
     """
     grid = course.grid
     stiffness, load, half = (

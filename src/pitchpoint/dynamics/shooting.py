@@ -82,6 +82,8 @@ def shoot(
         law: force between the teeth.
         backlash: free motion in units of stretch.
         start: displacement and velocity without dimensions.
+
+    Source: Nayfeh and Balachandran (1995), chapter 6, shooting.
     """
 
     def period(shot: Shot) -> Shot:

@@ -181,6 +181,8 @@ def first_guess(contacts: Contacts, share: Lanes, **given: Any) -> Each:
     """Contact force over that without friction after one step of third order; arguments as in `balance`.
 
     In single precision it takes half the time, and is near enough for one step in double precision.
+
+    From Halley's step, see `roots.third_order_step`.
     """
     equation = _Equation(contacts, share, **given)
     return third_order_step(equation.unbalance, equation.start())
@@ -295,6 +297,8 @@ def tooth_load(
     Returns:
         Torque or force [N m or N]; negative where the drag takes the coordinate along with more than
         its load.
+
+    From the balance of the driven coordinate while no contact is loaded.
     """
     if drag is None:
         return load

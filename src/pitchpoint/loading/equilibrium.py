@@ -133,6 +133,9 @@ def equilibrium(
         Forces and approach, broadcast over all batch axes; NaN where no equilibrium was found. A
         load of zero gives the first pair that touches.
 
+    Source: Júdice and Pires (1994) for the exchanges; Nocedal and Wright (2006), algorithm 16.3, for the
+    steps.
+
     Example:
         >>> import jax.numpy as jnp
         >>> springs, gaps = jnp.full((2, 1), 1e-8), jnp.asarray([[0.0], [1e-6]])
@@ -164,7 +167,10 @@ def equilibrium(
 
 
 def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each:
-    """Approach at which the first of rigid contacts touches [rad or m]; arguments as in `equilibrium`."""
+    """Approach at which the first of rigid contacts touches [rad or m]; arguments as in `equilibrium`.
+
+    From the gap of each contact, which closes by its arm times the approach.
+    """
     touches = active & (arm > 0.0)
     return jnp.min(jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf), axis=(0, 1))
 
