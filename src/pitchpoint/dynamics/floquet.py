@@ -25,5 +25,6 @@ def multipliers(monodromy: Float[Array, "state state"]) -> Complex[Array, " stat
         return values
     half = jnp.trace(finite) / 2.0
     product = finite[0, 0] * finite[1, 1] - finite[0, 1] * finite[1, 0]
+    # Complex before the root, of a negative number for a vibration: its multipliers are conjugate.
     root = jnp.sqrt((half**2 - product).astype(complex))
     return jnp.stack([half + root, half - root])

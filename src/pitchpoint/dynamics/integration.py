@@ -181,6 +181,7 @@ def _solve(
 
 
 def _largest(error: tuple[Array, Array]) -> Array:
+    # A mean over all intervals, the usual norm, would not see that one of them is wrong.
     return jnp.max(jnp.abs(jnp.stack(error)))
 
 

@@ -53,6 +53,7 @@ def steady_state(
     maps, resolved = integrator(scaled, course, system.period)
     linked = chain(maps)
     monodromy, reached = linked.period
+    # Marching would take as many periods as the damping needs, and would not find what is unstable.
     start = inverse_matrix(jnp.eye(monodromy.shape[0]) - monodromy) @ reached
     residual = _distance(monodromy @ start + reached, start)
     return respond(

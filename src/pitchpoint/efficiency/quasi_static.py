@@ -567,6 +567,7 @@ class Cycle(eqx.Module):
         segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
         at, *derivatives, spacing = between(self.nodes)
         dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
+        # A vertex farther off than the next point is told there, by derivatives that are nearer to it.
         level = jnp.abs(slope) < jnp.abs(curve) * spacing
         step = -slope / jnp.where(level, curve, 1.0)
         vertex = dense + slope * step / 2.0 + third * step**3 / 6.0

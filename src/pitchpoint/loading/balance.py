@@ -237,9 +237,11 @@ def balance(
     left: Each | float = 0.0
     if guess is None:
         ratio, iterations = root(equation.unbalance, start, most)
+        # A state without a root ends at the bracket, where laws would be asked for an absurd load.
         _, terms = equation.terms(jnp.where(ratio > _ALMOST * most, start, ratio))
     else:
         ratio, terms, left = equation.last_step(jax.lax.stop_gradient(guess))
+        # The guess was one step, this is the other.
         iterations = jnp.asarray(2)
     lost = ratio > _ALMOST * most
     coefficient, resistance, by_friction, by_rolling = terms
@@ -264,6 +266,7 @@ def balance(
     locked = lost | (grip <= 0.0)
     slip = along(equation.friction_arms, loaded)
     hold = -equation.side * total(slip) / equation.arm
+    # The inner choice keeps the slope finite where the outer one leaves the quotient out: else it is NaN.
     jamming = jnp.where(hold > 0.0, 1.0 / jnp.where(hold > 0.0, hold, 1.0), jnp.inf)
     if guess is not None:
         ratio, torque, residual, grip = _apart((ratio, torque, residual, grip))

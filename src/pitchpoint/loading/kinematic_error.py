@@ -65,7 +65,8 @@ def kinematic_error(
     Returns:
         NaN where no equilibrium was found.
 
-    From virtual work: forces that balance a unit of the load move it by their sum over the added gaps.
+    From virtual work: forces that balance a unit of the load do as much work on the added gaps as it
+    does on the rotation.
     """
     teeth = yields.of_teeth(contacts)
     given = {"arm": jnp.abs(along(contacts.normal, loaded)), "active": contacts.active}
