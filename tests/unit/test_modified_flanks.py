@@ -411,7 +411,7 @@ def test_over_the_path_stands_what_the_highest_load_makes_of_the_face() -> None:
 
     import xarray as xr
 
-    from pitchpoint.views.cycle import along
+    from pitchpoint.views.sections.path import along
 
     load = np.array([[[1.0, 3.0, 2.0]], [[0.0, 4.0, 9.0]]])
     lanes = ("node", "pair", "slice")

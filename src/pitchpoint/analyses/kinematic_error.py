@@ -9,7 +9,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
@@ -189,7 +189,7 @@ def _exact(built: Built) -> str | None:
     if any(built.deviations):
         return None
     return (
-        "the teeth have no deviations around their gears"
+        Unasked("the teeth have no deviations around their gears")
         if built.transmits
         else "a test rig has no teeth"
     )

@@ -8,7 +8,7 @@ import xarray as xr
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.analyses.operation import untransmitted
 from pitchpoint.cases.build import Built
@@ -107,7 +107,7 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 
 def _free(built: Built) -> str | None:
-    told = None if built.design.drag else "the case has no [losses] beside its teeth"
+    told = None if built.design.drag else Unasked("the case has no [losses] beside its teeth")
     return untransmitted(built) or told
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import WIND_UP, by_torque
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts, along
@@ -62,9 +62,8 @@ def torsion_part(built: Built) -> xr.Dataset:
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
     mesh = built.design.mesh
-    long_name, symbol = PATHS[mesh.counts]
-    whole["path"].attrs.update(long_name=long_name, symbol=symbol)
-    return whole if mesh.filled is None else whole.isel(pair=mesh.filled)
+    whole["path"].attrs.update(PATHS[mesh.counts].attributes)
+    return whole.isel(pair=mesh.filled)
 
 
 def _lost(built: Built, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
@@ -162,7 +161,7 @@ def rigid(built: Built) -> str | None:
         return None
     if not built.transmits:
         return "nothing is transmitted by a test rig, so that nothing winds up"
-    return (
+    return Unasked(
         "nothing in the case asks how teeth yield, as gaps and deviations of flanks, [dynamics] and "
         'load_sharing = "from_stiffness" do'
     )

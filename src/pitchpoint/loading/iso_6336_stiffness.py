@@ -156,7 +156,7 @@ def estimate(
 
     Source: ISO 6336-1:2006, method B.
     """
-    if mesh.standard is None or mesh.standard.internal:
+    if not mesh.standardised:
         return {}, ()
     found, single, total = jax.device_get(_estimate(mesh, solids, load))
     warnings = range_warnings(
@@ -176,7 +176,6 @@ def _estimate(
     mesh: Mesh, solids: tuple[Solid, Solid], load: Float[Array, ""]
 ) -> tuple[StandardPair, Float[Array, ""], Float[Array, ""]]:
     pair = mesh.standard
-    assert pair is not None
     pinion_first = jnp.argsort(pair.virtual_teeth)
     pair = replace(
         pair,

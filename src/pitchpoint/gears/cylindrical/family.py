@@ -6,6 +6,7 @@ from typing import Any
 from pitchpoint._jax import jnp
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,
@@ -17,6 +18,7 @@ from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.family import Family, waves
 from pitchpoint.gears.involute import usual_fillet
+from pitchpoint.gears.layers import LAYERS, LEVELS
 from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["FAMILY"]
@@ -156,6 +158,14 @@ FAMILY = Family(
     _cylindrical,
     _of_pair,
     _gear_deviations,
-    drawing={"outline": ("gear", "corner", "xy"), "points": ("point",)},
-    coordinates={"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+    drawing={**LAYERS, "points": ("point",)},
+    coordinates={
+        "gear": [1, 2],
+        "xy": ["x", "y"],
+        "point": list("ABCDE"),
+        "body": [*MEMBERS],
+        "level": [*LEVELS],
+        "line": ["action", "path"],
+        "mark": [*"ABCDE", "N1", "N2"],
+    },
 )

@@ -11,20 +11,22 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Offset, Spot, Surfaces
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.contact_lines import contact_lines
+from pitchpoint.gears.contact_lines import PathOfContact
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import InvoluteGear
+from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
 from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.roots import hypot
 
 __all__ = ["RackAndPinion"]
 
 
-class LineOfAction:
-    """Lengths on the line of action, each computed when first asked for; for one question, then thrown away.
+class LineOfAction(PathOfContact):
+    """Lengths on the line of action of rack and pinion.
 
     Args:
         mesh: whose dimensions count.
@@ -72,25 +74,10 @@ class LineOfAction:
         return self.base_radius * jnp.tan(self.angle)
 
     @cached_property
-    def pitch_path(self) -> Float[Array, ""]:
-        """Position of the pitch point from A [base pitches]."""
-        return (self.pitch_position - self.limits[0]) / self.base_pitch
-
-    @cached_property
-    def transverse_contact_ratio(self) -> Float[Array, ""]:
-        """Transverse contact ratio eps_alpha."""
-        return (self.limits[1] - self.limits[0]) / self.base_pitch
-
-    @cached_property
     def overlap_ratio(self) -> Float[Array, ""]:
         """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
         pinion = self.mesh.pinion
         return self.mesh.face_width * jnp.sin(pinion.helix_angle) / (jnp.pi * pinion.module)
-
-    @cached_property
-    def contact_ratio(self) -> Float[Array, ""]:
-        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
-        return self.transverse_contact_ratio + self.overlap_ratio
 
 
 class RackAndPinion(Mesh):
@@ -119,6 +106,7 @@ class RackAndPinion(Mesh):
 
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
     counts: ClassVar[Path] = "action"
 
     pinion: InvoluteGear
@@ -232,11 +220,7 @@ class RackAndPinion(Mesh):
 
     def events(self) -> Float[Array, " event"]:
         """Phases of entry, exit and pitch point; of helical teeth also where lines grow and shrink."""
-        line = self.line
-        found = [jnp.zeros_like(line.pitch_path), line.contact_ratio, line.pitch_path]
-        if self.helical:
-            overlap = line.overlap_ratio
-            found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
+        found = self.line.bounds(helical=self.helical)
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
@@ -244,13 +228,7 @@ class RackAndPinion(Mesh):
         line = self.line
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
-        across, share = contact_lines(
-            entered,
-            transverse_ratio=line.transverse_contact_ratio,
-            overlap_ratio=line.overlap_ratio if self.helical else None,
-            pitch_path=line.pitch_path,
-            slices=self.slices,
-        )
+        across, share = line.lines(entered, helical=self.helical, slices=self.slices)
         lanes = jnp.shape(across)
         path = jnp.broadcast_to(entered - line.overlap_ratio * across * self.helical, lanes)
         active = jnp.broadcast_to(entered <= line.contact_ratio, lanes)
@@ -321,7 +299,7 @@ class RackAndPinion(Mesh):
             Spot(flank[1], across, turned, tooth, ones),
         )
 
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"] | None:
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moment of inertia of the pinion as a disc [kg m2], and the mass that the rack moves [kg]."""
         root = self.pinion.root_radius
         outer, bore = self.pinion.reference_radius, root / self.rim_ratio
@@ -341,6 +319,87 @@ class RackAndPinion(Mesh):
             "tip_thickness_1": pinion.tip_thickness,
             "undercut_limit_1": pinion.undercut_limit,
         }
+
+    def drawing(self) -> dict[str, Float[Array, "..."]]:
+        """Layers of the picture, circles of the pinion alone, points of the path [m]."""
+        line, pinion = self.line, self.pinion
+        radii = {
+            "base_radius": pinion.base_radius,
+            "tip_radius": pinion.tip_radius,
+            "root_radius": pinion.root_radius,
+            "reference_radius": pinion.reference_radius,
+            "form_radius": hypot(pinion.base_radius, pinion.form_roll_length),
+            "active_root_radius": hypot(pinion.base_radius, line.limits[0]),
+        }
+        own = {"tip_thickness": pinion.tip_thickness, "undercut_limit": pinion.undercut_limit}
+        alone = {"teeth": pinion.teeth, **radii, **own}
+        none = jnp.asarray(jnp.nan)
+        named = self.dimensions()
+        return {
+            **self._layers(line),
+            "points": self._points(line),
+            **{name: jnp.stack([value, none]) for name, value in alone.items()},
+            "working_pressure_angle": line.angle,
+            "base_pitch": line.base_pitch,
+            "base_helix_angle": pinion.base_helix_angle,
+            "face_width": self.face_width,
+            "contact_ratio": line.contact_ratio,
+            **{name: value for name, value in named.items() if not name.endswith("_1")},
+        }
+
+    def _points(self, line: LineOfAction) -> Float[Array, "5"]:
+        """Positions of A, B, C, D, E from N1 [m]; B and D one base pitch from the far end."""
+        (start, end), pitch = line.limits, line.base_pitch
+        return jnp.stack([start, end - pitch, line.pitch_position, start + pitch, end])
+
+    def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
+        """The transverse section at the middle of the face, the rack above the pinion."""
+        side, base = self._side, line.base_radius
+        sine, cosine = jnp.sin(line.angle), jnp.cos(line.angle)
+        path = DrawnPath(
+            origin=base * jnp.stack([side * sine, cosine]),
+            along=jnp.stack([-side * cosine, sine]),
+            limits=line.limits,
+            points=self._points(line),
+            ends=jnp.zeros(1),
+            base_pitch=line.base_pitch,
+            behind=line.overlap_ratio / 2.0,
+        )
+        contact = path.at(line.limits[0])
+        pinion = drawn_gear(
+            self.pinion,
+            place=jnp.zeros(2),
+            contact=contact,
+            side=side,
+            earlier=side * 2.0 * jnp.pi / self.pinion.teeth * path.behind,
+            working_radius=self.pinion.reference_radius,
+        )
+        none = jnp.zeros(())
+        rolling = [[none, none + 1.0], [self.pinion.reference_radius * sine, none]]
+        drawn = [pinion, self._drawn_rack(contact, path.behind)]
+        return layers(drawn, path) | {"rolling": jnp.array(rolling)}
+
+    def _drawn_rack(self, contact: Float[Array, "2"], behind: Float[Array, ""]) -> DrawnBody:
+        """The rack, one tooth of which goes through a contact, its teeth downwards.
+
+        Args:
+            contact: on the flank of that tooth [m].
+            behind: periods in which it gets there from where it is at phase zero.
+        """
+        rack, side, slope = self.rack, self._side, jnp.cos(self.pinion.helix_angle)
+        pitch = jnp.pi * rack.module / slope
+        half = rack.half_thickness(self.distance - contact[1]) / slope
+        working, none = self.distance - self.pinion.reference_radius, jnp.asarray(jnp.nan)
+        rim = rack.root - RIM * (rack.tip - rack.root)
+        return DrawnBody(
+            tooth=rack.outline(slope),
+            place=jnp.stack([contact[0] - side * (half - pitch * behind), self.distance]),
+            turned=jnp.asarray(jnp.pi),
+            levels=jnp.stack([rack.tip, working, none, rack.root, rim]),
+            count=self.pinion.teeth,
+            pitch=pitch,
+            travel=jnp.array([-1.0, 0.0]),
+        )
 
     @property
     def _side(self) -> Float[Array, ""]:

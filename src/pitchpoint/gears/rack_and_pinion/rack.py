@@ -88,6 +88,30 @@ class Rack(eqx.Module):
             body="rack",
         )
 
+    def outline(self, slope: Float[Array, ""], count: int = 24) -> Float[Array, "point 2"]:
+        """One tooth in the transverse section with half a space on each side, axis along y [m].
+
+        The origin is on the reference line.
+
+        Args:
+            slope: cosine of the helix angle.
+            count: points on each line, as many as on those of a gear.
+        """
+        unit = jnp.linspace(0.0, 1.0, count)
+        fillet = self._fillet(unit)
+        height = self.form + (self.tip - self.form) * unit
+        tip = self.half_thickness(self.tip) * (1.0 - unit)
+        half = jnp.pi * self.module / 2.0
+        root = jnp.stack([half + (fillet[0, 0] - half) * unit, jnp.full(count, self.root)])
+        flank = jnp.stack([self.half_thickness(height), height])
+        top = jnp.stack([tip, jnp.full(count, self.tip)])
+        side = (
+            jnp.concatenate([root, fillet, flank, top], axis=1)
+            / jnp.stack([slope, jnp.ones(())])[:, None]
+        )
+        other = side * jnp.array([[-1.0], [1.0]])
+        return jnp.concatenate([other, jnp.flip(side, axis=1)], axis=1).T
+
     def _fillet(self, unit: Float[Array, "*p"]) -> Float[Array, "2 *p"]:
         """Half thickness and height of the fillet's arc, from the root at 0 to the flank at 1 [m]."""
         rounding, angle = self.fillet_radius * self.module, self.pressure_angle

@@ -1,14 +1,14 @@
 """Wind-up of a drive under torque: load on every tooth, torque loop, stiffness, load on the bearing."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.figures import WIND_UP
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (
     GREY,
     INK,
@@ -25,9 +25,13 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
-from pitchpoint.views.wave import ANGLE
+from pitchpoint.views.lines import titled
+from pitchpoint.views.point import operating_point
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
+from pitchpoint.views.way import beside, place_of
 
-__all__ = ["torsion_answer", "torsion_panels"]
+__all__ = ["TORSION", "torsion_answer", "torsion_panels", "wind_up_rows"]
 
 _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 """Colours from small to large torque, which differ in lightness alone."""
@@ -62,20 +66,22 @@ def torsion_answer(outcome: Outcome) -> str:
     }
     if not np.isfinite([*values.values()]).all():
         return "no equilibrium was found at the operating point"
-    told = {name: level(name, value) for name, value in values.items()}
+    told = {name: level(name, value, data) for name, value in values.items()}
     return (
         f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
         f"{told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in the mean"
-        + _free(float(data["lost_motion"]))
+        + _free(data)
         + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
     )
 
 
-def _free(lost_motion: float) -> str:
+def _free(data: xr.Dataset) -> str:
     """Play between the flanks in words; empty without any."""
-    if not lost_motion > 0.0:
+    if not data["lost_motion"] > 0.0:
         return ""
-    return f"; without load it is free to turn by {level('lost_motion', lost_motion)} between its flanks"
+    free = level("lost_motion", float(data["lost_motion"]), data)
+    moves = "travel" if _load(data)[0] == "force" else "turn"
+    return f"; without load it is free to {moves} by {free} between its flanks"
 
 
 def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
@@ -84,7 +90,11 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
         _distribution(f"{name}_load", data),
         _loop(f"{name}_loop", variant, data, known),
         _against(
-            f"{name}_stiffness", "torsional_stiffness", "Torsional stiffness", data, _STIFFNESS
+            f"{name}_stiffness",
+            "torsional_stiffness",
+            titled("torsional_stiffness", data),
+            data,
+            _STIFFNESS,
         ),
         _against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS),
         _over_cycle(f"{name}_error", data),
@@ -100,13 +110,26 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
     return Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
 
 
+def _load(data: xr.Dataset) -> tuple[str, str]:
+    """What the loaded member takes, as a word and as the title of an axis."""
+    travels = show.described("torque", data).unit == "N"
+    word, symbol = ("force", "F") if travels else ("torque", "T")
+    return word, f"{word} {symbol} [{show.unit_of('torque', data)}]"
+
+
+def _yielded(data: xr.Dataset) -> tuple[str, str]:
+    """How far it moves under it, likewise."""
+    variable = show.described("wind_up", data)
+    word = variable.long_name.removesuffix(" of the loaded member")
+    return word, f"{word} {variable.symbol} [{show.unit_of('wind_up', data)}]"
+
+
 def _distribution(name: str, data: xr.Dataset) -> Figure:
     """Force on every tooth at one end of the long axis at several torques, all phases together."""
     force = display("tooth_force", data["tooth_force"])
-    zones = data.sizes.get("zone", 1)
-    half = data.sizes["pair"] // zones
-    place = data["path"].values[:, :half].ravel()
-    angle = 360.0 * place if zones > 1 else place
+    zones, origin = (data["path"].attrs[name] for name in ("zones", "origin"))
+    half = data.sizes["pair"] // int(zones)
+    angle = place_of(data)[:, :half].ravel()
     order = np.argsort(angle, kind="stable")
     drawn = _shades(data)
     traces = [_course(key, angle[order], force[k, :, :half].ravel()[order]) for k, key in drawn]
@@ -115,16 +138,16 @@ def _distribution(name: str, data: xr.Dataset) -> Figure:
     edge = 0.06 * (ends[1] - ends[0])
     return Figure(
         name,
-        "Load on the teeth at one end of the long axis" if zones > 1 else "Load on the teeth",
+        f"Load on the teeth at one end of {origin}" if zones > 1 else "Load on the teeth",
         traces,
         layout(
-            ANGLE if zones > 1 else f"{data['path'].attrs['long_name']}",
+            data["path"].attrs["axis"],
             short_axis("tooth_force"),
             xaxis={"range": [ends[0] - edge, ends[1] + edge]},
             yaxis={"rangemode": "tozero"},
         ),
         "Without friction. Every line is the way of a tooth through the zone; the teeth stand one pitch "
-        f"apart on it.{' The other end of the long axis carries alike.' if zones > 1 else ''}",
+        f"apart on it.{f' The other end of {origin} carries alike.' if zones > 1 else ''}",
         tuple(key for _, key in drawn),
         missing="No tooth carries.",
     )
@@ -136,7 +159,7 @@ def _shades(data: xr.Dataset) -> list[tuple[int, Key]]:
     chosen = np.unique(np.linspace(0, torques.size - 1, len(_SHADES) + 1).round().astype(int))
     chosen = chosen[torques[chosen] > 0.0]
     return [
-        (int(k), Key(level("torque", float(torques[k])), shade))
+        (int(k), Key(level("torque", float(torques[k]), data), shade))
         for k, shade in zip(chosen, _SHADES, strict=False)
     ]
 
@@ -144,13 +167,15 @@ def _shades(data: xr.Dataset) -> list[tuple[int, Key]]:
 def _over_cycle(name: str, data: xr.Dataset) -> Figure:
     """Rotation of the loaded member under load over one mesh cycle, at several torques."""
     variable = "angular_transmission_error"
-    values, unit = display(variable, data[variable]), show.unit(VARIABLES[variable].display)
+    values, unit = display(variable, data[variable], data), show.unit_of(variable, data)
     drawn = _shades(data)
     return Figure(
         name,
         "Static transmission error over the mesh cycle",
         [plain(key, data["phase"].values, values[k], unit) for k, key in drawn],
-        layout("phase of the mesh cycle", short_axis(variable), yaxis={"rangemode": "tozero"}),
+        layout(
+            "phase of the mesh cycle", short_axis(variable, data), yaxis={"rangemode": "tozero"}
+        ),
         "Rotation of the loaded member against its place without load and without gaps between the "
         "flanks as designed.",
         tuple(key for _, key in drawn),
@@ -159,22 +184,20 @@ def _over_cycle(name: str, data: xr.Dataset) -> Figure:
 
 def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
     unit = show.unit(VARIABLES["tooth_force"].display)
-    carries = force > 0.0
-    near = carries.copy()
-    near[1:] |= carries[:-1]
-    near[:-1] |= carries[1:]
+    near = beside(force > 0.0)
     return plain(key, angle[near], force[near], unit)
 
 
 def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
     """Torque over wind-up: growing, shrinking, and without friction."""
-    wind_up, unit = display("wind_up", data["wind_up"]), show.unit("N m")
+    wind_up, unit = display("wind_up", data["wind_up"], data), show.unit_of("torque", data)
+    (load, load_axis), (way, way_axis) = _load(data), _yielded(data)
     keys, traces = [], []
     for position, law in enumerate(laws(data)):
         curve = known.get((variant, law))
         key = Key(law if curve is None else curve.label, PALETTE[position % len(PALETTE)])
         up, down = (
-            display("torque", data[branch].values[position])
+            display("torque", data[branch].values[position], data)
             for branch in ("loading_torque", "unloading_torque")
         )
         x = np.concatenate([wind_up, wind_up[::-1]])
@@ -183,34 +206,37 @@ def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
         trace = plain(key, x, np.concatenate([up, down[::-1]]), unit)
         traces.append({**trace, "fill": "toself", "fillcolor": f"{colour}22"})
         keys.append(key)
-    traces.append(plain(_ELASTIC, wind_up, display("torque", data["torque"]), unit))
-    unit_x = show.unit(VARIABLES["wind_up"].display)
+    traces.append(plain(_ELASTIC, wind_up, display("torque", data["torque"], data), unit))
     return Figure(
         name,
-        "Torque over wind-up, growing and shrinking",
+        f"{load.capitalize()} over {way}, growing and shrinking",
         traces,
         layout(
-            f"wind-up Δθ [{unit_x}]",
-            "torque T [N\u00a0m]",
+            way_axis,
+            load_axis,
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),
-        "Upper branch: the torque grows; lower branch: it shrinks. The loop is that of tooth friction "
-        "alone, for one sense of torque from first touch of the flanks.",
+        f"Upper branch: the {load} grows; lower branch: it shrinks. The loop is that of tooth friction "
+        f"alone, for one sense of {load} from first touch of the flanks.",
         (*keys, _ELASTIC),
     )
 
 
 def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -> Figure:
-    unit = show.unit(VARIABLES[variable].display)
+    unit = show.unit_of(variable, data)
     values = data[variable].where(data["torque"] > 0.0)
     return Figure(
         name,
-        f"{title} against torque",
-        [plain(key, display("torque", data["torque"]), display(variable, values), unit)],
+        f"{title} against {_load(data)[0]}",
+        [
+            plain(
+                key, display("torque", data["torque"], data), display(variable, values, data), unit
+            )
+        ],
         layout(
-            "torque T [N\u00a0m]",
-            short_axis(variable),
+            _load(data)[1],
+            short_axis(variable, data),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),
@@ -221,7 +247,7 @@ def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -
 def _bearing(name: str, data: xr.Dataset) -> Figure:
     """Inward load of the teeth at both ends of the long axis."""
     unit = show.unit(VARIABLES["zone_load"].display)
-    torque, loads = display("torque", data["torque"]), display("zone_load", data["zone_load"])
+    torque, loads = display("torque", data["torque"], data), display("zone_load", data["zone_load"])
     traces = [plain(key, torque, values, unit) for key, values in zip(_ENDS, loads.T, strict=False)]
     alike = np.allclose(loads[:, 0], loads[:, -1], rtol=1e-4, equal_nan=True)
     keys = (Key("either end of the long axis", GREY),) if alike else _ENDS
@@ -232,7 +258,7 @@ def _bearing(name: str, data: xr.Dataset) -> Figure:
         "Radial load of the teeth on the wave generator",
         traces,
         layout(
-            "torque T [N\u00a0m]",
+            _load(data)[1],
             short_axis("zone_load"),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
@@ -240,3 +266,43 @@ def _bearing(name: str, data: xr.Dataset) -> Figure:
         "Inwards, sum over the teeth of one end.",
         keys,
     )
+
+
+def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Wind-up, transmission error and stiffness at some torques."""
+    data = outcome.parts["torsion"]
+    torques = data["torque"].values
+    return [
+        {head("torque", data): f"{torques[k]:.5g}"}
+        | {head(name, data): shown(name, float(data[name].values[k]), data) for name in WIND_UP}
+        | {"K is that of": str(data["torsional_stiffness"].attrs.get("covers", ""))}
+        for k in range(torques.size // 4, torques.size, torques.size // 4)
+    ]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    for it in torsion_panels(page.outcomes, page.curves):
+        if it.title:
+            yield Heading(it.title)
+        note = f"In it: {it.note}." if it.note else ""
+        yield Paragraph(
+            f"Wind-up of the loaded member with the other members held, mean over the mesh cycle. {note}"
+        )
+        yield it
+
+
+def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+    told = torsion_answer(outcome)
+    return [("Torsional stiffness", told)] if told else []
+
+
+TORSION = Section(
+    name="torsion",
+    title="Torsion",
+    short="Torsion",
+    order=300.0,
+    parts=("torsion",),
+    blocks=_blocks,
+    answer=_answer,
+    screen=lambda one: [Printed(rows=wind_up_rows(one))] if "torsion" in one.parts else [],
+)
