@@ -69,7 +69,8 @@ def torsion_answer(outcome: Outcome) -> str:
     told = {name: level(name, value, data) for name, value in values.items()}
     return (
         f"{told['torsional_stiffness']} at the operating point, where the drive has "
-        f"{_words(data).yielded} by {told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in the mean"
+        f"{_words(data).yielded} by {told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in "
+        "the mean"
         + _free(data)
         + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
     )
@@ -185,7 +186,9 @@ def _over_cycle(name: str, data: xr.Dataset, period: Period) -> Figure:
     for k, key in shown:
         values = data["angular_transmission_error"].values[k]
         phase, error = folded(data["phase"].values, values - _mean(data["phase"].values, values))
-        traces.append(plain(key, phase, display(ripple, error, data), unit))
+        around = np.concatenate([phase[-1:] - 1.0, phase, phase[:1] + 1.0])
+        error = display(ripple, np.concatenate([error[-1:], error, error[:1]]), data)
+        traces.append(plain(key, around, error, unit))
     return Figure(
         name,
         "Static transmission error over the mesh cycle, less its mean",
