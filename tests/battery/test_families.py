@@ -222,7 +222,7 @@ def gradient_of_state(design, operation, phase, models):
 
 
 def models_for(mesh, law="constant", rolling="none"):
-    names = LOCAL if mesh.reference is None else WHOLE_MESH
+    names = WHOLE_MESH if mesh.pitch_point else LOCAL
     return Models(
         friction=tuple(LAW[name] for name in names),
         choice=jnp.asarray(names.index(law)),
@@ -366,7 +366,7 @@ def dot(rates, arms):
 
 
 def laws(family):
-    return LOCAL if family.mesh.reference is None else WHOLE_MESH
+    return WHOLE_MESH if family.mesh.pitch_point else LOCAL
 
 
 def check_energy(found):

@@ -32,7 +32,7 @@ def _resonance(built: Built, _: Piece, __: Progress) -> xr.Dataset:
 
 
 def _no_line(built: Built) -> str | None:
-    if built.design.mesh.line_of_action is not None:
+    if built.design.mesh.along_action:
         return None
     return "these gears have no line of action, along which stiffness and vibration are computed"
 

@@ -62,8 +62,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         events=built.nominal["events"].tolist(),
     )
     data["path"].attrs.update(PATHS[built.design.mesh.counts].attributes)
-    filled = built.design.mesh.filled
-    return data if filled is None else data.isel(pair=filled)
+    return data.isel(pair=built.design.mesh.filled)
 
 
 def _jammed(

@@ -63,7 +63,7 @@ def torsion_part(built: Built) -> xr.Dataset:
     whole["torsional_stiffness"].attrs.update(covers=yields)
     mesh = built.design.mesh
     whole["path"].attrs.update(PATHS[mesh.counts].attributes)
-    return whole if mesh.filled is None else whole.isel(pair=mesh.filled)
+    return whole.isel(pair=mesh.filled)
 
 
 def _lost(built: Built, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:

@@ -67,7 +67,6 @@ def vibrating_of(built: Built) -> Vibrating:
     assert asked is not None
     if asked.inertia is None:
         inertia = mesh.inertia(jnp.stack([solid.density for solid in built.design.solids]))
-        assert inertia is not None
     else:
         inertia = jnp.asarray(asked.inertia)
     errors = asked.profile_error
@@ -120,9 +119,7 @@ def _stiffness(
     contacts = mesh.contacts(found.phase)
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
     entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
-    action = mesh.line_of_action
-    assert action is not None
-    radius = jnp.abs(action @ mesh.loaded)
+    radius = jnp.abs(mesh.line_of_action @ mesh.loaded)
     single, total = found.along_action, found.total
     error = load / radius / total
     if found.state is not None:

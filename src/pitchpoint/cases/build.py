@@ -329,7 +329,7 @@ def _check_models(case: Case, mesh: Mesh) -> None:
             "isothermal",
             key="models.tooth_temperature",
         )
-    if case.dynamics is not None and mesh.line_of_action is None:
+    if case.dynamics is not None and not mesh.along_action:
         raise InputError(
             "vibration is computed along a line of action, which these gears do not have; leave this "
             "table out",
@@ -418,8 +418,7 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
     sections = _sections(mesh)
-    assert sections is not None
-    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections)
+    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections, case.gears.members)
 
 
 @program
@@ -440,12 +439,12 @@ def _nominal(mesh: Mesh) -> dict[str, Any]:
 
 
 @program
-def _inertia(mesh: Mesh) -> jax.Array | None:
+def _inertia(mesh: Mesh) -> jax.Array:
     return mesh.inertia(jnp.ones(2))
 
 
 @program
-def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection] | None:
+def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection]:
     return mesh.sections
 
 

@@ -83,7 +83,6 @@ def system(
     Source: Atanasiu et al. (2011), eqs. 10, 12 and 13, the last with the indices in their places.
     """
     action = mesh.line_of_action
-    assert action is not None
     mass = reduced_mass(vibrating.inertia, action).reshape(1, 1)
     return System(
         mass=mass,

@@ -116,7 +116,7 @@ class Design(eqx.Module):
             lubricant_factor=oil.lubricant_factor,
             roughness_ra=self.roughness.mean_ra,
             roughness_rq=self.roughness.composite_rq,
-            reference=mesh.reference,
+            reference=mesh.reference if mesh.pitch_point else None,
         )
 
 

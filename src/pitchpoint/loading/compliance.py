@@ -91,7 +91,5 @@ def slice_stiffness(
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
     """
-    sections = mesh.sections
-    assert sections is not None
     line_load = mean_line_load(mesh, contacts, load)
-    return unit_stiffness(contacts, sections, solids, terms, line_load)
+    return unit_stiffness(contacts, mesh.sections, solids, terms, line_load)

@@ -154,7 +154,7 @@ def estimate(
     Returns:
         c' and c_gamma_alpha over the whole face width [N/m] under their names, and sentences.
     """
-    if mesh.standard is None or mesh.standard.internal:
+    if not mesh.standardised:
         return {}, ()
     found, single, total = jax.device_get(_estimate(mesh, solids, load))
     warnings = range_warnings(
@@ -174,7 +174,6 @@ def _estimate(
     mesh: Mesh, solids: tuple[Solid, Solid], load: Float[Array, ""]
 ) -> tuple[StandardPair, Float[Array, ""], Float[Array, ""]]:
     pair = mesh.standard
-    assert pair is not None
     pinion_first = jnp.argsort(pair.virtual_teeth)
     pair = replace(
         pair,

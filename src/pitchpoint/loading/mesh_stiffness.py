@@ -119,5 +119,4 @@ def _mean_gap(contacts: Contacts, springs: Lanes) -> Float[Array, "pair *b"]:
 def _action_arm(mesh: Mesh, contacts: Contacts) -> Lanes:
     """Closing along the normal of each contact while the gears close by one along the line of action."""
     action = mesh.line_of_action
-    assert action is not None
     return along(contacts.normal, action) / jnp.sum(action**2)

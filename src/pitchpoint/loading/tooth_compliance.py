@@ -1,5 +1,6 @@
 """How far loaded teeth yield, and the stiffness of a pair of teeth per length of contact line."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Literal
@@ -81,13 +82,20 @@ class ToothCompliance:
             common=jnp.asarray(self.modulus == "common"),
         )
 
-    def warnings(self, sections: Sections) -> tuple[str, ...]:
-        """Sentences on what the model does not cover for these teeth; none if it does."""
+    def warnings(
+        self, sections: Sections, names: Sequence[str] = ("gear 1", "gear 2")
+    ) -> tuple[str, ...]:
+        """Sentences on what the model does not cover for these teeth; none if it does.
+
+        Args:
+            sections: the tooth of each member.
+            names: of the bodies that carry them.
+        """
         if not self.foundation:
             return ()
         return tuple(
-            f"gear {number}: {sentence}"
-            for number, section in enumerate(sections, 1)
+            f"{name}: {sentence}"
+            for name, section in zip(names, sections, strict=True)
             for sentence in foundation_warnings(section)
         )
 

@@ -363,8 +363,10 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "unloading_torque": _force("force while the deflection shrinks", "F"),
         "wind_up": _deviation("deflection of the loaded member", "Δs"),
         "wind_up_range": _deviation("change of the deflection with the phase", "Δs range"),
-        "torsional_stiffness": _stiffness("stiffness against the load", "K"),
-        "mesh_torsional_stiffness": _stiffness("stiffness over the mesh cycle", "K(φ)"),
+        "torsional_stiffness": _stiffness("stiffness at the output", "K"),
+        "mesh_torsional_stiffness": _stiffness(
+            "stiffness at the output over the mesh cycle", "K(φ)"
+        ),
         "lost_motion": _deviation("play of the loaded member without load", "Δs_0"),
         "angular_transmission_error": _deviation("travel of the loaded member under load", "s_e"),
         "angular_transmission_error_range": _deviation(
@@ -385,7 +387,8 @@ VARIABLES.update(
 
 
 def variable_of(data: Any, name: str) -> Variable:
-    """The quantity of that name in a dataset: of a member that travels where its unit says so."""
+    """The quantity of that name in a dataset, or none; of a member that travels where its unit says so."""
     known = VARIABLES[name]
-    travels = known.travel is not None and data[name].attrs.get("units") == known.travel.unit
-    return known.where((known.end,) if travels and known.end else ())
+    if known.travel is None or name not in data:
+        return known
+    return known.travel if data[name].attrs.get("units") == known.travel.unit else known

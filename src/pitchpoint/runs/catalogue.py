@@ -20,7 +20,7 @@ from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
-from pitchpoint.results.variables import VARIABLES
+from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
 
 __all__ = ["entries", "figures"]
@@ -59,7 +59,11 @@ def figures(outcome: Outcome) -> dict[str, Any]:
     """Main figures of one variant in SI, by law; None where a quantity is undefined."""
     manifest, every = outcome.manifest, ANALYSES.values()
     shown = [analysis.shown(outcome.parts) for analysis in every]
-    units_of = {name: VARIABLES[name].unit for analysis in every for name in analysis.main}
+    units_of = {
+        name: variable_of(outcome.parts.get(analysis.name, {}), name).unit
+        for analysis in every
+        for name in analysis.main
+    }
     return {
         "title": manifest["title"],
         "units": units_of,

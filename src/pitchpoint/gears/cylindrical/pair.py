@@ -13,7 +13,12 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, contact_lines, lanes_for
+from pitchpoint.gears.contact_lines import (
+    LARGEST_CONTACT_RATIO,
+    SLICES,
+    PathOfContact,
+    lanes_for,
+)
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
@@ -71,11 +76,8 @@ def zero_backlash_centre_distance(
     return jnp.where((value > 0.0) & (value < 1.0), distance, jnp.nan)
 
 
-class LineOfAction:
-    """Lengths on the line of action of a pair, and what they follow from, each computed when first asked for.
-
-    One program asks for the same angles and radii in many places; this record answers one question of it
-    and is then thrown away, so that no traced value outlives its trace.
+class LineOfAction(PathOfContact):
+    """Lengths on the line of action of a pair, and what they follow from.
 
     Args:
         pair: whose dimensions count.
@@ -153,25 +155,10 @@ class LineOfAction:
         return self.working_radii[0] * self.sine
 
     @cached_property
-    def pitch_path(self) -> Float[Array, ""]:
-        """Position of the pitch point from A [base pitches]."""
-        return (self.pitch_position - self.limits[0]) / self.base_pitch
-
-    @cached_property
-    def transverse_contact_ratio(self) -> Float[Array, ""]:
-        """Transverse contact ratio eps_alpha."""
-        return jnp.asarray((self.limits[1] - self.limits[0]) / self.base_pitch)
-
-    @cached_property
     def overlap_ratio(self) -> Float[Array, ""]:
         """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
         pair = self.pair
         return pair.face_width * jnp.sin(pair.helix_angle) / (jnp.pi * pair.module)
-
-    @cached_property
-    def contact_ratio(self) -> Float[Array, ""]:
-        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
-        return self.transverse_contact_ratio + self.overlap_ratio
 
 
 class CylindricalPair(Mesh):
@@ -213,6 +200,7 @@ class CylindricalPair(Mesh):
 
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
     counts: ClassVar[Path] = "action"
 
     teeth: Float[Array, "2"]
@@ -470,11 +458,8 @@ class CylindricalPair(Mesh):
         at which the pitch line enters and leaves it; of spur teeth those at which a relief begins.
         """
         line = self.line
-        found = [jnp.zeros_like(line.pitch_path), line.contact_ratio, line.pitch_path]
-        if self.helical:
-            overlap = line.overlap_ratio
-            found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
-        else:
+        found = line.bounds(helical=self.helical)
+        if not self.helical:
             found += self._relief_paths(line)
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
@@ -493,13 +478,7 @@ class CylindricalPair(Mesh):
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
         line, side = self.line, self._side
-        across, share = contact_lines(
-            entered,
-            transverse_ratio=line.transverse_contact_ratio,
-            overlap_ratio=line.overlap_ratio if self.helical else None,
-            pitch_path=line.pitch_path,
-            slices=self.slices,
-        )
+        across, share = line.lines(entered, helical=self.helical, slices=self.slices)
         path = jnp.broadcast_to(entered, jnp.shape(across))
         if self.helical:
             path = entered - line.overlap_ratio * across
@@ -565,8 +544,12 @@ class CylindricalPair(Mesh):
             transverse_contact_ratio=self.transverse_contact_ratio,
             face_width=self.face_width,
             reference_arm=jnp.sum(self.loaded * radii),
-            internal=self.internal,
         )
+
+    @property
+    def standardised(self) -> bool:
+        """The standards are for external gears."""
+        return not self.internal
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].

@@ -11,7 +11,7 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Offset, Spot, Surfaces
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.contact_lines import contact_lines
+from pitchpoint.gears.contact_lines import PathOfContact
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
@@ -25,8 +25,8 @@ from pitchpoint.roots import hypot
 __all__ = ["RackAndPinion"]
 
 
-class LineOfAction:
-    """Lengths on the line of action, each computed when first asked for; for one question, then thrown away.
+class LineOfAction(PathOfContact):
+    """Lengths on the line of action of rack and pinion.
 
     Args:
         mesh: whose dimensions count.
@@ -74,25 +74,10 @@ class LineOfAction:
         return self.base_radius * jnp.tan(self.angle)
 
     @cached_property
-    def pitch_path(self) -> Float[Array, ""]:
-        """Position of the pitch point from A [base pitches]."""
-        return (self.pitch_position - self.limits[0]) / self.base_pitch
-
-    @cached_property
-    def transverse_contact_ratio(self) -> Float[Array, ""]:
-        """Transverse contact ratio eps_alpha."""
-        return (self.limits[1] - self.limits[0]) / self.base_pitch
-
-    @cached_property
     def overlap_ratio(self) -> Float[Array, ""]:
         """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
         pinion = self.mesh.pinion
         return self.mesh.face_width * jnp.sin(pinion.helix_angle) / (jnp.pi * pinion.module)
-
-    @cached_property
-    def contact_ratio(self) -> Float[Array, ""]:
-        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
-        return self.transverse_contact_ratio + self.overlap_ratio
 
 
 class RackAndPinion(Mesh):
@@ -121,6 +106,7 @@ class RackAndPinion(Mesh):
 
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
     counts: ClassVar[Path] = "action"
 
     pinion: InvoluteGear
@@ -234,11 +220,7 @@ class RackAndPinion(Mesh):
 
     def events(self) -> Float[Array, " event"]:
         """Phases of entry, exit and pitch point; of helical teeth also where lines grow and shrink."""
-        line = self.line
-        found = [jnp.zeros_like(line.pitch_path), line.contact_ratio, line.pitch_path]
-        if self.helical:
-            overlap = line.overlap_ratio
-            found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
+        found = self.line.bounds(helical=self.helical)
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
@@ -246,13 +228,7 @@ class RackAndPinion(Mesh):
         line = self.line
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
-        across, share = contact_lines(
-            entered,
-            transverse_ratio=line.transverse_contact_ratio,
-            overlap_ratio=line.overlap_ratio if self.helical else None,
-            pitch_path=line.pitch_path,
-            slices=self.slices,
-        )
+        across, share = line.lines(entered, helical=self.helical, slices=self.slices)
         lanes = jnp.shape(across)
         path = jnp.broadcast_to(entered - line.overlap_ratio * across * self.helical, lanes)
         active = jnp.broadcast_to(entered <= line.contact_ratio, lanes)
@@ -323,7 +299,7 @@ class RackAndPinion(Mesh):
             Spot(flank[1], across, turned, tooth, ones),
         )
 
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"] | None:
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moment of inertia of the pinion as a disc [kg m2], and the mass that the rack moves [kg]."""
         root = self.pinion.root_radius
         outer, bore = self.pinion.reference_radius, root / self.rim_ratio

@@ -14,7 +14,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Path, Reference
+from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
@@ -249,11 +249,6 @@ class StrainWave(Mesh):
     def largest_radius(self) -> Float[Array, ""]:
         """Flatter contacts would be wider under load than the flank is high."""
         return _FLATTEST * self.module
-
-    @property
-    def reference(self) -> Reference | None:
-        """A strain wave gear has no pitch point."""
-        return None
 
     def events(self) -> Float[Array, " event"]:
         """Phases at which the sliding of a tooth changes its sense; pairs enter and leave without load."""
