@@ -70,7 +70,10 @@ class Drive(eqx.Module):
 
     @property
     def ratios(self) -> Float[Array, " stage"]:
-        """Speed of each stage's driver over that of the drive's input, not negative."""
+        """Speed of each stage's driver over that of the drive's input, not negative.
+
+        From kinematics: the ratios of stages one behind the other multiply.
+        """
         steps = [
             jnp.abs(stage.design.mesh.loaded @ stage.design.mesh.motion) for stage in self.stages
         ]
@@ -141,6 +144,8 @@ def owner(drag: Drag, stages: Sequence[Stage]) -> int:
 
     Raises:
         InputError: it is between shafts that no stage has in common.
+
+    From the order of the balances, which goes from the output to the input.
     """
     shafts = {int(shaft) for shaft in np.flatnonzero(np.asarray(drag.between))}
     having = [number for number, stage in enumerate(stages) if shafts <= {*stage.shafts}]
@@ -207,6 +212,8 @@ class DriveCycle(eqx.Module):
 
         Args:
             values: of the first stage, see `states`.
+
+        From the extremes over the phase of one stage after the other, see `quasi_static.extremes`.
         """
         low = high = values
         for smooth in self.smooth:
@@ -216,13 +223,19 @@ class DriveCycle(eqx.Module):
 
     @property
     def ripple(self) -> Each:
-        """Largest less smallest torque at the input [N m]."""
+        """Largest less smallest torque at the input [N m].
+
+        Source: Tian et al. (2024), eq. 10, for several meshes.
+        """
         low, high = self.extremes(self.input_torque)
         return high - low
 
     @property
     def efficiency(self) -> Float[Array, "*#b"]:
-        """Power out over power in at every meeting of phases; NaN where no power is transmitted."""
+        """Power out over power in at every meeting of phases; NaN where no power is transmitted.
+
+        From the balance of power at that meeting.
+        """
         power_out = self.states[-1].output_power[(..., *(None for _ in self.states[1:]))]
         return _quotient(power_out, self.states[0].input_power)
 
@@ -239,12 +252,18 @@ class DriveCycle(eqx.Module):
 
     @property
     def mean_efficiency(self) -> Each:
-        """Energy out over energy in; NaN where no power is transmitted."""
+        """Energy out over energy in; NaN where no power is transmitted.
+
+        From the balance of energy over the periods of all meshes.
+        """
         return _quotient(self.mean_output_power, self.mean(self.states[0].input_power))
 
     @property
     def stage_efficiencies(self) -> Float[Array, "stage *#b"]:
-        """Energy out over energy in of each stage with its shaft; their product is that of the drive."""
+        """Energy out over energy in of each stage with its shaft; their product is that of the drive.
+
+        From the balance of energy of each stage.
+        """
         return jnp.stack(
             [
                 _quotient(self.mean(one.output_power, k), self.mean(one.input_power, k))
@@ -294,6 +313,8 @@ def drive_cycle(
         nodes: Gauss-Lobatto nodes in each segment of each period.
         engaged: contacts and shares of the last stage at so many nodes, where all loads at the output are
             one and they are known already.
+
+    From the balance of torques on every shaft, see `balance`.
     """
     if len(models) != len(drive.stages):
         raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
@@ -382,6 +403,8 @@ def output_wind_up(
 
     Returns:
         Mean rotation [rad], and one over the mean compliance for a small change of the load [N m/rad].
+
+    From virtual work: rotation and torque go with the ratio, so compliance with its square.
     """
     ratios, turned, slope = drive.ratios, jnp.zeros_like(load), jnp.zeros_like(load)
     for number, (stage, laws) in enumerate(zip(drive.stages, models, strict=True)):

@@ -43,6 +43,8 @@ def drive_figures(
         points: drives and operating points of equal static structure.
         models: laws of each stage.
         progress: told the number of finished points after each chunk.
+
+    From the states of `drive_cycle`, means and extremes over all meetings of their phases.
     """
     parts: list[dict[str, np.ndarray]] = []
     done = 0

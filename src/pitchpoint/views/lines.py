@@ -8,7 +8,7 @@ import xarray as xr
 from pitchpoint.views.figures import Trace
 from pitchpoint.views.show import described
 
-__all__ = ["SHORT", "Points", "gapped", "regimes", "titled", "values_of"]
+__all__ = ["SHORT", "Points", "folded", "gapped", "regimes", "titled", "values_of"]
 
 _EVENT, SHORT = 1e-7, 1e-6
 """Nodes beside an event are closer than the first; a segment shorter than the second is no segment."""
@@ -35,6 +35,13 @@ def gapped(x: np.ndarray, y: np.ndarray) -> Points:
         np.concatenate([piece for part in parts for piece in (x[part], x[part[-1:]])]),
         np.concatenate([piece for part in parts for piece in (y[part], gap)]),
     )
+
+
+def folded(phase: np.ndarray, values: np.ndarray) -> Points:
+    """Values of one period in the order of their phases from 0 to 1, wherever the period begins."""
+    inside = np.where(phase > 1.0, phase - 1.0, phase)
+    order = np.argsort(inside, kind="stable")
+    return inside[order], values[order]
 
 
 def values_of(data: xr.Dataset, name: str) -> np.ndarray:

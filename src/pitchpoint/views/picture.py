@@ -138,9 +138,12 @@ class Body:
         return f"translate({round(1e3 * (tooth - self.count // 2) * self.pitch, 5)} 0)"
 
     def _root_arc(self) -> np.ndarray:
-        """Root circle from the end of the outline back to its start: a ring's teeth end on it."""
+        """Root circle from the end of the outline back to its start: a ring's teeth end on it.
+
+        Under a tooth of a body that travels its rim, over which it lies without a seam.
+        """
         if not self.turns:
-            return self.tooth[[-1, 0]]
+            return np.stack([self.tooth[[-1, 0], 0], np.full(2, self.levels["rim"])], axis=-1)
         radius = float(np.hypot(*self.tooth[0]))
         last = float(np.arctan2(self.tooth[-1, 0], self.tooth[-1, 1]))
         angle = np.linspace(last, -np.sign(last) * pi / self.count, 9)

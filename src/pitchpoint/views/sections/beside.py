@@ -61,13 +61,18 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     # The operating point is on both axes; where it is read from words it is so up to rounding.
     there = own.sel(speed=at.speed, temperature=at.temperature, method="nearest")
     return [
-        (words, _held(data, name, float(there[name])))
+        (words.format(_load(data, name)), _held(data, name, float(there[name])))
         for words, name in (
-            ("torque without load", "no_load_torque"),
-            ("starting torque", "starting_torque"),
-            ("back-driving torque", "back_driving_torque"),
+            ("{} without load", "no_load_torque"),
+            ("starting {}", "starting_torque"),
+            ("back-driving {}", "back_driving_torque"),
         )
     ]
+
+
+def _load(data: xr.Dataset, name: str) -> str:
+    """What moves a member, as a word."""
+    return "force" if show.described(name, data).unit == "N" else "torque"
 
 
 def _held(data: xr.Dataset, name: str, value: float) -> str:

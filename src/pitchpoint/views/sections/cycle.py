@@ -19,7 +19,7 @@ from pitchpoint.views.figures import (
     merged,
     short_axis,
 )
-from pitchpoint.views.lines import Points, gapped, titled
+from pitchpoint.views.lines import Points, folded, gapped, titled
 from pitchpoint.views.path import path_of
 from pitchpoint.views.point import Period, period_of
 from pitchpoint.views.section import Block, Page, Paragraph, Section
@@ -99,9 +99,7 @@ def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Period]
 
 
 def _phase(data: xr.Dataset, values: np.ndarray, _: Period) -> Points:
-    phase = np.where(data["phase"].values > 1.0, data["phase"].values - 1.0, data["phase"].values)
-    order = np.argsort(phase, kind="stable")
-    return gapped(phase[order], values[order])
+    return gapped(*folded(data["phase"].values, values))
 
 
 def _time(data: xr.Dataset, values: np.ndarray, period: Period) -> Points:

@@ -203,10 +203,12 @@ def _lossy(outcome: Outcome) -> bool:
 
 def _blocks(page: Page) -> Iterator[Block]:
     there = page.having("loss_map")
+    data = next(iter(there.values())).parts["loss_map"]
+    load = show.described("torque", data).long_name
     yield Paragraph(
-        "Mean loss and mean efficiency over driver speed and output torque. At zero torque or zero speed no "
-        "power is transmitted and the efficiency is undefined; those cells are blank. Every choice has its "
-        "own colour scale."
+        f"Mean loss and mean efficiency over driver speed and {load}. At zero {load.split()[-1]} or zero "
+        "speed no power is transmitted and the efficiency is undefined; those cells are blank. Every choice "
+        "has its own colour scale."
     )
     yield map_panel(there, page.curves)
     lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)

@@ -1,11 +1,13 @@
 """Wind-up of a drive under torque: load on every tooth, torque loop, stiffness, load on the bearing."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.figures import WIND_UP
+from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -25,8 +27,8 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
-from pitchpoint.views.lines import titled
-from pitchpoint.views.point import operating_point
+from pitchpoint.views.lines import folded
+from pitchpoint.views.point import Period, operating_point, period_of
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
 from pitchpoint.views.way import beside, place_of
@@ -37,8 +39,6 @@ _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 """Colours from small to large torque, which differ in lightness alone."""
 
 _ELASTIC = Key("without friction", INK, "dash")
-_STIFFNESS = Key("slope of the torque over the wind-up", PALETTE[0])
-_RANGE = Key("largest less smallest rotation over the mesh cycle", PALETTE[3])
 _PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
 _ENDS = (Key("one end of the long axis", PALETTE[0]), Key("the other end", PALETTE[1], "dash"))
 
@@ -69,8 +69,8 @@ def torsion_answer(outcome: Outcome) -> str:
         return "no equilibrium was found at the operating point"
     told = {name: level(name, value, data) for name, value in values.items()}
     return (
-        f"{told['torsional_stiffness']} at the operating point, where the drive has wound up by "
-        f"{told['wind_up']}"
+        f"{told['torsional_stiffness']} at the operating point, where the drive has "
+        f"{_words(data).yielded} by {told['wind_up']}"
         + _carrying(told.get("loaded_pairs", ""))
         + _free(data)
         + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
@@ -84,56 +84,68 @@ def _carrying(pairs: str) -> str:
 
 def _free(data: xr.Dataset) -> str:
     """Play between the flanks in words; empty without any."""
-    if not data["lost_motion"] > 0.0:
+    if not data["lost_motion"] > ROUNDING * data["wind_up"].max():
         return ""
     free = level("lost_motion", float(data["lost_motion"]), data)
-    moves = "travel" if _load(data)[0] == "force" else "turn"
-    return f"; without load it is free to {moves} by {free} between its flanks"
+    return f"; without load it is free to {_words(data).moves} by {free} between its flanks"
 
 
 def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
     data = outcome.parts["torsion"]
     one_mesh = "tooth_force" in data
+    words = _words(data)
+    slope = Key(f"slope of the {words.load} over the {words.way}", PALETTE[0])
+    spread = Key(f"largest less smallest {words.motion} over the mesh cycle", PALETTE[3])
     figures = [
         *([_distribution(f"{name}_load", data)] if one_mesh else []),
         *([_loop(f"{name}_loop", variant, data, known)] if one_mesh else []),
         _against(
             f"{name}_stiffness",
             "torsional_stiffness",
-            titled("torsional_stiffness", data),
+            words.stiffness,
             data,
-            _STIFFNESS,
+            slope,
         ),
         *(
             [_against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS)]
             if one_mesh
             else []
         ),
-        *([_over_cycle(f"{name}_error", data)] if one_mesh else []),
+        *([_over_cycle(f"{name}_error", data, period_of(outcome))] if one_mesh else []),
         _against(
             f"{name}_range",
             "angular_transmission_error_range",
             "Static transmission error, peak to peak,",
             data,
-            _RANGE,
+            spread,
         ),
         *([_bearing(f"{name}_bearing", data)] if "zone_load" in data else []),
     ]
     return Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
 
 
-def _load(data: xr.Dataset) -> tuple[str, str]:
-    """What the loaded member takes, as a word and as the title of an axis."""
-    travels = show.described("torque", data).unit == "N"
-    word, symbol = ("force", "F") if travels else ("torque", "T")
-    return word, f"{word} {symbol} [{show.unit_of('torque', data)}]"
+@dataclass(frozen=True)
+class _Words:
+    """Words of the load on the loaded member and of its way under it."""
+
+    load: str
+    load_axis: str
+    way: str
+    way_axis: str
+    stiffness: str
+    yielded: str
+    moves: str
+    motion: str
 
 
-def _yielded(data: xr.Dataset) -> tuple[str, str]:
-    """How far it moves under it, likewise."""
-    variable = show.described("wind_up", data)
-    word = variable.long_name.removesuffix(" of the loaded member")
-    return word, f"{word} {variable.symbol} [{show.unit_of('wind_up', data)}]"
+def _words(data: xr.Dataset) -> _Words:
+    """Words for a member that turns, or for one that travels."""
+    load, way = (show.unit_of(name, data) for name in ("torque", "wind_up"))
+    if show.described("torque", data).unit == "N":
+        axes = (f"force F [{load}]", "deflection", f"deflection Δs [{way}]")
+        return _Words("force", *axes, "Stiffness", "yielded", "travel", "travel")
+    axes = (f"torque T [{load}]", "wind-up", f"wind-up Δθ [{way}]")
+    return _Words("torque", *axes, "Torsional stiffness", "wound up", "turn", "rotation")
 
 
 def _distribution(name: str, data: xr.Dataset) -> Figure:
@@ -176,22 +188,35 @@ def _shades(data: xr.Dataset) -> list[tuple[int, Key]]:
     ]
 
 
-def _over_cycle(name: str, data: xr.Dataset) -> Figure:
-    """Rotation of the loaded member under load over one mesh cycle, at several torques."""
-    variable = "angular_transmission_error"
-    values, unit = display(variable, data[variable], data), show.unit_of(variable, data)
-    drawn = _shades(data)
+def _over_cycle(name: str, data: xr.Dataset, period: Period) -> Figure:
+    """Motion of the loaded member under load over one mesh cycle less its mean, at several torques."""
+    ripple, shown = "angular_transmission_error_range", _shades(data)
+    symbol = show.described("angular_transmission_error", data).symbol
+    unit = show.unit_of(ripple, data)
+    traces = []
+    for k, key in shown:
+        values = data["angular_transmission_error"].values[k]
+        phase, error = folded(data["phase"].values, values - _mean(data["phase"].values, values))
+        around = np.concatenate([phase[-1:] - 1.0, phase, phase[:1] + 1.0])
+        error = display(ripple, np.concatenate([error[-1:], error, error[:1]]), data)
+        traces.append(plain(key, around, error, unit))
     return Figure(
         name,
-        "Static transmission error over the mesh cycle",
-        [plain(key, data["phase"].values, values[k], unit) for k, key in drawn],
-        layout(
-            "phase of the mesh cycle", short_axis(variable, data), yaxis={"rangemode": "tozero"}
-        ),
-        "Rotation of the loaded member against its place without load and without gaps between the "
-        "flanks as designed.",
-        tuple(key for _, key in drawn),
+        "Static transmission error over the mesh cycle, less its mean",
+        traces,
+        layout(period.axis, f"{symbol} less its mean [{unit}]", xaxis={"range": [0, 1]}),
+        f"{_words(data).motion.capitalize()} of the loaded member under load, without gaps between the "
+        "flanks as designed; the mean grows with the load as the "
+        f"{_words(data).way} does.",
+        tuple(key for _, key in shown),
+        missing="No equilibrium was found.",
     )
+
+
+def _mean(phase: np.ndarray, values: np.ndarray) -> float:
+    """Mean over one period, the last value followed by the first one of the next."""
+    around = np.append(phase, phase[0] + 1.0)
+    return float(np.trapezoid(np.append(values, values[0]), around))
 
 
 def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
@@ -203,7 +228,7 @@ def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
 def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
     """Torque over wind-up: growing, shrinking, and without friction."""
     wind_up, unit = display("wind_up", data["wind_up"], data), show.unit_of("torque", data)
-    (load, load_axis), (way, way_axis) = _load(data), _yielded(data)
+    words = _words(data)
     keys, traces = [], []
     for position, law in enumerate(laws(data)):
         curve = known.get((variant, law))
@@ -221,16 +246,16 @@ def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
     traces.append(plain(_ELASTIC, wind_up, display("torque", data["torque"], data), unit))
     return Figure(
         name,
-        f"{load.capitalize()} over {way}, growing and shrinking",
+        f"{words.load.capitalize()} over {words.way}, growing and shrinking",
         traces,
         layout(
-            way_axis,
-            load_axis,
+            words.way_axis,
+            words.load_axis,
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),
-        f"Upper branch: the {load} grows; lower branch: it shrinks. The loop is that of tooth friction "
-        f"alone, for one sense of {load} from first touch of the flanks.",
+        f"Upper branch: the {words.load} grows; lower branch: it shrinks. The loop is that of tooth friction "
+        f"alone, for one sense of {words.load} from first touch of the flanks.",
         (*keys, _ELASTIC),
     )
 
@@ -240,14 +265,14 @@ def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -
     values = data[variable].where(data["torque"] > 0.0)
     return Figure(
         name,
-        f"{title} against {_load(data)[0]}",
+        f"{title} against {_words(data).load}",
         [
             plain(
                 key, display("torque", data["torque"], data), display(variable, values, data), unit
             )
         ],
         layout(
-            _load(data)[1],
+            _words(data).load_axis,
             short_axis(variable, data),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
@@ -270,7 +295,7 @@ def _bearing(name: str, data: xr.Dataset) -> Figure:
         "Radial load of the teeth on the wave generator",
         traces,
         layout(
-            _load(data)[1],
+            _words(data).load_axis,
             short_axis("zone_load"),
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
@@ -297,19 +322,21 @@ def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    for it in torsion_panels(page.outcomes, page.curves):
+    panels = torsion_panels(page.outcomes, page.curves)
+    for it, outcome in zip(panels, page.having("torsion").values(), strict=True):
         if it.title:
             yield Heading(it.title)
         note = f"In it: {it.note}." if it.note else ""
         yield Paragraph(
-            f"Wind-up of the loaded member with the other members held, mean over the mesh cycle. {note}"
+            f"{_words(outcome.parts['torsion']).way.capitalize()} of the loaded member with the other "
+            f"members held, mean over the mesh cycle. {note}"
         )
         yield it
 
 
 def _answer(outcome: Outcome) -> list[tuple[str, str]]:
     told = torsion_answer(outcome)
-    return [("Torsional stiffness", told)] if told else []
+    return [(_words(outcome.parts["torsion"]).stiffness, told)] if told else []
 
 
 TORSION = Section(

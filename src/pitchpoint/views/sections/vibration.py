@@ -115,12 +115,12 @@ def _cell(data: xr.Dataset, name: str, torque: int) -> str:
 def _table(outcome: Outcome) -> Table:
     """Figures of every torque."""
     data = outcome.parts["vibration"]
-    count = range(data.sizes["torque"])
+    count, load = range(data.sizes["torque"]), show.described("torque", data).long_name
     rows = [(_title(name), *(_cell(data, name, k) for k in count)) for name in _ROWS]
     damping = words(outcome, "dynamics", "damping_ratio")
     if damping:
         rows.insert(3, ("damping ratio ξ", *[damping] * len(count)))
-    return Table(["At the output torque", *_torques(data)], rows, compact=True)
+    return Table([f"At the {load}", *_torques(data)], rows, compact=True)
 
 
 def _status(data: xr.Dataset) -> str:
@@ -374,7 +374,7 @@ def _steady(it: Panel, outcome: Outcome) -> Iterator[Block]:
     if it.title:
         yield Heading(it.title)
     yield Paragraph(
-        "Steady state at the operating speed; the rotation of one gear against the other, measured along "
+        "Steady state at the operating speed; the motion of one member against the other, measured along "
         f"the line of action. Contact: {data.attrs.get('contact', '')}."
     )
     if it.note:
