@@ -214,8 +214,8 @@ def test_all_stages_before_one_of_a_single_sense_turn_over():
     # A ring turns as its pinion does; both turn positively where the first pinion does not.
     assert [one.case.gears.flank for one in case.stages[:2]] == ["right", "left"]
     assert np.sign(case.motion).tolist() == [-1.0, 1.0, 1.0, -1.0]
-    held = f"{first}flank = 'left'\n{second}flank = 'left'\n[[stages]]\n{WAVE}{COMMON}"
-    with pytest.raises(InputError, match=r"stages.3.gears: .* for one sense of rotation alone"):
+    held = f"{first}flank = 'left'\n[[stages]]\n{WAVE}{COMMON}"
+    with pytest.raises(InputError, match=r"stages.2.gears: .* for one sense of rotation alone"):
         built(held)
 
 
