@@ -70,6 +70,8 @@ def mean_line_load(
         mesh: any family.
         contacts: of the mesh.
         load: that the driven coordinate carries [N m or N].
+
+    From the balance of the driven coordinate under one load per length on all contact lines.
     """
     arms = jnp.abs(along(contacts.normal, mesh.loaded))
     return load / total(jnp.where(contacts.active, contacts.weight * arms, 0.0))

@@ -71,6 +71,8 @@ def foundation_compliance(section: ToothSection) -> Float[Array, " node"]:
 
     Args:
         section: the tooth; zero for a ring or a rack, see `foundation_warnings`.
+
+    Source: Sainsot, Velex and Duverger (2004), see `sainsot_2004`.
     """
     half_thickness, height = section.flank
     if section.body != "disc":
@@ -90,7 +92,10 @@ _UNDER = {"ring": "ring's rim", "rack": "rack's body"}
 
 
 def foundation_in_range(section: ToothSection) -> Bool[Array, ""]:
-    """True where the polynomial is used inside the range for which it was fitted, under a disc."""
+    """True where the polynomial is used inside the range for which it was fitted, under a disc.
+
+    Source: Sainsot, Velex and Duverger (2004), range of their fit.
+    """
     within = _within(section.rim_ratio, RIM_RATIO_RANGE) & _within(
         section.root_half_angle, HALF_ANGLE_RANGE
     )

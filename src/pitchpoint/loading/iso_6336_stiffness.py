@@ -153,6 +153,8 @@ def estimate(
 
     Returns:
         c' and c_gamma_alpha over the whole face width [N/m] under their names, and sentences.
+
+    Source: ISO 6336-1:2006, method B.
     """
     if not mesh.standardised:
         return {}, ()
@@ -208,6 +210,8 @@ def range_warnings(
         helix_angle: beta [rad].
         contact_ratio: transverse contact ratio eps_alpha.
         internal: True if the wheel is a ring.
+
+    Source: ISO 6336-1:2006, method B, what it says of its range.
     """
     values = (contact_ratio, math.degrees(helix_angle), sum(profile_shift))
     found = [

@@ -47,6 +47,8 @@ class Bearing(eqx.Module):
         Args:
             mesh: any family.
             contacts: of the mesh.
+
+        From the balance of moments about the place of the other bearing.
         """
         body = mesh.coordinates[self.coordinate]
         force = unit_forces(body, contacts)
@@ -92,6 +94,8 @@ def unit_forces(body: Coordinate, contacts: Contacts) -> Vectors:
     Args:
         body: of the mesh.
         contacts: of the mesh.
+
+    From action and reaction along the unit normal.
     """
     if body.member is None:
         return jnp.zeros_like(contacts.direction)
@@ -109,6 +113,8 @@ def radial_and_axial(mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Arra
         mesh: any family.
         contacts: of the mesh.
         force: normal force of each slice [N].
+
+    From the balance of forces on each body.
     """
     found = []
     for member in (0, 1):
