@@ -34,7 +34,7 @@ from pitchpoint.runs.run import describe
 ROOT = Path(__file__).parents[1]
 SEEDS = [read(path) for path in sorted(ROOT.glob("examples/*.toml"))]
 SEEDS += [read(path_of(name)) for name in names()]
-RECORDED = ("pair_23_61", "helical_resonance", "strain_wave")
+RECORDED = ("pair_23_61", "helical_resonance", "strain_wave", "two_stage")
 KEYS = [
     *keys(),
     "losses.a.bearing",
