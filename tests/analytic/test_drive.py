@@ -9,7 +9,7 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
-from pitchpoint.efficiency.drive import Stage, chained, drive_cycle, output_wind_up
+from pitchpoint.efficiency.drive import Stage, chained, drive_cycle
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
@@ -147,24 +147,6 @@ def test_bearings_of_the_middle_shaft_bear_both_meshes(turn):
     ]
     loads = sum(np.linalg.norm(part, axis=-1) for part in parts)
     np.testing.assert_allclose(np.abs(found["drag"][1]), 1e-3 * 0.05 * loads, rtol=1e-11)
-
-
-@eqx.filter_jit
-def wound(drive, load):
-    laws = [models(0.0, "from_stiffness")] * len(drive.stages)
-    return output_wind_up(drive, load, laws, nodes=4)
-
-
-def test_stages_are_springs_one_behind_the_other():
-    loads = jnp.asarray([100.0, 300.0])
-    turned, stiffness = map(np.asarray, wound(BOTH, loads))
-    first, second = (
-        np.asarray(wound(chained([one]), loads)[1])
-        for one in (FIRST, dataclasses.replace(SECOND, shafts=(0, 1)))
-    )
-    step = 19 / 70
-    np.testing.assert_allclose(1.0 / stiffness, 1.0 / second + step**2 / first, rtol=1e-12)
-    np.testing.assert_allclose(turned, loads / stiffness, rtol=1e-10)
 
 
 def test_the_output_drives_backwards():

@@ -23,11 +23,10 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.errors import InputError
 from pitchpoint.loading.reactions import Bearing
-from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.programs import program
 from pitchpoint.status import Status
 
-__all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "output_wind_up", "owner"]
+__all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "owner"]
 
 Each = Float[Array, "*#b"]
 Meetings = Float[Array, "..."]
@@ -384,35 +383,3 @@ def _beside(seat: Bearing, stage: Stage, behind: Stage, found: State) -> Float[A
     angle = behind.turn - stage.turn
     cosine, sine = jnp.cos(angle), jnp.sin(angle)
     return jnp.stack([cosine * x - sine * y, sine * x + cosine * y, z])[..., None]
-
-
-@program
-def output_wind_up(
-    drive: Drive, load: Each, models: Sequence[Models], nodes: int = 12
-) -> tuple[Each, Each]:
-    """Rotation of the output under load with the input held, and its stiffness, without friction.
-
-    Stages are springs one behind the other: each adds its wind-up over the ratio between it and the
-    output, and its load is less by the same ratio.
-
-    Args:
-        drive: see `chained`; all meshes with teeth that yield.
-        load: torques at the output [*b] [N m].
-        models: of each stage, for how teeth yield.
-        nodes: in each segment of each period.
-
-    Returns:
-        Mean rotation [rad], and one over the mean compliance for a small change of the load [N m/rad].
-
-    From virtual work: rotation and torque go with the ratio, so compliance with its square.
-    """
-    ratios, turned, slope = drive.ratios, jnp.zeros_like(load), jnp.zeros_like(load)
-    for number, (stage, laws) in enumerate(zip(drive.stages, models, strict=True)):
-        mesh, solids = stage.design.mesh, stage.design.solids
-        # Rotation at the output for one of the shaft that the stage loads.
-        step = ratios[-1] / ratios[number + 1]
-        phase, weight = cycle_nodes(mesh, laws.sharing, nodes)
-        found = wind_up(mesh, solids, laws.compliance, (load * step)[..., None], phase[None])
-        turned = turned + step * (found.wind_up @ weight)
-        slope = slope + step**2 * ((1.0 / found.stiffness) @ weight)
-    return turned, 1.0 / slope
