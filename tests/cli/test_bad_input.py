@@ -23,10 +23,15 @@ from pydantic import BaseModel, BeforeValidator
 from sound import PAIR
 
 from pitchpoint import cli, units
-from pitchpoint.cases import gear_tables, schema
+from pitchpoint.cases import schema
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
+from pitchpoint.gears import table as every
+from pitchpoint.gears.ball_on_disc import table as ball_on_disc
+from pitchpoint.gears.cylindrical import table as cylindrical
+from pitchpoint.gears.strain_wave import table as strain_wave
+from pitchpoint.gears.table import MODULE
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
@@ -183,10 +188,10 @@ temperature = "60 degC"
 BASES = {"cylindrical": BASE, "strain wave": STRAIN_WAVE, "involute": INVOLUTE, "rig": RIG}
 WALKS = [
     ("cylindrical", schema.Case, ()),
-    ("strain wave", gear_tables.StrainWaveGears, ("gears",)),
-    ("involute", gear_tables.InvoluteTooth, ("gears", "tooth")),
-    ("involute", gear_tables.InvoluteGroove, ("gears", "circular_spline")),
-    ("rig", gear_tables.BallOnDiscRig, ("gears",)),
+    ("strain wave", strain_wave.StrainWaveGears, ("gears",)),
+    ("involute", strain_wave.InvoluteTooth, ("gears", "tooth")),
+    ("involute", strain_wave.InvoluteGroove, ("gears", "circular_spline")),
+    ("rig", ball_on_disc.BallOnDiscRig, ("gears",)),
 ]
 """Sound case, table and its place: together every table of the schema."""
 
@@ -422,9 +427,9 @@ def bad_keys() -> Iterator[Bad]:
 
 def bad_sweeps() -> Iterator[Bad]:
     sweep = ("studies", "scan", "sweep")
-    for name, value, shown in of_quantity(gear_tables.MODULE):
+    for name, value, shown in of_quantity(MODULE):
         for end in ("start", "stop"):
-            words = (shown, gear_tables.MODULE.allowed, "gears.module")
+            words = (shown, MODULE.allowed, "gears.module")
             yield Bad(f"{end} {name}", (*sweep, end), value, words, ".".join(sweep))
         listed = ("studies", "list", "sweep", "values")
         yield Bad(f"values {name}", listed, [value], words, "studies.list.sweep")
@@ -495,7 +500,7 @@ def bad_marks() -> Iterator[Bad]:
             f"status {value}", ("gears", "module"), mark, ("printed", "assumed"), "gears.module"
         )
     table = {"value": "2 mm", "unit": "mm"}
-    words = (gear_tables.MODULE.allowed,)
+    words = (MODULE.allowed,)
     yield Bad("no mark", ("gears", "module"), table, words, "gears.module")
 
 
@@ -638,11 +643,11 @@ def test_the_whole_case_is_sound(
 def test_the_walk_reaches_every_table() -> None:
     defined = {
         each
-        for module in (schema, gear_tables)
+        for module in (schema, ball_on_disc, cylindrical, every, strain_wave)
         for each in vars(module).values()
         if isinstance(each, type) and issubclass(each, BaseModel)
     }
-    assert {model for model, *_ in TABLES} == defined - {BaseModel, Table}
+    assert {model for model, *_ in TABLES} == defined - {BaseModel, Table, every.GearsTable}
     tested = {(bad.base, bad.path[:n]) for bad in WALKED + LISTED for n in range(len(bad.path) + 1)}
     assert tested >= {(site.base, site.path) for site in SITES if site.annotation is not Any}
 

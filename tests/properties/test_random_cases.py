@@ -14,7 +14,6 @@ from sound import PAIR
 
 from pitchpoint.analyses.operation import OPERATION
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.gear_tables import WIDTH
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import (
     ALPHA,
@@ -31,6 +30,7 @@ from pitchpoint.cases.schema import (
 )
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.gears.table import WIDTH
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids

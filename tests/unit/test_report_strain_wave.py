@@ -13,10 +13,9 @@ import xarray as xr
 from records import entries
 
 from pitchpoint.analyses.kinematic_error import _turns
-from pitchpoint.cases.families import FAMILIES
-from pitchpoint.cases.gear_tables import StrainWaveGears
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.drive import rates
+from pitchpoint.gears.strain_wave.family import FAMILY
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -195,7 +194,7 @@ def kinematic_error(*, flexspline: bool = True) -> xr.Dataset:
         },
         title="kinematic error",
         warnings=[],
-        **_turns(FAMILIES[StrainWaveGears].turning, "circular spline"),
+        **_turns(FAMILY.turning, "circular spline"),
     )
 
 

@@ -12,9 +12,9 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.families import Turning
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.gears.family import Turning
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import Compliance, compliance
 from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error

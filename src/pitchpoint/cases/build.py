@@ -10,7 +10,6 @@ import numpy as np
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.families import FAMILIES, Family, built_gears
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Operating, Surface
 from pitchpoint.cases.solids import (
@@ -27,7 +26,8 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.summary import engaged, heat
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.families import built_gears, family_of
+from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.reactions import Bearing, InnerBearing
@@ -109,15 +109,9 @@ class Built:
         return found
 
     @property
-    def pair(self) -> CylindricalPair:
-        """The gears where they are a cylindrical pair."""
-        assert isinstance(self.design.mesh, CylindricalPair)
-        return self.design.mesh
-
-    @property
     def family(self) -> Family:
         """What a case asks of the family of its gears."""
-        return FAMILIES[type(self.case.gears)]
+        return family_of(type(self.case.gears))
 
     @property
     def following(self) -> dict[str, Any]:

@@ -17,8 +17,9 @@ from pydantic.fields import FieldInfo
 
 from pitchpoint import units
 from pitchpoint.cases.document import Document, check_name
-from pitchpoint.cases.gear_tables import BORE, DEVIATION, Deviation, Gears
 from pitchpoint.errors import InputError, shorten
+from pitchpoint.gears.families import Gears
+from pitchpoint.gears.table import BORE, DEVIATION, Deviation
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, forms
 from pitchpoint.registry import nearest

@@ -1,11 +1,7 @@
 """Which analysis there is for which family, asked of a sample of each."""
 
-from importlib import resources
-from pathlib import Path
-
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.build import Built
-from pitchpoint.cases.families import FAMILIES
+from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.runs.run import load_case
 
 __all__ = ["matrix", "page"]
@@ -20,7 +16,7 @@ Printed by `pitchpoint models --matrix` from the registries of families and anal
 
 def matrix() -> list[dict[str, str]]:
     """A row for each analysis: its name and title, and for each family yes, or why it is not there."""
-    samples = [_sample(family.sample) for family in FAMILIES.values()]
+    samples = [load_case(str(sample_of(table))) for table in TABLES]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {sample.case.gears.family: analysis.lacks(sample) or "yes" for sample in samples}
@@ -34,7 +30,3 @@ def page() -> str:
     _, *columns = rows[0]
     cells = [columns, ["---"] * len(columns), *([row[name] for name in columns] for row in rows)]
     return _PAGE + "".join(f"| {' | '.join(row)} |\n" for row in cells)
-
-
-def _sample(name: str) -> Built:
-    return load_case(str(Path(str(resources.files("pitchpoint.cases"))) / "samples" / name))

@@ -7,7 +7,8 @@ import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.gear_tables import CylindricalGears
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.cylindrical.table import CylindricalGears
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]
 
@@ -51,6 +52,7 @@ def readings(built: Built) -> dict[str, float]:
     """Both formulas for a case, under the names of result variables."""
     gears, mesh = built.case.gears, built.design.mesh
     assert isinstance(gears, CylindricalGears)
+    assert isinstance(mesh, CylindricalPair)
     angle = float(np.arctan(tan(gears.pressure_angle) / cos(gears.helix_angle)))
     pair = mesh.standard
     density = jnp.stack([solid.density for solid in built.design.solids])
@@ -62,7 +64,7 @@ def readings(built: Built) -> dict[str, float]:
             pressure_angle=angle,
             helix_angle=gears.helix_angle,
             dedendum=float(pair.dedendum[0]),
-            fillet_radius=float(built.pair.fillet_radius[0]),
+            fillet_radius=float(mesh.fillet_radius[0]),
         ),
         "printed_equivalent_mass": equivalent_mass(
             inertia=[float(value) for value in inertia],

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.gear_tables import StrainWaveGears
 from pitchpoint.cases.schema import Operating
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
+from pitchpoint.gears.strain_wave.table import StrainWaveGears
 
 __all__ = [
     "assumed_radius",

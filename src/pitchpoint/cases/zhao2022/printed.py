@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.gear_tables import StrainWaveGears
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.strain_wave.table import StrainWaveGears
 
 __all__ = [
     "arc_distance",

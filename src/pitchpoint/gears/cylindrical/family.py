@@ -1,0 +1,169 @@
+"""A pair of cylindrical gears from its table in a case file."""
+
+from dataclasses import replace
+from math import cos, pi, sin, tan
+from typing import Any
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.surface import Surfaces
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.checks import check_cylindrical
+from pitchpoint.gears.cylindrical.modified import (
+    Modifications,
+    class_deviations,
+    class_warnings,
+    modified,
+)
+from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.family import Family, waves
+from pitchpoint.gears.mesh import Mesh
+
+__all__ = ["FAMILY"]
+
+_AVAILABLE_FILLET = 0.38
+USUAL_TIP = 0.25
+"""Tip thickness of helical teeth that is kept where none is given, in normal modules."""
+_RING_FILLET = 0.2  # fits the narrow spaces of most rings
+
+
+def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+    pair = _pair(gears, driver=2 if driver == "gear 2" else 1, slices=slices)
+    told = (*check_cylindrical(pair), *_shortened(pair, gears), *_beyond_iso_1328(pair, gears))
+    return _with_flanks(pair, gears, slices), told
+
+
+def _with_flanks(pair: CylindricalPair, gears: CylindricalGears, slices: int) -> CylindricalPair:
+    """The pair with the modifications of its flanks; deviations of the lead need slices too."""
+    given = _modifications(gears)
+    if given is not None:
+        return modified(pair, given, slices)
+    by_class = gears.deviations is not None and gears.deviations.iso_class is not None
+    return replace(pair, slices=slices) if by_class else pair
+
+
+def _modifications(gears: CylindricalGears) -> Modifications | None:
+    table, slope = gears.modifications, gears.misalignment
+    if table is None or not table.amounts:
+        return None if slope is None else Modifications(misalignment=slope)
+    given = {key: getattr(table, key) for key in type(table).model_fields if key != "relief_shape"}
+    power = 2 if table.relief_shape == "parabolic" else 1
+    return Modifications(**given, relief_power=power, misalignment=slope)
+
+
+def _beyond_iso_1328(pair: CylindricalPair, gears: CylindricalGears) -> tuple[str, ...]:
+    asked = gears.deviations
+    return class_warnings(pair) if asked is not None and asked.iso_class is not None else ()
+
+
+def _gear_deviations(gears: CylindricalGears, pair: CylindricalPair) -> Surfaces:
+    asked = gears.deviations
+    if asked is None:
+        return (), ()
+    first, second = waves(asked.gear_1), waves(asked.gear_2)
+    if asked.iso_class is None:
+        return first, second
+    drawn = class_deviations(pair, asked.iso_class, int(asked.seed))
+    return (*first, *drawn[0]), (*second, *drawn[1])
+
+
+def _least_tip(gears: CylindricalGears) -> float:
+    """Tip thickness that is kept, in modules: helical teeth are few more often, and then pointed."""
+    if gears.least_tip_thickness is not None:
+        return gears.least_tip_thickness
+    return USUAL_TIP if gears.helix_angle > 0.0 else 0.0
+
+
+def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
+    """What was taken off tips that nobody asked to shorten."""
+    if gears.least_tip_thickness is not None:
+        return []
+    kept = float(pair.clearance_keeping_tip_alteration) if any(pair.shortened) else 0.0
+    return [
+        f"The tip of gear {number} would be thinner than {USUAL_TIP:g} modules and is shortened by "
+        f"{kept - float(pair.tip_alteration[number - 1]):.3g} modules; least_tip_thickness sets the limit."
+        for number, short in enumerate(pair.shortened, 1)
+        if short
+    ]
+
+
+def _pair(gears: CylindricalGears, driver: int, slices: int) -> CylindricalPair:
+    dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
+    fillet = gears.fillet_radius or tuple(
+        _RING_FILLET
+        if teeth < 0
+        else min(_AVAILABLE_FILLET, _largest_fillet(depth, gears.pressure_angle))
+        for teeth, depth in zip(gears.teeth, dedendum, strict=True)
+    )
+    pair = build_cylindrical_pair(
+        teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
+        module=gears.module,
+        pressure_angle=gears.pressure_angle,
+        helix_angle=gears.helix_angle,
+        face_width=gears.face_width,
+        profile_shift=gears.profile_shift,
+        addendum=gears.addendum,
+        dedendum=dedendum,
+        fillet_radius=(fillet[0], fillet[1]),
+        tip_alteration=gears.tip_alteration,
+        least_tip=_least_tip(gears),
+        centre_distance=gears.centre_distance,
+        driver=driver,
+        right_flank=gears.flank == "right",
+        slices=slices,
+    )
+    if gears.bore_diameter is None:
+        return pair
+    return replace(pair, rim_ratio=jnp.asarray(_rim_ratios(pair, gears.bore_diameter)))
+
+
+def _rim_ratios(pair: CylindricalPair, bores: tuple[float, float]) -> list[float]:
+    """Root over bore radius of each gear; of a ring its outer radius over the root radius."""
+    found = []
+    for number, (gear, bore) in enumerate(zip(pair.gears, bores, strict=True), 1):
+        root = 2.0 * abs(float(gear.root_radius))
+        ratio = bore / root if gear.internal else root / bore
+        if ratio <= 1.0:
+            side = "larger" if gear.internal else "smaller"
+            raise InputError(
+                f"the bore diameter of gear {number} is {1e3 * bore:.6g} mm; it must be {side} than "
+                f"its root circle, {1e3 * root:.6g} mm",
+                key="bore_diameter",
+            )
+        found.append(ratio)
+    return found
+
+
+def _largest_fillet(dedendum: float, angle: float) -> float:
+    """Corner rounding of the rack that leaves no flat on its tip, in modules (ISO 53)."""
+    return max((pi / 4 - dedendum * tan(angle)) * cos(angle) / (1.0 - sin(angle)), 0.0)
+
+
+_FOLLOWING = {
+    "dedendum": "dedendum",
+    "fillet_radius": "fillet_radius",
+    "tip_alteration": "tip_alteration",
+    "centre_distance": "centre_distance",
+    "least_tip_thickness": "least_tip",
+}
+
+
+def _of_pair(gears: CylindricalGears, pair: CylindricalPair) -> dict[str, Any]:
+    found = {key: getattr(pair, name) for key, name in _FOLLOWING.items()}
+    given = _modifications(gears)
+    if given is not None:
+        lengths = given.completed(pair)
+        found |= {f"modifications.{key}": getattr(lengths, key) for key in _LENGTHS}
+    return found
+
+
+_LENGTHS = ("tip_relief_length", "root_relief_length", "end_relief_length")
+
+
+FAMILY = Family(
+    _cylindrical,
+    _of_pair,
+    _gear_deviations,
+    drawing={"outline": ("gear", "corner", "xy"), "points": ("point",)},
+    coordinates={"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+)

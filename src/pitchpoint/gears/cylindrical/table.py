@@ -1,0 +1,179 @@
+"""The table [gears] of a pair of cylindrical gears."""
+
+from math import pi
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import AfterValidator, model_validator
+
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical import MEMBERS
+from pitchpoint.gears.table import (
+    ANGLE,
+    BORE,
+    MODULE,
+    RACK,
+    WIDTH,
+    Deviation,
+    GearsTable,
+    WavesAround,
+    check_waves,
+)
+from pitchpoint.input.quantities import Pair, Quantity
+from pitchpoint.input.tables import Table
+
+__all__ = ["CylindricalGears", "FlankModifications", "GearDeviations"]
+
+TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
+DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
+HELIX = Quantity("angle", 0.0, 60 * pi / 180, "deg")
+SHIFT = Quantity("dimensionless", -2.0, 3.0)
+FILLET = Quantity("dimensionless", 0.0, 1.0)
+TIP = Quantity("dimensionless", -2.0, 2.0)
+LEAST_TIP = Quantity("dimensionless", 0.0, 1.5)
+RELIEF = Quantity("length", 0.0, 1e-2, "um")
+RELIEF_LENGTH = Quantity("length", 0.0, 1.0, "mm", open_low=True)
+MISALIGNMENT = Quantity("length", -1e-2, 1e-2, "um")
+TOLERANCE_CLASS = Quantity("dimensionless", 1, 11, whole=True)
+SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
+
+FEWEST_TEETH = 2
+FEWEST_RING_TEETH = 10
+
+
+def _teeth(value: tuple[float, float]) -> tuple[float, float]:
+    first, second = value
+    if first < FEWEST_TEETH:
+        raise InputError(
+            f"gear 1 was given {first:.0f} teeth; allowed are {FEWEST_TEETH} or more, and only gear 2 "
+            "may be a ring, with its number of teeth negative"
+        )
+    if -FEWEST_RING_TEETH < second < FEWEST_TEETH:
+        raise InputError(
+            f"gear 2 was given {second:.0f} teeth; allowed are {FEWEST_TEETH} or more, or for a ring "
+            f"with internal teeth -{FEWEST_RING_TEETH} or less"
+        )
+    return value
+
+
+_LENGTHS = ("tip_relief", "root_relief", "end_relief")
+
+
+class FlankModifications(Table):
+    """Modifications that all teeth of a gear have, along the normal; one value for both gears or two.
+
+    Lengths of tip and root relief are roll lengths, from the tip circle and from the start of the active
+    profile; without them a relief ends where one pair less is in contact. That of an end relief is along
+    the face, by default a module and at most a tenth of the face.
+    """
+
+    tip_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    tip_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+    root_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    root_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+    relief_shape: Literal["linear", "parabolic"] = "linear"
+    crowning: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    end_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    end_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+
+    @property
+    def amounts(self) -> dict[str, tuple[float, float]]:
+        """Amounts that are given, by key."""
+        given = {key: getattr(self, key) for key in (*_LENGTHS, "crowning")}
+        return {key: value for key, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _together(self) -> "FlankModifications":
+        for key in _LENGTHS:
+            if getattr(self, f"{key}_length") is not None and getattr(self, key) is None:
+                raise InputError(
+                    f"was given without {key}, to which it belongs", key=f"{key}_length"
+                )
+        return self
+
+
+class GearDeviations(Table):
+    """How far flanks lie behind their places, differently from tooth to tooth.
+
+    As waves around each gear, and as gears at the limits of a class of ISO 1328-1 that a seed draws at
+    random. They make the kinematic error; loads, losses and stiffness are those of teeth without them.
+    """
+
+    gear_1: WavesAround = ()
+    gear_2: WavesAround = ()
+    iso_class: Annotated[tuple[float, float], Pair(TOLERANCE_CLASS)] | None = None
+    seed: Annotated[float, SEED] = 1.0
+
+    @property
+    def each(self) -> dict[str, tuple[Deviation, ...]]:
+        """Waves by key of the gear."""
+        return {"gear_1": self.gear_1, "gear_2": self.gear_2}
+
+
+class CylindricalGears(GearsTable):
+    """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring.
+
+    A misalignment counts over the face, positive where the flanks part at the end that a contact line
+    reaches last.
+    """
+
+    members: ClassVar[tuple[str, ...]] = MEMBERS
+    friction: ClassVar[str] = "iso_tr_14179_2"
+
+    family: Literal["cylindrical"] = "cylindrical"
+    teeth: Annotated[tuple[float, float], Pair(TEETH), AfterValidator(_teeth)]
+    module: Annotated[float, MODULE]
+    face_width: Annotated[float, WIDTH]
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+    helix_angle: Annotated[float, HELIX] = 0.0
+    profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] = (0.0, 0.0)
+    addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
+    dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
+    fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
+    tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
+    least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
+    centre_distance: Annotated[float, DISTANCE] | None = None
+    bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
+    flank: Literal["left", "right"] = "left"
+    misalignment: Annotated[float, MISALIGNMENT] | None = None
+    modifications: FlankModifications | None = None
+    deviations: GearDeviations | None = None
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Keys of the bibliography for what is given."""
+        modified = self.modifications is not None or self.misalignment is not None
+        by_class = self.deviations is not None and self.deviations.iso_class is not None
+        return ("iso_21771_2007",) * modified + ("iso_1328_1_2013",) * by_class
+
+    @property
+    def load_sharing(self) -> str:
+        """Flanks with modifications share the load as they yield."""
+        modified = self.modifications is not None and self.modifications.amounts
+        return "from_stiffness" if modified or self.misalignment is not None else "equal"
+
+    @model_validator(mode="after")
+    def _smaller_than_teeth(self) -> "CylindricalGears":
+        amounts = self.modifications.amounts if self.modifications is not None else {}
+        given = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
+        given["misalignment"] = abs(self.misalignment or 0.0)
+        for key, most in given.items():
+            if most > self.module / 2.0:
+                raise InputError(
+                    f"{RELIEF.show(most)} is more than a tooth allows; allowed is half a module, "
+                    f"{RELIEF.show(self.module / 2.0)}",
+                    key=key,
+                )
+        waves = self.deviations.each if self.deviations is not None else {}
+        for (key, each), teeth in zip(waves.items(), self.teeth, strict=False):
+            check_waves(each, key, abs(teeth), self.module)
+        return self
+
+    @model_validator(mode="after")
+    def _one_tip(self) -> "CylindricalGears":
+        if self.tip_alteration is not None and self.least_tip_thickness:
+            raise InputError(
+                "tip_alteration and least_tip_thickness were both given; a tip alteration by value is "
+                "kept as it is",
+                key="least_tip_thickness",
+            )
+        return self

@@ -1,0 +1,73 @@
+"""What a case asks of a gear family beside what every mesh answers."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.surface import Surfaces, Waves
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.table import Deviation
+
+__all__ = ["Family", "Turning", "waves"]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Words of the turns over which deviations make a kinematic error.
+
+    Attributes:
+        whole: the turn over which both members are shown together; {} is the member with the most teeth.
+        angle: what turns there.
+        own: the turn of one member, {}, over which orders are counted.
+        alone: that turn where the member was named before.
+        note: how the errors of both members add up.
+    """
+
+    whole: str = "one turn of {}"
+    angle: str = "angle of {}"
+    own: str = "turn of {}"
+    alone: str = "one turn of it"
+    note: str = (
+        "Other teeth meet in each turn of a gear, so that the errors of both add up differently in later "
+        "turns; those of one gear alone, shown by order, stay as they are."
+    )
+
+
+@dataclass(frozen=True)
+class Family:
+    """What a case asks of a family beside what every mesh answers.
+
+    Attributes:
+        build: mesh and warnings from the table, the name of the driver and the number of slices;
+            InputError for gears that cannot run, with the key inside the table.
+        following: values that the table leaves open, as the mesh has them, by key inside the table.
+        deviations: of the teeth around both members, from the table and the mesh.
+        turning: words of a turn around which they repeat themselves.
+        drawing: dimensions of the arrays of a drawing.
+        coordinates: labels along those dimensions.
+    """
+
+    build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
+    following: Callable[[Any, Any], dict[str, Any]] = lambda gears, mesh: {}
+    deviations: Callable[[Any, Any], Surfaces] = lambda gears, mesh: ((), ())
+    turning: Turning = Turning()
+    drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    coordinates: Mapping[str, Any] = field(default_factory=dict)
+
+
+WAVES = 4
+"""Waves of a member come in multiples of it, the last ones without height: few programs serve all."""
+
+
+def waves(given: tuple[Deviation, ...]) -> tuple[Waves, ...]:
+    """Waves of one member as arrays [wave], none where none are given."""
+    if not given:
+        return ()
+    rows = np.zeros((len(fields(Waves)), ceil(len(given) / WAVES) * WAVES))
+    for row, one in zip(rows, fields(Waves), strict=True):
+        row[: len(given)] = [getattr(wave, one.name) for wave in given]
+    return (Waves(*map(jnp.asarray, rows)),)

@@ -1,0 +1,119 @@
+"""A strain wave gear from its table in a case file."""
+
+from dataclasses import fields, replace
+from math import inf
+from typing import Any
+
+from pitchpoint.contact.surface import Surfaces
+from pitchpoint.errors import InputError
+from pitchpoint.gears.family import Family, Turning, waves
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.strain_wave.design import (
+    DOUBLE_ARCS,
+    DoubleArcForm,
+    InvoluteForm,
+    build_strain_wave,
+    check_strain_wave,
+)
+from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.table import (
+    DoubleArcTooth,
+    InvoluteGroove,
+    InvoluteTooth,
+    StrainWaveGears,
+)
+
+__all__ = ["FAMILY"]
+
+_KEYS = {
+    "form": "tooth",
+    "groove": "circular_spline",
+    "shape": "wave_generator.weights",
+    "deflection": "wave_generator.deflection",
+    "force_angle": "wave_generator.force_angle",
+}
+"""Keys of the table by arguments of the builder that have other names."""
+
+
+def _strain_wave(gears: StrainWaveGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+    wave, cup, groove = gears.wave_generator, gears.flexspline, gears.circular_spline
+    try:
+        drive = build_strain_wave(
+            teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
+            module=gears.module,
+            face_width=gears.face_width,
+            form=_form(gears.tooth),
+            shape=wave.weights or wave.shape,
+            deflection=wave.deflection,
+            force_angle=wave.force_angle,
+            rim_thickness=cup.rim_thickness,
+            wall_thickness=cup.wall_thickness,
+            cup_length=cup.cup_length,
+            support_stiffness=inf if cup.support_stiffness is None else cup.support_stiffness,
+            clearance=gears.clearance,
+            tip_rounding=gears.tip_rounding,
+            backlash=gears.backlash,
+            fixed=gears.fixed,
+            driver=driver,
+            groove=_involute(groove) if isinstance(groove, InvoluteGroove) else None,
+        )
+    except InputError as error:
+        key = error.key or ""
+        raise error.at(key=_KEYS.get(key, key)) from None
+    return drive, check_strain_wave(drive)
+
+
+def _form(tooth: DoubleArcTooth | InvoluteTooth) -> DoubleArcForm | InvoluteForm:
+    if isinstance(tooth, InvoluteTooth):
+        return _involute(tooth)
+    own = {one.name: getattr(tooth, one.name) for one in fields(DoubleArcForm)}
+    given = {name: value for name, value in own.items() if value is not None}
+    return replace(DOUBLE_ARCS[tooth.set or _USUAL_SET], **given)
+
+
+_USUAL_SET = "liu"
+
+
+def _involute(table: InvoluteTooth | InvoluteGroove) -> InvoluteForm:
+    return InvoluteForm(**{one.name: getattr(table, one.name) for one in fields(InvoluteForm)})
+
+
+def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
+    form, rim = _form(gears.tooth), drive.rim
+    return {
+        **{f"tooth.{one.name}": getattr(form, one.name) for one in fields(form)},
+        "flexspline.rim_thickness": rim.thickness,
+        "flexspline.wall_thickness": rim.wall_thickness,
+        "flexspline.cup_length": rim.cup_length,
+    }
+
+
+def _deviations(gears: StrainWaveGears, drive: StrainWave) -> Surfaces:
+    given = gears.deviations
+    return waves(given.flexspline), waves(given.circular_spline)
+
+
+FAMILY = Family(
+    _strain_wave,
+    _of_drive,
+    _deviations,
+    Turning(
+        "one turn of the wave generator",
+        "wave generator against circular spline",
+        "turn against the {}",
+        "one turn of the wave generator against it",
+        "In each turn of the wave generator one spline moves on against the other by the tooth "
+        "difference, so that the errors of both add up differently in later turns; those of one "
+        "spline alone, shown by order, stay as they are.",
+    ),
+    drawing={
+        "tooth": ("corner", "xy"),
+        "space": ("space_corner", "xy"),
+        "passing_angle": ("place",),
+        "passing": ("place", "corner", "xy"),
+        "wave_weights": ("wave",),
+        "clearance_angle": ("angle",),
+        "clearance": ("angle",),
+    },
+    coordinates={"gear": [1, 2], "xy": ["x", "y"]},
+)

@@ -1,0 +1,216 @@
+"""The table [gears] of a strain wave gear."""
+
+from collections.abc import Mapping
+from math import pi
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, Tag, model_validator
+
+from pitchpoint.errors import InputError
+from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.table import (
+    ANGLE,
+    BORE,
+    MODULE,
+    RACK,
+    WIDTH,
+    Deviation,
+    GearsTable,
+    WavesAround,
+    check_waves,
+)
+from pitchpoint.input.quantities import Pair, Quantity, named
+from pitchpoint.input.tables import Table, by
+
+__all__ = ["DoubleArcTooth", "InvoluteGroove", "InvoluteTooth", "StrainWaveGears"]
+
+SPLINE_TEETH = Quantity("dimensionless", 30, 2_000, whole=True)
+SPLINE_SHIFT = Quantity("dimensionless", -5.0, 10.0)
+ARC = Quantity("dimensionless", 0.1, 20.0)
+OFFSET = Quantity("dimensionless", -10.0, 20.0)
+DEFLECTION = Quantity("dimensionless", 0.1, 3.0)
+FORCE_ANGLE = Quantity("angle", 0.0, 60 * pi / 180, "deg")
+AMPLITUDE = Quantity("dimensionless", -10.0, 10.0)
+BOTTOM = Quantity("dimensionless", 0.0, 2.0)
+ROUNDING = Quantity("dimensionless", 0.01, 0.5)
+PLAY = Quantity("length", 0.0, 1e-3, "um")
+THICKNESS = Quantity("length", 1e-5, 0.1, "mm")
+SUPPORT = Quantity("pressure", 1e6, 1e16, "N/mm2")
+
+
+def _double_arcs() -> list[str]:
+    from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS
+
+    return list(DOUBLE_ARCS)
+
+
+def _wave_shapes() -> list[str]:
+    from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
+
+    return list(WAVE_SHAPES)
+
+
+_ARCS = (
+    "convex_radius",
+    "convex_offset",
+    "convex_shift",
+    "concave_radius",
+    "concave_offset",
+    "concave_shift",
+)
+
+
+class DoubleArcTooth(Table):
+    """A flexspline tooth of two arcs and their tangent: a named set, by value, or a set with own values.
+
+    Lengths are in modules.
+    """
+
+    form: Literal["double arc"] = "double arc"
+    set: Annotated[str, BeforeValidator(named(_double_arcs, "double-arc tooth"))] | None = None
+    convex_radius: Annotated[float, ARC] | None = None
+    convex_offset: Annotated[float, OFFSET] | None = None
+    convex_shift: Annotated[float, OFFSET] | None = None
+    concave_radius: Annotated[float, ARC] | None = None
+    concave_offset: Annotated[float, OFFSET] | None = None
+    concave_shift: Annotated[float, OFFSET] | None = None
+    addendum: Annotated[float, RACK] | None = None
+    dedendum: Annotated[float, RACK] | None = None
+
+    @model_validator(mode="after")
+    def _whole(self) -> "DoubleArcTooth":
+        missing = [name for name in _ARCS if getattr(self, name) is None]
+        if self.set is None and 0 < len(missing) < len(_ARCS):
+            raise InputError(
+                f"a double-arc tooth by value needs {', '.join(missing)} too; or name the set that gives "
+                f"what is left out, one of {', '.join(_double_arcs())}",
+            )
+        return self
+
+
+class InvoluteTooth(Table):
+    """An involute flexspline tooth by the basic rack that cuts it, in modules."""
+
+    form: Literal["involute"] = "involute"
+    profile_shift: Annotated[float, SPLINE_SHIFT]
+    addendum: Annotated[float, RACK] = 1.0
+    dedendum: Annotated[float, RACK] = 1.35
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+
+
+class ConjugateGroove(Table):
+    """A circular spline whose flanks are those that the flexspline's teeth sweep."""
+
+    form: Literal["conjugate"] = "conjugate"
+
+
+class InvoluteGroove(Table):
+    """A circular spline with involute teeth, in modules."""
+
+    form: Literal["involute"] = "involute"
+    profile_shift: Annotated[float, SPLINE_SHIFT]
+    addendum: Annotated[float, RACK] = 1.0
+    dedendum: Annotated[float, RACK] = 1.35
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+
+
+class WaveGenerator(Table):
+    """How the flexspline is deformed: a shape by name, or amplitudes of cos 2p, cos 4p, ...
+
+    The deflection is the radial displacement on the long axis over half the module times the tooth
+    difference.
+    """
+
+    shape: Annotated[str, BeforeValidator(named(_wave_shapes, "wave shape"))] = "cosine"
+    weights: tuple[Annotated[float, AMPLITUDE], ...] = ()
+    deflection: Annotated[float, DEFLECTION] = 1.0
+    force_angle: Annotated[float, FORCE_ANGLE] = pi / 6
+
+    @model_validator(mode="after")
+    def _one(self) -> "WaveGenerator":
+        if self.weights and "shape" in self.model_fields_set:
+            raise InputError("shape and weights were both given; give one of them", key="weights")
+        return self
+
+
+class Flexspline(Table):
+    """Rim and cup of the flexspline, and the bearing that holds it round.
+
+    By default the rim is two modules thick, the wall of the cup half of that, the cup half a pitch
+    diameter long, and the bearing rigid.
+    """
+
+    rim_thickness: Annotated[float, THICKNESS] | None = None
+    wall_thickness: Annotated[float, THICKNESS] | None = None
+    cup_length: Annotated[float, BORE] | None = None
+    support_stiffness: Annotated[float, SUPPORT] | None = None
+
+
+class SplineDeviations(Table):
+    """How far the flanks of both splines lie behind their places, as waves around them.
+
+    They make the kinematic error; loads, losses and stiffness are those of teeth without deviations.
+    """
+
+    flexspline: WavesAround = ()
+    circular_spline: WavesAround = ()
+
+    @property
+    def each(self) -> dict[str, tuple[Deviation, ...]]:
+        """Waves by key of the spline."""
+        return {"flexspline": self.flexspline, "circular_spline": self.circular_spline}
+
+
+Tooth = Annotated[
+    Annotated[DoubleArcTooth, Tag("double arc")] | Annotated[InvoluteTooth, Tag("involute")],
+    Field(discriminator=by("form", DoubleArcTooth, InvoluteTooth)),
+]
+CircularSpline = Annotated[
+    Annotated[ConjugateGroove, Tag("conjugate")] | Annotated[InvoluteGroove, Tag("involute")],
+    Field(discriminator=by("form", ConjugateGroove, InvoluteGroove)),
+]
+
+
+class StrainWaveGears(GearsTable):
+    """A strain wave gear with two lobes: wave generator, flexspline and circular spline.
+
+    Clearance and rounding of the tips are in modules. Gear 1 is the flexspline, gear 2 the circular
+    spline, in this table and in that of the materials.
+    """
+
+    members: ClassVar[tuple[str, ...]] = MEMBERS
+    meaningless: ClassVar[Mapping[str, str]] = {
+        "slices": "contacts of strain-wave teeth are not divided into slices",
+        "averaging": "the path of one pair does not stand for strain-wave teeth, many of which touch at "
+        "once",
+    }
+
+    family: Literal["strain_wave"] = "strain_wave"
+    teeth: Annotated[tuple[float, float], Pair(SPLINE_TEETH)]
+    module: Annotated[float, MODULE]
+    face_width: Annotated[float, WIDTH]
+    fixed: Literal["wave generator", "flexspline", "circular spline"] = "circular spline"
+    clearance: Annotated[float, BOTTOM] = 0.25
+    tip_rounding: Annotated[float, ROUNDING] = 0.1
+    backlash: Annotated[float, PLAY] = 0.0
+    tooth: Tooth = DoubleArcTooth(set="liu")
+    wave_generator: WaveGenerator = WaveGenerator()
+    flexspline: Flexspline = Flexspline()
+    circular_spline: CircularSpline = ConjugateGroove()
+    deviations: SplineDeviations = SplineDeviations()
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """Members that may drive, the usual one first."""
+        return tuple(name for name in self.members if name != self.fixed)
+
+    @property
+    def load_sharing(self) -> str:
+        """Most pairs carry only once others yield."""
+        return "from_stiffness"
+
+    @model_validator(mode="after")
+    def _small_and_few(self) -> "StrainWaveGears":
+        for (key, waves), teeth in zip(self.deviations.each.items(), self.teeth, strict=True):
+            check_waves(waves, key, teeth, self.module)
+        return self

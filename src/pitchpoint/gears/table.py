@@ -1,0 +1,100 @@
+"""What the table [gears] of every family says, and values that several families take."""
+
+from collections.abc import Mapping
+from math import pi
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity
+from pitchpoint.input.tables import Table
+
+__all__ = [
+    "ANGLE",
+    "BORE",
+    "DEVIATION",
+    "MODULE",
+    "RACK",
+    "WIDTH",
+    "Deviation",
+    "GearsTable",
+    "WavesAround",
+    "check_waves",
+]
+
+MODULE = Quantity("length", 1e-5, 0.1, "mm")
+WIDTH = Quantity("length", 1e-5, 10.0, "mm")
+ANGLE = Quantity("angle", 5 * pi / 180, 45 * pi / 180, "deg")
+RACK = Quantity("dimensionless", 0.1, 4.0)
+BORE = Quantity("length", 1e-5, 100.0, "mm")
+WAVES = Quantity("dimensionless", 1, 1_000, whole=True)
+DEVIATION = Quantity("length", 0.0, 1e-2, "um")
+PHASE = Quantity("angle", -4 * pi, 4 * pi, "deg")
+
+Load = Literal["torque", "force"]
+
+
+class GearsTable(Table):
+    """The table of a family: its own keys, and what is usual for its gears.
+
+    Attributes:
+        members: body of each coordinate.
+        load: what the loaded member takes.
+        friction, film_thickness, load_sharing: laws where none are given.
+        meaningless: by key of the models why they say nothing about these gears.
+        drivers: members that may drive, the usual one first.
+        sources: keys of the bibliography for what is given.
+    """
+
+    members: ClassVar[tuple[str, ...]]
+    load: ClassVar[Load] = "torque"
+    friction: ClassVar[str] = "constant"
+    film_thickness: ClassVar[str] = "dowson_higginson_1959"
+    meaningless: ClassVar[Mapping[str, str]] = {}
+    family: str
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """Members that may drive, the usual one first."""
+        return self.members
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Keys of the bibliography for what is given."""
+        return ()
+
+    @property
+    def load_sharing(self) -> str:
+        """Load sharing where none is given."""
+        return "equal"
+
+
+class Deviation(Table):
+    """A wave of a deviation along the normal of the flanks, so many times around the member."""
+
+    order: Annotated[float, WAVES]
+    amplitude: Annotated[float, DEVIATION]
+    phase: Annotated[float, PHASE] = 0.0
+
+
+WavesAround = Annotated[tuple[Deviation, ...], Field(max_length=200)]
+
+
+def check_waves(waves: tuple[Deviation, ...], key: str, teeth: float, module: float) -> None:
+    """InputError for waves that the teeth are too few to tell, or as high as the teeth."""
+    member = key.replace("_", " ") if key.startswith("gear") else f"the {key.replace('_', ' ')}"
+    for position, wave in enumerate(waves):
+        if wave.order > teeth / 2.0:
+            raise InputError(
+                f"{wave.order:.0f} waves around {member} look like fewer of them at its {teeth:.0f} "
+                f"teeth; allowed are 1 to {teeth // 2.0:.0f}",
+                key=f"deviations.{key}.{position}.order",
+            )
+    most = sum(wave.amplitude for wave in waves)
+    if most > module / 2.0:
+        raise InputError(
+            f"the deviations of {member} add up to {DEVIATION.show(most)}; allowed is half a "
+            f"module, {DEVIATION.show(module / 2.0)}",
+            key=f"deviations.{key}",
+        )
