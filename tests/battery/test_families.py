@@ -17,7 +17,8 @@ from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
-from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave

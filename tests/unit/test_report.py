@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 from records import entries
 
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.catalogue import summary_table
 from pitchpoint.runs.run import Outcome, open_result, run

@@ -1,0 +1,119 @@
+"""Many designs built in one call: meshes in groups that share their programs, and what became of each."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from pitchpoint._jax import array, jax
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.status import Code, Status
+
+__all__ = ["Designs", "Group", "alike", "each", "padded", "rows"]
+
+M = TypeVar("M", bound=Mesh)
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class Group(Generic[M]):
+    """Designs of one static structure.
+
+    Attributes:
+        mesh: with an axis of designs before all others, as `jax.vmap` takes and gives it.
+        numbers: which designs these are.
+    """
+
+    mesh: M
+    numbers: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Designs(Generic[M]):
+    """Designs that were built together.
+
+    A bad one harms no other: its status says so, its numbers mean nothing, `check` says why.
+
+    Attributes:
+        groups: together they hold every design once; often there is one.
+        status: of each design, shape (design,).
+        checks: warnings about one design; InputError where it cannot run.
+    """
+
+    groups: tuple[Group[M], ...]
+    status: Status
+    checks: Callable[[M], Sequence[str]]
+
+    def __len__(self) -> int:
+        """Number of designs."""
+        return sum(group.numbers.size for group in self.groups)
+
+    def __getitem__(self, number: int) -> M:
+        """One design for itself.
+
+        Raises:
+            IndexError: there is none of this number.
+        """
+        for group in self.groups:
+            for place in np.flatnonzero(group.numbers == number % max(len(self), 1)):
+                found: M = jax.tree.map(array, rows(group.mesh, int(place)))
+                return found
+        raise IndexError(f"there are {len(self)} designs, and number {number} is none of them")
+
+    def __iter__(self) -> Iterator[M]:
+        """Each design for itself, in order."""
+        return (self[number] for number in range(len(self)))
+
+    @property
+    def good(self) -> np.ndarray:
+        """True for each design that can run, shape (design,)."""
+        return np.equal(self.status.code, int(Code.SOLVED))
+
+    def check(self, number: int) -> Sequence[str]:
+        """Sentences on what is unusual about one design that can run.
+
+        Raises:
+            InputError: it cannot run; with the sentence and the name of the argument to change.
+        """
+        return self.checks(self[number])
+
+    def sentence(self, number: int) -> str:
+        """Why one design cannot run; empty if it can."""
+        try:
+            self.check(number)
+        except InputError as error:
+            return str(error)
+        return ""
+
+
+def rows(tree: T, where: Any) -> T:
+    """Some designs of a batch, as arrays of NumPy."""
+    found: T = jax.tree.map(lambda leaf: np.asarray(leaf)[where], tree)
+    return found
+
+
+def padded(tree: T, count: int) -> T:
+    """A batch of so many designs with its last one repeated up to a power of two: few programs serve all."""
+    size = 1 << (count - 1).bit_length()
+    return rows(tree, np.minimum(np.arange(size), count - 1))
+
+
+def each(compute: Callable[..., T], tree: Any, axes: int) -> T:
+    """What a function of one design gives for all along so many leading axes."""
+    for _ in range(axes):
+        compute = jax.vmap(compute)
+    return compute(tree)
+
+
+def alike(flags: np.ndarray) -> Iterator[tuple[tuple[bool, ...], np.ndarray]]:
+    """Rows of flags that occur, and the numbers of the designs that have them.
+
+    Args:
+        flags: shape (design, flag).
+    """
+    codes = flags @ (1 << np.arange(flags.shape[1]))
+    for code in np.unique(codes):
+        which = np.flatnonzero(codes == code)
+        yield tuple(map(bool, flags[which[0]])), which
