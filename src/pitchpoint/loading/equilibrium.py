@@ -30,7 +30,7 @@ UNSOLVED = 1e-10
 FAR = 1e6
 """Approach, over elastic deflection and clearance, at which a body that nothing holds is looked at."""
 
-LIGHTEST = 1e-9
+LIGHTEST = 1e-8
 """Least elastic deflection over the largest clearance: what lighter loads do is its limit."""
 
 
