@@ -609,15 +609,12 @@ def nearest_points(
     stations = flank.stations(*TRIES)
     last = stations.shape[0] - 1
     station = jax.lax.stop_gradient(stations)
-    local = frozen.flank.place(station).reshape(-1, *(1 for _ in where.shape))
-    stand, lean = frozen.foot(where)
-    place = stand + jnp.exp(1j * lean) * local
-    width, _ = space.width_and_slope(jnp.real(place))
-    height = jnp.real(place)
+    height, across = frozen.passed(station, where)
+    width, _ = space.width_and_slope(height)
     # Near the long axis root and tip of a tooth touch at once: the root, which is stiffer, then counts.
     bias = (_PREFERENCE * station).reshape(-1, *(1 for _ in where.shape))
-    apart = jnp.where(height < space.low, jnp.inf, width - jnp.imag(place) + bias)
-    nearest = jnp.argmin(apart, axis=0)
+    play = jnp.where(height < space.low, jnp.inf, width - across + bias)
+    nearest = jnp.argmin(play, axis=0)
     # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
     turned = jnp.exp(1j * axis)
@@ -635,15 +632,19 @@ def nearest_points(
         direction = axis - flank.angle(first + beyond)
         return slope * jnp.cos(direction) - jnp.sin(direction)
 
-    # At an end of the flank the play may still fall: then the end is nearest.
-    ends = jnp.where(nearest == 0, 0.0, most)
+    # At an end of the flank the play may still fall: then the end is nearest. Where the tip of the mate is
+    # nearest it grows from there on, and teeth apart have no nearest point: none waits for those.
+    grows = growth(jnp.zeros_like(most)) > 0.0
+    apart = ~_overlaps(motion, groove, angle)
+    ends = jnp.where((nearest == 0) | grows, 0.0, most)
     inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
-    bounded = ((nearest == 0) | (nearest == last)) & (inwards < 0.0)
+    bounded = (((nearest == 0) | (nearest == last)) & (inwards < 0.0)) | grows | apart
 
     def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
         return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
 
-    beyond, _ = root(widening, most / 2.0, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
+    guess = jnp.where(bounded, ends, most / 2.0)
+    beyond, _ = root(widening, guess, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
     found = first + jnp.clip(beyond, 0.0, most)
     at = motion.at(found, angle)
     width, _ = groove.width_and_slope(jnp.real(at.place))

@@ -31,6 +31,8 @@ _KINK = 3e-3  # rad between neighbours that no smooth flank turns
 _STRIDE = 0.02  # rad: the longest step of an iteration
 _END = 1e-3  # of the length of the flank: nearer to its end a place counts as the end
 
+_FROM_TOP = np.linspace(1.0, 0.0, NODES) ** 2
+
 Each = Float[Array, "*b"]
 
 
@@ -127,7 +129,7 @@ class Groove(eqx.Module):
 
 
 def _heights(low: Float[Array, ""], high: Float[Array, ""]) -> Float[Array, " node"]:
-    return high - (high - low) * jnp.linspace(1.0, 0.0, NODES) ** 2
+    return high - (high - low) * _FROM_TOP
 
 
 def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -> Groove:
@@ -215,20 +217,55 @@ def _outermost(motion: ToothMotion, heights: Array) -> tuple[Array, Array]:
     frozen, targets = jax.lax.stop_gradient((motion, heights))
     stations = frozen.flank.stations(*_STATIONS)
     phases = jnp.asarray(_PHASES)
-    places = frozen.place(stations[None, :], phases[:, None])
-
-    def reach(at: Array) -> tuple[Array, Array]:
-        height, far = jnp.real(at), jnp.imag(at)
-        found = jnp.interp(targets, height, far, left=-jnp.inf, right=-jnp.inf)
-        return found, jnp.interp(targets, height, stations)
-
-    far, along = jax.vmap(reach)(places)
+    known, across = (part.T for part in frozen.passed(stations, phases))
+    after = _stations_below(known, targets)
+    far = _interpolated(targets, known, across, after)
+    far = jnp.where((targets < known[:, :1]) | (targets > known[:, -1:]), -jnp.inf, far)
     beside = jnp.pad(far, ((1, 1), (0, 0)), constant_values=-jnp.inf)
     peaks = jnp.where((far >= beside[2:]) & (far >= beside[:-2]), far, -jnp.inf)
     first = jnp.argmax(peaks, axis=0)
     others = jnp.where(jnp.abs(phases[:, None] - phases[first]) < _APART, -jnp.inf, peaks)
     best = jnp.stack([first, jnp.argmax(others, axis=0)])
-    return jnp.take_along_axis(along, best, 0), phases[best]
+    at = jnp.take_along_axis(after, best, 0)
+    low, high = known[best, at - 1], known[best, at]
+    part = jnp.clip((targets - low) / (high - low), 0.0, 1.0)
+    return stations[at - 1] + part * (stations[at] - stations[at - 1]), phases[best]
+
+
+def _stations_below(
+    known: Float[Array, "phase station"], targets: Float[Array, " node"]
+) -> Int[Array, "phase node"]:
+    """Number of stations that do not lie above each target, from one to all but one.
+
+    Both ascend. The targets are nodes of a groove, so the first one at or above a station follows from
+    its height up to rounding; a search for each target would take as long as all else.
+    """
+    count, low, high = targets.shape[0], targets[0], targets[-1]
+    from_top = jnp.clip((high - known) / (high - low), 0.0, 1.0)
+    first = jnp.ceil((1.0 - jnp.sqrt(from_top)) * (count - 1)).astype(int)
+    first = jnp.where(targets[first] < known, first + 1, first)
+    lower = targets[jnp.maximum(first - 1, 0)]
+    first = jnp.where((first > 0) & (lower >= known), first - 1, first)
+    rows = jnp.arange(known.shape[0])[:, None]
+    passed = jnp.zeros((known.shape[0], count), int).at[rows, first].add(1, mode="drop")
+    return jnp.clip(jnp.cumsum(passed, axis=1), 1, known.shape[1] - 1)
+
+
+def _interpolated(
+    targets: Float[Array, " node"],
+    known: Float[Array, "phase station"],
+    values: Float[Array, "phase station"],
+    after: Int[Array, "phase node"],
+) -> Float[Array, "phase node"]:
+    """Values at targets between the stations before and after each."""
+
+    def take(of: Array, at: Array) -> Array:
+        return jnp.take_along_axis(of, at, 1)
+
+    low, first = take(known, after - 1), take(values, after - 1)
+    step = take(known, after) - low
+    rise = take(values, after) - first
+    return first + (targets - low) / jnp.where(step == 0.0, 1.0, step) * rise
 
 
 def _farther(smooth: Array, width: Array, *others: Array) -> tuple[Array, ...]:

@@ -112,6 +112,24 @@ class ToothMotion(eqx.Module):
         foot, axis = self.foot(angle)
         return foot + jnp.exp(1j * axis) * self.flank.place(along)
 
+    def passed(
+        self, stations: Float[Array, " station"], angle: Float[Array, "*b"]
+    ) -> tuple[Float[Array, "station *b"], Float[Array, "station *b"]]:
+        """Heights of all stations of a flank and their distances from the middle of the space [m].
+
+        As products of matrices: what is looked up by these heights works them out once, not for each look.
+
+        Args:
+            stations: arc lengths on the flank from its root [m].
+            angle: p [rad].
+        """
+        foot, axis = self.foot(angle)
+        local = self.flank.place(stations)
+        parts = jnp.stack([jnp.ones_like(stations), jnp.real(local), jnp.imag(local)], axis=1)
+        cosine, sine = jnp.cos(axis), jnp.sin(axis)
+        height = jnp.tensordot(parts, jnp.stack([jnp.real(foot), cosine, -sine]), 1)
+        return height, jnp.tensordot(parts, jnp.stack([jnp.imag(foot), sine, cosine]), 1)
+
     def at(self, along: Each, angle: Each) -> Passing:
         """Place and motion of a point of the flank.
 
