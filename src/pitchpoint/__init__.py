@@ -24,6 +24,7 @@ _LAZY: dict[str, str] = {
     "build_cylindrical_pairs": "pitchpoint.gears.cylindrical.design",
     "StrainWave": "pitchpoint.gears.strain_wave.drive",
     "build_strain_wave": "pitchpoint.gears.strain_wave.design",
+    "build_strain_waves": "pitchpoint.gears.strain_wave.design",
     "Design": "pitchpoint.efficiency.quasi_static",
     "Operation": "pitchpoint.efficiency.quasi_static",
     "Models": "pitchpoint.efficiency.quasi_static",

@@ -14,6 +14,13 @@ from pitchpoint.gears.cylindrical.design import (
     build_cylindrical_pairs,
     designed,
 )
+from pitchpoint.gears.strain_wave.design import (
+    DOUBLE_ARCS,
+    INTERFERENCE,
+    build_strain_wave,
+    build_strain_waves,
+)
+from pitchpoint.gears.strain_wave.design import designed as designed_wave
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
@@ -126,3 +133,80 @@ def test_derivatives_through_building_agree_with_differences(designs, number):
         differences = (beyond - before) / (2.0 * step)
         np.testing.assert_allclose(slopes[:, place], differences, rtol=1e-6, atol=1e-7)
     assert np.all(np.abs(slopes[0]) > 1e-3)
+
+
+WAVE = {"module": 0.5e-3, "face_width": 0.01, "form": DOUBLE_ARCS["flat"], "clearance": 0.35}
+DEFLECTIONS = [1.01, 1.0, 3.0, 1.01]
+SPLINES = [(100, 102), (101, 103), (100, 102), (100, 102)]
+SHAPES = ["cosine", "cosine", "cosine", "four_forces"]
+
+
+@pytest.fixture(scope="module")
+def waves():
+    return build_strain_waves(teeth=SPLINES, deflection=DEFLECTIONS, shape=SHAPES, **WAVE)
+
+
+@pytest.fixture(scope="module")
+def wave():
+    return build_strain_wave(teeth=SPLINES[0], deflection=DEFLECTIONS[0], **WAVE)
+
+
+def test_a_strain_wave_gear_of_a_batch_is_that_built_alone(waves, wave):
+    found = waves[0]
+    assert (found.odd, found.conjugate) == (wave.odd, wave.conjugate)
+    assert found.lanes >= wave.lanes
+    for ours, theirs in zip(jax.tree.leaves(found), jax.tree.leaves(wave), strict=True):
+        finite = np.asarray(theirs, dtype=float)[np.isfinite(theirs)]
+        scale = np.max(np.abs(finite), initial=0.0)
+        np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=1e-12 * scale)
+
+
+def test_a_bad_strain_wave_gear_says_why_and_harms_no_other(waves):
+    assert waves.good.tolist() == [True, True, False, True]
+    assert waves.sentence(2).startswith("deflection: the wave generator deflects the flexspline")
+    with pytest.raises(InputError, match="more than its teeth are deep"):
+        waves[2]
+    assert np.isinf(waves.status.residual[2])
+    assert np.all(waves.status.residual[waves.good] < INTERFERENCE)
+    numbers = [group.numbers.tolist() for group in waves.groups]
+    assert sorted(numbers) == [[0, 3], [1]]
+
+
+@program
+def _clearances(drive, deflection):
+    """Clearances beside the long axis and the least one, over the module, and their derivatives."""
+
+    def clearances(at):
+        line = dataclasses.replace(drive.line, deflection=at * drive.module)
+        found, _ = designed_wave(dataclasses.replace(drive, line=line))
+        return (
+            found.nearest(jnp.deg2rad(jnp.array([-25.0, -20.0, -14.0, -9.0]))).clearance
+            / found.module
+        )
+
+    return jax.jvp(clearances, (deflection,), (jnp.ones(()),))
+
+
+def test_derivatives_of_clearances_by_the_deflection_agree_with_differences(wave):
+    at, step = wave.line.deflection / wave.module, 1e-5
+    _, slopes = _clearances(wave, at)
+    beyond, _ = _clearances(wave, at + step)
+    before, _ = _clearances(wave, at - step)
+    assert np.min(np.abs(slopes)) > 1e-3
+    np.testing.assert_allclose(slopes, (beyond - before) / (2.0 * step), rtol=1e-5)
+
+
+def test_a_drive_that_overlaps_has_a_status_in_a_trace(wave):
+    larger = dataclasses.replace(wave, conjugate=False, groove=_lowered(wave.groove, 0.01e-3))
+    code = {name: int(_status(drive).code) for name, drive in (("good", wave), ("bad", larger))}
+    assert code == {"good": Code.SOLVED, "bad": Code.NO_DESIGN}
+
+
+def _lowered(groove, by):
+    """The groove with flanks that stand in the way."""
+    return dataclasses.replace(groove, half_width=groove.half_width - by)
+
+
+@program
+def _status(drive):
+    return designed_wave(drive)[1]

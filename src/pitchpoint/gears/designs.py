@@ -1,17 +1,32 @@
 """Many designs built in one call: meshes in groups that share their programs, and what became of each."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Generic, NoReturn, TypeVar
 
 import numpy as np
+from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.status import Code, Status
 
-__all__ = ["Designs", "Group", "alike", "each", "padded", "rows"]
+__all__ = [
+    "Designs",
+    "Faults",
+    "Group",
+    "Number",
+    "alike",
+    "check_counts",
+    "each",
+    "padded",
+    "rows",
+]
+
+Number = float | Float[Array, ""]
+Faults = Iterator[tuple[Any, Callable[[], NoReturn]]]
+"""Conditions, plain or traced, and what tells a plain one in gear words."""
 
 M = TypeVar("M", bound=Mesh)
 T = TypeVar("T")
@@ -37,27 +52,32 @@ class Designs(Generic[M]):
     A bad one harms no other: its status says so, its numbers mean nothing, `check` says why.
 
     Attributes:
-        groups: together they hold every design once; often there is one.
+        groups: together they hold once each design that could be built; often there is one.
         status: of each design, shape (design,).
         checks: warnings about one design; InputError where it cannot run.
+        refused: why the others could not be built, by their numbers.
     """
 
     groups: tuple[Group[M], ...]
     status: Status
     checks: Callable[[M], Sequence[str]]
+    refused: Mapping[int, InputError] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Number of designs."""
-        return sum(group.numbers.size for group in self.groups)
+        return int(np.size(self.status.code))
 
     def __getitem__(self, number: int) -> M:
         """One design for itself.
 
         Raises:
+            InputError: it could not be built.
             IndexError: there is none of this number.
         """
+        if number in self.refused:
+            raise self.refused[number]
         for group in self.groups:
-            for place in np.flatnonzero(group.numbers == number % max(len(self), 1)):
+            for place in np.flatnonzero(group.numbers == number):
                 found: M = jax.tree.map(array, rows(group.mesh, int(place)))
                 return found
         raise IndexError(f"there are {len(self)} designs, and number {number} is none of them")
@@ -117,3 +137,14 @@ def alike(flags: np.ndarray) -> Iterator[tuple[tuple[bool, ...], np.ndarray]]:
     for code in np.unique(codes):
         which = np.flatnonzero(codes == code)
         yield tuple(map(bool, flags[which[0]])), which
+
+
+def check_counts(counts: Mapping[str, int]) -> None:
+    """InputError if dimensions were given for different numbers of designs.
+
+    Args:
+        counts: of values, by the names of the dimensions that were given one by one.
+    """
+    if len(set(counts.values())) > 1:
+        told = ", ".join(f"{count} of {key}" for key, count in sorted(counts.items()))
+        raise InputError(f"each design needs its own value of a list; given are {told}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -11,6 +11,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.gears.designs import Faults, Number
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
 from pitchpoint.programs import program
 from pitchpoint.roots import root
@@ -19,10 +20,6 @@ if TYPE_CHECKING:
     from pitchpoint.gears.cylindrical.pair import CylindricalPair
 
 __all__ = ["cannot_run", "check_cylindrical"]
-
-Number = float | Float[Array, ""]
-Faults = Iterator[tuple[Any, Callable[[], NoReturn]]]
-"""Conditions, plain or traced, and what tells a plain one in gear words."""
 
 _THIN_TIP = 0.2  # modules
 _SMALL_CLEARANCE = 0.1  # modules

@@ -13,7 +13,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.checks import cannot_run, check_cylindrical
 from pitchpoint.gears.cylindrical.pair import SLICES, CylindricalPair
-from pitchpoint.gears.designs import Designs, Group, alike, each, padded, rows
+from pitchpoint.gears.designs import Designs, Group, alike, check_counts, each, padded, rows
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
@@ -189,11 +189,7 @@ def _table(given: Values) -> Values:
     own = {key: (2,) if key in _OF_BOTH else () for key in table}
     of_designs = {key for key, value in table.items() if np.ndim(value) > len(own[key])}
     counts = {key: np.shape(table[key])[0] for key in of_designs}
-    if len(set(counts.values())) > 1:
-        told = ", ".join(f"{count} of {key}" for key, count in sorted(counts.items()))
-        raise InputError(
-            f"as many values of each dimension as there are designs are needed; given are {told}"
-        )
+    check_counts(counts)
     count = max(counts.values(), default=1)
     return {
         key: None if value is None else np.broadcast_to(value, (count, *own[key]))

@@ -17,7 +17,7 @@ from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
-from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
+from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.groove import Groove, swept
 from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance
 from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
@@ -319,12 +319,12 @@ class StrainWave(Mesh):
         roll = (at.turning - found.mate * at.sliding) / sum_curvature
         roll = jnp.where(found.held, 0.0, roll)
         velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])
-        local = jnp.exp(-1j * at.direction) * velocity
+        local = unit(-at.direction) * velocity
         first = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
         # The space that a tooth meets lies at its angle around the circular spline.
         zone = _as_lanes(self._place[0], jnp.asarray(phase))
-        turned = jnp.exp(1j * (given * self.teeth[0] / self.teeth[1] + jnp.pi * zone))
+        turned = unit(given * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
         return Contacts(
             active=active,
             path=given / (2.0 * jnp.pi),
@@ -336,8 +336,8 @@ class StrainWave(Mesh):
             gap=jnp.maximum(found.clearance, 0.0) + play,
             flank=jnp.stack([found.along, self.groove.depth(jnp.real(at.place))]),
             point=_vector(turned * at.place),
-            direction=_vector(1j * turned * jnp.exp(1j * at.direction)),
-            tangent=_vector(turned * jnp.exp(1j * at.direction)),
+            direction=_vector(1j * turned * unit(at.direction)),
+            tangent=_vector(turned * unit(at.direction)),
             shape="line",
         )
 
@@ -453,7 +453,7 @@ class StrainWave(Mesh):
         tooth = self._outline
         angle = jnp.deg2rad(jnp.linspace(-90.0, 90.0, 37))
         foot, axis = self.tooth_motion.foot(angle)
-        placed = foot[:, None] + jnp.exp(1j * axis[:, None]) * tooth
+        placed = foot[:, None] + unit(axis[:, None]) * tooth
         width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.heights
         space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
         return {
@@ -536,7 +536,7 @@ def survey(
     angle = jnp.asarray(_ALONG)
     found = nearest_points(motion, groove, angle, backlash)
     overlaps = _overlaps(motion, groove, angle)
-    upright = jnp.abs(jnp.imag(jnp.exp(-1j * found.at.direction) * found.at.whole))
+    upright = jnp.abs(jnp.imag(unit(-found.at.direction) * found.at.whole))
     part = upright / jnp.abs(found.at.whole)
     reaches = overlaps & (part > 0.0)
     play = jnp.min(jnp.where(reaches, found.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
@@ -617,7 +617,7 @@ def nearest_points(
     nearest = jnp.argmin(play, axis=0)
     # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
-    turned = jnp.exp(1j * axis)
+    turned = unit(axis)
     before, after = (stations[k] for k in (jnp.maximum(nearest - 1, 0), nearest))
     # What lies below the tip of the mate meets nothing.
     below, above = (jnp.real(foot + turned * flank.place(along)) for along in (before, after))

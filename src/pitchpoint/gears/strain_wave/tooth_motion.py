@@ -5,7 +5,7 @@ from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
+from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 
 __all__ = ["Passing", "ToothMotion"]
@@ -40,7 +40,7 @@ class Passing(eqx.Module):
     @property
     def _velocity(self) -> Place:
         """Velocity along the tangent (real part) and the normal (imaginary part)."""
-        return jnp.exp(-1j * self.direction) * self.velocity
+        return unit(-self.direction) * self.velocity
 
     @property
     def closing(self) -> Each:
@@ -55,10 +55,7 @@ class Passing(eqx.Module):
     @property
     def change(self) -> Each:
         """Derivative of `closing` with respect to the phase."""
-        return (
-            jnp.imag(jnp.exp(-1j * self.direction) * self.acceleration)
-            - self.turning * self.sliding
-        )
+        return jnp.imag(unit(-self.direction) * self.acceleration) - self.turning * self.sliding
 
     @property
     def approach(self) -> Each:
@@ -105,12 +102,12 @@ class ToothMotion(eqx.Module):
         line = self.line
         polar = self.lag * angle + line.tangential(angle) / line.radius
         reach = line.radius + line.radial(angle)
-        return reach * jnp.exp(1j * polar), polar + line.rotation(angle)
+        return reach * unit(polar), polar + line.rotation(angle)
 
     def place(self, along: Each, angle: Each) -> Place:
         """Where a point of the flank is [m]."""
         foot, axis = self.foot(angle)
-        return foot + jnp.exp(1j * axis) * self.flank.place(along)
+        return foot + unit(axis) * self.flank.place(along)
 
     def passed(
         self, stations: Float[Array, " station"], angle: Float[Array, "*b"]
@@ -144,7 +141,7 @@ class ToothMotion(eqx.Module):
         rise, rise_2 = line.radial(angle, 1), line.radial(angle, 2)
         foot, axis = self.foot(angle)
         outwards = foot / reach
-        arm = jnp.exp(1j * axis) * flank.place(along)
+        arm = unit(axis) * flank.place(along)
         polar, turning = self.lag + turn, self.lag + turn + tilt
         place = foot + arm
         bend = rise_2 + 2j * rise * polar + 1j * reach * turn_2 - reach * polar**2
