@@ -5,7 +5,7 @@ import json
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from glob import escape as glob_escape
 from glob import glob
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from pitchpoint.cases.comparison import Row
     from pitchpoint.cases.schema import Study
     from pitchpoint.runs.run import Outcome, Progress
+    from pitchpoint.views.section import Printed
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -394,32 +395,24 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 
 def _summary(name: str, outcome: "Outcome") -> None:
-    from pitchpoint.analyses.figures import of_contact
-    from pitchpoint.runs.catalogue import (
-        bearing_table,
-        kinematic_error_table,
-        summary_table,
-        sweep_tables,
-        vibration_table,
-        wind_up_table,
-    )
+    from pitchpoint.views.registry import in_order
 
     manifest = outcome.manifest
     _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
-    averages = f" Averages over: {manifest['averaging']}."
-    single = of_contact(outcome.parts["operation"])
-    _console().print(_plain(f"Oil: {manifest['oil']}.{'' if single else averages}"))
-    rows, columns, note = summary_table(outcome)
-    _table(rows, columns)
-    _console().print(_plain(note))
-    for table in (bearing_table, vibration_table, wind_up_table, kinematic_error_table):
-        rows, columns = table(outcome)
-        if rows:
-            _table(rows, columns)
-    for title, points in sweep_tables(outcome):
-        _console().print(f"[bold]{_plain(title)}[/]")
-        _table(points, tuple(points[0]))
+    for section in in_order():
+        for printed in section.screen(outcome):
+            _print(printed)
     _warn(manifest["warnings"])
+
+
+def _print(printed: "Printed") -> None:
+    """A title, a table and a line, whichever there are."""
+    if printed.title:
+        _console().print(f"[bold]{_plain(printed.title)}[/]")
+    if printed.rows:
+        _table(printed.rows, tuple(printed.rows[0]))
+    if printed.line:
+        _console().print(_plain(printed.line))
 
 
 def _rows(rows: "list[Row]") -> None:
@@ -460,7 +453,7 @@ def _show(rows: list[dict[str, str]], as_json: bool, columns: tuple[str, ...]) -
         _table(rows, columns)
 
 
-def _table(rows: list[dict[str, str]], columns: tuple[str, ...]) -> None:
+def _table(rows: Sequence[Mapping[str, str]], columns: tuple[str, ...]) -> None:
     from rich.table import Table
 
     used = [name for name in columns if any(row.get(name) for row in rows)]

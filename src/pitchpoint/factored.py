@@ -37,6 +37,7 @@ class Factored(eqx.Module):
         for one in self.factors:
             shape = jnp.shape(one)
             found[shape] = one * found[shape] if shape in found else one
+        # Small factors first: so most multiplications are done before the product has its full shape.
         return sorted(found.values(), key=jnp.size)
 
     @property
@@ -138,6 +139,7 @@ def log(value: Factored | ArrayLike, least: float) -> Float[Array, "..."]:
 
 
 def _log(value: Numbers) -> Array:
+    # Compiled programs flush what is smaller to zero, and its logarithm would be minus infinity.
     tiny = float(np.finfo(jnp.result_type(value, jnp.float32)).tiny)
     return jnp.log(jnp.where(value > tiny, value, tiny))
 

@@ -56,6 +56,7 @@ def root(
     found, steps = _iterate(function, jnp.minimum(jax.lax.stop_gradient(guess), most), most)
     found = jax.lax.stop_gradient(found)
     value, slope = _tangent(function, found)
+    # The derivative of the slope would be multiplied by a residual that is zero; a constant saves it.
     step = quotient(value, jax.lax.stop_gradient(slope))
     return found - jnp.where(jnp.abs(value) < NEAR, step, 0.0), steps
 
@@ -65,6 +66,7 @@ def _iterate(
 ) -> tuple[Each, Int[Array, ""]]:
     def unfinished(carry: Carry) -> Array:
         _, low, high, residual, steps = carry
+        # A bracket down to rounding holds no better root, however large the residual that rounding leaves.
         open_ = (jnp.abs(residual) > TOLERANCE) & (high - low > 1e-15 * high)
         return (steps < MOST) & jnp.any(open_)
 
@@ -72,9 +74,11 @@ def _iterate(
         at, low, high, _, steps = carry
         value, slope = _tangent(function, at)
         low, high = jnp.where(value < 0.0, at, low), jnp.where(value < 0.0, high, at)
+        # Newton squares the error where laws are smooth; the bracket saves it where they are steep or bend.
         newton = at - quotient(value, slope)
         inside = (newton > low) & (newton < high)
         further = jnp.where(inside, newton, (low + high) / 2.0)
+        # A state that is found stays as it is, whatever others of the batch still need.
         done = jnp.abs(value) <= TOLERANCE
         return jnp.where(done, at, further), low, high, value, steps + 1
 
@@ -91,7 +95,7 @@ def _tangent(function: Callable[[Each], Each], at: Each) -> tuple[Each, Each]:
 
 
 def third_order_step(function: Callable[[Each], Each], at: Each) -> Each:
-    """One step towards the root of each state: Newton's with the curvature."""
+    """One step towards the root of each state: Newton's with the curvature (Halley's)."""
     (value, slope), (_, curve) = jax.jvp(
         lambda x: _tangent(function, x), (at,), (jnp.ones_like(at),)
     )

@@ -135,7 +135,7 @@ def test_drag_grows_with_the_load_as_the_bearing_model_says():
     speed = 1000.0 * 2.0 * np.pi / 60.0
     power = 1e-3 * 0.05 * (more[0] * 23 / 61 + more[1]) * speed
     assert np.diff(found["mean_drag_loss"][::-1])[0] == pytest.approx(power, rel=1e-10)
-    assert more[0] == pytest.approx(199.0 / float(case.pair.base_radii[1]), rel=0.01)
+    assert more[0] == pytest.approx(199.0 / float(case.design.mesh.base_radii[1]), rel=0.01)
     assert np.all(found["axial_reaction_1"] == 0.0)
 
 

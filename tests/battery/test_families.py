@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import equinox as eqx
 import numpy as np
 import pytest
+from flank_curves import Ball, Curves, Discs, Involutes, RackFlanks
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
@@ -18,11 +19,11 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
-from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -33,6 +34,11 @@ STEEL = solids.find("steel").build()
 LAW = {law.name: law for law in LAWS}
 LOCAL = ("constant", "xu_2007")
 WHOLE_MESH = (*LOCAL, "iso_tr_14179_2")
+SHARING = ("zhao_2022_cosine", "sanchez_2017", "equal")
+"""Prescribed shares, the narrower laws first."""
+
+FORCE = 600.0
+"""Normal force of all contacts together where nothing else is said [N]."""
 
 
 def spur(teeth, module=3e-3, **options):
@@ -54,49 +60,83 @@ def strain_wave(teeth=(200, 202), form=DOUBLE_ARCS["flat"], **options):
 RING = {"fillet_radius": (0.38, 0.2), "profile_shift": (0.3, 0.2)}
 
 
-FAMILIES: Mapping[str, Callable[[], Mesh]] = {
-    "twin disc": lambda: TwinDisc(*map(jnp.asarray, ([0.02, 0.035], 0.008, 0.8))),
-    "twin disc, faster follower": lambda: TwinDisc(*map(jnp.asarray, ([0.03, 0.02], 0.01, 1.3))),
-    "ball on disc": lambda: BallOnDisc(*map(jnp.asarray, ([0.0095, 0.0095], 0.04, 0.35))),
-    "barrel on disc, faster barrel": lambda: BallOnDisc(
-        *map(jnp.asarray, ([0.01, 0.03], 0.035, -0.2))
-    ),
-    "18/36": lambda: spur((18, 36)),
-    "18/36, right flank": lambda: spur((18, 36), right_flank=True),
-    "18/36, wheel drives": lambda: spur((18, 36), driver=2),
-    "18/36, wheel drives, right flank": lambda: spur((18, 36), driver=2, right_flank=True),
-    "36/18, speed-increasing": lambda: spur((36, 18)),
-    "23/61, shifted": lambda: spur((23, 61), 2e-3, profile_shift=(0.4, -0.2)),
-    "23/61, high teeth": lambda: spur(
-        (23, 61), 2e-3, profile_shift=(0.4, -0.2), addendum=(1.4, 1.4)
-    ),
-    "17/17": lambda: spur((17, 17)),
-    "12/120": lambda: spur((12, 120), 1e-3, profile_shift=(0.5, 0.0)),
-    "20/60, pitch point in double contact": lambda: spur((20, 60), profile_shift=(0.8, -0.8)),
-    "helical 20/30": lambda: helical((20, 30), 15.0),
+def rack(teeth=20, driver="pinion", **values):
+    table = {"family": "rack_and_pinion", "teeth": teeth, "module": "3 mm", "face_width": "25 mm"}
+    gears = RackAndPinionGears.model_validate(table | values)
+    return built_gears(gears, "pinion", 6)[0].driven_by(driver)
+
+
+@dataclasses.dataclass(frozen=True)
+class Family:
+    """How its mesh is made, and its flanks as curves; None where another file has them as positions."""
+
+    mesh: Callable[[], Mesh]
+    curves: Callable[[Mesh], Curves] | None
+
+
+def discs(*values):
+    return Family(lambda: TwinDisc(*map(jnp.asarray, values)), Discs)
+
+
+def ball(*values):
+    return Family(lambda: BallOnDisc(*map(jnp.asarray, values)), Ball)
+
+
+def pair(made, *args, **options):
+    return Family(lambda: made(*args, **options), Involutes)
+
+
+def travel(*args, **options):
+    return Family(lambda: rack(*args, **options), RackFlanks)
+
+
+def wave(*args, **options):
+    return Family(lambda: strain_wave(*args, **options), None)
+
+
+FAMILIES: Mapping[str, Family] = {
+    "twin disc": discs([0.02, 0.035], 0.008, 0.8),
+    "twin disc, faster follower": discs([0.03, 0.02], 0.01, 1.3),
+    "ball on disc": ball([0.0095, 0.0095], 0.04, 0.35),
+    "barrel on disc, faster barrel": ball([0.01, 0.03], 0.035, -0.2),
+    "18/36": pair(spur, (18, 36)),
+    "18/36, right flank": pair(spur, (18, 36), right_flank=True),
+    "18/36, wheel drives": pair(spur, (18, 36), driver=2),
+    "18/36, wheel drives, right flank": pair(spur, (18, 36), driver=2, right_flank=True),
+    "36/18, speed-increasing": pair(spur, (36, 18)),
+    "23/61, shifted": pair(spur, (23, 61), 2e-3, profile_shift=(0.4, -0.2)),
+    "23/61, high teeth": pair(spur, (23, 61), 2e-3, profile_shift=(0.4, -0.2), addendum=(1.4, 1.4)),
+    "17/17": pair(spur, (17, 17)),
+    "12/120": pair(spur, (12, 120), 1e-3, profile_shift=(0.5, 0.0)),
+    "20/60, pitch point in double contact": pair(spur, (20, 60), profile_shift=(0.8, -0.8)),
+    "helical 20/30": pair(helical, (20, 30), 15.0),
     # Its tips count as given, so that it is alike for the compiler.
-    "helical 4/51, eps_alpha below one": lambda: dataclasses.replace(
-        helical((4, 51), 20.0, 1.5e-3, profile_shift=(0.74, 0.05), least_tip=0.25),
-        shortened=(False, False),
+    "helical 4/51, eps_alpha below one": Family(
+        lambda: dataclasses.replace(
+            helical((4, 51), 20.0, 1.5e-3, profile_shift=(0.74, 0.05), least_tip=0.25),
+            shortened=(False, False),
+        ),
+        Involutes,
     ),
-    "helical 20/30, narrow, wheel drives, right flank": lambda: helical(
-        (20, 30), 8.0, driver=2, right_flank=True
+    "helical 20/30, narrow, wheel drives, right flank": pair(
+        helical, (20, 30), 8.0, driver=2, right_flank=True
     ),
-    "ring 20/-60": lambda: spur((20, -60), **RING),
-    "ring 20/-60, wheel drives": lambda: spur((20, -60), driver=2, **RING),
-    "helical ring 18/-71, right flank": lambda: helical(
-        (18, -71), 25.0, 1e-3, right_flank=True, **RING
+    "ring 20/-60": pair(spur, (20, -60), **RING),
+    "ring 20/-60, wheel drives": pair(spur, (20, -60), driver=2, **RING),
+    "helical ring 18/-71, right flank": pair(
+        helical, (18, -71), 25.0, 1e-3, right_flank=True, **RING
     ),
+    "rack": travel(),
+    "rack drives, right flank, backlash": travel(
+        18, "rack", profile_shift=0.1, flank="right", mounting_distance="27.5 mm"
+    ),
+    "helical rack": travel(helix_angle="19.5 deg"),
     # Alike for the compiler; involute teeth and odd numbers are in test_strain_wave.py.
-    "strain wave 200/202": strain_wave,
-    "strain wave 200/202, flexspline fixed": lambda: strain_wave(
-        form=DOUBLE_ARCS["liu"], fixed="flexspline"
-    ),
-    "strain wave 200/202, wave generator fixed": lambda: strain_wave(
-        fixed="wave generator", driver="flexspline"
-    ),
-    "strain wave 200/202, back-driving": lambda: strain_wave(driver="flexspline"),
-    "strain wave 200/204": lambda: strain_wave((200, 204)),
+    "strain wave 200/202": wave(),
+    "strain wave 200/202, flexspline fixed": wave(form=DOUBLE_ARCS["liu"], fixed="flexspline"),
+    "strain wave 200/202, wave generator fixed": wave(fixed="wave generator", driver="flexspline"),
+    "strain wave 200/202, back-driving": wave(driver="flexspline"),
+    "strain wave 200/204": wave((200, 204)),
 }
 
 
@@ -182,7 +222,7 @@ def gradient_of_state(design, operation, phase, models):
 
 
 def models_for(mesh, law="constant", rolling="none"):
-    names = LOCAL if mesh.reference is None else WHOLE_MESH
+    names = WHOLE_MESH if mesh.pitch_point else LOCAL
     return Models(
         friction=tuple(LAW[name] for name in names),
         choice=jnp.asarray(names.index(law)),
@@ -193,10 +233,7 @@ def models_for(mesh, law="constant", rolling="none"):
 
 
 def sharing_for(mesh):
-    if isinstance(mesh, StrainWave):
-        return "zhao_2022_cosine"
-    spur_pair = isinstance(mesh, CylindricalPair) and mesh.lanes == 2 and not mesh.helical
-    return "sanchez_2017" if spur_pair else "equal"
+    return next(name for name in SHARING if LOAD_SHARING[name].applies(mesh))
 
 
 def xu_alone(mesh):
@@ -210,9 +247,10 @@ def operation_for(mesh, load=None):
 
 
 def usual_load(mesh):
-    if isinstance(mesh, StrainWave):
-        return 0.2 if mesh.loaded[0] else 20.0  # a wave generator carries a hundredth
-    return 100.0 if isinstance(mesh, CylindricalPair) else 400.0
+    """Load whose normal forces are alike in all families."""
+    at = jax.device_get(contacts_of(mesh, jnp.asarray(INSIDE)))
+    arm = np.abs(np.tensordot(np.asarray(mesh.loaded), at.normal, axes=1))
+    return FORCE * float(arm[at.active].max())
 
 
 def design_for(mesh):
@@ -234,7 +272,8 @@ def family(request):
 
     On an event itself rounding decides which side it is: there only finite values are asked for.
     """
-    mesh = FAMILIES[request.param]()
+    made = FAMILIES[request.param]
+    mesh = made.mesh()
     told = SimpleNamespace(**{k: np.asarray(v) for k, v in properties(mesh).items()})
     events = np.resize(told.events, 3)
     phase = np.concatenate(
@@ -242,8 +281,14 @@ def family(request):
     )
     everywhere = jnp.asarray(np.concatenate([phase, events]))
     found = jax.tree.map(np.asarray, contacts_of(mesh, jnp.asarray(phase)))
-    seen = {"mesh": mesh, "told": told, "phase": phase, "everywhere": everywhere, "at": found}
-    return SimpleNamespace(**seen, differentiated=cache(partial(differentiated, mesh, everywhere)))
+    return SimpleNamespace(
+        mesh=mesh,
+        curves=made.curves,
+        told=told,
+        phase=phase,
+        at=found,
+        differentiated=cache(partial(differentiated, mesh, everywhere)),
+    )
 
 
 def differentiated(mesh, everywhere, law="xu_2007", load=None):
@@ -312,8 +357,7 @@ def test_arms_follow_from_places_and_directions_in_one_frame(family):
         size = np.linalg.norm(velocity[k], axis=0).max()
         if all(one.rigid for one in bodies):
             np.testing.assert_allclose(at.normal[k], closing, atol=1e-13 * size)
-        moves = body.turns  # a load that presses bodies together slides on none
-        np.testing.assert_allclose(at.slip_arm[k], slip if moves else 0.0, atol=1e-12 * size)
+        np.testing.assert_allclose(at.slip_arm[k], slip, atol=1e-12 * size)
 
 
 def dot(rates, arms):
@@ -322,7 +366,7 @@ def dot(rates, arms):
 
 
 def laws(family):
-    return LOCAL if family.mesh.reference is None else WHOLE_MESH
+    return WHOLE_MESH if family.mesh.pitch_point else LOCAL
 
 
 def check_energy(found):
@@ -369,7 +413,7 @@ LOSSES = {
 @pytest.fixture(scope="module", params=["18/36", "strain wave 200/202"])
 def braked(request):
     """A drive with a loss between its driver and the housing, at several speeds and temperatures."""
-    mesh = FAMILIES[request.param]()
+    mesh = FAMILIES[request.param].mesh()
 
     def design(kind):
         drag = Drag(mesh.driver * jnp.sign(mesh.driver @ mesh.motion), **LOSSES[kind])
@@ -402,75 +446,6 @@ def test_every_kind_of_loss_alone_has_a_starting_torque(braked, kind):
     assert found.shape == (2, 3)
 
 
-# Flanks as curves in the fixed frame, in complex numbers, built from gear data alone.
-
-
-def transverse(mesh):
-    """Transverse module and pressure angle, cosine of the base helix angle."""
-    helix, angle = float(mesh.helix_angle), float(mesh.pressure_angle)
-    across = np.arctan(np.tan(angle) / np.cos(helix))
-    on_base = np.arctan(np.tan(helix) * np.cos(across))
-    return float(mesh.module) / np.cos(helix), across, np.cos(on_base)
-
-
-def tip_reach(mesh, index):
-    """Length of the base tangent up to the tip circle; negative on a ring."""
-    z, m, x = float(mesh.teeth[index]), float(mesh.module), float(mesh.profile_shift[index])
-    module, angle, _ = transverse(mesh)
-    tip = module * z / 2 + m * (float(mesh.addendum[index]) + x + float(mesh.tip_alteration[index]))
-    return np.sign(z) * np.sqrt(tip**2 - (z * module * np.cos(angle) / 2.0) ** 2)
-
-
-class Flanks:
-    """Involutes of both gears in a transverse section, about the point where they should touch.
-
-    A ring has its centre on the other side, negative radii and a negative roll.
-    """
-
-    def __init__(self, mesh, path):
-        teeth = np.asarray(mesh.teeth)
-        module, angle, _ = transverse(mesh)
-        self.base = teeth * module * np.cos(angle) / 2.0
-        side = -1.0 if teeth[1] < 0 else 1.0
-        self.centres = np.array([0.0, side * float(mesh.centre_distance)])
-        self.angle = -np.arccos(self.base.sum() / self.centres[1])
-        tangent = -self.centres[1] * np.sin(self.angle)
-        start = tangent - tip_reach(mesh, 1)
-        self.length = start + path * 2.0 * np.pi * self.base[0] / teeth[0]
-        self.hand = -1.0 if bool(mesh.right_flank) else 1.0
-        # Both gears turn from phase 0 by their tooth numbers, not by where they should touch.
-        first = self.angle + start / self.base[0] + 2.0 * np.pi * path / teeth[0]
-        second = self.angle + (tangent - start) / self.base[1] - 2.0 * np.pi * path / teeth[1]
-        self.turned = (first, second)
-        # Steps stay far from the cusps, where the involutes start on their base circles.
-        rolls = np.abs([self.length, tangent - self.length])
-        self.size = np.min(rolls * np.minimum(1.0, rolls / np.abs(self.base)))
-
-    @property
-    def touch(self):
-        return np.exp(1j * self.angle) * (self.base[0] + 1j * self.length)
-
-    def _point(self, member, roll):
-        string = self.base[member] * np.exp(1j * (self.turned[member] - roll)) * (1 + 1j * roll)
-        return string if member == 0 else self.centres[1] - string
-
-    def height(self, member, across):
-        """Position along the line of action of the flank's point that lies `across` from it."""
-        roll = np.full_like(across, self.turned[member] - self.angle)
-        for _ in range(30):
-            local = (self._point(member, roll) - self.touch) / np.exp(1j * self.angle)
-            turn = np.exp(1j * (self.turned[member] - roll - self.angle)).real
-            slope = self.base[member] * roll * turn * (1.0 if member == 0 else -1.0)
-            roll = roll - (local.real - across) / slope
-        return ((self._point(member, roll) - self.touch) / np.exp(1j * self.angle)).imag
-
-    def velocity(self, member):
-        """Closing and sliding velocity at the touching point for a unit rotation of one gear."""
-        turned = 1j * (self.touch - self.centres[member])
-        local = turned / np.exp(1j * self.angle) * self.hand * (1.0 if member == 0 else -1.0)
-        return local.imag, -local.real
-
-
 STEPS = np.arange(-4, 5)
 # Central differences of order eight for the second derivative.
 SECOND = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
@@ -480,38 +455,11 @@ def second_derivative(heights, step):
     return SECOND @ heights / step**2
 
 
-def circle(radius, across):
-    """Depth of a circle below its tangent."""
-    return across**2 / (radius + np.sqrt(radius**2 - across**2))
-
-
-BY_POSITIONS = "checked by positions alone in test_strain_wave.py"
-
-
-def test_curvature_is_the_second_derivative_of_the_gap(family):
-    if isinstance(family.mesh, StrainWave):
-        pytest.skip(BY_POSITIONS)
-    if isinstance(family.mesh, CylindricalPair):
-        check_involute_curvature(family)
-        return
-    first, second = principal_radii(family.mesh)
-    step = 0.02 * min(*first, *second)
-    across = STEPS * step
-    for direction in (0, 1):
-        each = [circle(r[direction], across) for r in (first, second)]
-        expected = [second_derivative(depth, step) for depth in each]
-        for found, one in zip(family.at.curvature[:, direction], expected, strict=True):
-            np.testing.assert_allclose(found, np.full(found.shape, one), 1e-8, 1e-12)
-        gap = second_derivative(sum(each), step)
-        np.testing.assert_allclose(family.at.relative_curvature[direction], gap, 1e-8, 1e-12)
-
-
-def principal_radii(mesh):
-    """Radii of both bodies along and across the rolling direction; a very large one for a plane."""
-    flat = 1e30
-    if isinstance(mesh, TwinDisc):
-        return tuple((float(r), flat) for r in mesh.radii)
-    return (flat, flat), tuple(map(float, mesh.radius))
+@pytest.fixture(scope="module")
+def curves(family):
+    if family.curves is None:
+        pytest.skip("checked by positions alone in test_strain_wave.py")
+    return family.curves(family.mesh)
 
 
 def active_lanes(family):
@@ -519,55 +467,35 @@ def active_lanes(family):
         yield index, family.at.path[index]
 
 
-def check_involute_curvature(family):
-    count = 0
-    slope = transverse(family.mesh)[2]
+@pytest.mark.parametrize("direction", [0, 1])
+def test_curvature_is_the_second_derivative_of_the_gap(family, curves, direction):
     for index, path in active_lanes(family):
-        flanks = Flanks(family.mesh, path)
-        step = 0.02 * flanks.size
-        first, second = (flanks.height(member, STEPS * step) for member in (0, 1))
-        scale = abs(flanks.centres[1])
-        assert abs((second - first)[4]) < 1e-14 * scale, "the flanks do not touch"
-        assert np.all((second - first)[[0, 1, 2, 3, 5, 6, 7, 8]] > 0.0), "the flanks overlap"
+        section = curves.section(path, direction)
+        step = 0.02 * section.size
+        first, second = (section.height(member, STEPS * step) for member in (0, 1))
+        gap = second - first
+        assert abs(gap[4]) <= 1e-14 * section.scale, "the flanks do not touch"
+        assert np.all(np.delete(gap, 4) >= 0.0), "the flanks overlap"
         # Across the line of contact a gap in the transverse section is smaller by the cosine.
         members = [-second_derivative(first, step), second_derivative(second, step)]
-        members = [slope * one for one in members]
-        rounding = 10.0 * 1e-16 * scale / step**2
-        np.testing.assert_allclose(
-            family.at.curvature[:, 0, *index], members, rtol=1e-8, atol=rounding
-        )
-        np.testing.assert_allclose(
-            family.at.relative_curvature[0, *index], sum(members), rtol=1e-8, atol=rounding
-        )
-        count += 1
-    assert count > len(family.phase) * 0.99
-    assert np.all(family.at.curvature[:, 1] == 0.0)
+        members = [curves.slope * one for one in members]
+        rounding = max(1e-12, 10.0 * 1e-16 * section.scale / step**2)
+        near = {"rtol": 1e-8, "atol": rounding}
+        np.testing.assert_allclose(family.at.curvature[:, direction, *index], members, **near)
+        relative = family.at.relative_curvature[direction, *index]
+        np.testing.assert_allclose(relative, sum(members), **near)
 
 
-def test_arms_are_the_velocities_of_the_turning_flanks(family):
-    if isinstance(family.mesh, StrainWave):
-        pytest.skip(BY_POSITIONS)
-    if isinstance(family.mesh, CylindricalPair):
-        slope = transverse(family.mesh)[2]
-        for index, path in active_lanes(family):
-            flanks = Flanks(family.mesh, path)
-            closing, sliding = np.transpose([flanks.velocity(member) for member in (0, 1)])
-            np.testing.assert_allclose(family.at.normal[:, *index], slope * closing, rtol=1e-12)
-            np.testing.assert_allclose(family.at.slip_arm[:, *index], sliding, 1e-12, 1e-17)
-        return
-    turning = np.moveaxis(family.at.surface[:, :2], (0, 1), (-2, -1))
-    if isinstance(family.mesh, TwinDisc):
-        # Discs side by side: equal senses of rotation move the touching surfaces apart.
-        arms = np.diag(np.asarray(family.mesh.radii) * [1.0, -1.0])
-    else:
-        arms = np.diag([float(family.mesh.track_radius), float(family.mesh.radius[0])])
-    np.testing.assert_allclose(turning, np.broadcast_to(arms, turning.shape), rtol=1e-15)
-    np.testing.assert_array_equal(family.at.normal[:2], 0.0)
+def test_arms_are_the_velocities_of_the_moving_flanks(family, curves):
+    for index, path in active_lanes(family):
+        closing, sliding = np.transpose([curves.velocity(k, path) for k in (0, 1)])
+        normal, slip = family.at.normal[:2, *index], family.at.slip_arm[:2, *index]
+        np.testing.assert_allclose(normal, curves.slope * closing, rtol=1e-12, atol=1e-17)
+        np.testing.assert_allclose(slip, sliding, 1e-12, 1e-17)
 
 
+@pytest.mark.usefixtures("curves")
 def test_contact_moves_along_each_flank_as_it_rolls(family):
-    if isinstance(family.mesh, StrainWave):
-        pytest.skip(BY_POSITIONS)
     step = 1e-5
     before, after = (
         jax.tree.map(np.asarray, contacts_of(family.mesh, jnp.asarray(INSIDE + move)))
@@ -591,18 +519,12 @@ def test_contact_moves_along_each_flank_as_it_rolls(family):
         assert np.all(signs == signs[0]), "the sense changes on the way"
 
 
-def test_contact_lines_are_straight_in_the_plane_of_action(family):
-    if not isinstance(family.mesh, CylindricalPair):
-        # Discs touch at one fixed place: there is no plane through which contact lines travel.
-        pytest.skip("no plane of action")
-    mesh, at = family.mesh, family.at
-    module, angle, slope = transverse(mesh)
-    pair = np.arange(float(mesh.lanes))[:, None, None]
-    behind = (at.width + float(mesh.face_width) / 2.0) * np.tan(np.arccos(slope))
-    expected = family.phase + pair - mesh.helical * behind / (np.pi * module * np.cos(angle))
-    np.testing.assert_allclose(at.path[at.active], expected[at.active], rtol=1e-10, atol=1e-10)
-    ratio = float(mesh.transverse_contact_ratio)
-    assert np.all((at.path[at.active] > -1e-8) & (at.path[at.active] < ratio + 1e-8))
+def test_contact_lines_lie_where_the_path_has_got_to(family, curves):
+    at = family.at
+    pair = np.arange(float(at.active.shape[0]))[:, None, None]
+    expected = np.broadcast_to(curves.path(family.phase, pair, at.width), at.path.shape)[at.active]
+    np.testing.assert_allclose(at.path[at.active], expected, rtol=1e-10, atol=1e-10)
+    assert np.all((expected > -1e-8) & (expected < curves.ratio + 1e-8))
 
 
 def leaves_of(found):
@@ -626,37 +548,29 @@ def test_one_period_later_all_is_the_same(family, turns):
         np.testing.assert_allclose(there[name], values, rtol=rtol, atol=1e-15, err_msg=name)
 
 
-def test_pairs_move_up_by_one_where_a_period_ends(family):
+def test_pairs_go_on_where_a_period_ends(family):
+    """Those of the end are among those of the next start, in other lanes; a rig counts turns anew."""
     near = 1e-9
     end, start = (
         leaves_of(contacts_of(family.mesh, jnp.full(INSIDE.shape, at))) for at in (1.0 - near, near)
     )
-    pairs = end["active"].shape[0]
-    now, then = successors(family.mesh, pairs)
-    both = end["active"][now] & start["active"][then]
-    assert both.any()
-    for name in ("path", "curvature", "surface", "normal", "flank", "gap", "weight", "width"):
-        if pairs == 1 and name in ("path", "flank"):
-            continue  # a rig counts turns anew
-        before, after = (
-            values.reshape(-1, *end["active"].shape)[:, part][:, both]
-            for values, part in ((end[name], now), (start[name], then))
-        )
-        np.testing.assert_allclose(before, after, rtol=1e-6, atol=1e-9, err_msg=name)
+    counted = ("path", "flank") if family.mesh.counts == "turn" else ()
+    names = ("path", "curvature", "surface", "normal", "flank", "gap", "weight", "width")
+    last, first = (np.argwhere(one["active"][..., 0]) for one in (end, start))
+    found = [np.linalg.norm(end["point"][:, *k, :1] - lanes(start, first), axis=0) for k in last]
+    distance = np.array([one.min() for one in found])
+    # At both ends of the window of a strain wave gear a tooth comes and goes without load.
+    assert np.mean(distance < 1e-7) > 0.9
+    for k, each in zip(last[distance < 1e-7], np.array(found)[distance < 1e-7], strict=True):
+        then = first[np.argmin(each)]
+        for name in (name for name in names if name not in counted):
+            before, after = end[name][..., *k, 0], start[name][..., *then, 0]
+            np.testing.assert_allclose(before, after, rtol=1e-6, atol=1e-9, err_msg=name)
 
 
-def successors(mesh, pairs):
-    """Lanes of one period, and those that hold the same pairs in the next."""
-    lane = np.arange(pairs)
-    if pairs == 1:
-        return lane, lane  # a rig keeps its only contact
-    if not isinstance(mesh, StrainWave):
-        return lane[:-1], lane[1:]
-    # Each end of the long axis has its own teeth; with an odd number they are half a pitch apart.
-    first, second = np.split(lane, 2)
-    if mesh.teeth[0] % 2:
-        return np.append(first[:-1], second), np.append(first[1:], second)
-    return np.append(first[:-1], second[:-1]), np.append(first[1:], second[1:])
+def lanes(found, active):
+    """Points of the active lanes [xyz, lane] at the first phase."""
+    return found["point"][:, active[:, 0], active[:, 1], 0]
 
 
 def test_batch_equals_loop(family):
@@ -745,11 +659,11 @@ def test_sliding_changes_its_sense_at_events_only(family):
 
 def test_the_pairs_are_what_their_names_say():
     told = {
-        name: float(properties(FAMILIES[name]())["contact_ratio"])
+        name: float(properties(FAMILIES[name].mesh())["contact_ratio"])
         for name in ("18/36", "23/61, high teeth")
     }
     assert 1.0 < told["18/36"] < 2.0 < told["23/61, high teeth"] < 3.0
-    mesh = FAMILIES["20/60, pitch point in double contact"]()
+    mesh = FAMILIES["20/60, pitch point in double contact"].mesh()
     base_pitch = np.pi * 3e-3 * np.cos(np.deg2rad(20.0))
     phase = (mesh.pitch_position - mesh.limits[0]) / base_pitch
     assert int(contacts_of(mesh, jnp.full(INSIDE.shape, phase)).active[..., 0].sum()) == 2

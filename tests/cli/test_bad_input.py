@@ -30,6 +30,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears import table as every
 from pitchpoint.gears.ball_on_disc import table as ball_on_disc
 from pitchpoint.gears.cylindrical import table as cylindrical
+from pitchpoint.gears.rack_and_pinion import table as rack_and_pinion
 from pitchpoint.gears.strain_wave import table as strain_wave
 from pitchpoint.gears.table import MODULE
 from pitchpoint.input.quantities import Pair, Quantity
@@ -185,12 +186,33 @@ speed = "200 rpm"
 temperature = "60 degC"
 """)
 
-BASES = {"cylindrical": BASE, "strain wave": STRAIN_WAVE, "involute": INVOLUTE, "rig": RIG}
+GANTRY = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads("""
+[gears]
+family = "rack_and_pinion"
+teeth = 20
+module = "3 mm"
+face_width = "25 mm"
+mass = "40 kg"
+
+[operation]
+force = "2000 N"
+speed = "200 rpm"
+temperature = "60 degC"
+""")
+
+BASES = {
+    "cylindrical": BASE,
+    "strain wave": STRAIN_WAVE,
+    "involute": INVOLUTE,
+    "rack": GANTRY,
+    "rig": RIG,
+}
 WALKS = [
     ("cylindrical", schema.Case, ()),
     ("strain wave", strain_wave.StrainWaveGears, ("gears",)),
     ("involute", strain_wave.InvoluteTooth, ("gears", "tooth")),
     ("involute", strain_wave.InvoluteGroove, ("gears", "circular_spline")),
+    ("rack", rack_and_pinion.RackAndPinionGears, ("gears",)),
     ("rig", ball_on_disc.BallOnDiscRig, ("gears",)),
 ]
 """Sound case, table and its place: together every table of the schema."""
@@ -322,7 +344,8 @@ def of_quantity(quantity: Quantity) -> Iterator[tuple[str, Any, str]]:
     yield "infinite", math.inf, "inf"
     yield "nan text", f"nan {unit}", "nan"
     yield "huge", 10**400, "more than 40 digits"
-    yield "wrong dimension", "3 kg", '"3 kg"'
+    other = "3 m" if quantity.kind == "mass" else "3 kg"
+    yield "wrong dimension", other, f'"{other}"'
     yield "decimal comma", f"0,5 {unit}", "0,5"
     if unit:
         yield "missing unit", 3, '"3" has no unit'
@@ -366,10 +389,11 @@ def bads_at(site: Site) -> Iterator[Bad]:
     if pair is not None:
         yield from bad_pairs(site, pair.each)
     elif quantity is not None:
-        inner = (0,) if containers(site.annotation) & {tuple} else ()
+        several = containers(site.annotation) & {tuple}
         for name, value, shown in of_quantity(quantity):
-            yield Bad(name, (*site.path, *inner), value, (shown, quantity.allowed), site.key)
-        if inner:
+            given = [value] if several else value
+            yield Bad(name, site.path, given, (shown, quantity.allowed), site.key)
+        if several:
             for name, value in (("number", 3), ("text", "x"), ("table", TABLE)):
                 yield Bad(f"no list but {name}", site.path, value, ("list",), site.key)
     elif known is not None:
@@ -643,7 +667,7 @@ def test_the_whole_case_is_sound(
 def test_the_walk_reaches_every_table() -> None:
     defined = {
         each
-        for module in (schema, ball_on_disc, cylindrical, every, strain_wave)
+        for module in (schema, ball_on_disc, cylindrical, every, rack_and_pinion, strain_wave)
         for each in vars(module).values()
         if isinstance(each, type) and issubclass(each, BaseModel)
     }

@@ -9,9 +9,11 @@ import xarray as xr
 
 from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.errors import InputError
-from pitchpoint.runs.catalogue import entries, figures, summary_table, sweep_tables
+from pitchpoint.runs.catalogue import entries, figures
 from pitchpoint.runs.run import Outcome, describe, run
+from pitchpoint.views.registry import SECTIONS
 from pitchpoint.views.report import render
+from pitchpoint.views.sections.answer import summary
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ball_on_disc.toml"
 OIL = {
@@ -130,18 +132,18 @@ def test_a_barrel_touches_in_a_wider_ellipse(outcome: Outcome) -> None:
 
 
 def test_tables_and_json_tell_the_contact(outcome: Outcome) -> None:
-    rows, columns, note = summary_table(outcome)
-    assert columns[:4] == ("friction law", "h [um]", "Λ", "p_H [MPa]")
-    assert rows[0]["p_H [MPa]"] == "1109.6"
-    assert note == "No power is transmitted: the efficiency is undefined."
+    (row,) = summary(outcome).rows
+    assert [*row][:4] == ["friction law", "h [um]", "Λ", "p_H [MPa]"]
+    assert row["p_H [MPa]"] == "1109.6"
+    assert summary(outcome).line == "No power is transmitted: the efficiency is undefined."
     told = figures(outcome)
     assert told["back_driving"] == {}
     assert told["operation"]["constant"]["film_thickness"] == pytest.approx(0.23209e-6, rel=1e-3)
     assert told["studies"]["force"]["constant"]["pressure"][1] == pytest.approx(1.1096e9, rel=1e-4)
     swept = Outcome({}, {"study_sweep_force": outcome.parts["study_force"]})
-    ((_, points),) = sweep_tables(swept)
-    assert [row["operation.force"] for row in points] == ["5 N", "50 N", "400 N"]
-    assert all(float(row["h [um]"]) > 0.0 for row in points)
+    (printed,) = SECTIONS["studies"].screen(swept)
+    assert [row["operation.force"] for row in printed.rows] == ["5 N", "50 N", "400 N"]
+    assert all(float(row["h [um]"]) > 0.0 for row in printed.rows)
 
 
 def test_the_report_shows_the_contact_and_leaves_out_what_gears_have(outcome: Outcome) -> None:
@@ -150,8 +152,10 @@ def test_the_report_shows_the_contact_and_leaves_out_what_gears_have(outcome: Ou
     assert "disc drives at 240 rpm, ball carries 50 N, oil at 40 °C" in body
     assert "<dt>largest Hertz pressure</dt><dd>1110 MPa</dd>" in body
     assert "normal force" in page
-    for absent in ("base pitch", "back-driving", "Loss map", "Load sharing</dt>", "None"):
-        assert absent not in body, absent
+    body, absent = body.split('id="absent"')
+    assert "Loss map (nothing is transmitted by a test rig)" in absent
+    for heading in ("base pitch", "back-driving", "Loss map", "Load sharing</dt>", "None"):
+        assert heading not in body, heading
     assert render({"one": outcome, "two": outcome})
 
 

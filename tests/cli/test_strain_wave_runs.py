@@ -15,17 +15,14 @@ from pitchpoint.cases.build import TEETH_ALONE
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import (
-    figures,
-    kinematic_error_table,
-    summary_table,
-    wind_up_table,
-)
+from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_result
 from pitchpoint.views import show
-from pitchpoint.views.kinematic_error import kinematic_error_answer
-from pitchpoint.views.running import starting_answer
+from pitchpoint.views.sections.answer import summary
+from pitchpoint.views.sections.beside import starting_answer
+from pitchpoint.views.sections.kinematic_error import error_rows, kinematic_error_answer
+from pitchpoint.views.sections.torsion import wind_up_rows
 
 DRIVE = """
 [gears]
@@ -143,18 +140,18 @@ def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:
     covers = drive.parts["torsion"]["torsional_stiffness"].attrs["covers"]
     assert covers.startswith("teeth, ring and cup of the flexspline")
     assert "shafts, flange and joints are not in it" in drive.parts["torsion"].attrs["note"]
-    assert {row["K is that of"] for row in wind_up_table(drive)[0]} == {covers}
+    assert {row["K is that of"] for row in wind_up_rows(drive)} == {covers}
 
 
 def test_the_tables_on_screen(drive: Outcome) -> None:
-    rows, columns, note = summary_table(drive)
-    assert len(rows) == 1
-    assert "η mean [%]" in columns
-    assert "xu_2007" in note
-    rows, _ = wind_up_table(drive)
+    (row,) = summary(drive).rows
+    assert "η mean [%]" in row
+    assert "xu_2007" in summary(drive).line
+    rows = wind_up_rows(drive)
     assert [row["T_out [N m]"] for row in rows] == ["33.5", "67", "100.5", "134"]
-    rows, columns = kinematic_error_table(drive)
-    assert columns[1:] == ("flexspline", "circular spline", "both")
+    rows = error_rows(drive)
+    columns = [*rows[0]]
+    assert columns[1:] == ["flexspline", "circular spline", "both"]
     assert [row[columns[0]] for row in rows] == ["geometry", "elastic mean", "under load"]
     told = figures(drive)
     size = float(rows[2]["both"])  # in seconds of arc

@@ -130,7 +130,7 @@ def test_wheel_without_tip_shortening_misses_every_contact_ratio():
     Eq. 4 lacks k: the checks even refuse GP2 with it, whose wheel then reaches the pinion's fillet.
     """
     for study in PAIRS:
-        pair = built(study).pair
+        pair = built(study).design.mesh
         shortened = jnp.asarray([pair.tip_alteration[0], 0.0])
         longer = float(replace(pair, tip_alteration=shortened).transverse_contact_ratio)
         assert 0.034 < longer - float(pair.transverse_contact_ratio) < 0.049

@@ -163,8 +163,8 @@ def cases(draw: st.DrawFn) -> dict[str, Any]:
 
 def computed(case: dict[str, Any]) -> tuple[Built, xr.Dataset]:
     built = Variant(case, "random.toml", "default").built({})
-    if built.pair.lanes < LANES:
-        mesh = dataclasses.replace(built.pair, lanes=LANES)
+    if built.design.mesh.lanes < LANES:
+        mesh = dataclasses.replace(built.design.mesh, lanes=LANES)
         built = dataclasses.replace(built, design=dataclasses.replace(built.design, mesh=mesh))
     return built, OPERATION.compute(built, {}, lambda _: None)
 

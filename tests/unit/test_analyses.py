@@ -12,10 +12,11 @@ import xarray as xr
 from sound import PAIR
 
 from pitchpoint.analyses import studies
-from pitchpoint.analyses.analysis import Analysis
+from pitchpoint.analyses.analysis import Analysis, Unasked
 from pitchpoint.analyses.registry import ANALYSES, register
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
+from pitchpoint.cli import main
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import dataset, load
 from pitchpoint.results.variables import VARIABLES, Variable
@@ -23,7 +24,12 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.jobs import job_of
 from pitchpoint.runs.matrix import matrix, page
-from pitchpoint.runs.run import describe, open_result, pieces_of, run, run_piece
+from pitchpoint.runs.run import Outcome, describe, open_result, pieces_of, run, run_piece
+from pitchpoint.views.figures import PALETTE, Figure, Key, Panel, display, layout, plain
+from pitchpoint.views.registry import SECTIONS, register_section
+from pitchpoint.views.report import render
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, Table
 
 DOCS = Path(__file__).parents[2] / "docs"
 SWEPT = f"""{PAIR}
@@ -186,10 +192,10 @@ def test_an_analysis_of_ones_own_is_run_shown_compared_and_resumed(
     assert COMPUTED == [100.0, 200.0]  # the first piece once, before the interruption
     assert outcome.parts["passing"]["teeth_passed"].values.tolist() == [2300.0, 4600.0]
     assert outcome.parts["passing"]["teeth_passed"].attrs["symbol"] == "n z"
-    shown = figures(outcome)
-    assert shown["passing"] == {"teeth_passed": [2300.0, 4600.0]}
-    assert shown["units"] == {"teeth_passed": "1/s"}
-    assert [row["verdict"] for row in shown["rows"]] == ["pass"]
+    told = figures(outcome)
+    assert told["passing"] == {"teeth_passed": [2300.0, 4600.0]}
+    assert told["units"] == {"teeth_passed": "1/s"}
+    assert [row["verdict"] for row in told["rows"]] == ["pass"]
     assert open_result(tmp_path / "out")["default"].manifest["parts"] == ["passing"]
 
 
@@ -222,3 +228,90 @@ def test_one_that_lacks_something_has_no_part(alone: None, tmp_path: Path) -> No
     assert figures(outcome)["passing"] == {}
     with pytest.raises(InputError, match="no part 'passing': the teeth stand still"):
         run_piece(str(case), {"analysis": "passing", "speed": 1.0})
+
+
+# ---- a section of a user's own
+
+
+def shown_passing() -> Section:
+    """What a user writes beside an analysis: figure and table of the report, a fact, a table on screen."""
+
+    def rows(outcome: Outcome) -> list[dict[str, str]]:
+        data = outcome.parts["passing"]
+        return [
+            {head("speed"): shown("speed", float(speed)), head("teeth_passed"): f"{float(teeth):g}"}
+            for speed, teeth in zip(data["speed"], data["teeth_passed"], strict=True)
+        ]
+
+    def blocks(page: Page) -> Iterator[Block]:
+        for _, _, outcome in page.each("passing"):
+            data, key = outcome.parts["passing"], Key("driver", PALETTE[0])
+            yield Paragraph("Teeth that go by at the driver.")
+            line = plain(key, display("speed", data["speed"]), data["teeth_passed"], "1/s")
+            figure = Figure("passing_speed", "Teeth that pass", [line], layout("n", "n z"))
+            yield Panel("", [figure])
+            cells = rows(outcome)
+            yield Table([*cells[0]], [[*row.values()] for row in cells])
+
+    return Section(
+        name="passing",
+        title="Teeth that pass",
+        short="Passing",
+        order=350.0,
+        parts=("passing",),
+        blocks=blocks,
+        answer=lambda outcome: [("Teeth", f"{len(rows(outcome))} speeds")],
+        screen=lambda outcome: [Printed("Teeth that pass", rows(outcome))],
+    )
+
+
+def command(*words: str, monkeypatch: pytest.MonkeyPatch) -> object:
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", *words])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    return stop.value.code
+
+
+def test_an_analysis_and_a_section_of_ones_own_are_all_that_is_needed(
+    alone: None,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(SECTIONS, "_entries", dict(SECTIONS.items()))
+    register(toy(pieces=lambda built: [{"speed": speed} for speed in (100.0, 200.0)]))
+    register_section(shown_passing())
+    case, out = tmp_path / "pair.toml", tmp_path / "out"
+    case.write_text(PAIR + TARGET, "utf-8")
+    assert command("run", str(case), "-o", str(out), monkeypatch=monkeypatch) == 0
+    screen = capsys.readouterr().out
+    assert "Teeth that pass\nn [rpm]  n z [1/s]\n954.93   2300" in screen
+    assert "predicted: 1 pass" in screen
+    page = (out / "report.html").read_text("utf-8")
+    assert '<a href="#passing">Passing</a>' in page
+    assert '<section id="passing">\n<h2>Teeth that pass</h2>' in page
+    assert '<div class="plot" id="passing_speed">' in page
+    assert "<dt>Teeth</dt><dd>2 speeds</dd>" in page
+    assert '<td>954.93</td><td class="n">2300</td>' in page
+    assert page.index('id="inputs"') < page.index('id="passing"') < page.index('id="compared"')
+    assert command("run", str(case), "-o", str(out), "--json", monkeypatch=monkeypatch) == 0
+    told = json.loads(capsys.readouterr().out)["default"]
+    assert told["passing"] == {"teeth_passed": [2300.0, 4600.0]}
+    assert command("compare", str(case), monkeypatch=monkeypatch) == 0
+    assert "teeth that pass" in capsys.readouterr().out
+
+
+def test_a_section_that_lacks_something_says_so_once_at_the_end(
+    alone: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(SECTIONS, "_entries", dict(SECTIONS.items()))
+    case = tmp_path / "pair.toml"
+    case.write_text(PAIR, "utf-8")
+    register(toy(lacks=lambda built: "the teeth stand still"))
+    register_section(shown_passing())
+    page = render(run(str(case)))
+    assert page.count("the teeth stand still") == 1
+    assert "Not shown: Passing (the teeth stand still)." in page
+    assert '<section id="passing">' not in page
+    register(toy(lacks=lambda built: Unasked("nobody counts the teeth")))
+    assert "Not shown" not in render(run(str(case)))

@@ -3,8 +3,8 @@
 import numpy as np
 
 from pitchpoint.results.store import dataset
-from pitchpoint.runs.catalogue import sweep_tables
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views.registry import SECTIONS
 
 
 def test_a_sweep_shows_every_law_by_name():
@@ -18,9 +18,10 @@ def test_a_sweep_shows_every_law_by_name():
         title="Sweep of operation.torque",
         sweep_key="operation.torque",
     )
-    ((title, rows),) = sweep_tables(Outcome({}, {"study_sweep_torque": data, "study_other": data}))
-    assert title == "Sweep of operation.torque"
-    told = [[*row.values()] for row in rows]
+    parts = {"study_sweep_torque": data, "study_other": data}
+    (printed,) = SECTIONS["studies"].screen(Outcome({}, parts))
+    assert printed.title == "Sweep of operation.torque"
+    told = [[*row.values()] for row in printed.rows]
     assert [one[:2] for one in told] == [
         ["10 N m", "xu_2007"],
         ["10 N m", "constant"],

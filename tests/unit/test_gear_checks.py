@@ -8,8 +8,9 @@ import pytest
 
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import lanes_for
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
-from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, lanes_for
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 
 

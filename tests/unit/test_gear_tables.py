@@ -266,9 +266,9 @@ def test_what_a_loop_of_torque_cannot_show_is_said() -> None:
     (told,) = _loopless(built, np.array([np.nan]))
     assert "friction locks the drive at the operating point" in told
     assert _loopless(built, np.array([0.05])) == []
-    (told,) = _lost(np.array([0.0, np.nan, 1.0, np.nan]), np.array([0.0, 1.0, 2.0, 3.0]))
+    (told,) = _lost(built, np.array([0.0, np.nan, 1.0, np.nan]), np.array([0.0, 1.0, 2.0, 3.0]))
     assert "at 2 of 4 torques (1 N m to 3 N m)" in told
-    assert _lost(np.zeros(2), np.ones(2)) == []
+    assert _lost(built, np.zeros(2), np.ones(2)) == []
 
 
 def test_conformal_contacts_that_carry_are_told() -> None:

@@ -109,7 +109,7 @@ def test_modifications_are_read_and_shown_with_what_follows() -> None:
     built = one.built({})
     inputs = resolved(built, one.document())
     rows = {row["key"]: row for row in input_rows({"inputs": inputs})}
-    mesh = built.pair
+    mesh = built.design.mesh
     length = (float(mesh.contact_ratio) - 1.0) * float(mesh.base_pitch)
     assert rows["modifications.tip_relief"]["value"] == "20 um / 15 um"
     assert rows["modifications.tip_relief_length"]["value"] == f"{1e3 * length:.6g} mm"
@@ -128,8 +128,8 @@ def test_sharing_of_modified_flanks_is_that_of_their_stiffness() -> None:
     assert shares == ["equal", "from_stiffness"]
     misaligned = pair(gears__misalignment="3 um").built({})
     assert misaligned.case.models.load_sharing == "from_stiffness"
-    assert misaligned.pair.slices == 12
-    assert pair(**RELIEVED).built({}).pair.slices == 1  # nothing changes across the face
+    assert misaligned.design.mesh.slices == 12
+    assert pair(**RELIEVED).built({}).design.mesh.slices == 1  # nothing changes across the face
 
 
 def test_a_sweep_over_the_relief_keeps_its_program() -> None:
@@ -269,7 +269,7 @@ def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> Non
     """Crowned and relieved: static transmission error and stiffness are those of the wind-up."""
     given = {"gears__modifications__crowning": "8 um", "models__tooth_compliance": "beam_hertz"}
     built = pair(**RELIEVED, **given).built({})
-    data, mesh = stiffness_part(built), built.pair
+    data, mesh = stiffness_part(built), built.design.mesh
     contacts, load = mesh.contacts(jnp.asarray(data["phase"].values)), jnp.asarray(50.0)
     terms = TOOTH_COMPLIANCE["beam_hertz"].terms
     found = wound_up(mesh, built.design.solids, terms, load, contacts, None)
@@ -332,7 +332,7 @@ ECCENTRICITY = 10e-6
 
 def error_of(variant: Variant) -> Any:
     built = variant.built({})
-    return built.pair, kinematic_error_part(built, built.deviations, lambda done: None)
+    return built.design.mesh, kinematic_error_part(built, built.deviations, lambda done: None)
 
 
 def test_an_eccentric_gear_makes_order_one() -> None:
@@ -374,9 +374,9 @@ def test_pitch_deviations_of_rigid_teeth_are_those_of_the_tooth_in_contact() -> 
     pitch = replace(second, profile_slope=none, lead_slope=none, profile_form=none, lead_form=none)
     data = kinematic_error_part(built, ((), (pitch,)), lambda done: None)
     rigid = data["kinematic_error"].values[0].reshape(61, FEW_PAIRS) * abs(
-        float(built.pair.base_radii[1])
+        float(built.design.mesh.base_radii[1])
     )
-    ratio = float(built.pair.contact_ratio)
+    ratio = float(built.design.mesh.contact_ratio)
     alone = np.arange(FEW_PAIRS) / FEW_PAIRS > ratio - 1.0
     single = rigid[:, alone]
     np.testing.assert_allclose(
@@ -395,9 +395,9 @@ def test_a_class_enters_the_motion_and_not_the_cycle() -> None:
     deviating, plain = (
         pair(**each).built({}) for each in ({"gears__deviations__iso_class": 6}, {})
     )
-    assert deviating.pair.surfaces == plain.pair.surfaces == ((), ())
-    assert deviating.pair.touching
-    assert (deviating.pair.slices, plain.pair.slices) == (12, 1)
+    assert deviating.design.mesh.surfaces == plain.design.mesh.surfaces == ((), ())
+    assert deviating.design.mesh.touching
+    assert (deviating.design.mesh.slices, plain.design.mesh.slices) == (12, 1)
     again = pair(gears__deviations__iso_class=6).built({}).deviations
     for one, other in zip(
         jax.tree.leaves(again), jax.tree.leaves(deviating.deviations), strict=True
@@ -411,7 +411,7 @@ def test_over_the_path_stands_what_the_highest_load_makes_of_the_face() -> None:
 
     import xarray as xr
 
-    from pitchpoint.views.cycle import along
+    from pitchpoint.views.sections.path import along
 
     load = np.array([[[1.0, 3.0, 2.0]], [[0.0, 4.0, 9.0]]])
     lanes = ("node", "pair", "slice")

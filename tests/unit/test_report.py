@@ -15,15 +15,23 @@ import xarray as xr
 from records import entries
 
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.family import FAMILY
+from pitchpoint.gears.family import Family
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.results.store import dataset
-from pitchpoint.runs.catalogue import summary_table
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.views import show
-from pitchpoint.views.cycle import gapped, loss_places
-from pitchpoint.views.facts import facts
 from pitchpoint.views.figures import rounded
-from pitchpoint.views.geometry import Drawing, dimensions, drawing, specific_sliding
-from pitchpoint.views.report import loss_sentence, render, write_report
+from pitchpoint.views.lines import gapped
+from pitchpoint.views.path import path_of
+from pitchpoint.views.picture import Body, Picture, picture_of
+from pitchpoint.views.report import render, write_report
+from pitchpoint.views.sections.answer import summary
+from pitchpoint.views.sections.path import loss_places, loss_sentence
+from pitchpoint.views.sections.sliding import specific_sliding
+from pitchpoint.views.sections.teeth import dimensions
 
 Outcomes = dict[str, Outcome]
 
@@ -308,7 +316,7 @@ def test_without_power_the_efficiency_is_undefined(idle: Outcomes) -> None:
     assert "undefined, no power mean efficiency" in Words(page).text
     assert "There is no loss." in page
     assert "cycle_efficiency_phase" not in payload(page)["figures"]
-    assert "inf" not in summary_table(idle["default"])[0][0].values()
+    assert "inf" not in summary(idle["default"]).rows[0].values()
     assert np.isnan(idle["default"].parts["operation"]["min_efficiency"].values).all()
     cycle = idle["default"].parts["cycle"]
     for name in ("film_thickness", "lambda_ratio"):
@@ -346,7 +354,7 @@ def test_laws_out_of_their_range_stand_apart_with_the_reason(wheel: Outcomes) ->
     text = Words(render(wheel)).text
     assert "Out of their range here, and not counted" in text
     assert f"{100 * apart['mean_efficiency']:.2f} % it describes contacts with a full film" in text
-    told = summary_table(wheel["default"])[2]
+    told = summary(wheel["default"]).line
     assert told.startswith("One fitted friction law of the library applies, iso_tr_14179_2")
     assert (
         f"Out of its range is xu_2007 (it would give {100 * apart['mean_efficiency']:.2f} %)"
@@ -359,7 +367,7 @@ def test_no_law_in_its_range_is_said(wheel: Outcomes) -> None:
     none = outcome.parts["laws"].isel(law=[])
     one = replace(outcome, parts={**outcome.parts, "laws": none})
     assert "none of the library is in its range" in render({"default": one})
-    assert "No fitted friction law of the library is in its range here" in summary_table(one)[2]
+    assert "No fitted friction law of the library is in its range here" in summary(one).line
 
 
 def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes) -> None:
@@ -367,7 +375,7 @@ def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes
     limit = float(data["jamming_coefficient"].values[0, 0])
     assert limit > float(data["nearest_friction"].values[0, 0]) == pytest.approx(0.05)
     assert f"locks from μ {limit:.3g}" in Words(render(wheel)).text
-    assert summary_table(wheel["default"])[0][0]["locks from μ"] == f"{limit:.4f}"
+    assert summary(wheel["default"]).rows[0]["locks from μ"] == f"{limit:.4f}"
 
 
 @pytest.mark.parametrize("kept", [(), ("teeth",), ("teeth", "cycle"), ("teeth", "operation")])
@@ -409,25 +417,47 @@ def shown(**changes: Any) -> Outcome:
     pair = build_cylindrical_pair(
         module=0.002, pressure_angle=np.deg2rad(20.0), face_width=0.016, **changes
     )
-    numbers = {name: np.asarray(value) for name, value in pair.drawing().items()}
-    dims = {"outline": ("gear", "corner", "xy"), "points": ("point",)}
+    driver = f"gear {changes.get('driver', 1)}"
+    outcome = drawn_teeth(pair, FAMILY, driver, ["gear 1", "gear 2"])
+    outcome.manifest["inputs"] += entries(
+        {"gears.module": 0.002, "gears.profile_shift": [0.74, -0.05]}
+    )
+    return outcome
+
+
+RACK = RackAndPinionGears.model_validate(
+    {"teeth": 20.0, "module": "3 mm", "face_width": "25 mm", "helix_angle": "12 deg"}
+)
+
+
+def racked(driver: str = "pinion") -> Outcome:
+    """A result that holds nothing but the teeth of a rack and pinion."""
+    mesh, _ = RACK_FAMILY.build(RACK, "pinion", 2)
+    return drawn_teeth(mesh.driven_by(driver), RACK_FAMILY, driver, ["pinion", "rack"])
+
+
+def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> Outcome:
+    """The part `teeth` of a mesh, and the record that a picture needs."""
+    numbers = {name: np.asarray(value) for name, value in mesh.drawing().items()}
     teeth = dataset(
-        {name: (dims.get(name, ("gear",)[: v.ndim]), v) for name, v in numbers.items()},
-        {"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+        {n: (family.drawing.get(n, ("gear",)[: v.ndim]), v) for n, v in numbers.items()},
+        dict(family.coordinates),
         title="teeth",
     )
     inputs = {
         "operation.torque": 5.0,
         "operation.speed": 60.0 * pi,
         "operation.temperature": 333.15,
-        "gears.flank": "right" if changes.get("right_flank") else "left",
-        "gears.module": 0.002,
-        "gears.profile_shift": [0.74, -0.05],
     }
     manifest = {
         "inputs": entries(inputs),
-        "driver": f"gear {changes.get('driver', 1)}",
-        "period": float(pair.period),
+        "driver": driver,
+        "members": members,
+        "motion": mesh.motion.tolist(),
+        "period": float(mesh.period),
+        "travels": ["driver"] if driver == "rack" else [],
+        "pitch": "base pitch",
+        "against": f"{driver} drives" if mesh.onward < 0.0 else "",
     }
     return Outcome(manifest, {"teeth": teeth})
 
@@ -437,22 +467,28 @@ def outside() -> Outcomes:
     return {name: shown(**changes) for name, changes in OUTSIDE.items()}
 
 
-@pytest.fixture(params=["published", "idle", "wheel", *OUTSIDE])
-def drawn(request: pytest.FixtureRequest, outside: Outcomes) -> Drawing:
+@pytest.fixture(params=["published", "idle", "wheel", *OUTSIDE, "rack"])
+def drawn(request: pytest.FixtureRequest, outside: Outcomes) -> Picture:
     if request.param in OUTSIDE:
-        return drawing(outside[request.param])
+        return picture_of(outside[request.param])
+    if request.param == "rack":
+        return picture_of(racked())
     outcomes: Outcomes = request.getfixturevalue(request.param)
-    return drawing(next(iter(outcomes.values())))
+    return picture_of(next(iter(outcomes.values())))
 
 
-def teeth(drawn: Drawing, phase: float) -> Iterator[tuple[int, np.ndarray]]:
+def teeth(drawn: Picture, phase: float) -> Iterator[tuple[int, np.ndarray]]:
     """Gear and corners in mm of every tooth as the page places it, y downwards."""
-    for gear, placed in enumerate(drawn.picture("p")["gears"]):
+    for gear, placed in enumerate(drawn.svg("p")["bodies"]):
         corners = np.array([p.split(",") for p in placed["tooth"].split()], float)
-        for turn in placed["turns"]:
+        place = np.array(placed["place"]) + phase * np.array(placed["travel"])
+        for repeat in placed["repeats"]:
+            kind, _, numbers = repeat.rstrip(")").partition("(")
+            turn = float(numbers) if kind == "rotate" else 0.0
+            moved = np.array(numbers.split(), float) if kind == "translate" else np.zeros(2)
             angle = np.deg2rad(placed["turn"] + phase * placed["spin"] + turn)
             turned = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
-            yield gear, corners @ turned.T + [0.0, placed["centre"]]
+            yield gear, (corners + moved) @ turned.T + place
 
 
 def distance(point: np.ndarray, corners: np.ndarray) -> float:
@@ -463,8 +499,8 @@ def distance(point: np.ndarray, corners: np.ndarray) -> float:
     return float(np.hypot(*(start + where[:, None] * along - point).T).min())
 
 
-def test_drawn_flanks_touch_where_the_contacts_are(drawn: Drawing) -> None:
-    motion = drawn.picture("p")["motion"]
+def test_drawn_flanks_touch_where_the_contacts_are(drawn: Picture) -> None:
+    motion = drawn.svg("p")["motion"]
     touched = 0
     for phase in PHASES:
         placed = list(teeth(drawn, phase))
@@ -479,8 +515,8 @@ def test_drawn_flanks_touch_where_the_contacts_are(drawn: Drawing) -> None:
     assert touched / PHASES.size == pytest.approx(motion["ratio"], abs=0.2)
 
 
-def test_contacts_are_those_that_the_page_shows(drawn: Drawing) -> None:
-    motion = drawn.picture("p")["motion"]
+def test_contacts_are_those_that_the_page_shows(drawn: Picture) -> None:
+    motion = drawn.svg("p")["motion"]
     for phase in PHASES:
         lanes = phase + np.arange(int(motion["total"]) + 2)
         inside = (lanes >= motion["behind"]) & (lanes - motion["behind"] <= motion["ratio"])
@@ -489,75 +525,90 @@ def test_contacts_are_those_that_the_page_shows(drawn: Drawing) -> None:
         assert shown == pytest.approx(expected, abs=1e-3)
 
 
-def test_drawn_teeth_do_not_overlap(drawn: Drawing) -> None:
+def test_drawn_teeth_do_not_overlap(drawn: Picture) -> None:
     for phase in PHASES:
         placed = list(teeth(drawn, phase))
         for corners in (corners for gear, corners in placed if gear == 1):
             assert depth(drawn, corners, phase) < 0.005
 
 
-def depth(drawn: Drawing, corners: np.ndarray, phase: float) -> float:
+def depth(drawn: Picture, corners: np.ndarray, phase: float) -> float:
     """How far corners lie inside the involutes of gear 1 [mm]."""
-    turn = drawn.rotations(phase)[0]
-    pitch = 2.0 * pi / drawn.fact.teeth[0]
+    first = drawn.bodies[0]
+    turn = first.turned + phase * first.spin
     radii = np.hypot(*corners.T) * 1e-3
-    near = (drawn.radius("base", 0) < radii) & (radii < drawn.radius("tip", 0))
+    near = (first.levels["base"] < radii) & (radii < first.levels["tip"])
     deepest = 0.0
     for radius, (x, y) in zip(radii[near], corners[near], strict=True):
-        off = abs((atan2(-x, -y) - turn + pitch / 2.0) % pitch - pitch / 2.0)
-        deepest = max(deepest, 1e3 * radius * (drawn.half_angle(0, radius) - off))
+        half = first.pitch / 2.0
+        off = abs((atan2(-x, -y) - turn + half) % first.pitch - half)
+        deepest = max(deepest, 1e3 * radius * (half_angle(first, radius) - off))
     return deepest
 
 
-def test_path_is_tangent_to_both_base_circles(drawn: Drawing) -> None:
-    first, last = (np.array(drawn.on_line(s)) for s in (0.0, drawn.tangent_length))
-    along = last - first
-    for gear, point in enumerate((first, last)):
-        arm = point - [0.0, gear * drawn.distance]
-        assert (drawn.distance < 0.0) == drawn.fact.internal
-        assert np.hypot(*arm) == pytest.approx(drawn.radius("base", gear), rel=1e-12)
-        assert arm @ along == pytest.approx(0.0, abs=1e-12)
+def half_angle(body: Body, radius: float) -> float:
+    """Half the angle of its tooth as drawn at a radius."""
+    right = body.tooth[: len(body.tooth) // 2]
+    radii = np.hypot(*right.T)
+    order = np.argsort(radii, kind="stable")
+    angles = np.abs(np.arctan2(right[:, 0], right[:, 1]))
+    return float(np.interp(radius, radii[order], angles[order]))
 
 
-def test_contact_moves_with_the_driving_flank(drawn: Drawing) -> None:
+def test_the_line_of_action_is_tangent_to_both_base_circles(drawn: Picture) -> None:
+    marks, step = dict(drawn.marks), drawn.teeth["contact_step"].values
+    assert ("N2" in marks) == drawn.bodies[1].turns
+    for body, mark in zip(drawn.bodies, ("N1", "N2"), strict=True):
+        if body.turns:
+            arm = np.array(marks[mark]) - body.place
+            assert np.hypot(*arm) == pytest.approx(body.levels["base"], rel=1e-12)
+            assert arm @ step == pytest.approx(0.0, abs=1e-9 * np.hypot(*arm) * np.hypot(*step))
+    assert (drawn.bodies[1].place[1] < 0.0) == drawn.bodies[1].ring
+
+
+def test_contact_moves_with_the_driving_flank(drawn: Picture) -> None:
     """Both flanks move along the line of action at the speed of the contact."""
-    start, stop = drawn.rotations(0.0), drawn.rotations(0.01)
-    step = 0.01 * float(drawn.teeth["base_pitch"])
-    assert (stop[0] - start[0]) * drawn.radius("base", 0) == pytest.approx(drawn.side * step)
-    turned = (stop[1] - start[1]) * drawn.radius("base", 1)
-    assert turned == pytest.approx(-drawn.side * drawn.sides[1] * step)
+    step = drawn.teeth["contact_step"].values
+    along = step / np.hypot(*step)
+    point = drawn.teeth["contact_start"].values
+    for body in drawn.bodies:
+        x, y = point - body.place
+        moved = body.spin * np.array([-y, x]) + body.travel
+        assert moved @ along == pytest.approx(np.hypot(*step), rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["ring", "helical ring, gear 2 drives"])
 def test_teeth_of_a_ring_point_inwards(outside: Outcomes, name: str) -> None:
-    drawn = drawing(outside[name])
-    assert drawn.radius("tip", 1) < drawn.radius("root", 1)
-    picture = drawn.picture("p")["gears"][1]
+    drawn = picture_of(outside[name])
+    assert drawn.bodies[1].levels["tip"] < drawn.bodies[1].levels["root"]
+    picture = drawn.svg("p")["bodies"][1]
     assert picture["ring"]
-    assert picture["radii"]["rim"] > picture["radii"]["root"]
-    assert picture["centre"] > 0.0  # below: the page counts downwards
-    spins = [gear["spin"] for gear in drawn.picture("p")["gears"]]
+    assert picture["levels"]["rim"] > picture["levels"]["root"]
+    assert picture["place"][1] > 0.0  # below: the page counts downwards
+    spins = [gear["spin"] for gear in drawn.svg("p")["bodies"]]
     assert spins[0] * spins[1] > 0.0
 
 
 def test_who_turns_where(outside: Outcomes) -> None:
-    words = {name: drawing(one).picture("p")["driver_turns"] for name, one in outside.items()}
-    assert words["helical, four teeth"] == "counter-clockwise"
-    assert words["helical, right flanks"] == "clockwise"
-    assert words["helical ring, gear 2 drives"] == "clockwise"
+    words = {name: picture_of(one).svg("p")["moves"] for name, one in outside.items()}
+    assert words["helical, four teeth"] == "Gear 1 drives, turning counter-clockwise"
+    assert words["helical, right flanks"] == "Gear 1 drives, turning clockwise"
+    assert words["helical ring, gear 2 drives"] == "Gear 2 drives, turning clockwise"
+    assert picture_of(racked()).svg("p")["moves"] == "Pinion drives, turning counter-clockwise"
+    assert picture_of(racked("rack")).svg("p")["moves"] == "Rack drives, travelling to the right"
 
 
 def test_a_pinion_with_few_teeth_is_drawn_whole(outside: Outcomes) -> None:
-    drawn = drawing(outside["helical, four teeth"])
-    left, top, width, height = drawn.picture("p")["window"]
-    tip = 1e3 * drawn.radius("tip", 0)
+    drawn = picture_of(outside["helical, four teeth"])
+    left, top, width, height = drawn.svg("p")["window"]
+    tip = 1e3 * drawn.bodies[0].levels["tip"]
     assert left < -tip
     assert left + width > tip
     assert top + height > tip
 
 
 def test_letters_that_are_close_share_a_label(outside: Outcomes) -> None:
-    marks = drawing(outside["helical, four teeth"]).picture("p")["marks"]
+    marks = picture_of(outside["helical, four teeth"]).svg("p")["marks"]
     names = [mark["name"] for mark in marks if mark["name"]]
     assert "A N1" in names
     assert sum(not mark["name"] for mark in marks) == 5
@@ -588,14 +639,14 @@ def test_specific_sliding_is_that_of_the_gears(outside: Outcomes, name: str) -> 
 
 def test_loss_places_add_up_and_follow_the_driver(published: Outcomes, wheel: Outcomes) -> None:
     outcome = published["physical"]
-    shares = loss_places(outcome.parts["cycle"], 0, facts(outcome))
+    shares = loss_places(outcome.parts["cycle"], 0, path_of(outcome))
     assert sum(shares.values()) == pytest.approx(1.0, abs=1e-6)
     assert [start + end for start, end in shares] == ["AC", "CD", "DB", "BE"]
-    driven = facts(wheel["default"])
+    driven = path_of(wheel["default"])
     sentence = loss_sentence({("A", "C"): 0.25, ("C", "E"): 0.75}, driven)
     assert "75 % before the pitch point" in sentence
     assert "25 % before" in loss_sentence(
-        {("A", "C"): 0.25, ("C", "E"): 0.75}, replace(driven, driver=1)
+        {("A", "C"): 0.25, ("C", "E"): 0.75}, replace(driven, against="")
     )
 
 

@@ -13,22 +13,25 @@ import xarray as xr
 from records import entries
 
 from pitchpoint.analyses.kinematic_error import _turns
+from pitchpoint.gears.mesh import PATHS
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.drive import rates
 from pitchpoint.gears.strain_wave.family import FAMILY
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.cycle import cycle_panel
-from pitchpoint.views.drive import loaded_arcs, picture, simplified, wave_dimensions
-from pitchpoint.views.facts import wave
 from pitchpoint.views.figures import Figure, Panel, curves
-from pitchpoint.views.kinematic_error import kinematic_error_answer, kinematic_error_panels
-from pitchpoint.views.maps import efficiency_panel
+from pitchpoint.views.outlines import simplified
+from pitchpoint.views.point import period_of
 from pitchpoint.views.report import render
-from pitchpoint.views.running import drag_panel, starting_answer
-from pitchpoint.views.torsion import torsion_answer, torsion_panels
-from pitchpoint.views.wave import arc_panel, gap_panel, wave_losses, wave_sentence
+from pitchpoint.views.sections.arc import arc_panel, wave_losses, wave_sentence
+from pitchpoint.views.sections.beside import drag_panel, starting_answer
+from pitchpoint.views.sections.cycle import cycle_panel
+from pitchpoint.views.sections.drive import loaded_arcs, picture, wave_dimensions
+from pitchpoint.views.sections.kinematic_error import kinematic_error_answer, kinematic_error_panels
+from pitchpoint.views.sections.loss_map import efficiency_panel
+from pitchpoint.views.sections.passing import gap_panel
+from pitchpoint.views.sections.torsion import torsion_answer, torsion_panels
 
 EVIL = "</script><b>&"
 LAWS = ["constant", "own"]
@@ -78,6 +81,13 @@ def angles(phase: np.ndarray) -> np.ndarray:
     return (lane + phase[:, None]) * 2.0 * pi / Z1
 
 
+def on_the_way(*args: Any, **told: Any) -> xr.Dataset:
+    """A dataset whose places of contacts are those along a wave."""
+    data = dataset(*args, **told)
+    data["path"].attrs.update(PATHS["wave"].attributes)
+    return data
+
+
 def cycle() -> xr.Dataset:
     phase = np.linspace(0.0, 1.0, NODES)
     angle = angles(phase)[..., None]
@@ -101,7 +111,7 @@ def cycle() -> xr.Dataset:
         "loss": 2.0 + 0.0 * phase,
     }
     both = {name: np.stack([values, 1.01 * values]) for name, values in mesh.items()}
-    return dataset(
+    return on_the_way(
         {
             "phase": (("node",), phase),
             "weight": (("node",), np.full(NODES, 1.0 / NODES)),
@@ -144,7 +154,7 @@ def torsion() -> xr.Dataset:
     width = radians(4.0) + radians(14.0) * torque / 40.0
     force = torque[:, None, None] * bell(angle, width[:, None, None])
     wind_up = 2e-4 * torque**0.8
-    return dataset(
+    return on_the_way(
         {
             "wind_up": (("torque",), wind_up),
             "wind_up_range": (("torque",), 0.01 * wind_up),
@@ -263,6 +273,9 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
         "members": list(MEMBERS),
         "motion": turning.tolist(),
         "period": 2.0 * pi / Z1 / abs(turning[1] - turning[0]),
+        "travels": [],
+        "pitch": PATHS["wave"].pitch,
+        "against": PATHS["wave"].against if turning[1] < turning[0] else "",
         "averaging": "base_pitch",
         "finished": True,
         "warnings": [],
@@ -394,11 +407,8 @@ def test_members_turn_by_the_law_of_the_drive(whole: Outcome, fixed: str, driver
         return
     loaded = next(name for name in MEMBERS if name not in (fixed, driver))
     one = outcome(whole.parts, driver=driver, loaded=loaded)
-    fact = wave(one)
-    w, f, c = fact.rates
-    assert fact.fixed == fixed
-    assert fact.rates[MEMBERS.index(fixed)] == 0.0
-    assert abs(fact.rates[MEMBERS.index(driver)]) == 1.0
+    assert ("fixed member", fixed) in wave_dimensions(one)
+    w, f, c = one.manifest["motion"]
     assert Z2 * c == pytest.approx(Z1 * f + (Z2 - Z1) * w, abs=1e-12)
     motion = json.loads(picture(one, "one")["motion_json"])
     w, f, c = motion["rates"]
@@ -419,11 +429,11 @@ def test_backwards_teeth_come_from_positive_angles(whole: Outcome) -> None:
 
 
 def test_where_the_loss_is_made_in_words() -> None:
-    told = wave_sentence({"in": 1.0, "out": 2.0, "beside": 1.0})
+    told = wave_sentence({"in": 1.0, "out": 2.0, "beside": 1.0}, "the long axis")
     assert told.startswith("75 % in the teeth: 25 % before they reach the long axis")
     assert told.endswith("25 % beside the teeth.")
-    assert "beside" not in wave_sentence({"in": 1.0, "out": 2.0, "beside": 0.0})
-    assert wave_sentence({"in": 0.0, "out": 0.0, "beside": 0.0}) == "There is no loss."
+    assert "beside" not in wave_sentence({"in": 1.0, "out": 2.0, "beside": 0.0}, "")
+    assert wave_sentence({"in": 0.0, "out": 0.0, "beside": 0.0}, "") == "There is no loss."
 
 
 def test_simplified_outlines_keep_their_shape() -> None:
@@ -501,7 +511,7 @@ def test_a_cycle_that_begins_at_an_event_is_shown_from_zero(whole: Outcome) -> N
     assert max(places) == pytest.approx(0.9)
     times = [x for x in figure(panel, "efficiency_time").data[0]["x"] if x is not None]
     assert min(times) == 0.0
-    assert max(times) == pytest.approx(2e3 * wave(one).period, rel=1e-4)
+    assert max(times) == pytest.approx(2e3 * period_of(one).time, rel=1e-4)
 
 
 def test_load_grows_over_more_teeth_with_torque(whole: Outcome) -> None:

@@ -13,18 +13,23 @@ from records import entries
 
 from pitchpoint._jax import jnp
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.cycle import along, loss_places
-from pitchpoint.views.design_chart import design_charts
-from pitchpoint.views.facts import facts
 from pitchpoint.views.figures import Figure, Panel, continued
-from pitchpoint.views.plane_of_action import PlaneOfAction, plane_of_action
+from pitchpoint.views.path import path_of
 from pitchpoint.views.report import render
-from pitchpoint.views.sliding import sliding_figure
-from pitchpoint.views.stiffness import stiffness_answer, stiffness_panels
-from pitchpoint.views.vibration import resonance_panels, vibration_answer, vibration_panels
+from pitchpoint.views.sections.design_chart import design_charts
+from pitchpoint.views.sections.path import along, loss_places
+from pitchpoint.views.sections.plane_of_action import PlaneOfAction, plane_of_action
+from pitchpoint.views.sections.sliding import sliding_figure
+from pitchpoint.views.sections.stiffness import stiffness_answer, stiffness_panels
+from pitchpoint.views.sections.vibration import (
+    resonance_panels,
+    vibration_answer,
+    vibration_panels,
+)
 
 FOUND, UNSTABLE = "a steady state was found, and disturbances of it die out", "it <b>grows</b>"
 BESIDE = "a contact ratio of 0.9 is below the 1.2 for which ISO 6336-1 gives its estimate"
@@ -39,10 +44,10 @@ def pair_of(**changes: Any) -> CylindricalPair:
 
 def teeth_of(pair: CylindricalPair) -> xr.Dataset:
     numbers = {name: np.asarray(value) for name, value in pair.drawing().items()}
-    dims = {"outline": ("gear", "corner", "xy"), "points": ("point",)}
+    dims = FAMILY.drawing
     return dataset(
         {name: (dims.get(name, ("gear",)[: v.ndim]), v) for name, v in numbers.items()},
-        {"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+        dict(FAMILY.coordinates),
         title="teeth",
     )
 
@@ -172,7 +177,12 @@ def outcome(parts: Mapping[str, xr.Dataset], driver: str = "gear 1") -> Outcome:
         "inputs": entries(given),
         "driver": driver,
         "loaded": "gear 1" if driver == "gear 2" else "gear 2",
+        "members": ["gear 1", "gear 2"],
+        "motion": [1.0, -4.0 / 51.0],
         "period": np.pi / 2.0,  # four teeth
+        "travels": [],
+        "pitch": "base pitch",
+        "against": "gear 2 drives" if driver == "gear 2" else "",
         "models": [{"effect": "load sharing", "name": "equal", "title": "equal", "note": ""}],
         **empty,
     }
@@ -385,7 +395,7 @@ def test_helical_values_stand_at_the_middle_of_the_face(
     helical: CylindricalPair, whole: Outcome
 ) -> None:
     """A quantity that is linear along the path is met exactly, whatever slices a line has."""
-    fact = facts(whole)
+    path = path_of(whole)
     phases = np.linspace(0.0, 0.999, 40)
     contacts = helical.contacts(jnp.asarray(phases))
     lanes = ("node", "pair", "slice")
@@ -410,17 +420,17 @@ def test_helical_values_stand_at_the_middle_of_the_face(
             "rolling_loss": (("law", *lanes), 0.0 * loss[None]),
         }
     )
-    x, y = along(data, "sliding_velocity", 0, fact)
+    x, y = along(data, "sliding_velocity", 0, path)
     seen = np.isfinite(y)
     assert y[seen] == pytest.approx(2.0 * x[seen] - 1.0, abs=1e-6)
     assert x.min() >= -1e-6
-    assert x.max() <= fact.transverse_ratio + 1e-6
-    x, y = along(data, "load_share", 0, fact)
-    assert fact.transverse_ratio < x.max() <= fact.contact_ratio + 1e-6
+    assert x.max() <= path.transverse_ratio + 1e-6
+    x, y = along(data, "load_share", 0, path)
+    assert path.transverse_ratio < x.max() <= path.contact_ratio + 1e-6
     assert np.nanmax(y) <= 1.0
-    shares = loss_places(data, 0, fact)
+    shares = loss_places(data, 0, path)
     # The loss is even over the path here.
-    assert shares["A", "C"] == pytest.approx(fact.points["C"] / fact.transverse_ratio, abs=0.02)
+    assert shares["A", "C"] == pytest.approx(path.points["C"] / path.transverse_ratio, abs=0.02)
     assert sum(shares.values()) == pytest.approx(1.0, abs=1e-9)
 
 

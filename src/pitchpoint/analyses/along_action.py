@@ -5,7 +5,7 @@ from typing import Any
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import VIBRATION, by_torque
 from pitchpoint.analyses.torsion import rigid
 from pitchpoint.cases.build import Built
@@ -32,7 +32,7 @@ def _resonance(built: Built, _: Piece, __: Progress) -> xr.Dataset:
 
 
 def _no_line(built: Built) -> str | None:
-    if built.design.mesh.line_of_action is not None:
+    if built.design.mesh.along_action:
         return None
     return "these gears have no line of action, along which stiffness and vibration are computed"
 
@@ -43,14 +43,14 @@ def _no_stiffness(built: Built) -> str | None:
 
 def _still(built: Built) -> str | None:
     return _no_line(built) or (
-        "the case has no [dynamics]" if built.case.dynamics is None else None
+        Unasked("the case has no [dynamics]") if built.case.dynamics is None else None
     )
 
 
 def _one_speed(built: Built) -> str | None:
     asked = built.case.dynamics
     alone = asked is not None and asked.speeds is None
-    return _still(built) or ("[dynamics] gives no speeds" if alone else None)
+    return _still(built) or (Unasked("[dynamics] gives no speeds") if alone else None)
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:

@@ -11,13 +11,17 @@ from pitchpoint.cases.schema import Study
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.variables import Variable
 
-__all__ = ["Analysis", "Piece", "Progress", "Several", "Subject"]
+__all__ = ["Analysis", "Piece", "Progress", "Several", "Subject", "Unasked"]
 
 Piece = Mapping[str, Any]
 """Where a piece lies, as plain data of less than 1 kB: a torque, a range of points; empty for the whole."""
 
 Progress = Callable[[int], None]
 """Told the number of points that are done."""
+
+
+class Unasked(str):
+    """A reason why a part does not exist that lies in what the case file asks for, not in its gears."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +51,8 @@ class Entry:
     Attributes:
         name: of the part, and of its file.
         title: for progress and figures.
-        lacks: None, or why the part does not exist for a case: what its gears or its file do not have.
+        lacks: None, or why the part does not exist for a case: what its gears do not have, or its file
+            does not ask for (`Unasked`).
         main: variables that are shown first.
         figures: entries of `--json` from all parts that exist; by default the main variables under the
             name of the part.

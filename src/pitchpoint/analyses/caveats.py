@@ -8,7 +8,7 @@ import numpy as np
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails
 from pitchpoint.cases.laws import limits_words
-from pitchpoint.cases.schema import FORCE, SPEED, TEMPERATURE, TORQUE
+from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
@@ -38,8 +38,6 @@ PRESSURE = Quantity("pressure", 0.0, 1e15, "GPa")
 
 LEAST_FACE = 3.0
 """Mean number of slices of a contact line below which it is nearly a point, not a line."""
-
-_LOADS = {"torque": TORQUE, "force": FORCE}
 
 
 def demand_convergence(residual: np.ndarray, points: Sequence[Built], laws: Sequence[str]) -> None:
@@ -97,7 +95,7 @@ def _where(built: Built) -> str:
     return ", ".join(
         f"{name} {kind.show(value)}"
         for name, kind, value in (
-            (f"at {built.case.gears.load}", _LOADS[built.case.gears.load], point.load),
+            (f"at {built.carried.kind}", built.carried, point.load),
             ("speed", SPEED, point.speed),
             ("temperature", TEMPERATURE, point.temperature),
         )
@@ -126,7 +124,7 @@ def face_warning(built: Built, run: Mapping[str, Any]) -> list[str]:
         return []
     lines = np.sum(pairs.sum(axis=1) * run["weight"])
     mean = float(np.sum(carries.sum(axis=(1, 2)) * run["weight"]) / lines)
-    load = _LOADS[built.case.gears.load].show(built.case.operation.load)
+    load = built.carried.show(built.case.operation.load)
     if mean < LEAST_FACE:
         raise InputError(
             f"at {load} only {mean:.2g} of {slices} slices of a contact line get load in the mean, nearly a "

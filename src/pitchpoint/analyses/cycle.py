@@ -55,15 +55,14 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         {**common, **each},
         {"law": names},
         title="mesh cycle",
+        travels=built.travels,
         warnings=warnings,
         solve=told_of(locked_or_lost(each["locked"][1]), each["residual"][1]),
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )
-    long_name, symbol = PATHS[built.design.mesh.counts]
-    data["path"].attrs.update(long_name=long_name, symbol=symbol)
-    filled = built.design.mesh.filled
-    return data if filled is None else data.isel(pair=filled)
+    data["path"].attrs.update(PATHS[built.design.mesh.counts].attributes)
+    return data.isel(pair=built.design.mesh.filled)
 
 
 def _jammed(

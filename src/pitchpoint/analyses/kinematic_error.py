@@ -9,7 +9,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
@@ -87,8 +87,7 @@ def kinematic_error_part(
     under_load = np.concatenate([one[-1] for one in solved])
     lost = int(np.isnan(under_load).sum())
     told = [f"Kinematic error: no equilibrium was found in {lost} of {under_load.size} states."]
-    bodies = eqx.filter_eval_shape(lambda mesh: mesh.coordinates, design.mesh)
-    members = [one.body for one in bodies if one.member is not None]
+    members = [one.body for one in built.bodies if one.member is not None]
     whole = dataset(
         {
             "turn_angle": (("state",), np.arange(states[most]) * 2.0 * np.pi / states[most]),
@@ -109,6 +108,7 @@ def kinematic_error_part(
             "order": ("order", order),
         },
         title="kinematic error",
+        travels=built.travels,
         warnings=told if lost else [],
         solve=told_of(locked_or_lost(False, np.isnan(under_load))),
         **_turns(built.family.turning, members[most]),
@@ -189,7 +189,7 @@ def _exact(built: Built) -> str | None:
     if any(built.deviations):
         return None
     return (
-        "the teeth have no deviations around their gears"
+        Unasked("the teeth have no deviations around their gears")
         if built.transmits
         else "a test rig has no teeth"
     )

@@ -52,10 +52,10 @@ def _start(built: Built) -> tuple[Engagement | None, int]:
 
 
 def map_axes(built: Built) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Torques [N m], speeds [rad/s] and temperatures [K]."""
+    """Torques [N m] or forces [N], speeds [rad/s] and temperatures [K]."""
     asked, point = built.case.loss_map, built.case.operation
     count = int(asked.count) if asked else 9
-    torque = (asked and asked.torque) or 1.5 * point.load or 1.0
+    torque = (asked and (asked.torque or asked.force)) or 1.5 * point.load or 1.0
     speed = (asked and asked.speed) or 1.5 * point.speed
     oil = built.lubricant
     around = point.temperature + np.array([-20.0, 0.0, 20.0])
@@ -83,6 +83,7 @@ def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         {name: (_DIMS, data[name].values) for name in _NAMES},
         {name: (name, data[name].values) for name in _DIMS},
         title="loss map",
+        travels=built.travels,
         warnings=told,
         solve=told_of(locked_or_lost(locked, lost)),
         note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",

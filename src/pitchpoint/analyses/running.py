@@ -8,7 +8,7 @@ import xarray as xr
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.analyses.operation import untransmitted
 from pitchpoint.cases.build import Built
@@ -47,11 +47,14 @@ def running_part(built: Built) -> xr.Dataset:
             [np.asarray(torque(one.design, points, own, known)) for own in built.models]
         )
 
-    creeping = np.array([CREEPING])
+    back = built.backwards
     data = {
         "no_load_torque": (_DIMS, over(no_load_torque, speeds, built)),
-        "starting_torque": (_AT_REST, over(starting_torque, creeping, built)[:, 0]),
-        "back_driving_torque": (_AT_REST, over(starting_torque, creeping, built.backwards)[:, 0]),
+        "starting_torque": (_AT_REST, over(starting_torque, _creeping(built), built)[:, 0]),
+        "back_driving_torque": (
+            _AT_REST,
+            over(starting_torque, _creeping(back), back)[:, 0],
+        ),
     }
     return dataset(
         data,
@@ -61,10 +64,17 @@ def running_part(built: Built) -> xr.Dataset:
             "temperature": ("temperature", degrees),
         },
         title="running without load",
+        travels=built.travels,
         warnings=_unloaded(built),
         solve=told(np.concatenate([_held(values).ravel() for _, values in data.values()])),
         note="NaN where friction holds the drive whatever the torque",
     )
+
+
+def _creeping(built: Built) -> np.ndarray:
+    """Speed of a driver that begins to move; of one that travels that at which the other turns so."""
+    turned = abs(float(built.nominal["loaded"] @ built.nominal["motion"]))
+    return np.array([CREEPING / turned if "driver" in built.travels else CREEPING])
 
 
 def _held(torques: np.ndarray) -> np.ndarray:
@@ -97,7 +107,7 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 
 def _free(built: Built) -> str | None:
-    told = None if built.design.drag else "the case has no [losses] beside its teeth"
+    told = None if built.design.drag else Unasked("the case has no [losses] beside its teeth")
     return untransmitted(built) or told
 
 

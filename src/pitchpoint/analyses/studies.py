@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, Unasked
 from pitchpoint.analyses.figures import by_law, main_figures
 from pitchpoint.analyses.summaries import at_contact, joined, summaries, temperatures, vibrations
 from pitchpoint.cases.build import Built
@@ -140,7 +140,7 @@ def _studies(subject: Subject) -> Iterator[Analysis]:
 
 
 def _unasked(built: Built) -> str | None:
-    return None if built.case.studies else "the case has no [studies]"
+    return None if built.case.studies else Unasked("the case has no [studies]")
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:

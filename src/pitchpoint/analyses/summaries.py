@@ -97,6 +97,7 @@ def summaries(
         title=title,
         warnings=warnings,
         solve=_balances(out),
+        travels=points[0].travels,
     )
     data["mean_efficiency"].attrs.update(points[0].covers)
     if not points[0].transmits:

@@ -8,10 +8,9 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import WIND_UP, by_torque
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import TORQUE
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.quasi_static import coupling, engagement
 from pitchpoint.efficiency.summary import summarise
@@ -56,23 +55,25 @@ def torsion_part(built: Built) -> xr.Dataset:
             "phase": ("phase", phase),
         },
         title="torsion",
-        warnings=[*_lost(found["wind_up"], torques), *_loopless(built, friction)],
+        travels=built.travels,
+        warnings=[*_lost(built, found["wind_up"], torques), *_loopless(built, friction)],
         note=f"{yields} yield; {rigid} are not in it",
         solve=solve,
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
     mesh = built.design.mesh
-    long_name, symbol = PATHS[mesh.counts]
-    whole["path"].attrs.update(long_name=long_name, symbol=symbol)
-    return whole if mesh.filled is None else whole.isel(pair=mesh.filled)
+    whole["path"].attrs.update(PATHS[mesh.counts].attributes)
+    return whole.isel(pair=mesh.filled)
 
 
-def _lost(wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
+def _lost(built: Built, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     """Torques at which teeth, ring and cup found no equilibrium."""
     lost = torques[np.isnan(wind_up)]
     if not lost.size:
         return []
-    between = " to ".join(dict.fromkeys(TORQUE.show(torque) for torque in (lost[0], lost[-1])))
+    between = " to ".join(
+        dict.fromkeys(built.carried.show(torque) for torque in (lost[0], lost[-1]))
+    )
     return [
         f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they are "
         "left out."
@@ -160,7 +161,7 @@ def rigid(built: Built) -> str | None:
         return None
     if not built.transmits:
         return "nothing is transmitted by a test rig, so that nothing winds up"
-    return (
+    return Unasked(
         "nothing in the case asks how teeth yield, as gaps and deviations of flanks, [dynamics] and "
         'load_sharing = "from_stiffness" do'
     )

@@ -67,7 +67,6 @@ def vibrating_of(built: Built) -> Vibrating:
     assert asked is not None
     if asked.inertia is None:
         inertia = mesh.inertia(jnp.stack([solid.density for solid in built.design.solids]))
-        assert inertia is not None
     else:
         inertia = jnp.asarray(asked.inertia)
     errors = asked.profile_error
@@ -120,9 +119,7 @@ def _stiffness(
     contacts = mesh.contacts(found.phase)
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
     entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
-    action = mesh.line_of_action
-    assert action is not None
-    radius = jnp.abs(action @ mesh.loaded)
+    radius = jnp.abs(mesh.line_of_action @ mesh.loaded)
     single, total = found.along_action, found.total
     error = load / radius / total
     if found.state is not None:
@@ -155,6 +152,7 @@ def vibration_part(built: Built) -> xr.Dataset:
         data,
         {"torque": ("torque", _torques(built)), "order": ("order", np.array(ORDERS))},
         title="vibration",
+        travels=built.travels,
         warnings=[*_warnings(built, told), *_moduli(built)],
         status=[status.sentence for status in told],
         solve=told_of(found["vibration_status"].astype(int)),
@@ -197,6 +195,7 @@ def resonance_part(built: Built) -> xr.Dataset:
         data,
         {"direction": ["rising", "falling"], "torque": _torques(built), "speed": speeds},
         title="vibration against speed",
+        travels=built.travels,
         warnings=[*status_sentences(data["vibration_status"][1], _AT_SPEED), *_moduli(built)],
         sentences=[code.sentence for code in Code],
         solve=told_of(data["vibration_status"][1].astype(int)),
@@ -282,7 +281,8 @@ def _loads(built: Built) -> list[Operation]:
 
 def _torques(built: Built) -> list[float]:
     assert built.case.dynamics is not None
-    return list(built.case.dynamics.torques or (built.case.operation.load,))
+    asked = built.case.dynamics
+    return list(asked.torques or asked.forces or (built.case.operation.load,))
 
 
 def _grid(parts: Sequence[Excited], orders: Sequence[int], key: str = "operation.speed") -> Grid:
@@ -333,7 +333,7 @@ def status_sentences(
 
 def _warnings(built: Built, statuses: Sequence[Code]) -> list[str]:
     return [
-        f"Vibration at {torque:.4g} N m: {status.sentence}."
+        f"Vibration at {built.carried.show(float(f'{torque:.4g}'))}: {status.sentence}."
         for torque, status in zip(_torques(built), statuses, strict=True)
         if not status.ok
     ]

@@ -6,12 +6,13 @@ from functools import cached_property, lru_cache
 from math import isfinite
 from typing import Any
 
+import equinox as eqx
 import numpy as np
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.cases.schema import TEMPERATURE, Case, Loss, Oil, Operating, Surface
+from pitchpoint.cases.schema import FORCE, TEMPERATURE, TORQUE, Case, Loss, Oil, Operating, Surface
 from pitchpoint.cases.solids import (
     SolidInUse,
     datum,
@@ -26,10 +27,12 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.summary import engaged, heat
 from pitchpoint.errors import InputError
+from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import built_gears, family_of
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
@@ -41,6 +44,7 @@ from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
+from pitchpoint.results.variables import End
 
 __all__ = ["Built", "build"]
 
@@ -104,7 +108,7 @@ class Built:
 
     @cached_property
     def nominal(self) -> dict[str, Any]:
-        """Nominal motion, who drives, who is loaded, period and events of the mesh, as plain numbers."""
+        """Nominal motion, driver, loaded member, period, sense and events of the mesh, as plain numbers."""
         found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
         return found
 
@@ -133,6 +137,26 @@ class Built:
         """True if the loaded coordinate moves, so that power goes through; False for a test rig."""
         return bool(self.nominal["loaded"] @ self.nominal["motion"])
 
+    @cached_property
+    def bodies(self) -> tuple[Coordinate, ...]:
+        """Coordinates of the mesh without their places."""
+        found: tuple[Coordinate, ...] = eqx.filter_eval_shape(
+            lambda mesh: mesh.coordinates, self.design.mesh
+        )
+        return found
+
+    @cached_property
+    def travels(self) -> frozenset[End]:
+        """Those of driver and loaded member that travel in place of turning."""
+        return frozenset(
+            end for end in _ENDS if not self.bodies[int(self.nominal[end].argmax())].turns
+        )
+
+    @property
+    def carried(self) -> Quantity:
+        """What the loaded member takes, torque or force."""
+        return FORCE if "loaded" in self.travels else TORQUE
+
     @property
     def covers(self) -> dict[str, str]:
         """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
@@ -154,11 +178,9 @@ class Built:
         driver, loaded = (self.nominal[name] @ self.nominal["motion"] for name in _ENDS)
         step = abs(float(driver / loaded))
         point = self.case.operation
-        changes = {
-            "driver": self.loaded,
-            "torque": point.load / step,
-            "speed": point.speed / step,
-        }
+        load = "force" if "driver" in self.travels else "torque"
+        changes: dict[str, Any] = {"driver": self.loaded, "torque": None, "force": None}
+        changes |= {load: point.load / step, "speed": point.speed / step}
         point = point.model_copy(update=changes)
         other = replace(
             self,
@@ -169,7 +191,7 @@ class Built:
         return warmed(other)
 
 
-_ENDS = ("driver", "loaded")
+_ENDS: tuple[End, ...] = ("driver", "loaded")
 
 
 def _operation(point: Operating) -> Operation:
@@ -307,11 +329,32 @@ def _check_models(case: Case, mesh: Mesh) -> None:
             "isothermal",
             key="models.tooth_temperature",
         )
-    if case.dynamics is not None and mesh.line_of_action is None:
+    if case.dynamics is not None and not mesh.along_action:
         raise InputError(
             "vibration is computed along a line of action, which these gears do not have; leave this "
             "table out",
             key="dynamics",
+        )
+    if case.dynamics is not None:
+        _check_masses(case, mesh)
+
+
+def _check_masses(case: Case, mesh: Mesh) -> None:
+    """InputError for a vibration if a body that travels has no mass, or a moment of inertia."""
+    travelling = [name for name in case.gears.members if name not in case.gears.shafts]
+    if not travelling:
+        return
+    assert case.dynamics is not None
+    if case.dynamics.inertia is not None:
+        raise InputError(
+            f"the {travelling[0]} travels and has no moment of inertia; give gears.mass, the other body "
+            "counts as a plain disc",
+            key="dynamics.inertia",
+        )
+    if not np.isfinite(np.asarray(_inertia(mesh))).all():
+        raise InputError(
+            f"is missing; a vibration asks for the mass of the {travelling[0]} and of all that moves with it",
+            key="gears.mass",
         )
 
 
@@ -375,8 +418,7 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
     sections = _sections(mesh)
-    assert sections is not None
-    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections)
+    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections, case.gears.members)
 
 
 @program
@@ -391,12 +433,18 @@ def _nominal(mesh: Mesh) -> dict[str, Any]:
         "driver": mesh.driver,
         "loaded": mesh.loaded,
         "period": mesh.period,
+        "onward": mesh.onward,
         "events": mesh.events(),
     }
 
 
 @program
-def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection] | None:
+def _inertia(mesh: Mesh) -> jax.Array:
+    return mesh.inertia(jnp.ones(2))
+
+
+@program
+def _sections(mesh: Mesh) -> tuple[ToothSection, ToothSection]:
     return mesh.sections
 
 

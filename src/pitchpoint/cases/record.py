@@ -27,6 +27,7 @@ from pitchpoint.cases.library import as_text, names, path_of
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.programs import surroundings
 from pitchpoint.results.store import read_bytes, write_text
+from pitchpoint.results.variables import End
 
 __all__ = ["MANIFEST", "RUN", "Manifest", "Record", "default_folder", "is_record", "owner"]
 
@@ -182,6 +183,10 @@ class Manifest(_Kept):
         members: body of each coordinate.
         motion: nominal rate of each coordinate for one radian of the driver.
         period: driver angle after which the mesh repeats [rad].
+        pitch: what a period is.
+        against: why time runs against the phase of the mesh; empty where it does not.
+        travels: which of driver and loaded member travel.
+        lacks: by analysis why there is no such part, where the gears are the reason.
     """
 
     case: str
@@ -202,6 +207,10 @@ class Manifest(_Kept):
     members: list[str]
     motion: list[float]
     period: float
+    pitch: str = "period"
+    against: str = ""
+    travels: list[End] = []
+    lacks: dict[str, str] = {}
     averaging: str
     plastic: bool
     oil: str

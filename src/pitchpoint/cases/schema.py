@@ -52,6 +52,7 @@ COUNT = Quantity("dimensionless", 1, 100_000, whole=True)
 MAP_COUNT = Quantity("dimensionless", 2, 200, whole=True)
 BEARING_FACTOR = Quantity("dimensionless", 0.0, 100.0)
 FORCE = Quantity("force", 0.0, 1e7, "N")
+PRESSED = Quantity("force", 0.0, 1e7, "N", open_low=True)
 PLACE = Quantity("length", -10.0, 10.0, "mm")
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
@@ -440,13 +441,14 @@ class Speeds(Table):
 
 
 class Dynamics(Table):
-    """Vibration of the pair along its line of action."""
+    """Vibration of the pair along its line of action, under torques or forces as `operation` has them."""
 
     damping_ratio: Annotated[float, RATIO] = 0.1
     inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
     profile_error: Annotated[tuple[ProfileError, ...], Field(max_length=41)] = ()
     backlash: Annotated[float, DEVIATION] | None = None
     torques: Annotated[tuple[Annotated[float, LOADED], ...], Field(max_length=50)] = ()
+    forces: Annotated[tuple[Annotated[float, PRESSED], ...], Field(max_length=50)] = ()
     speeds: Speeds | None = None
 
 
@@ -477,12 +479,13 @@ class Study(Table):
 
 
 class LossMap(Table):
-    """Axes of the loss map; zero torque and zero speed are allowed.
+    """Axes of the loss map; zero torque and zero speed are allowed. A force stands for a torque of travel.
 
     `count` is that of both axes, `torque_count` and `speed_count` are those of one.
     """
 
     torque: Annotated[float, TORQUE] | None = None
+    force: Annotated[float, FORCE] | None = None
     speed: Annotated[float, MAP_SPEED] | None = None
     temperatures: (
         Annotated[tuple[Annotated[float, TEMPERATURE], ...], Field(max_length=50)] | None
@@ -653,24 +656,24 @@ def _check_load(case: Case) -> None:
     """InputError unless the load is given that the driven member takes, and no table asks for the other."""
     point, wanted = case.operation, case.gears.load
     other = "force" if wanted == "torque" else "torque"
-    if getattr(point, other) is not None:
-        told = f"{_CARRIED[wanted]}; give {wanted} in place of {other}"
-        raise InputError(told, key=f"operation.{other}")
+    asked = {
+        f"operation.{other}": getattr(point, other),
+        f"dynamics.{other}s": getattr(case.dynamics, f"{other}s", ()) or None,
+        f"loss_map.{other}": getattr(case.loss_map, other, None),
+    }
+    for key in (key for key, given in asked.items() if given is not None):
+        plural = "s" * key.endswith("s")
+        told = f"{case.gears.carries}; give {wanted}{plural} in place of {other}{plural}"
+        raise InputError(told, key=key)
     if getattr(point, wanted) is None:
         missing = f"is missing{_needed(('operation', wanted))}"
         raise InputError(missing, key=f"operation.{wanted}")
-    if wanted == "force" and case.loss_map is not None:
+    if not case.gears.transmits and case.loss_map is not None:
         raise InputError(
             "a loss map runs over the torque of an output, which a test rig does not have; leave this "
             "table out",
             key="loss_map",
         )
-
-
-_CARRIED = {
-    "torque": "gears carry a torque",
-    "force": "a test rig is loaded by a normal force",
-}
 
 
 def _check_meant(case: Case) -> None:
@@ -698,12 +701,15 @@ def _check_driver(case: Case) -> None:
 
 def _check_bodies(case: Case) -> None:
     """InputError if losses arise between bodies that the gears do not have."""
-    known = (*case.gears.members, "housing")
+    known = (*case.gears.shafts, "housing")
     for name, loss in case.losses.items():
         first, second = loss.between
         strange = next((body for body in loss.between if body not in known), None)
         told = (
-            f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
+            f"{shown(strange)} travels, and losses are torques between bodies that turn; name two of "
+            f"{', '.join(known)}"
+            if strange in case.gears.members
+            else f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
             if strange is not None
             else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
         )

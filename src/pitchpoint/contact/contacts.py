@@ -57,17 +57,26 @@ class Contacts(eqx.Module):
 
     @property
     def slip_arm(self) -> Float[Arrays, "dof pair slice *b"]:
-        """Sliding velocity of member 0 over member 1 for a unit rate of each coordinate [m/rad or 1]."""
+        """Sliding velocity of member 0 over member 1 for a unit rate of each coordinate [m/rad or 1].
+
+        Source: Johnson, Contact Mechanics (1985), section 1.2, sliding.
+        """
         return self.surface[0] - self.surface[1]
 
     @property
     def roll_arm(self) -> Float[Arrays, "dof pair slice *b"]:
-        """Sum of the two surface velocities for a unit rate of each coordinate [m/rad or 1]."""
+        """Sum of the two surface velocities for a unit rate of each coordinate [m/rad or 1].
+
+        Source: Johnson, Contact Mechanics (1985), section 1.2, rolling.
+        """
         return self.surface[0] + self.surface[1]
 
     @property
     def relative_curvature(self) -> Float[Arrays, "2 pair slice *b"]:
-        """Sum of the members' curvatures: second derivative of the separation [1/m]."""
+        """Sum of the members' curvatures: second derivative of the separation [1/m].
+
+        Source: Johnson, Contact Mechanics (1985), section 4.1.
+        """
         return self.curvature[0] + self.curvature[1]
 
     @property

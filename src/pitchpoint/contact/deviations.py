@@ -20,6 +20,9 @@ class ToothDeviations(Surface):
         profile_form, lead_form: height of the wave from trough to crest, of either sign [m].
         root, tip: arc lengths on the flank between which the profile is counted [m].
         width: of the face [m].
+
+    Source: ISO 1328-1:2013, deviations of pitch, and of slope and form of profile and helix; that a form
+    is one wave is a choice.
     """
 
     pitch: Float[Array, " tooth"]

@@ -63,7 +63,9 @@ def line_compression(
     Source: Weber and Banaschek (1953); Johnson, Contact Mechanics (1985), eq. 5.57, both for t much
     larger than a.
     """
+    # Without load the contact has no width, and the logarithm no limit.
     ratio = depth / jnp.maximum(half_width, _LEAST_WIDTH_RATIO * depth)
     slant = jnp.sqrt(1.0 + ratio**2)
+    # The difference sqrt(1 + s^2) - s as a quotient: for a deep solid it would be rounding alone.
     lateral = poisson / (1.0 - poisson) * ratio / (slant + ratio)
     return 2.0 / jnp.pi * (1.0 - poisson**2) / young * (jnp.arcsinh(ratio) - lateral)

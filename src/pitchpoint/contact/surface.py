@@ -105,6 +105,8 @@ class Waves(Surface):
         order: waves around the member; 1 is an eccentricity.
         amplitude: along the normal of the flank, where it stands upright most [m].
         phase: angle of each wave where the member's angle is zero [rad].
+
+    From a Fourier series of the teeth's places around the member.
     """
 
     order: Float[Array, " wave"]
@@ -136,6 +138,9 @@ def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spo
         contacts: of the flanks as designed.
         surfaces: of both members.
         spots: where the contacts lie on them.
+
+    Source: Johnson, Contact Mechanics (1985), section 4.1: curvatures are the second derivatives of the
+    separation.
     """
     gap, curvature = contacts.gap, contacts.curvature
     for member, (own, spot) in enumerate(zip(surfaces, spots, strict=True)):

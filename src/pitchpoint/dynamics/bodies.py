@@ -44,6 +44,8 @@ class Body(eqx.Module):
         creep: speed at which 76 % of the resistance is reached, R tanh(speed/creep) [rad/s or m/s].
         viscous: torque against its motion over the speed [N m s or N s/m].
         support: bearings that yield; held across its axis if None.
+
+    From Coulomb's friction, made smooth about rest by tanh.
     """
 
     inertia: Float[Array, ""] = eqx.field(converter=as_array)
@@ -95,6 +97,8 @@ def on_all_coordinates(
         contacts: of a mesh.
         coordinates: of the mesh.
         bodies: one for each of them.
+
+    From the kinematics of rigid bodies.
     """
     normal, surface = [contacts.normal], [contacts.surface]
     for number, held in _supports(bodies):

@@ -39,6 +39,8 @@ def linear(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
     Args:
         stretch: arm times coordinates less profile error, positive where flanks press [m].
         backlash: not used, common to all laws.
+
+    Source: Atanasiu et al. (2011), eq. 11.
     """
     return stretch, jnp.ones_like(stretch)
 
@@ -49,6 +51,8 @@ def separating(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
     Args:
         stretch: arm times coordinates less profile error, positive where flanks press [m].
         backlash: free motion along the normal before the back flanks touch [m]; infinite if never.
+
+    Source: Kahraman and Singh (1990), a spring with a clearance, counted from the front flank.
     """
     behind = -stretch - backlash
     back = jnp.where(behind > 0.0, jnp.where(jnp.isfinite(behind), behind, 0.0), 0.0)

@@ -57,6 +57,8 @@ class Account(eqx.Module):
         damping: lost to damping of contacts and bearings.
         drag: lost to resistance and viscous torques of the bodies.
         pressed: what the bodies did on the springs of the contacts.
+
+    From work and energy: what is put in is spent or stored.
     """
 
     kinetic: Times
@@ -101,6 +103,8 @@ def energies(system: System, response: Response) -> Energies:
     Args:
         system: mass, damping, load, period.
         response: of `steady_state`.
+
+    From work and energy over one period: d(k d^2/2)/dt = F d' + k' d^2/2.
     """
     course, grid = response.course, response.course.grid
 

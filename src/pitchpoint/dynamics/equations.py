@@ -34,12 +34,19 @@ class Equations(eqx.Module):
 
     @property
     def total_stiffness(self) -> Float[Array, "coordinate coordinate element node"]:
-        """Sum over the pairs of arm, stiffness and arm."""
+        """Sum over the pairs of arm, stiffness and arm.
+
+        From virtual work: a spring counts with the product of its arms.
+        """
         return jnp.einsum("apen,pen,bpen->aben", self.arm, self.stiffness, self.arm)
 
     @property
     def total_load(self) -> Float[Array, "coordinate element node"]:
-        """Load and what the profile errors add to it."""
+        """Load and what the profile errors add to it.
+
+        Source: Atanasiu et al. (2011), eqs. 10 and 11: what the error adds stands on the side of the
+        load.
+        """
         of_error = jnp.einsum("apen,pen->aen", self.arm, self.stiffness * self.error)
         return self.load[:, None, None] + of_error
 
@@ -51,7 +58,10 @@ class Equations(eqx.Module):
 
 
 def equations(system: System, course: Course) -> Equations:
-    """Equations on coordinates of unit mass, scaled by the mean stiffness and the load."""
+    """Equations on coordinates of unit mass, scaled by the mean stiffness and the load.
+
+    From M q'' + C q' + K q = f with q = scale z, where M = L L^T and scale is L^-T times a length.
+    """
     finite = _all_finite((system, course))
     factor, eye = jnp.linalg.cholesky(system.mass), jnp.eye(system.load.shape[0])
     root = jax.scipy.linalg.solve_triangular(factor, eye, lower=True)

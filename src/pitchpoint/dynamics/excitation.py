@@ -31,7 +31,10 @@ class Excitation(eqx.Module):
     error: Float[Array, "pair segment node"]
 
     def on(self, grid: Grid) -> "Course":
-        """The same at the nodes of a grid."""
+        """The same at the nodes of a grid.
+
+        From the Legendre series through the nodes of each segment.
+        """
         bounds = grid.bounds(self.edges)
         start, length = self.edges[:-1], jnp.diff(self.edges)
         middle = (bounds[1:] + bounds[:-1]) / 2.0

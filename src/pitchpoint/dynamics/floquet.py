@@ -16,6 +16,8 @@ def multipliers(monodromy: Float[Array, "state state"]) -> Complex[Array, " stat
     Args:
         monodromy: derivative of the state after a period with respect to that before. Zero stands in
             for what is not a finite number, so that a failed lane disturbs no other.
+
+    Source: Nayfeh and Mook (1979), chapter 5, Floquet theory.
     """
     finite = jnp.where(jnp.isfinite(monodromy), monodromy, 0.0)
     if monodromy.shape[0] > 2:
@@ -23,5 +25,6 @@ def multipliers(monodromy: Float[Array, "state state"]) -> Complex[Array, " stat
         return values
     half = jnp.trace(finite) / 2.0
     product = finite[0, 0] * finite[1, 1] - finite[0, 1] * finite[1, 0]
+    # Complex before the root, of a negative number for a vibration: its multipliers are conjugate.
     root = jnp.sqrt((half**2 - product).astype(complex))
     return jnp.stack([half + root, half - root])

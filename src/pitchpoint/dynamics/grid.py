@@ -71,7 +71,10 @@ class Grid:
 
     @property
     def weight(self) -> np.ndarray:
-        """Weights of the nodes of an element; they sum to one."""
+        """Weights of the nodes of an element; they sum to one.
+
+        Source: Abramowitz and Stegun (1964), eq. 25.4.32, Lobatto's formula.
+        """
         return lobatto(self.nodes)[1]
 
     def bounds(self, edges: Float[Array, " edge"]) -> Float[Array, " bound"]:
@@ -84,7 +87,10 @@ class Grid:
         return values @ self.weight
 
     def derivative(self, values: Values) -> Values:
-        """Derivative along each element of unit length, at its nodes."""
+        """Derivative along each element of unit length, at its nodes.
+
+        From the Legendre series through the nodes.
+        """
         return values @ _derivative(self.nodes)
 
     def local(
@@ -96,7 +102,10 @@ class Grid:
         return jnp.moveaxis(split, -2, 0)
 
     def extremes(self, values: Values) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:
-        """Smallest and largest value, between the nodes too; piecewise differentiable."""
+        """Smallest and largest value, between the nodes too; piecewise differentiable.
+
+        From Taylor's series to the third order about the point beside the vertex.
+        """
         dense = values @ between(self.nodes)[0]
         flat = dense.reshape(*dense.shape[:-2], -1)
         low, high = (self._vertex(values, pick(flat, axis=-1)) for pick in (jnp.argmin, jnp.argmax))
@@ -133,6 +142,8 @@ class Grid:
 
         Returns:
             integral over the period of value exp(-2 pi i order phase).
+
+        From Gauss's quadrature of the Fourier integral.
         """
         highest = float(np.max(np.abs(orders), initial=0))
         turned = (self.nodes + math.pi * highest / self.elements) / 2.0

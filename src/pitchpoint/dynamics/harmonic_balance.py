@@ -35,6 +35,8 @@ def harmonic_balance(
 
     Returns:
         The response, in the same form as that of `steady_state`.
+
+    Source: Nayfeh and Mook (1979), section 2.3.4; here of a linear system with periodic stiffness.
     """
     course = excitation.on(grid or Grid.resolving(harmonics))
     scaled = equations(system, course)
@@ -69,6 +71,7 @@ def _balance(
 ) -> tuple[Complex[Array, "unknown unknown"], Complex[Array, " unknown"]]:
     """Equations of the coefficients, harmonics outside, coordinates inside."""
     size = equations.load.shape[0]
+    # A block depends on the difference of its two orders alone: each is transformed once.
     difference = orders[:, None] - orders
     span = np.arange(difference.min(), difference.max() + 1)
     fourier = course.grid.fourier
@@ -78,6 +81,7 @@ def _balance(
     own = rate[:, None, None] ** 2 * jnp.eye(size) + rate[:, None, None] * equations.damping
     blocks = stiffness + jnp.eye(orders.size)[:, :, None, None] * own
     matrix = jnp.moveaxis(blocks, 1, 2).reshape(orders.size * size, -1)
+    # Without finite inputs the matrix is singular; the status tells it, not a solve that fails.
     return jnp.where(equations.finite, matrix, jnp.eye(orders.size * size)), load.ravel()
 
 

@@ -40,6 +40,8 @@ def by_steps(
 
     Returns:
         Fundamental matrices and, last, the states reached from rest; whether all were found.
+
+    Source: Prince and Dormand (1981), their method of order eight, as diffrax has it.
     """
     grid = course.grid
     stiffness = grid.local(equations.total_stiffness)
@@ -109,6 +111,9 @@ def travel(
     Returns:
         States after each interval, derivative of the last one with respect to the start, and
         whether all were found.
+
+    Source: Prince and Dormand (1981), their method of order eight, as diffrax has it; derivatives follow
+    the equations of variation.
     """
     size = equations.load.shape[0]
 
@@ -176,6 +181,7 @@ def _solve(
 
 
 def _largest(error: tuple[Array, Array]) -> Array:
+    # A mean over all intervals, the usual norm, would not see that one of them is wrong.
     return jnp.max(jnp.abs(jnp.stack(error)))
 
 

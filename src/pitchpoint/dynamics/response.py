@@ -52,7 +52,10 @@ class Response(eqx.Module):
 
     @property
     def transmission_error(self) -> Float[Array, "element node"]:
-        """Dynamic transmission error, the first coordinate [m]."""
+        """Dynamic transmission error, the first coordinate [m].
+
+        Source: Atanasiu et al. (2011), eqs. 8 to 10, delta.
+        """
         return self.displacement[0]
 
     @property
@@ -99,6 +102,8 @@ class Response(eqx.Module):
 
         The sum over the pairs of arm times c_d has the mean that balances the load: one, for a single
         coordinate along the line of action.
+
+        Source: Atanasiu et al. (2011), shared dynamic loads, c_d.
         """
         return self.force / nominal
 
@@ -110,6 +115,8 @@ class Response(eqx.Module):
         Args:
             values: any course over the period.
             orders: not negative, known when compiled.
+
+        From the complex Fourier series: orders n and -n of a real course add up.
         """
         wanted = np.asarray(orders)
         parts = jnp.abs(self.course.grid.fourier(values, self.course.bounds, wanted))

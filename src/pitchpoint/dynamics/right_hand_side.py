@@ -48,6 +48,8 @@ class Moving(eqx.Module):
         creep: sliding speed at which 76 % of the friction is reached, mu F tanh(sliding/creep) [m/s].
         relaxation: damping over stiffness of each contact [s], see `relaxation_time`.
         stiffness: of each contact [N/m]; that of the teeth if None.
+
+    From Coulomb's friction, made smooth about rest by tanh.
     """
 
     design: Design
@@ -98,12 +100,18 @@ class ContactForces(eqx.Module):
 
     @property
     def energy(self) -> Each:
-        """Elastic energy of the contacts [J]."""
+        """Elastic energy of the contacts [J].
+
+        From the work that stretches a spring.
+        """
         return total(self.elastic * self.stretch) / 2.0
 
     @property
     def on_coordinates(self) -> Coordinates:
-        """Sum of F normal + mu F tangent: what holds the contacts on every coordinate [N m or N]."""
+        """Sum of F normal + mu F tangent: what holds the contacts on every coordinate [N m or N].
+
+        From virtual work.
+        """
         arms = self.contacts.normal, self.contacts.slip_arm
         return jnp.sum(self.force * arms[0] + self.drawn * arms[1], axis=(1, 2))
 
@@ -117,6 +125,8 @@ def relaxation_time(ratio: ArrayLike, mass: ArrayLike, stiffness: ArrayLike) -> 
         ratio: damping ratio xi.
         mass: that vibrates, see `system.reduced_mass` [kg].
         stiffness: of the mesh [N/m].
+
+    Source: Atanasiu et al. (2011), eq. 12.
 
     Example:
         >>> round(1e6 * float(relaxation_time(0.05, 1.0, 4e8)), 6)
@@ -136,6 +146,8 @@ def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> Con
     Args:
         moving: mesh and bodies.
         place, rate: of all coordinates.
+
+    From a spring and a damper side by side, cut where together they would pull.
     """
     mesh = moving.design.mesh
     turned = jnp.tensordot(moving.padded(mesh.driver), place, axes=1) * (mesh.driver @ mesh.motion)
@@ -182,6 +194,8 @@ def acceleration(
         time: [s].
         place, rate: of all coordinates.
         found: forces at the contacts there.
+
+    From Newton's law on every coordinate, see the equation at the head of this module.
     """
     bodies = moving.bodies
     held = stiffness(bodies) @ place + damping(bodies) @ rate + _drag(moving, rate)
@@ -196,6 +210,8 @@ def powers(
 
     Arguments are those of `acceleration`. The last one is what the bodies do on the springs of the
     contacts.
+
+    From force times velocity wherever a force acts.
     """
     held = damping(moving.bodies) @ rate
     damped = total((found.force - found.elastic) * found.closing)

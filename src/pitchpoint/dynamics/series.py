@@ -38,6 +38,8 @@ def by_series(
 
     Returns:
         Fundamental matrices and, last, the states reached from rest; whether the last terms are small.
+
+    From equal powers of time on both sides of z'' + C z' + K z = f.
     """
     grid = course.grid
     stiffness, load, half = (
@@ -57,6 +59,7 @@ def by_series(
         places, speed, (same, other) = carry
         scale = half / at[1]
         force = product(damping, speed) - on_last(at[0], 2 * size + 1)
+        # A product of two series: as many earlier places count as the stiffness has powers.
         for power, before in zip(stiffness, places, strict=True):
             force = force + product(power, before)
         place, speed = scale * speed, -scale * force
@@ -67,6 +70,7 @@ def by_series(
     places = (middle[:size], *(none[:size] for _ in stiffness[1:]))
     start = (places, middle[size:], (middle, none))
     (places, speed, sums), _ = jax.lax.scan(term, start, (load, jnp.arange(1.0, TERMS + 1.0)))
+    # Even terms are alike at both ends and odd ones opposite, so two sums give the state at either end.
     odd, even = sums if TERMS % 2 else sums[::-1]
     maps = compose(even + odd, _inverse(even - odd))
     last = jnp.maximum(jnp.max(jnp.abs(places[0])), jnp.max(jnp.abs(speed)))

@@ -82,6 +82,8 @@ def shoot(
         law: force between the teeth.
         backlash: free motion in units of stretch.
         start: displacement and velocity without dimensions.
+
+    Source: Nayfeh and Balachandran (1995), chapter 6, shooting.
     """
 
     def period(shot: Shot) -> Shot:
@@ -119,6 +121,7 @@ def _decide(shot: Shot, before: Float[Array, ""], fine: Bool[Array, ""]) -> Shot
     """The shot with its verdict and the start of its next period."""
     stable = jnp.max(jnp.abs(multipliers(shot.monodromy))) <= STABLE
     closed = shot.residual < CLOSED
+    # Near a solution Newton's step does far better than half: less means that it is not near one.
     falls = (shot.tries == 0) | (shot.residual < before / 2.0)
     goes_on = fine & falls & ~closed & (shot.tries < NEWTON_STEPS)
     found = fine & closed & stable
@@ -127,6 +130,8 @@ def _decide(shot: Shot, before: Float[Array, ""], fine: Bool[Array, ""]) -> Shot
     corrected = shot.start + jnp.linalg.solve(eye - shot.monodromy, shot.end - shot.start)
     takes_up = (shot.residual < shot.near) | (shot.marched % RETRY == RETRY - 1)
 
+    # Each time it takes up Newton's method the march has to come nearer before the next try: from as far
+    # it would fail again.
     newton = jnp.where(shot.newton, goes_on, takes_up)
     origin = jnp.where(shot.newton, shot.origin, shot.end)
     start = jnp.where(newton & shot.newton, corrected, origin)

@@ -45,12 +45,15 @@ def steady_state(
     Returns:
         The response; its status says where teeth would separate or the state cannot be reached. The
         numbers of an unstable solution are those of the balance that is not reached.
+
+    From z(T) = z(0): (1 - monodromy) z(0) is the state reached from rest.
     """
     course = excitation.on(grid or Grid())
     scaled = equations(system, course)
     maps, resolved = integrator(scaled, course, system.period)
     linked = chain(maps)
     monodromy, reached = linked.period
+    # Marching would take as many periods as the damping needs, and would not find what is unstable.
     start = inverse_matrix(jnp.eye(monodromy.shape[0]) - monodromy) @ reached
     residual = _distance(monodromy @ start + reached, start)
     return respond(
@@ -91,6 +94,8 @@ def separating_steady_state(
 
     Returns:
         The response; not a number where no stable motion with the period of the mesh was found.
+
+    Source: Nayfeh and Balachandran (1995), chapter 6, shooting.
     """
     law = law or CONTACT_LAWS["separating"]
     course = excitation.on(grid or Grid())

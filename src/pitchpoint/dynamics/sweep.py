@@ -44,6 +44,8 @@ def speed_sweep(
 
     Returns:
         Responses, the speed as first axis of every array.
+
+    Source: Nayfeh and Balachandran (1995), chapter 6, sequential continuation.
     """
     law = law or CONTACT_LAWS["separating"]
     course = excitation.on(grid or Grid())

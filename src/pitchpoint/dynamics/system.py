@@ -37,6 +37,8 @@ def modal_damping(mass: Matrix, mean_stiffness: Matrix, ratio: Float[Array, ""] 
         mass: [coordinate coordinate] positive definite [kg or kg m2].
         mean_stiffness: mean over the period of arm, stiffness and arm, semi-definite [N/m or N m].
         ratio: damping ratio xi.
+
+    Source: Atanasiu et al. (2011), eq. 12; for several coordinates mode by mode.
     """
     if mass.shape[0] == 1:
         return 2.0 * ratio * jnp.sqrt(mass * mean_stiffness)

@@ -96,6 +96,8 @@ def transient(
 
     Raises:
         InputError: what moves is not complete, or has effects that a transient leaves out.
+
+    Source: Prince and Dormand (1981), their method of order eight, as diffrax has it.
     """
     asked = np.asarray(times, float)
     _check(moving, asked)

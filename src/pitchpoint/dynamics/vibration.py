@@ -56,6 +56,8 @@ def excitation(stiffness: MeshStiffness, vibrating: Vibrating) -> Excitation:
     Args:
         stiffness: of the mesh over one period.
         vibrating: with the profile error.
+
+    Source: Atanasiu et al. (2011), eq. 11, with the profile error as a sum of orders.
     """
     orders = jnp.asarray(vibrating.orders, dtype=float).reshape(-1, 1, 1)
     angle = 2.0 * jnp.pi * orders * stiffness.phase + vibrating.error_phase[:, None, None]
@@ -83,7 +85,6 @@ def system(
     Source: Atanasiu et al. (2011), eqs. 10, 12 and 13, the last with the indices in their places.
     """
     action = mesh.line_of_action
-    assert action is not None
     mass = reduced_mass(vibrating.inertia, action).reshape(1, 1)
     return System(
         mass=mass,
@@ -94,7 +95,10 @@ def system(
 
 
 def frequency_ratio(stiffness: MeshStiffness, moved: System) -> Float[Array, ""]:
-    """Natural frequency with the mean stiffness over the mesh frequency."""
+    """Natural frequency with the mean stiffness over the mesh frequency.
+
+    From omega = sqrt(k_m/m_e) of one mass on a spring.
+    """
     natural = jnp.sqrt(stiffness.mean / moved.mass[0, 0])
     return natural * moved.period / (2.0 * jnp.pi)
 
@@ -180,5 +184,8 @@ def transmission_figures(
 
 
 def nominal_force(stiffness: MeshStiffness, moved: System) -> Float[Array, ""]:
-    """Normal force of a single pair that carries the load without vibration [N]."""
+    """Normal force of a single pair that carries the load without vibration [N].
+
+    From the balance of the load by one pair, where its arm is largest.
+    """
     return moved.load[0] / jnp.max(jnp.abs(stiffness.arm))

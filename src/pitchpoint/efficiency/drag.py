@@ -46,6 +46,8 @@ class Drag(eqx.Module):
             in starting torques alone.
         resting: True if the bodies are about to move: bearing at speed zero, breakaway torque, no
             churning; static.
+
+    Source: ISO/TR 14179-2:2001, losses of bearings, seals and churning add up.
     """
 
     between: Float[Array, " dof"] = eqx.field(converter=as_array)
@@ -121,6 +123,8 @@ def resistance(
     Returns:
         Function of the normal force of each slice [N] that gives the torque on every coordinate [N m];
         its power at the rates of the mesh is the power lost, never negative.
+
+    From virtual work: a torque between two bodies acts on the difference of their rotations.
     """
 
     def torques(load: Lanes) -> Float[Array, "dof *#b"]:

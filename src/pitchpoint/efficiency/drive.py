@@ -64,7 +64,10 @@ class Drive(eqx.Module):
 
     @property
     def ratios(self) -> Float[Array, " stage"]:
-        """Speed of each stage's driver over that of the drive's input, not negative."""
+        """Speed of each stage's driver over that of the drive's input, not negative.
+
+        From kinematics: the ratios of stages one behind the other multiply.
+        """
         steps = [
             jnp.abs(stage.design.mesh.loaded @ stage.design.mesh.motion) for stage in self.stages
         ]
@@ -176,7 +179,10 @@ class DriveCycle(eqx.Module):
 
     @property
     def ripple(self) -> Each:
-        """Largest less smallest torque at the input [N m], at the nodes."""
+        """Largest less smallest torque at the input [N m], at the nodes.
+
+        Source: Tian et al. (2024), eq. 10, for several meshes.
+        """
         axes = tuple(range(-len(self.weights), 0))
         return jnp.max(self.input_torque, axis=axes) - jnp.min(self.input_torque, axis=axes)
 
@@ -193,7 +199,10 @@ class DriveCycle(eqx.Module):
 
     @property
     def mean_efficiency(self) -> Each:
-        """Energy out over energy in; NaN where no power is transmitted."""
+        """Energy out over energy in; NaN where no power is transmitted.
+
+        From the balance of energy over the periods of all meshes.
+        """
         power_in = self.mean_input_torque * self.speed
         transmits = self.mean_output_power > 0.0
         return jnp.where(
@@ -234,6 +243,8 @@ def drive_cycle(
         operation: load at the output, speed of the input, temperature of the oil [*b].
         models: laws of each stage.
         nodes: Gauss-Lobatto nodes in each segment of each period.
+
+    From the balance of torques on every shaft, see `balance`.
     """
     if len(models) != len(drive.stages):
         raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
@@ -314,6 +325,8 @@ def output_wind_up(
 
     Returns:
         Mean rotation [rad], and one over the mean compliance for a small change of the load [N m/rad].
+
+    From virtual work: rotation and torque go with the ratio, so compliance with its square.
     """
     ratios, turned, slope = drive.ratios, jnp.zeros_like(load), jnp.zeros_like(load)
     for number, (stage, laws) in enumerate(zip(drive.stages, models, strict=True)):

@@ -31,6 +31,8 @@ def mean_loss_gradient(design: Design, operation: Operation, models: Models) -> 
 
     Raises:
         ConvergenceError: friction locks the mesh, there is no balance.
+
+    By automatic differentiation of the cycle in reverse, no differences are taken.
     """
     return _told(*_gradient((design, operation), "mean_loss", models))
 
@@ -51,6 +53,8 @@ def input_torque_gradient(
 
     Arguments and result as in `mean_loss_gradient`. The torque jumps at entry and exit of a pair: on
     an event itself the derivative is that of one side.
+
+    By automatic differentiation of the state in reverse.
     """
     return _told(*_at_phase((design, operation), models, phase))
 

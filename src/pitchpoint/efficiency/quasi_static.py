@@ -116,7 +116,7 @@ class Design(eqx.Module):
             lubricant_factor=oil.lubricant_factor,
             roughness_ra=self.roughness.mean_ra,
             roughness_rq=self.roughness.composite_rq,
-            reference=mesh.reference,
+            reference=mesh.reference if mesh.pitch_point else None,
         )
 
 
@@ -342,6 +342,9 @@ class State(eqx.Module):
         input_torque: torque of the driver in its direction of motion [N m].
         input_power: power put in at all coordinates but the loaded one [W].
         output_power: power taken at the loaded coordinate [W]; zero where it stands still.
+
+    Source: Tian et al. (2024), eqs. 1, 2 and 5, for any number of contacts; rolling resistance brakes
+    both surfaces.
     """
 
     contacts: Contacts
@@ -361,7 +364,10 @@ class State(eqx.Module):
 
     @property
     def efficiency(self) -> Each:
-        """Output over input power; NaN where no power is transmitted."""
+        """Output over input power; NaN where no power is transmitted.
+
+        Source: Tian et al. (2024), eq. 3.
+        """
         transmits = self.output_power > ROUNDING * self.input_power
         return jnp.where(
             transmits, self.output_power / jnp.where(transmits, self.input_power, 1.0), jnp.nan
@@ -395,6 +401,8 @@ def state(
         quick: two steps for the balance, the first one in single precision, instead of as many as it
             takes; check the residual then.
         engaged: contacts and shares at these phases, where they are known already.
+
+    Source: Tian et al. (2024), eqs. 1, 2, 5 and 16; see `balance`.
     """
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
     phase, operation = jax.tree.map(lambda x: _of_rank(x, rank), (phase, operation))
@@ -531,7 +539,10 @@ class Cycle(eqx.Module):
         return jnp.sum(values * self.weight, axis=-1)
 
     def path_mean(self, values: Float[Array, "*b node"]) -> Each:
-        """Mean over the path of contact of one pair: double contact counts twice."""
+        """Mean over the path of contact of one pair: double contact counts twice.
+
+        Source: Tian et al. (2024), eq. 7, whose mean is over the path of contact.
+        """
         pairs = jnp.sum(jnp.any(self.state.contacts.active, axis=1), axis=0)
         return self.mean(values * pairs) / self.mean(pairs * 1.0)
 
@@ -542,6 +553,8 @@ class Cycle(eqx.Module):
         vertex beside a point where it is level: jumps lie at the ends of segments, where there are
         nodes. Where pairs with gaps come and go between the events, values have kinks that no
         polynomial follows, and the nodes alone are read. Values that are undefined at a node have none.
+
+        From Taylor's series to the third order about the point beside the vertex.
         """
         segments = jnp.broadcast_to(values, (*values.shape[:-1], self.phase.shape[0]))
         known = ~jnp.any(jnp.isnan(segments), axis=-1)
@@ -554,6 +567,7 @@ class Cycle(eqx.Module):
         segments = segments.reshape(*segments.shape[:-1], -1, self.nodes)
         at, *derivatives, spacing = between(self.nodes)
         dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
+        # A vertex farther off than the next point is told there, by derivatives that are nearer to it.
         level = jnp.abs(slope) < jnp.abs(curve) * spacing
         step = -slope / jnp.where(level, curve, 1.0)
         vertex = dense + slope * step / 2.0 + third * step**3 / 6.0
@@ -572,7 +586,10 @@ class Cycle(eqx.Module):
 
     @property
     def mean_efficiency(self) -> Each:
-        """Energy out over energy in within one period; NaN where no power is transmitted."""
+        """Energy out over energy in within one period; NaN where no power is transmitted.
+
+        From the balance of energy over one period.
+        """
         power_out, power_in = (
             self.mean(power) for power in (self.state.output_power, self.state.input_power)
         )
@@ -581,7 +598,10 @@ class Cycle(eqx.Module):
 
     @property
     def ripple(self) -> Each:
-        """Largest minus smallest input torque [N m]; piecewise differentiable."""
+        """Largest minus smallest input torque [N m]; piecewise differentiable.
+
+        Source: Tian et al. (2024), eq. 10.
+        """
         low, high = self.extremes(self.state.input_torque)
         return high - low
 
@@ -671,6 +691,8 @@ def cycle_nodes(
         mesh: any family.
         sharing: may add hand-overs to the events of the mesh.
         nodes: in each segment, at least 3.
+
+    Source: Abramowitz and Stegun (1964), eq. 25.4.32, Lobatto's formula.
     """
     events = mesh.events()
     if sharing.hand_over is not None:

@@ -30,6 +30,8 @@ def no_load_torque(
 
     Returns:
         Torque, shape [*b]; NaN where friction locks the mesh.
+
+    From the balance of a mesh whose teeth carry the drag alone, see `tooth_load`.
     """
     idle = replace(operation, load=jnp.zeros_like(operation.load))
     return cycle(design, idle, models, engaged=engaged).mean_input_torque
@@ -55,6 +57,8 @@ def starting_torque(
 
     Returns:
         Torque, shape [*b]; NaN where friction holds the drive whatever the torque.
+
+    From the same balance with the bodies about to move; Palmgren (1959) for the bearings.
     """
     resting = replace(design, drag=at_rest(design.drag))
     found = cycle(resting, operation, models, engaged=engaged)

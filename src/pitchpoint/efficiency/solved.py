@@ -58,6 +58,8 @@ def solved_cycle(
     Raises:
         InputError: the solver asks for what is no condition, or is none at these contacts; it returns
             what are no coefficients.
+
+    Source: Tian et al. (2024), eq. 17: force and coefficient in turns until they agree.
     """
     wanted, _ = arguments(solver)
     demand_shape(solver, design.mesh.shape)

@@ -47,6 +47,8 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
         design: mesh.
         models: for the nodes of the cycle.
         engaged: contacts and shares of a mesh with gaps; equal shares by default.
+
+    Source: ISO/TR 14179-2:2001, H_V; Höhn (2010).
     """
     mesh = design.mesh
     if engaged is None:

@@ -10,6 +10,7 @@ from pydantic import Field, Tag
 
 from pitchpoint.gears.ball_on_disc.table import BallOnDiscRig
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.tables import by, tag
@@ -23,6 +24,7 @@ __all__ = ["TABLES", "Gears", "built_gears", "family_of", "sample_of"]
 TABLES: tuple[type[GearsTable], ...] = (
     CylindricalGears,
     StrainWaveGears,
+    RackAndPinionGears,
     BallOnDiscRig,
 )
 """Tables of all families, the usual one first. `family.py` and `sample.toml` stand beside each."""

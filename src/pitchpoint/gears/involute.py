@@ -1,6 +1,7 @@
 """One involute gear, external or internal, spur or helical: circles, thickness, outline (ISO 21771)."""
 
 import dataclasses
+import math
 from functools import cache
 from typing import Self
 
@@ -13,14 +14,33 @@ from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
 from pitchpoint.roots import hypot, root
 
 __all__ = [
+    "FILLET_STATIONS",
     "InvoluteGear",
     "base_helix",
+    "gauss",
     "inverse_involute",
     "involute",
     "transverse_angle",
+    "usual_fillet",
 ]
 
-_FILLET_STATIONS = 16
+FILLET_STATIONS = 16
+"""Gauss nodes along a fillet."""
+
+_AVAILABLE_FILLET = 0.38
+
+
+def usual_fillet(dedendum: float, angle: float) -> float:
+    """Corner rounding of a basic rack where none is given, in modules: 0.38, or all its tip has room for.
+
+    Args:
+        dedendum: of the rack's gear, in modules.
+        angle: normal pressure angle [rad].
+
+    Source: ISO 53:1998, profile A.
+    """
+    largest = (math.pi / 4 - dedendum * math.tan(angle)) * math.cos(angle) / (1.0 - math.sin(angle))
+    return min(_AVAILABLE_FILLET, max(largest, 0.0))
 
 
 def involute(angle: Float[Array, "*b"]) -> Float[Array, "*b"]:
@@ -195,7 +215,7 @@ class InvoluteGear(eqx.Module):
             rim_ratio: root radius over bore radius.
         """
         normal = self.virtual_spur_gear
-        unit, weight = _gauss(_FILLET_STATIONS)
+        unit, weight = gauss(FILLET_STATIONS)
         points, slopes = jax.jvp(normal._fillet_place, (unit,), (jnp.ones_like(unit),))
         ends = jnp.stack([normal.form_roll_length, normal.tip_roll_length])
         span = (ends[1] - ends[0]) / 2.0
@@ -213,7 +233,7 @@ class InvoluteGear(eqx.Module):
             root_radius=jnp.abs(normal.root_radius),
             root_half_angle=start[1, 0],
             rim_ratio=rim_ratio,
-            internal=self.internal,
+            body="ring" if self.internal else "disc",
         )
 
     def outline(self, count: int = 24) -> Float[Array, "point 2"]:
@@ -343,7 +363,7 @@ class InvoluteGear(eqx.Module):
 
 
 @cache
-def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
+def gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre nodes and weights on [0, 1]."""
     x, weight = np.polynomial.legendre.leggauss(count)
     return (x + 1.0) / 2.0, weight / 2.0

@@ -2,6 +2,7 @@
 
 import abc
 from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from math import inf
 from typing import ClassVar, Literal, Self
 
@@ -17,17 +18,71 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["PATHS", "Mesh", "Reference", "StandardPair"]
+__all__ = ["PATHS", "Mesh", "Reference", "StandardPair", "Way"]
 
 
 Path = Literal["action", "wave", "turn"]
 
-PATHS: Mapping[Path, tuple[str, str]] = {
-    "action": ("position on the path of contact from A, in base pitches", "x/p_b"),
-    "wave": ("angle from the long axis, in turns", "p/2π"),
-    "turn": ("turns of the driver", "θ/2π"),
+
+@dataclass(frozen=True)
+class Way:
+    """Words of the way of a pair through the mesh, which `Contacts.path` counts.
+
+    Attributes:
+        long_name, symbol: of a place on it.
+        axis: title of an axis of it.
+        scale: of one in the unit of that axis.
+        pitch: what a period of the phase is.
+        against: why time runs against the phase, where it does; {} is the driver.
+        title: of figures along it; empty where there is no way to show.
+        told: what stands above them.
+        origin: what lies at zero, where it has a name.
+        zones: number of zones of mesh that are alike, in which pairs stand one zone after the other.
+    """
+
+    long_name: str
+    symbol: str
+    axis: str
+    scale: float
+    pitch: str
+    against: str = "{} drives"
+    title: str = ""
+    told: str = ""
+    origin: str = ""
+    zones: int = 1
+
+    @property
+    def attributes(self) -> dict[str, str | float]:
+        """What a figure along it needs, for the places in a dataset."""
+        return asdict(self)
+
+
+PATHS: Mapping[Path, Way] = {
+    "action": Way(
+        "position on the path of contact from A, in base pitches",
+        "x/p_b",
+        "place on the path from A [base pitches]",
+        1.0,
+        "base pitch",
+        title="Along the path of contact",
+    ),
+    "wave": Way(
+        "angle from the long axis, in turns",
+        "p/2π",
+        "angle from the long axis p [°]",
+        360.0,
+        "tooth pitch",
+        "teeth come from positive angles",
+        title="Along the wave",
+        told="One tooth on its way through the zone of mesh, over its angle from the end of the long axis "
+        "that is nearest; the dotted line is the long axis. Values stand where the tooth carries; both ends "
+        "of the long axis are alike.",
+        origin="the long axis",
+        zones=2,
+    ),
+    "turn": Way("turns of the driver", "θ/2π", "angle of the driver [°]", 360.0, "period"),
 }
-"""Long name and symbol of what `Contacts.path` counts."""
+"""The ways of pairs that families have."""
 
 
 class Reference(eqx.Module):
@@ -61,7 +116,6 @@ class StandardPair(eqx.Module):
         transverse_contact_ratio: eps_alpha.
         face_width: [m].
         reference_arm: radius on which the load of the driven coordinate acts at the reference circle [m].
-        internal: True if one is a ring; static.
     """
 
     virtual_teeth: Float[Array, "2"]
@@ -72,7 +126,6 @@ class StandardPair(eqx.Module):
     transverse_contact_ratio: Float[Array, ""]
     face_width: Float[Array, ""]
     reference_arm: Float[Array, ""]
-    internal: bool = eqx.field(static=True)
 
 
 class Mesh(eqx.Module):
@@ -82,9 +135,10 @@ class Mesh(eqx.Module):
     rotations counter-clockwise [rad], or translations [m] where a family has them.
 
     Attributes:
-        pitch_point: of the class; True if `reference` is not None.
+        pitch_point: of the class; True if it has a `reference`.
         shape: of the class; that of all its contacts.
         toothed: of the class; True if `sections` holds teeth that yield.
+        along_action: of the class; True if it has a `line_of_action`.
         couples: of the class; True if bodies under the teeth couple them, see `body_compliance`.
         counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
         inner_bearing: of the class; the two bodies between which a bearing sits inside the drive, by name;
@@ -94,6 +148,7 @@ class Mesh(eqx.Module):
     pitch_point: ClassVar[bool] = False
     shape: ClassVar[Shape] = "line"
     toothed: ClassVar[bool] = False
+    along_action: ClassVar[bool] = False
     couples: ClassVar[bool] = False
     counts: ClassVar[Path] = "turn"
     inner_bearing: ClassVar[frozenset[str]] = frozenset()
@@ -111,17 +166,17 @@ class Mesh(eqx.Module):
         return jnp.zeros(())
 
     @property
-    def line_of_action(self) -> Float[Array, " dof"] | None:
-        """Closing along the line of action for a unit rate of each coordinate [m/rad].
+    def line_of_action(self) -> Float[Array, " dof"]:
+        """Closing along the line of action for a unit rate of each coordinate [m/rad or 1].
 
-        Transmission error is measured along it. None where there is no such line.
+        Transmission error is measured along it, by families that say so, see `along_action`.
         """
-        return None
+        raise self._without("line of action")
 
     @property
-    def sections(self) -> tuple[ToothSection, ToothSection] | None:
-        """Teeth of the two members as they yield; None where there are none, see `toothed`."""
-        return None
+    def sections(self) -> tuple[ToothSection, ToothSection]:
+        """Teeth of the two members as they yield, of families that say so, see `toothed`."""
+        raise self._without("teeth that yield")
 
     @property
     def surfaces(self) -> Surfaces:
@@ -139,12 +194,12 @@ class Mesh(eqx.Module):
         return jnp.ones(())
 
     @property
-    def filled(self) -> np.ndarray | None:
-        """Numbers of the places for pairs that hold one, or None where all do.
+    def filled(self) -> np.ndarray | slice:
+        """Numbers of the places for pairs that hold one.
 
         Empty places let meshes of several tooth numbers share their programs.
         """
-        return None
+        return slice(None)
 
     @property
     def largest_radius(self) -> Float[Array, ""]:
@@ -193,17 +248,24 @@ class Mesh(eqx.Module):
         return jnp.zeros((0, *contacts.weight.shape))
 
     @property
-    def standard(self) -> StandardPair | None:
-        """What standards ask about a pair of cylindrical gears, or None: they then do not apply."""
-        return None
+    def standard(self) -> StandardPair:
+        """What standards ask about a pair of cylindrical gears, see `standardised`."""
+        raise self._without("values that a standard asks for")
 
-    def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"] | None:
-        """Moment of inertia of plain bodies about their axes [kg m2], or None where that says nothing.
+    @property
+    def standardised(self) -> bool:
+        """True if the standards for cylindrical gears apply."""
+        return False
+
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"]:
+        """Moments of inertia of plain bodies about their axes [kg m2], masses of those that travel [kg].
+
+        Not a number where the gears say nothing of one.
 
         Args:
             density: of both members [kg/m3].
         """
-        return None
+        return jnp.full(len(self.coordinates), jnp.nan)
 
     def dimensions(self) -> dict[str, Float[Array, "..."]]:
         """Main dimensions by name, one value or one for each member; for results and tables."""
@@ -272,6 +334,9 @@ class Mesh(eqx.Module):
         """Driver angle of one period [rad]."""
 
     @property
-    @abc.abstractmethod
-    def reference(self) -> Reference | None:
-        """Pitch-point values, or None: laws for a whole mesh then do not apply."""
+    def reference(self) -> Reference:
+        """Values at the pitch point, that laws for a whole mesh ask for, see `pitch_point`."""
+        raise self._without("pitch point")
+
+    def _without(self, what: str) -> TypeError:
+        return TypeError(f"{type(self).__name__} has no {what}")

@@ -14,8 +14,12 @@ __all__ = [
     "ANGLE",
     "BORE",
     "DEVIATION",
+    "DISTANCE",
+    "FILLET",
+    "HELIX",
     "MODULE",
     "RACK",
+    "SHIFT",
     "WIDTH",
     "Deviation",
     "GearsTable",
@@ -27,6 +31,10 @@ MODULE = Quantity("length", 1e-5, 0.1, "mm")
 WIDTH = Quantity("length", 1e-5, 10.0, "mm")
 ANGLE = Quantity("angle", 5 * pi / 180, 45 * pi / 180, "deg")
 RACK = Quantity("dimensionless", 0.1, 4.0)
+HELIX = Quantity("angle", 0.0, 60 * pi / 180, "deg")
+SHIFT = Quantity("dimensionless", -2.0, 3.0)
+FILLET = Quantity("dimensionless", 0.0, 1.0)
+DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
 BORE = Quantity("length", 1e-5, 100.0, "mm")
 WAVES = Quantity("dimensionless", 1, 1_000, whole=True)
 DEVIATION = Quantity("length", 0.0, 1e-2, "um")
@@ -41,6 +49,8 @@ class GearsTable(Table):
     Attributes:
         members: body of each coordinate.
         load: what the loaded member takes.
+        carries: that in words.
+        transmits: False for a test rig.
         friction, film_thickness, load_sharing: laws where none are given.
         meaningless: by key of the models why they say nothing about these gears.
         drivers: members that may drive, the usual one first.
@@ -49,10 +59,17 @@ class GearsTable(Table):
 
     members: ClassVar[tuple[str, ...]]
     load: ClassVar[Load] = "torque"
+    carries: ClassVar[str] = "gears carry a torque"
+    transmits: ClassVar[bool] = True
     friction: ClassVar[str] = "constant"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
     meaningless: ClassVar[Mapping[str, str]] = {}
     family: str
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Bodies that turn, beside which power may be lost."""
+        return self.members
 
     @property
     def drivers(self) -> tuple[str, ...]:

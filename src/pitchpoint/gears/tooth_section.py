@@ -1,12 +1,15 @@
 """One tooth cut across its flank lines: the shape that yields under load."""
 
 from functools import cache
+from typing import Literal
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
 __all__ = ["FLANK_NODES", "ToothSection", "chebyshev_nodes"]
+
+Body = Literal["disc", "ring", "rack"]
 
 FLANK_NODES = 24
 """Chebyshev nodes along the flank; compliances are analytic there and converge like a power series."""
@@ -31,7 +34,7 @@ class ToothSection(eqx.Module):
         root_radius: of the body that carries the tooth [m].
         root_half_angle: half the angle that the tooth takes on the root circle [rad].
         rim_ratio: root radius over bore radius.
-        internal: True for the tooth of a ring; static.
+        body: what carries the tooth; static.
     """
 
     fillet: Float[Array, "2 station"]
@@ -43,7 +46,7 @@ class ToothSection(eqx.Module):
     root_radius: Float[Array, ""]
     root_half_angle: Float[Array, ""]
     rim_ratio: Float[Array, ""]
-    internal: bool = eqx.field(static=True)
+    body: Body = eqx.field(static=True)
 
 
 @cache

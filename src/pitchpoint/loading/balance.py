@@ -181,6 +181,8 @@ def first_guess(contacts: Contacts, share: Lanes, **given: Any) -> Each:
     """Contact force over that without friction after one step of third order; arguments as in `balance`.
 
     In single precision it takes half the time, and is near enough for one step in double precision.
+
+    From Halley's step, see `roots.third_order_step`.
     """
     equation = _Equation(contacts, share, **given)
     return third_order_step(equation.unbalance, equation.start())
@@ -235,9 +237,11 @@ def balance(
     left: Each | float = 0.0
     if guess is None:
         ratio, iterations = root(equation.unbalance, start, most)
+        # A state without a root ends at the bracket, where laws would be asked for an absurd load.
         _, terms = equation.terms(jnp.where(ratio > _ALMOST * most, start, ratio))
     else:
         ratio, terms, left = equation.last_step(jax.lax.stop_gradient(guess))
+        # The guess was one step, this is the other.
         iterations = jnp.asarray(2)
     lost = ratio > _ALMOST * most
     coefficient, resistance, by_friction, by_rolling = terms
@@ -262,6 +266,7 @@ def balance(
     locked = lost | (grip <= 0.0)
     slip = along(equation.friction_arms, loaded)
     hold = -equation.side * total(slip) / equation.arm
+    # The inner choice keeps the slope finite where the outer one leaves the quotient out: else it is NaN.
     jamming = jnp.where(hold > 0.0, 1.0 / jnp.where(hold > 0.0, hold, 1.0), jnp.inf)
     if guess is not None:
         ratio, torque, residual, grip = _apart((ratio, torque, residual, grip))
@@ -295,6 +300,8 @@ def tooth_load(
     Returns:
         Torque or force [N m or N]; negative where the drag takes the coordinate along with more than
         its load.
+
+    From the balance of the driven coordinate while no contact is loaded.
     """
     if drag is None:
         return load

@@ -70,6 +70,8 @@ def mean_line_load(
         mesh: any family.
         contacts: of the mesh.
         load: that the driven coordinate carries [N m or N].
+
+    From the balance of the driven coordinate under one load per length on all contact lines.
     """
     arms = jnp.abs(along(contacts.normal, mesh.loaded))
     return load / total(jnp.where(contacts.active, contacts.weight * arms, 0.0))
@@ -91,7 +93,5 @@ def slice_stiffness(
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
     """
-    sections = mesh.sections
-    assert sections is not None
     line_load = mean_line_load(mesh, contacts, load)
-    return unit_stiffness(contacts, sections, solids, terms, line_load)
+    return unit_stiffness(contacts, mesh.sections, solids, terms, line_load)

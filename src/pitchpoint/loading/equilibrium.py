@@ -133,6 +133,9 @@ def equilibrium(
         Forces and approach, broadcast over all batch axes; NaN where no equilibrium was found. A
         load of zero gives the first pair that touches.
 
+    Source: Júdice and Pires (1994) for the exchanges; Nocedal and Wright (2006), algorithm 16.3, for the
+    steps.
+
     Example:
         >>> import jax.numpy as jnp
         >>> springs, gaps = jnp.full((2, 1), 1e-8), jnp.asarray([[0.0], [1e-6]])
@@ -164,7 +167,10 @@ def equilibrium(
 
 
 def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each:
-    """Approach at which the first of rigid contacts touches [rad or m]; arguments as in `equilibrium`."""
+    """Approach at which the first of rigid contacts touches [rad or m]; arguments as in `equilibrium`.
+
+    From the gap of each contact, which closes by its arm times the approach.
+    """
     touches = active & (arm > 0.0)
     return jnp.min(jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf), axis=(0, 1))
 
@@ -200,6 +206,7 @@ def _normalised(
         own = jnp.diagonal(matrix, axis1=-2, axis2=-1)
     arms, gaps = jnp.where(may, rows(arm), 0.0), rows(gap)
     constant = jax.lax.stop_gradient
+    # A quotient that is not wanted needs a divisor too: its infinite slope would make NaN of a zero.
     safe_arms = jnp.where(may, arms, 1.0)
     approach = gaps / safe_arms
     touch = constant(jnp.min(jnp.where(may, approach, jnp.inf), axis=-1))
@@ -223,6 +230,7 @@ def _normalised(
         gap=gaps / (mean_compliance * reference)[..., None],
         arm=arms / mean_arm[..., None],
         active=may,
+        # Over its own constant value the load is one; it stands here to carry the derivative.
         load=jnp.where(light, 1.0, force / reference),
     )
     scale = jnp.where(light, force, reference)
@@ -294,6 +302,7 @@ def _try(problem: _Problem, at: _Search) -> _Search:
     careful = at.patience < 0
     patience = jnp.where(count < at.fewest, FULL_EXCHANGES, at.patience - 1)
     patience = jnp.where(careful, -1, patience)
+    # Steps that lessen the energy need forces to start from that push and carry the load.
     first = _feasible(problem, found)
     descent, force = _descend(at, found, pulls, overlaps)
     loaded = jnp.where((patience < 0)[..., None], first > 0.0, at.loaded ^ (pulls | overlaps))
@@ -344,6 +353,7 @@ def _as_if_alone(problem: _Problem) -> Bool[Array, "*b lane"]:
     def until(values: Rows) -> Rows:
         return jnp.cumsum(jnp.take_along_axis(values, order, axis=-1), axis=-1)
 
+    # Sums over the first so many lanes give every possible set at once, without a search.
     stiffness = until(problem.arm**2 / problem.own)
     lost = until(problem.arm * problem.gap / problem.own)
     approach = (problem.load[..., None] + lost) / jnp.where(stiffness > 0.0, stiffness, 1.0)
@@ -354,6 +364,8 @@ def _as_if_alone(problem: _Problem) -> Bool[Array, "*b lane"]:
 
 def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
     """Forces on these lanes and the approach, as if all of them could pull."""
+    # Forces are linear in the approach, so that the load alone decides on it: one factorisation serves
+    # both parts, and the approach never has to be looked for.
     sides = jnp.stack([problem.arm, problem.gap], axis=-1) * loaded[..., None]
     solved = _divided(problem, loaded, sides)
     stiffness = jnp.sum(sides[..., 0] * solved[..., 0], axis=-1)
@@ -395,6 +407,7 @@ def _divided(
 
 def _residual(problem: _Problem, loaded: Bool[Array, "*b lane"], found: _Solution) -> Each:
     free = problem.active & ~loaded
+    # Loaded lanes must close their gap, free ones only not overlap.
     overlap = jnp.where(loaded, jnp.abs(found.slack), jnp.where(free, -found.slack, 0.0))
     pull = jnp.where(loaded, -found.force, 0.0)
     carried = jnp.sum(problem.arm * found.force, axis=-1)

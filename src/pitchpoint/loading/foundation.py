@@ -70,10 +70,12 @@ def foundation_compliance(section: ToothSection) -> Float[Array, " node"]:
     springs side by side count it for each of them.
 
     Args:
-        section: the tooth; zero for a ring, see `foundation_warnings`.
+        section: the tooth; zero for a ring or a rack, see `foundation_warnings`.
+
+    Source: Sainsot, Velex and Duverger (2004), see `sainsot_2004`.
     """
     half_thickness, height = section.flank
-    if section.internal:
+    if section.body != "disc":
         return jnp.zeros_like(height)
     clamped = height[0] - jnp.sum(section.step)
     arm = height - half_thickness * jnp.tan(section.load_angle) - clamped
@@ -86,19 +88,26 @@ def foundation_compliance(section: ToothSection) -> Float[Array, " node"]:
     )
 
 
+_UNDER = {"ring": "ring's rim", "rack": "rack's body"}
+
+
 def foundation_in_range(section: ToothSection) -> Bool[Array, ""]:
-    """True where the polynomial is used inside the range for which it was fitted; False for a ring."""
+    """True where the polynomial is used inside the range for which it was fitted, under a disc.
+
+    Source: Sainsot, Velex and Duverger (2004), range of their fit.
+    """
     within = _within(section.rim_ratio, RIM_RATIO_RANGE) & _within(
         section.root_half_angle, HALF_ANGLE_RANGE
     )
-    return within & (not section.internal)
+    return within & (section.body == "disc")
 
 
 def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
     """Sentences on what the foundation's compliance does not cover for this tooth; none if it does."""
-    if section.internal:
+    if section.body != "disc":
         return (
-            "the compliance of a ring's rim under its teeth has no formula here and counts as zero",
+            f"the compliance of a {_UNDER[section.body]} under its teeth has no formula here and counts as "
+            "zero",
         )
     named = (
         ("root radius over bore radius", float(section.rim_ratio), RIM_RATIO_RANGE),

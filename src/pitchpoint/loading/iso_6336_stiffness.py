@@ -153,8 +153,10 @@ def estimate(
 
     Returns:
         c' and c_gamma_alpha over the whole face width [N/m] under their names, and sentences.
+
+    Source: ISO 6336-1:2006, method B.
     """
-    if mesh.standard is None or mesh.standard.internal:
+    if not mesh.standardised:
         return {}, ()
     found, single, total = jax.device_get(_estimate(mesh, solids, load))
     warnings = range_warnings(
@@ -174,7 +176,6 @@ def _estimate(
     mesh: Mesh, solids: tuple[Solid, Solid], load: Float[Array, ""]
 ) -> tuple[StandardPair, Float[Array, ""], Float[Array, ""]]:
     pair = mesh.standard
-    assert pair is not None
     pinion_first = jnp.argsort(pair.virtual_teeth)
     pair = replace(
         pair,
@@ -209,6 +210,8 @@ def range_warnings(
         helix_angle: beta [rad].
         contact_ratio: transverse contact ratio eps_alpha.
         internal: True if the wheel is a ring.
+
+    Source: ISO 6336-1:2006, method B, what it says of its range.
     """
     values = (contact_ratio, math.degrees(helix_angle), sum(profile_shift))
     found = [

@@ -64,6 +64,9 @@ def kinematic_error(
 
     Returns:
         NaN where no equilibrium was found.
+
+    From virtual work: forces that balance a unit of the load do as much work on the added gaps as it
+    does on the rotation.
     """
     teeth = yields.of_teeth(contacts)
     given = {"arm": jnp.abs(along(contacts.normal, loaded)), "active": contacts.active}

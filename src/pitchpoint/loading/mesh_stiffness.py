@@ -44,17 +44,26 @@ class MeshStiffness(eqx.Module):
 
     @property
     def along_action(self) -> Float[Arrays, "pair segment node"]:
-        """Stiffness of each pair against transmission error, along the line of action [N/m]."""
+        """Stiffness of each pair against transmission error, along the line of action [N/m].
+
+        From virtual work: a spring counts with the square of its arm.
+        """
         return self.single * self.arm**2
 
     @property
     def total(self) -> Float[Arrays, "segment node"]:
-        """Stiffness of the mesh against transmission error [N/m]."""
+        """Stiffness of the mesh against transmission error [N/m].
+
+        Source: Atanasiu et al. (2011), eq. 21.
+        """
         return jnp.sum(self.along_action, axis=0)
 
     @property
     def mean(self) -> Float[Arrays, ""]:
-        """Mean over the period [N/m]."""
+        """Mean over the period [N/m].
+
+        Source: Atanasiu et al. (2011), eq. 22.
+        """
         return jnp.sum(self.total * self.weight)
 
 
@@ -73,6 +82,8 @@ def mesh_stiffness(
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
         count: nodes in each segment between events.
+
+    Source: Atanasiu et al. (2011), eqs. 20 to 22.
     """
     events = mesh.events()
     phase, weight = nodes(events, count)
@@ -119,5 +130,4 @@ def _mean_gap(contacts: Contacts, springs: Lanes) -> Float[Array, "pair *b"]:
 def _action_arm(mesh: Mesh, contacts: Contacts) -> Lanes:
     """Closing along the normal of each contact while the gears close by one along the line of action."""
     action = mesh.line_of_action
-    assert action is not None
     return along(contacts.normal, action) / jnp.sum(action**2)

@@ -47,6 +47,8 @@ class Bearing(eqx.Module):
         Args:
             mesh: any family.
             contacts: of the mesh.
+
+        From the balance of moments about the place of the other bearing.
         """
         body = mesh.coordinates[self.coordinate]
         force = unit_forces(body, contacts)
@@ -92,6 +94,8 @@ def unit_forces(body: Coordinate, contacts: Contacts) -> Vectors:
     Args:
         body: of the mesh.
         contacts: of the mesh.
+
+    From action and reaction along the unit normal.
     """
     if body.member is None:
         return jnp.zeros_like(contacts.direction)
@@ -101,13 +105,16 @@ def unit_forces(body: Coordinate, contacts: Contacts) -> Vectors:
 def radial_and_axial(mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Array, "2 member *#b"]:
     """Resultant of the normal forces on each member: across the axis of its body, and along it [N].
 
-    The bearings of the body hold it. The axial part is signed, positive along the body's axis. Forces that
+    The bearings of the body hold it, the guides of one that travels. The axial part is signed, positive along
+    the body's axis. Forces that
     cancel, as those of two zones opposite each other, leave zero and not their rounding.
 
     Args:
         mesh: any family.
         contacts: of the mesh.
         force: normal force of each slice [N].
+
+    From the balance of forces on each body.
     """
     found = []
     for member in (0, 1):
@@ -116,7 +123,9 @@ def radial_and_axial(mesh: Mesh, contacts: Contacts, force: Lanes) -> Float[Arra
         whole = jnp.where(jnp.abs(whole) > ROUNDING * total(force), whole, 0.0)
         axis = body.axis.reshape(3, *(1 for _ in whole.shape[1:]))
         axial = jnp.sum(axis * whole, axis=0)
-        found.append(jnp.stack([_size(whole - axial * axis), axial]))
+        # A body that travels along its axis is held across it alone.
+        held = axial if body.turns else jnp.zeros_like(axial)
+        found.append(jnp.stack([_size(whole - axial * axis), held]))
     return jnp.stack(found, axis=1)
 
 

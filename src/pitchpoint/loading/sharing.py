@@ -120,6 +120,8 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Compliance | None) 
 
     Returns:
         Shares; NaN where the equilibrium was not found.
+
+    From the balance of springs side by side, see `equilibrium`.
     """
     assert yielding is not None
     if yielding.body is None and mesh.touching:

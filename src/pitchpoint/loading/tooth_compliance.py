@@ -1,5 +1,6 @@
 """How far loaded teeth yield, and the stiffness of a pair of teeth per length of contact line."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Literal
@@ -81,13 +82,20 @@ class ToothCompliance:
             common=jnp.asarray(self.modulus == "common"),
         )
 
-    def warnings(self, sections: Sections) -> tuple[str, ...]:
-        """Sentences on what the model does not cover for these teeth; none if it does."""
+    def warnings(
+        self, sections: Sections, names: Sequence[str] = ("gear 1", "gear 2")
+    ) -> tuple[str, ...]:
+        """Sentences on what the model does not cover for these teeth; none if it does.
+
+        Args:
+            sections: the tooth of each member.
+            names: of the bodies that carry them.
+        """
         if not self.foundation:
             return ()
         return tuple(
-            f"gear {number}: {sentence}"
-            for number, section in enumerate(sections, 1)
+            f"{name}: {sentence}"
+            for name, section in zip(names, sections, strict=True)
             for sentence in foundation_warnings(section)
         )
 
@@ -127,6 +135,8 @@ def tooth_compliance(section: ToothSection, solid: Solid, terms: Terms) -> Float
         section: the tooth.
         solid: its material; `young` and `poisson` without axes.
         terms: of an entry of `TOOTH_COMPLIANCE`.
+
+    Source: Weber and Banaschek (1953) for the sum; see `beam_compliance`, `foundation_compliance`.
     """
     shape = beam_compliance(section, solid.poisson)
     return (shape + terms.foundation * foundation_compliance(section)) / solid.young
@@ -151,6 +161,8 @@ def unit_stiffness(
 
     Returns:
         Load over approach, a secant where the contact's law is not linear; finite in inactive lanes.
+
+    Source: Atanasiu et al. (2011), eq. 16: deflections of both teeth and of the contact add up.
     """
     first, second = _moduli(solids, terms)
     teeth = [
@@ -169,6 +181,8 @@ def interpolate(values: Float[Array, " node"], section: ToothSection, flank: Fie
         values: at the section's nodes.
         section: the tooth.
         flank: arc length along the profile, as in `Contacts.flank` [m].
+
+    Source: Clenshaw (1955), sum of a Chebyshev series; here over the root of the arc length.
     """
     low, high = section.reach[0], section.reach[1]
     root = jnp.sqrt(jnp.maximum(flank, (1e-9 * high) ** 2))

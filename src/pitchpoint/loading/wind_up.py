@@ -86,6 +86,8 @@ def wind_up(
 
     Returns:
         NaN where no equilibrium was found. What yields is what `Mesh.yielding` says.
+
+    From the equilibrium of its contacts, see `equilibrium`, and its derivative with respect to the load.
     """
     contacts = mesh.contacts(phase) if contacts is None else contacts
     arm = jnp.abs(along(contacts.normal, mesh.loaded))
@@ -144,6 +146,8 @@ def hysteresis(found: WindUp, friction: float | Float[Array | np.ndarray, "*#b"]
     Args:
         found: wind-up over torques.
         friction: coefficient mu of the teeth, broadcast over the states.
+
+    From virtual work: friction slides by its arm while the loaded member turns by one.
     """
     held = friction * found.slip_torque
     return Hysteresis(found.wind_up, found.load + held, found.load - held)

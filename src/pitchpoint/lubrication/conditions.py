@@ -85,19 +85,28 @@ class Conditions(eqx.Module):
 
     @property
     def entrainment(self) -> Lanes:
-        """Mean of the surface speeds, without sign [m/s]."""
+        """Mean of the surface speeds, without sign [m/s].
+
+        Source: Hamrock and Dowson (1977), mean surface velocity.
+        """
         found: Lanes = product(jnp.abs(self.roll / 2.0), self.speed)
         return found
 
     @property
     def sliding(self) -> Lanes:
-        """Difference of the surface speeds, without sign [m/s]."""
+        """Difference of the surface speeds, without sign [m/s].
+
+        Source: Johnson, Contact Mechanics (1985), section 1.2.
+        """
         found: Lanes = product(jnp.abs(self.slip), self.speed)
         return found
 
     @property
     def slide_roll_ratio(self) -> Lanes:
-        """Sliding over entrainment; a matter of geometry, defined at standstill too."""
+        """Sliding over entrainment; a matter of geometry, defined at standstill too.
+
+        Source: Xu et al. (2007), SR.
+        """
         mean, slip = jnp.abs(self.roll) / 2.0, jnp.abs(self.slip)
         return jnp.where(mean > 0.0, slip / jnp.where(mean > 0.0, mean, 1.0), 0.0)
 
@@ -141,17 +150,26 @@ class Conditions(eqx.Module):
 
     @property
     def reference_line_load(self) -> Each:
-        """Tangential force at the base circle over the face width F_bt/b, without friction [N/m]."""
+        """Tangential force at the base circle over the face width F_bt/b, without friction [N/m].
+
+        Source: ISO/TR 14179-2:2001, F_bt/b; Tian et al. (2024), eq. 12.
+        """
         return self.nominal_load / self._pitch_point.line_length
 
     @property
     def reference_sum_speed(self) -> Each:
-        """Sum of the surface speeds at the pitch point [m/s]."""
+        """Sum of the surface speeds at the pitch point [m/s].
+
+        Source: ISO/TR 14179-2:2001, v_SigmaC; Tian et al. (2024), eq. 12.
+        """
         return self.speed * self._pitch_point.sum_speed
 
     @property
     def reference_radius(self) -> Float[Array, ""]:
-        """Relative radius of curvature at the pitch point [m]."""
+        """Relative radius of curvature at the pitch point [m].
+
+        Source: ISO/TR 14179-2:2001, rho_redC; Tian et al. (2024), eq. 12.
+        """
         return self._pitch_point.radius
 
     @property

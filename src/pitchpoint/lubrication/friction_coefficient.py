@@ -115,6 +115,8 @@ def constant(*, coefficient: ArrayLike = 0.05) -> Float[Array, "..."]:
     Returns:
         The coefficient as an array [-].
 
+    Source: Tian et al. (2024), eq. 4.
+
     Example:
         >>> float(constant(coefficient=0.06))
         0.06

@@ -100,7 +100,10 @@ class Lubricant(eqx.Module):
         return dynamic_viscosity(nu=self.kinematic_viscosity(T), rho=self.density(T))
 
     def pressure_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
-        """Pressure-viscosity coefficient at T [K], shape (...) [1/Pa]."""
+        """Pressure-viscosity coefficient at T [K], shape (...) [1/Pa].
+
+        Source: Gold et al. (2001).
+        """
         return gold_2001(nu=self.kinematic_viscosity(T), s=self.gold_s, t=self.gold_t)
 
     def in_range(self, T: ArrayLike) -> Bool[Array, "..."]:

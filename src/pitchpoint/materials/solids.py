@@ -54,7 +54,10 @@ class Solid(eqx.Module):
 
     @property
     def plane_strain_modulus(self) -> Float[Array, "..."]:
-        """Young's modulus over one minus Poisson's ratio squared, shape (...) [Pa]."""
+        """Young's modulus over one minus Poisson's ratio squared, shape (...) [Pa].
+
+        Source: Timoshenko and Goodier, Theory of Elasticity (1970), plane strain.
+        """
         return self.young / (1.0 - self.poisson**2)
 
 

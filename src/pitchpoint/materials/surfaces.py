@@ -40,6 +40,8 @@ def composite_rq(*, rq_1: ArrayLike, rq_2: ArrayLike) -> Float[Array, "..."]:
     Returns:
         The root-mean-square deviation of the gap, shape (...) [m]; its gradient is finite (zero)
         where both flanks are smooth.
+
+    From the variances of independent heights, which add up.
     """
     squares = jnp.asarray(rq_1) ** 2 + jnp.asarray(rq_2) ** 2
     rough = squares > 0.0
@@ -75,6 +77,8 @@ class Roughness(eqx.Module):
     def from_ra(cls, ra_1: ArrayLike, ra_2: ArrayLike | None = None) -> Roughness:
         """Build from Ra [m] of one flank, taken for both, or of each.
 
+        From heights that are Gaussian, see `RQ_PER_RA`.
+
         Example:
             >>> from pitchpoint.materials.surfaces import Roughness
             >>> round(float(Roughness.from_ra(0.8e-6).composite_rq) * 1e6, 4)
@@ -86,7 +90,10 @@ class Roughness(eqx.Module):
 
     @classmethod
     def from_rq(cls, rq_1: ArrayLike, rq_2: ArrayLike | None = None) -> Roughness:
-        """Build from Rq [m] of one flank, taken for both, or of each."""
+        """Build from Rq [m] of one flank, taken for both, or of each.
+
+        From heights that are Gaussian, see `RQ_PER_RA`.
+        """
         first = as_array(rq_1)
         second = first if rq_2 is None else as_array(rq_2)
         return cls(ra_1=first / RQ_PER_RA, ra_2=second / RQ_PER_RA, rq_1=first, rq_2=second)

@@ -62,5 +62,7 @@ def dynamic_viscosity(*, nu: ArrayLike, rho: ArrayLike) -> Float[Array, "..."]:
 
     Returns:
         Dynamic viscosity, shape (...) [Pa s].
+
+    From the definition of the kinematic viscosity.
     """
     return jnp.asarray(nu) * jnp.asarray(rho)

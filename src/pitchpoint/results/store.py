@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
@@ -18,7 +18,7 @@ import xarray as xr
 
 from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
-from pitchpoint.results.variables import VARIABLES
+from pitchpoint.results.variables import VARIABLES, End
 from pitchpoint.status import DIRECT
 
 __all__ = [
@@ -48,6 +48,7 @@ def dataset(
     coordinates: Mapping[str, Any],
     *,
     solve: Mapping[str, Any] = DIRECT,
+    travels: Collection[End] = (),
     **attributes: Any,
 ) -> xr.Dataset:
     """Dataset whose variables carry unit, long name and symbol.
@@ -56,6 +57,7 @@ def dataset(
         variables: dimensions and values by name; names of `VARIABLES` get their attributes.
         coordinates: values by dimension.
         solve: what became of the solves behind it, see `status.told`; kept as JSON.
+        travels: members that travel in place of turning, whose quantities have other units.
         attributes: strings and numbers; anything else is stored as JSON.
     """
     data = xr.Dataset(
@@ -65,9 +67,8 @@ def dataset(
     for name in data.variables:
         described = VARIABLES.get(str(name))
         if described is not None:
-            data[name].attrs.update(
-                units=described.unit, long_name=described.long_name, symbol=described.symbol
-            )
+            own = described.where(travels)
+            data[name].attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
         version=version("pitchpoint"),

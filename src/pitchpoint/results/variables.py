@@ -1,24 +1,40 @@
 """Name, symbol, unit and kind of every quantity that a result holds."""
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
-__all__ = ["VARIABLES", "Variable"]
+__all__ = ["VARIABLES", "End", "Variable", "variable_of"]
+
+End = Literal["driver", "loaded"]
+"""One of the two members whose motion a drive passes on."""
 
 
 @dataclass(frozen=True)
 class Variable:
-    """A quantity of a result: long name, symbol, SI unit, and unit and kind for display."""
+    """A quantity of a result: long name, symbol, SI unit, and unit and kind for display.
+
+    Attributes:
+        end: whose motion it counts in, None where it has nothing to do with one.
+        travel: the quantity where that member travels.
+    """
 
     long_name: str
     symbol: str
     unit: str
     shown: str = ""
     kind: str = "dimensionless"
+    end: End | None = None
+    travel: "Variable | None" = None
 
     @property
     def display(self) -> str:
         """Unit in which tables and figures show it."""
         return self.shown or self.unit
+
+    def where(self, travels: Collection[End]) -> "Variable":
+        """The quantity in a drive some of whose members travel."""
+        return self.travel if self.travel is not None and self.end in travels else self
 
 
 def _percent(long_name: str, symbol: str) -> Variable:
@@ -235,6 +251,9 @@ VARIABLES: dict[str, Variable] = {
     "young_2": Variable("Young's modulus of gear 2", "E2", "Pa", "GPa", "pressure"),
     "module": _length("normal module", "m_n"),
     "centre_distance": _length("centre distance", "a"),
+    "mounting_distance": _length(
+        "distance from the pinion's axis to the rack's reference line", "a"
+    ),
     "tip_alteration_1": Variable("tip alteration coefficient of gear 1", "k1", "1"),
     "tip_alteration_2": Variable("tip alteration coefficient of gear 2", "k2", "1"),
     "tip_thickness_1": _length("tip thickness of gear 1, normal section", "s_an1"),
@@ -325,3 +344,51 @@ VARIABLES: dict[str, Variable] = {
     "speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
     "temperature": Variable("oil temperature", "θ", "K", "degC", "temperature"),
 }
+
+_IN_TRAVEL: dict[End, dict[str, Variable]] = {
+    "driver": {
+        "input_torque": _force("input force", "F_in"),
+        "mean_input_torque": _force("mean input force", "F_in mean"),
+        "min_input_torque": _force("smallest input force", "F_in min"),
+        "max_input_torque": _force("largest input force", "F_in max"),
+        "torque_ripple": _force("ripple of the input force", "ΔF_in"),
+        "no_load_torque": _force("mean input force without load", "F_0"),
+        "starting_torque": _force("input force that starts the drive", "F_start"),
+        "speed": _speed("driver speed", "v"),
+    },
+    "loaded": {
+        "torque": _force("output force", "F_out"),
+        "back_driving_torque": _force("output force that starts the drive backwards", "F_back"),
+        "loading_torque": _force("force while the deflection grows", "F"),
+        "unloading_torque": _force("force while the deflection shrinks", "F"),
+        "wind_up": _deviation("deflection of the loaded member", "Δs"),
+        "wind_up_range": _deviation("change of the deflection with the phase", "Δs range"),
+        "torsional_stiffness": _stiffness("stiffness at the output", "K"),
+        "mesh_torsional_stiffness": _stiffness(
+            "stiffness at the output over the mesh cycle", "K(φ)"
+        ),
+        "lost_motion": _deviation("play of the loaded member without load", "Δs_0"),
+        "angular_transmission_error": _deviation("travel of the loaded member under load", "s_e"),
+        "angular_transmission_error_range": _deviation(
+            "static transmission error at the loaded member, peak to peak", "Δs_e"
+        ),
+        "kinematic_error": _deviation("kinematic error", "Δs"),
+        "kinematic_error_spectrum": _deviation("amplitude of the kinematic error", "|Δs_n|"),
+        "kinematic_error_range": _deviation("kinematic error, peak to peak", "Δs range"),
+    },
+}
+"""Quantities of a member that travels."""
+
+VARIABLES.update(
+    (name, replace(VARIABLES[name], end=end, travel=travel))
+    for end, own in _IN_TRAVEL.items()
+    for name, travel in own.items()
+)
+
+
+def variable_of(data: Any, name: str) -> Variable:
+    """The quantity of that name in a dataset, or none; of a member that travels where its unit says so."""
+    known = VARIABLES[name]
+    if known.travel is None or name not in data:
+        return known
+    return known.travel if data[name].attrs.get("units") == known.travel.unit else known

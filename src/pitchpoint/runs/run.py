@@ -13,7 +13,8 @@ from uuid import uuid4
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece
+from pitchpoint.analyses.analysis import Piece, Unasked
+from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
@@ -29,6 +30,7 @@ from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
@@ -188,7 +190,7 @@ def run_variant(
 ) -> Outcome:
     """Compute all parts of one variant; finished parts found in the folder are read."""
     built = variant.built({})
-    outcome = Outcome(_manifest(variant, built, studies))
+    outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
     for job in work:
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
@@ -470,6 +472,7 @@ def _rows(built: Built, variant: Variant, parts: Mapping[str, xr.Dataset]) -> li
 
 def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> dict[str, Any]:
     case, document = built.case, variant.document()
+    way, backwards = PATHS[built.design.mesh.counts], built.nominal["onward"] < 0.0
     laws = [models.law for models in built.models]
     others = _models(built)
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
@@ -511,6 +514,10 @@ def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> d
         "members": list(case.gears.members),
         "motion": built.nominal["motion"].tolist(),
         "period": float(built.nominal["period"]),
+        "pitch": way.pitch,
+        "against": way.against.format(case.operation.driver) if backwards else "",
+        "travels": sorted(built.travels),
+        "lacks": {},
         "averaging": case.models.averaging,
         "plastic": any(used.plastic for used in built.solids),
         "oil": built.lubricant.title or built.lubricant.name,
@@ -520,6 +527,12 @@ def _manifest(variant: Variant, built: Built, studies: Mapping[str, Study]) -> d
         "parts": [],
         "finished": False,
     }
+
+
+def _lacking(built: Built) -> dict[str, str]:
+    """By analysis why its part does not exist, those left out that a case file does not ask for."""
+    told = {name: analysis.lacks(built) for name, analysis in ANALYSES.items()}
+    return {name: why for name, why in told.items() if why and not isinstance(why, Unasked)}
 
 
 def _models(built: Built) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import html
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import floor, isfinite, log10
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,6 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.results.rounding import ROUNDING
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 
@@ -42,6 +41,7 @@ __all__ = [
     "level",
     "line",
     "merged",
+    "pair_key",
     "plain",
     "rounded",
     "short_axis",
@@ -122,6 +122,7 @@ class Panel:
     choices: list[Choice] = field(default_factory=list)
     note: str = ""
     menu: str = ""
+    block: ClassVar[str] = "panel"
 
 
 def curves(outcomes: Mapping[str, Outcome]) -> dict[tuple[str, str], Curve]:
@@ -140,6 +141,16 @@ def curves(outcomes: Mapping[str, Outcome]) -> dict[tuple[str, str], Curve]:
         )
         for position, (variant, law) in enumerate(names)
     }
+
+
+PAIRS = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
+"""Names of the pairs: I entered in this period, II one period before, and so on."""
+
+
+def pair_key(position: int) -> Key:
+    """Entry of a pair in a legend, the same colour wherever it is shown."""
+    name = PAIRS[position] if position < len(PAIRS) else str(position + 1)
+    return Key(f"pair {name}", PALETTE[position % len(PALETTE)])
 
 
 def law_title(outcome: Outcome, law: str) -> str:
@@ -185,9 +196,9 @@ def _decimals(value: float, digits: int) -> int:
     return digits - 1 - floor(log10(abs(value))) if value else 0
 
 
-def display(name: str, values: Any) -> np.ndarray:
-    """SI values of a variable in its display unit."""
-    variable = VARIABLES[name]
+def display(name: str, values: Any, of: Any = None) -> np.ndarray:
+    """SI values of a variable in its display unit, see `show.described`."""
+    variable = show.described(name, of)
     array = np.asarray(values, dtype=float)
     return np.asarray(units.convert(array, variable.display, variable.kind))
 
@@ -254,15 +265,14 @@ def layout(x: str, y: str, **more: Any) -> dict[str, Any]:
     }
 
 
-def level(name: str, value: float) -> str:
-    """A value at which a line holds, with its unit, for a legend [SI in]."""
-    unit = show.unit(VARIABLES[name].display)
-    return f"{show.number(float(display(name, value)))}\u00a0{unit}"
+def level(name: str, value: float, of: Any = None) -> str:
+    """A value at which a line holds, with its unit, for a legend [SI in], see `show.described`."""
+    return f"{show.number(float(display(name, value, of)))}\u00a0{show.unit_of(name, of)}"
 
 
-def short_axis(name: str) -> str:
+def short_axis(name: str, of: Any = None) -> str:
     """Title of an axis: symbol and unit; the figure has the long name above it."""
-    variable = VARIABLES[name]
+    variable = show.described(name, of)
     unit = show.unit(variable.display)
     return f"{variable.symbol} [{unit}]" if unit else variable.symbol
 

@@ -3,11 +3,22 @@
 import re
 from collections.abc import Sequence
 from math import floor, isfinite, log10
+from typing import Any
 
 from pitchpoint import units
-from pitchpoint.results.variables import VARIABLES
+from pitchpoint.results.variables import VARIABLES, Variable, variable_of
 
-__all__ = ["axis_title", "number", "pretty", "quantity", "signed", "span", "unit"]
+__all__ = [
+    "axis_title",
+    "described",
+    "number",
+    "pretty",
+    "quantity",
+    "signed",
+    "span",
+    "unit",
+    "unit_of",
+]
 
 _UNITS = {
     "um": "µm",
@@ -76,14 +87,29 @@ def signed(value: float, decimals: int) -> str:
     return text.replace("-", "−") if float(text) else "0"
 
 
-def quantity(name: str, value: float, *, with_unit: bool = True) -> str:
-    """Value of a variable of a result in its display unit [SI in].
+def described(name: str, of: Any = None) -> Variable:
+    """A variable by name, as it is in a dataset: that of a member that travels has other units.
+
+    Args:
+        name: of `VARIABLES`.
+        of: the dataset; one without that variable, or none, leaves it as it usually is.
+    """
+    return VARIABLES[name] if of is None or name not in of else variable_of(of, name)
+
+
+def unit_of(name: str, of: Any = None) -> str:
+    """Display unit of a variable as printed, see `described`."""
+    return unit(described(name, of).display)
+
+
+def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None) -> str:
+    """Value of a variable of a result in its display unit [SI in], see `described`.
 
     Example:
         >>> quantity("mean_efficiency", 0.99354)
         '99.35 %'
     """
-    variable = VARIABLES[name]
+    variable = described(name, of)
     if not isfinite(value):
         return "undefined, no power" if variable.display == "%" else "undefined"
     shown = float(units.convert(value, variable.display, variable.kind))
@@ -93,21 +119,21 @@ def quantity(name: str, value: float, *, with_unit: bool = True) -> str:
     return f"{text} {unit(variable.display)}".strip() if with_unit else text
 
 
-def span(low: str, high: str, values: Sequence[float]) -> str:
+def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
     """Range of two variables that share their unit [SI in].
 
     Example:
         >>> span("min_efficiency", "max_efficiency", (0.9918, 1.0))
         '99.18 to 100.00 %'
     """
-    first, last = quantity(low, values[0]), quantity(high, values[1])
+    first, last = quantity(low, values[0], of=of), quantity(high, values[1], of=of)
     if first == last:
         return first
-    return f"{quantity(low, values[0], with_unit=False)} to {last}"
+    return f"{quantity(low, values[0], with_unit=False, of=of)} to {last}"
 
 
-def axis_title(name: str) -> str:
-    """Long name and display unit of a variable."""
-    variable = VARIABLES[name]
+def axis_title(name: str, of: Any = None) -> str:
+    """Long name and display unit of a variable, see `described`."""
+    variable = described(name, of)
     shown = unit(variable.display)
     return f"{variable.long_name} [{shown}]" if shown else variable.long_name

@@ -57,7 +57,6 @@ def readings(built: Built) -> dict[str, float]:
     pair = mesh.standard
     density = jnp.stack([solid.density for solid in built.design.solids])
     inertia, action = mesh.inertia(density), mesh.line_of_action
-    assert pair is not None and inertia is not None and action is not None
     return {
         "printed_undercut_limit_1": undercut_limit(
             teeth=gears.teeth[0],

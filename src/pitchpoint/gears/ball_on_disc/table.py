@@ -23,6 +23,8 @@ class BallOnDiscRig(GearsTable):
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
     load: ClassVar[Load] = "force"
+    carries: ClassVar[str] = "a test rig is loaded by a normal force"
+    transmits: ClassVar[bool] = False
     film_thickness: ClassVar[str] = "hamrock_dowson_1977"
     meaningless: ClassVar[Mapping[str, str]] = {
         "slices": "the contact of a ball is not divided into slices",

@@ -11,6 +11,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
 from pitchpoint.gears.designs import Faults, Number
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
 from pitchpoint.programs import program
@@ -23,7 +24,6 @@ __all__ = ["cannot_run", "check_cylindrical"]
 
 _THIN_TIP = 0.2  # modules
 _SMALL_CLEARANCE = 0.1  # modules
-_LARGEST_CONTACT_RATIO = 24.0
 _GIVEN = ("module", "profile_shift", "addendum", "dedendum", "fillet_radius")
 # Drawings round the centre distance; an overlap this small is no fault [modules].
 _ROUNDED_DISTANCE = 1e-4
@@ -587,12 +587,12 @@ def _check_contact_ratio(pair: _Pair, gears: list[_Gear]) -> Faults:
     name = "total contact ratio" if pair.helical else "contact ratio"
     yield pair.contact_ratio < 1.0, lambda: low(name, pair.contact_ratio, 1.0)
     yield (
-        pair.contact_ratio >= _LARGEST_CONTACT_RATIO,
+        pair.contact_ratio >= LARGEST_CONTACT_RATIO,
         lambda: _refuse(
             "face_width" if pair.contact_ratio > 2.0 * pair.transverse_ratio else "addendum",
             pair.contact_ratio,
             f"the contact ratio of gear 1 and gear 2 is {pair.contact_ratio:.4g} and must be below "
-            f"{_LARGEST_CONTACT_RATIO:g}; shorter addenda "
+            f"{LARGEST_CONTACT_RATIO:g}; shorter addenda "
             f"{'or a narrower face lower' if pair.helical else 'lower'} it",
         ),
     )

@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, lanes_for
 from pitchpoint.gears.cylindrical.checks import cannot_run, check_cylindrical
-from pitchpoint.gears.cylindrical.pair import SLICES, CylindricalPair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.designs import Designs, Group, alike, check_counts, each, padded, rows
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
@@ -21,11 +21,7 @@ __all__ = [
     "build_cylindrical_pair",
     "build_cylindrical_pairs",
     "designed",
-    "lanes_for",
 ]
-
-# Few values, so that few programs are compiled for many pairs.
-_LANES_FOR_RATIO_BELOW = (2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 24.0)
 
 RIM_RATIO = 1.0 / 0.3
 """Root radius over bore radius where no bore is given."""
@@ -44,15 +40,6 @@ _OF_BOTH = (
 )
 Values = dict[str, Any]
 Grown = tuple[CylindricalPair, Array | np.ndarray, np.ndarray]
-
-
-def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
-    """Static count of pairs to hold for a contact ratio: few values, so that few programs are compiled."""
-    for limit in _LANES_FOR_RATIO_BELOW:
-        if contact_ratio < limit:
-            return max(int(limit), 3) if helical else int(limit)
-    message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
-    raise InputError(message, value=contact_ratio)
 
 
 def build_cylindrical_pair(
@@ -284,7 +271,7 @@ def _with_lanes(pair: CylindricalPair, ratio: Array | np.ndarray) -> Cylindrical
 
 
 def _in_reach(ratio: float) -> bool:
-    return 0.0 < ratio < _LANES_FOR_RATIO_BELOW[-1]
+    return 0.0 < ratio < LARGEST_CONTACT_RATIO
 
 
 def _over(compute: Callable[[CylindricalPair], Any], pair: CylindricalPair, axes: int) -> Any:

@@ -1,12 +1,12 @@
 """A pair of cylindrical gears from its table in a case file."""
 
 from dataclasses import replace
-from math import cos, pi, sin, tan
 from typing import Any
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.modified import (
@@ -18,11 +18,12 @@ from pitchpoint.gears.cylindrical.modified import (
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.family import Family, waves
+from pitchpoint.gears.involute import usual_fillet
+from pitchpoint.gears.layers import LAYERS, LEVELS
 from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["FAMILY"]
 
-_AVAILABLE_FILLET = 0.38
 USUAL_TIP = 0.25
 """Tip thickness of helical teeth that is kept where none is given, in normal modules."""
 _RING_FILLET = 0.2  # fits the narrow spaces of most rings
@@ -91,9 +92,7 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
 def _pair(gears: CylindricalGears, driver: int, slices: int) -> CylindricalPair:
     dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
     fillet = gears.fillet_radius or tuple(
-        _RING_FILLET
-        if teeth < 0
-        else min(_AVAILABLE_FILLET, _largest_fillet(depth, gears.pressure_angle))
+        _RING_FILLET if teeth < 0 else usual_fillet(depth, gears.pressure_angle)
         for teeth, depth in zip(gears.teeth, dedendum, strict=True)
     )
     pair = build_cylindrical_pair(
@@ -135,11 +134,6 @@ def _rim_ratios(pair: CylindricalPair, bores: tuple[float, float]) -> list[float
     return found
 
 
-def _largest_fillet(dedendum: float, angle: float) -> float:
-    """Corner rounding of the rack that leaves no flat on its tip, in modules (ISO 53)."""
-    return max((pi / 4 - dedendum * tan(angle)) * cos(angle) / (1.0 - sin(angle)), 0.0)
-
-
 _FOLLOWING = {
     "dedendum": "dedendum",
     "fillet_radius": "fillet_radius",
@@ -165,6 +159,14 @@ FAMILY = Family(
     _cylindrical,
     _of_pair,
     _gear_deviations,
-    drawing={"outline": ("gear", "corner", "xy"), "points": ("point",)},
-    coordinates={"gear": [1, 2], "xy": ["x", "y"], "point": list("ABCDE")},
+    drawing={**LAYERS, "points": ("point",)},
+    coordinates={
+        "gear": [1, 2],
+        "xy": ["x", "y"],
+        "point": list("ABCDE"),
+        "body": [*MEMBERS],
+        "level": [*LEVELS],
+        "line": ["action", "path"],
+        "mark": [*"ABCDE", "N1", "N2"],
+    },
 )

@@ -12,6 +12,9 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.contact_lines import (
+    PathOfContact,
+)
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.involute import (
@@ -21,19 +24,13 @@ from pitchpoint.gears.involute import (
     involute,
     transverse_angle,
 )
+from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.roots import hypot, root
 
-__all__ = ["SLICES", "CylindricalPair", "zero_backlash_centre_distance"]
-
-SLICES = 12
-"""Slices of each contact line of helical gears, an even number: midpoints, so errors fall with its square."""
-
-# Share of the face width that a contact line has at least while it is in mesh: a length of zero has
-# no load per length.
-_SHORTEST = 1e-9
+__all__ = ["CylindricalPair", "zero_backlash_centre_distance"]
 
 
 def zero_backlash_centre_distance(
@@ -67,11 +64,8 @@ def zero_backlash_centre_distance(
     return jnp.where((value > 0.0) & (value < 1.0), distance, jnp.nan)
 
 
-class LineOfAction:
-    """Lengths on the line of action of a pair, and what they follow from, each computed when first asked for.
-
-    One program asks for the same angles and radii in many places; this record answers one question of it
-    and is then thrown away, so that no traced value outlives its trace.
+class LineOfAction(PathOfContact):
+    """Lengths on the line of action of a pair, and what they follow from.
 
     Args:
         pair: whose dimensions count.
@@ -149,25 +143,10 @@ class LineOfAction:
         return self.working_radii[0] * self.sine
 
     @cached_property
-    def pitch_path(self) -> Float[Array, ""]:
-        """Position of the pitch point from A [base pitches]."""
-        return (self.pitch_position - self.limits[0]) / self.base_pitch
-
-    @cached_property
-    def transverse_contact_ratio(self) -> Float[Array, ""]:
-        """Transverse contact ratio eps_alpha."""
-        return jnp.asarray((self.limits[1] - self.limits[0]) / self.base_pitch)
-
-    @cached_property
     def overlap_ratio(self) -> Float[Array, ""]:
         """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
         pair = self.pair
         return pair.face_width * jnp.sin(pair.helix_angle) / (jnp.pi * pair.module)
-
-    @cached_property
-    def contact_ratio(self) -> Float[Array, ""]:
-        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
-        return self.transverse_contact_ratio + self.overlap_ratio
 
 
 class CylindricalPair(Mesh):
@@ -209,6 +188,7 @@ class CylindricalPair(Mesh):
 
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
     counts: ClassVar[Path] = "action"
 
     teeth: Float[Array, "2"]
@@ -466,11 +446,8 @@ class CylindricalPair(Mesh):
         at which the pitch line enters and leaves it; of spur teeth those at which a relief begins.
         """
         line = self.line
-        found = [jnp.zeros_like(line.pitch_path), line.contact_ratio, line.pitch_path]
-        if self.helical:
-            overlap = line.overlap_ratio
-            found += [line.transverse_contact_ratio, overlap, line.pitch_path + overlap]
-        else:
+        found = line.bounds(helical=self.helical)
+        if not self.helical:
             found += self._relief_paths(line)
         return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
 
@@ -489,7 +466,7 @@ class CylindricalPair(Mesh):
         number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
         entered = jnp.mod(phase, 1.0) + number
         line, side = self.line, self._side
-        across, share = self._lines(entered, line)
+        across, share = line.lines(entered, helical=self.helical, slices=self.slices)
         path = jnp.broadcast_to(entered, jnp.shape(across))
         if self.helical:
             path = entered - line.overlap_ratio * across
@@ -555,8 +532,12 @@ class CylindricalPair(Mesh):
             transverse_contact_ratio=self.transverse_contact_ratio,
             face_width=self.face_width,
             reference_arm=jnp.sum(self.loaded * radii),
-            internal=self.internal,
         )
+
+    @property
+    def standardised(self) -> bool:
+        """The standards are for external gears."""
+        return not self.internal
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].
@@ -585,7 +566,7 @@ class CylindricalPair(Mesh):
         }
 
     def drawing(self) -> dict[str, Float[Array, "..."]]:
-        """Outline of one tooth of each gear, circles, points of the path; radii without sign [m]."""
+        """Layers of the picture, circles, points of the path; radii without sign [m]."""
         gears = self.gears
         radii = {
             "base_radius": self.base_radii,
@@ -599,7 +580,7 @@ class CylindricalPair(Mesh):
             "active_root_radius": hypot(self.base_radii, self._innermost),
         }
         return {
-            "outline": jnp.stack([gear.outline() for gear in gears]),
+            **self._layers(),
             "points": self.points,
             "teeth": self.teeth,
             **{name: jnp.abs(values) for name, values in radii.items()},
@@ -613,6 +594,38 @@ class CylindricalPair(Mesh):
             "specific_sliding_E": self.specific_sliding(self.limits[1]),
             **self.dimensions(),
         }
+
+    def _layers(self) -> dict[str, Float[Array, "..."]]:
+        """The transverse section at the middle of the face, gear 2 above gear 1, a ring below.
+
+        A contact line reaches that section half of the overlap ratio after it entered.
+        """
+        line, side, gears = self.line, self._side, self.gears
+        first = line.base_radii[0]
+        path = DrawnPath(
+            origin=first * jnp.stack([side * line.sine, line.cosine]),
+            along=jnp.stack([-side * line.cosine, line.sine]),
+            limits=line.limits,
+            points=self.points,
+            ends=jnp.stack([jnp.zeros(()), line.tangent_length]),
+            base_pitch=line.base_pitch,
+            behind=line.overlap_ratio / 2.0,
+        )
+        bodies = [
+            drawn_gear(
+                gear,
+                place=jnp.stack([jnp.zeros(()), member * line.distance]),
+                contact=path.at(line.limits[0]),
+                side=side,
+                earlier=(1.0, -1.0)[member] * side * 2.0 * jnp.pi / gear.teeth * path.behind,
+                working_radius=line.working_radii[member],
+            )
+            for member, gear in enumerate(gears)
+        ]
+        z1, z2 = self.teeth
+        none = jnp.zeros(())
+        rolling = [[none, 1.0 / z1], [line.tangent_length / z2, -1.0 / z2]]
+        return layers(bodies, path) | {"rolling": jnp.array(rolling)}
 
     def _frame(
         self, line: LineOfAction, position: Array, width: Array
@@ -637,33 +650,6 @@ class CylindricalPair(Mesh):
         """Roll lengths at which the path of contact ends nearest to the root of each gear [m]."""
         start, end = self.limits
         return jnp.stack([start, self.tangent_length - end])
-
-    def _lines(
-        self, entered: Float[Array, "pair 1 *b"], line: LineOfAction
-    ) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
-        """Middles of the slices of each contact line, and the share of the face that each slice takes.
-
-        Both are parts of the face width, counted from the end that enters first. Half of the slices
-        lie on each side of the pitch line, so that sliding changes its sense in no slice.
-
-        Args:
-            entered: base pitches since the pair entered.
-            line: of the pair.
-        """
-        if not self.helical:
-            whole = jnp.zeros_like(entered)
-            return _sliced(whole, whole + 1.0, self.slices)
-        overlap = line.overlap_ratio
-        low = jnp.clip((entered - line.transverse_contact_ratio) / overlap, 0.0, 1.0)
-        high = jnp.clip(entered / overlap, 0.0, 1.0)
-        if self.slices == 1:
-            return (low + high) / 2.0, jnp.maximum(high - low, _SHORTEST)
-        pitch_line = jnp.clip((entered - line.pitch_path) / overlap, low, high)
-        parts = [
-            _sliced(*ends, self.slices // 2) for ends in ((low, pitch_line), (pitch_line, high))
-        ]
-        middles, shares = zip(*parts, strict=True)
-        return jnp.concatenate(middles, axis=1), jnp.concatenate(shares, axis=1)
 
     @property
     def _side(self) -> Float[Array, ""]:
@@ -703,12 +689,3 @@ class CylindricalPair(Mesh):
             crossing=self.crossing[index],
             internal=self.internal and index == 1,
         )
-
-
-def _sliced(
-    low: Float[Array, "pair 1 *b"], high: Float[Array, "pair 1 *b"], count: int
-) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
-    """Middles and lengths of equal slices between two ends."""
-    share = jnp.maximum(high - low, _SHORTEST) / count
-    middle = (jnp.arange(count) + 0.5).reshape(-1, *([1] * (low.ndim - 2)))
-    return low + middle * share, jnp.broadcast_to(share, (low.shape[0], count, *low.shape[2:]))

@@ -10,8 +10,12 @@ from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
+    DISTANCE,
+    FILLET,
+    HELIX,
     MODULE,
     RACK,
+    SHIFT,
     WIDTH,
     Deviation,
     GearsTable,
@@ -24,10 +28,6 @@ from pitchpoint.input.tables import Table
 __all__ = ["CylindricalGears", "FlankModifications", "GearDeviations"]
 
 TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
-DISTANCE = Quantity("length", 1e-4, 100.0, "mm")
-HELIX = Quantity("angle", 0.0, 60 * pi / 180, "deg")
-SHIFT = Quantity("dimensionless", -2.0, 3.0)
-FILLET = Quantity("dimensionless", 0.0, 1.0)
 TIP = Quantity("dimensionless", -2.0, 2.0)
 LEAST_TIP = Quantity("dimensionless", 0.0, 1.5)
 RELIEF = Quantity("length", 0.0, 1e-2, "um")

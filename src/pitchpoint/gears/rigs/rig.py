@@ -11,7 +11,7 @@ from pitchpoint.contact.surface import Spot
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
-from pitchpoint.gears.mesh import Mesh, Reference
+from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["Rig"]
 
@@ -50,11 +50,6 @@ class Rig(Mesh):
     def period(self) -> Float[Array, ""]:
         """One turn of body 0."""
         return jnp.asarray(2.0 * jnp.pi)
-
-    @property
-    def reference(self) -> Reference | None:
-        """A rig has no pitch point."""
-        return None
 
     @property
     def _approach(self) -> Coordinate:

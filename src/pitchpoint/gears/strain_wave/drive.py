@@ -14,7 +14,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.members import number_of
-from pitchpoint.gears.mesh import Mesh, Path, Reference
+from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
@@ -237,8 +237,8 @@ class StrainWave(Mesh):
 
     @property
     def onward(self) -> Float[Array, ""]:
-        """A wave generator that turns on meets teeth of growing angle, and phases fall."""
-        return -jnp.ones(())
+        """A wave that runs ahead of the flexspline meets teeth of growing angle, and phases fall."""
+        return jnp.sign(self.motion[1] - self.motion[0])
 
     @property
     def touching(self) -> bool:
@@ -249,11 +249,6 @@ class StrainWave(Mesh):
     def largest_radius(self) -> Float[Array, ""]:
         """Flatter contacts would be wider under load than the flank is high."""
         return _FLATTEST * self.module
-
-    @property
-    def reference(self) -> Reference | None:
-        """A strain wave gear has no pitch point."""
-        return None
 
     def events(self) -> Float[Array, " event"]:
         """Phases at which the sliding of a tooth changes its sense; pairs enter and leave without load."""
@@ -699,5 +694,5 @@ def _section(
         root_radius=jnp.ones(()),
         root_half_angle=jnp.ones(()),
         rim_ratio=jnp.ones(()),
-        internal=True,
+        body="ring",
     )

@@ -61,7 +61,10 @@
       const phase = Number(input.value);
       for (const gear of gears) {
         const turn = Number(gear.dataset.turn) + phase * Number(gear.dataset.spin);
-        gear.setAttribute("transform", `translate(0 ${gear.dataset.centre}) rotate(${turn})`);
+        const [x, y] = gear.dataset.place.split(" ").map(Number);
+        const [across, down] = gear.dataset.travel.split(" ").map(Number);
+        const place = `${x + phase * across} ${y + phase * down}`;
+        gear.setAttribute("transform", `translate(${place}) rotate(${turn})`);
       }
       const places = [];
       contacts.forEach((contact, lane) => {

@@ -1,14 +1,13 @@
 """Specific sliding of both gears along the path of contact."""
 
 import numpy as np
+import xarray as xr
 
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.cycle import PLACE, marks
-from pitchpoint.views.facts import facts
 from pitchpoint.views.figures import PALETTE, Figure, Key, layout, plain
-from pitchpoint.views.geometry import specific_sliding
+from pitchpoint.views.path import PLACE, marks, path_of
 
-__all__ = ["sliding_figure"]
+__all__ = ["sliding_figure", "specific_sliding"]
 
 _LOWEST = -8.0
 """Below, the figure would show nothing else: at the base circle it is infinite."""
@@ -21,12 +20,13 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
         name: of the figure in the page.
         outcome: a result whose teeth are there.
     """
-    teeth, fact = outcome.parts["teeth"], facts(outcome)
-    place = np.linspace(0.0, fact.transverse_ratio, 121)
+    teeth, path = outcome.parts["teeth"], path_of(outcome)
+    place = np.linspace(0.0, path.transverse_ratio, 121)
     start, pitch = float(teeth["points"].values[0]), float(teeth["base_pitch"])
     values = specific_sliding(teeth, start + place * pitch)
-    keys = (Key("gear 1", PALETTE[0]), Key("gear 2", PALETTE[1], "dash"))
-    end = fact.transverse_ratio
+    first, second = outcome.manifest["members"]
+    keys = (Key(first, PALETTE[0]), Key(second, PALETTE[1], "dash"))
+    end = path.transverse_ratio
     lowest = float(np.nanmin(values))
     cut = {"range": [_LOWEST, 1.5]} if lowest < _LOWEST else {}
     note = "Sliding speed over the flank's own rolling speed; zero at C, negative below the pitch circle."
@@ -34,7 +34,20 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
         name,
         "Specific sliding along the path of contact",
         [plain(key, place, course, "") for key, course in zip(keys, values.T, strict=True)],
-        layout(PLACE, "ζ", xaxis={"range": [-0.02 * end, 1.02 * end]}, yaxis=cut, **marks(fact)),
+        layout(PLACE, "ζ", xaxis={"range": [-0.02 * end, 1.02 * end]}, yaxis=cut, **marks(path)),
         note + (f" The lowest value is {lowest:.3g}." if cut else ""),
         keys,
     )
+
+
+def specific_sliding(teeth: xr.Dataset, position: np.ndarray) -> np.ndarray:
+    """Sliding speed over own rolling speed of each gear (ISO 21771), [position, gear].
+
+    Args:
+        teeth: part `teeth` of a result.
+        position: on the line of action, from N1 [m].
+    """
+    constant, slope = teeth["rolling"].values.T
+    rolling = constant + slope * np.asarray(position)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(1.0 - rolling[..., ::-1] / rolling)

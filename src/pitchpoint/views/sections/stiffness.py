@@ -1,8 +1,7 @@
 """Stiffness of the mesh: of each pair and of all together, beside the standard's estimate."""
 
 import json
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
@@ -21,23 +20,19 @@ from pitchpoint.views.figures import (
     continued,
     display,
     layout,
+    pair_key,
     plain,
     short_axis,
 )
+from pitchpoint.views.point import Period, period_of
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
 
 __all__ = [
-    "PAIRS",
-    "outside_standard",
-    "pair_key",
+    "STIFFNESS",
     "stiffness_answer",
     "stiffness_panels",
-    "stiffness_table",
 ]
 
-PAIRS = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
-"""Names of the pairs: I entered in this period, II one period before, and so on."""
-
-PHASE = "phase of the mesh cycle [base pitches]"
 _ROWS = ("mean_stiffness", "stiffness_variation", "standard_stiffness", "standard_single_stiffness")
 _STANDARD = Key("mesh, estimate of ISO 6336-1", "#8a4b08", "longdash")
 _OUTSIDE = Key("mesh, estimate of ISO 6336-1, outside its range", "#8a4b08", "longdash")
@@ -45,38 +40,26 @@ _TOTAL = Key("mesh", INK)
 _MEAN = Key("mesh, mean", GREY, "dot")
 
 
-def pair_key(position: int) -> Key:
-    """Entry of a pair in a legend, the same colour wherever it is shown."""
-    name = PAIRS[position] if position < len(PAIRS) else str(position + 1)
-    return Key(f"pair {name}", PALETTE[position % len(PALETTE)])
-
-
 def stiffness_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     """Figures for each variant whose stiffness is there."""
     return [
-        _panel(f"stiffness{position}", name if len(outcomes) > 1 else "", one.parts["stiffness"])
+        _panel(f"stiffness{position}", name if len(outcomes) > 1 else "", one)
         for position, (name, one) in enumerate(outcomes.items())
         if "stiffness" in one.parts
     ]
 
 
-def stiffness_table(outcomes: Mapping[str, Outcome]) -> dict[str, Any] | None:
-    """Means and variations, a column for each variant; None without stiffness."""
-    parts = {
-        name: one.parts["stiffness"] for name, one in outcomes.items() if "stiffness" in one.parts
-    }
-    if not parts:
-        return None
+def _table(page: Page) -> Table:
+    """Means and variations, a column for each variant."""
+    parts = {name: one.parts["stiffness"] for name, one in page.having("stiffness").items()}
     rows = [
-        (_title(name), [_cell(data, name) for data in parts.values()])
+        (_title(name), *(_cell(data, name) for data in parts.values()))
         for name in _ROWS
         if any(name in data for data in parts.values())
     ]
     models = [str(data.attrs.get("model", "")) for data in parts.values()]
-    return {
-        "head": list(parts) if len(outcomes) > 1 else ["value"],
-        "rows": [*rows, ("teeth yield as", models)],
-    }
+    head = [*parts] if page.several else ["value"]
+    return Table(["Stiffness", *head], [*rows, ("teeth yield as", *models)], compact=True)
 
 
 def stiffness_answer(outcome: Outcome) -> str:
@@ -100,19 +83,22 @@ def _cell(data: xr.Dataset, name: str) -> str:
     return show.quantity(name, float(data[name])) if name in data else "no estimate"
 
 
-def _panel(name: str, variant: str, data: xr.Dataset) -> Panel:
-    told = "; ".join(outside_standard(data))
+def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
+    data, period = outcome.parts["stiffness"], period_of(outcome)
+    told = "; ".join(_outside_standard(data))
     note = f"The estimate of ISO 6336-1 is outside its range: {told}." if told else ""
-    return Panel(variant, [_over_phase(name, data), _of_a_pair(name, data)], note=note)
+    return Panel(
+        variant, [_over_phase(name, data, period), _of_a_pair(name, data, period)], note=note
+    )
 
 
-def outside_standard(data: xr.Dataset) -> list[str]:
+def _outside_standard(data: xr.Dataset) -> list[str]:
     """Where the pair lies outside what the standard's estimate covers."""
     told = json.loads(data.attrs.get("warnings", "[]"))
     return [str(text) for text in told if "ISO 6336-1" in str(text)]
 
 
-def _over_phase(name: str, data: xr.Dataset) -> Figure:
+def _over_phase(name: str, data: xr.Dataset, period: Period) -> Figure:
     phase, unit = data["phase"].values, show.unit(VARIABLES["mesh_stiffness"].display)
     keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
     traces = [
@@ -121,7 +107,7 @@ def _over_phase(name: str, data: xr.Dataset) -> Figure:
     ]
     total = plain(_TOTAL, *_shown(phase, data["mesh_stiffness"].values), unit)
     total["line"] = {**total["line"], "width": 3}
-    standard = _OUTSIDE if outside_standard(data) else _STANDARD
+    standard = _OUTSIDE if _outside_standard(data) else _STANDARD
     levels = {_MEAN: "mean_stiffness", standard: "standard_stiffness"}
     told = {key: variable for key, variable in levels.items() if variable in data}
     traces += [total, *(_level(key, float(data[v]), unit) for key, v in told.items())]
@@ -129,12 +115,12 @@ def _over_phase(name: str, data: xr.Dataset) -> Figure:
         f"{name}_phase",
         "Stiffness of the pairs and of the mesh",
         traces,
-        layout(PHASE, "k [N/µm]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}),
+        layout(period.axis, "k [N/µm]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}),
         keys=(*keys, _TOTAL, *told),
     )
 
 
-def _of_a_pair(name: str, data: xr.Dataset) -> Figure:
+def _of_a_pair(name: str, data: xr.Dataset, period: Period) -> Figure:
     """A pair from its entry to its exit."""
     entered = data["entered"].values.ravel()
     order = np.argsort(entered, kind="stable")
@@ -149,7 +135,7 @@ def _of_a_pair(name: str, data: xr.Dataset) -> Figure:
         "Stiffness of one pair from its entry to its exit",
         [plain(key, x, y, unit)],
         layout(
-            "base pitches since the pair entered ε_0",
+            f"{period.pitch}es since the pair entered ε_0",
             short_axis("pair_stiffness"),
             xaxis={"range": [-0.02 * end, 1.02 * end]},
             yaxis={"rangemode": "tozero"},
@@ -169,3 +155,41 @@ def _shown(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _level(key: Key, value: float, unit: str) -> Trace:
     return plain(key, [0.0, 1.0], [float(display("mesh_stiffness", value))] * 2, unit)
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield Paragraph(
+        "Along the transverse line of action: force there over the approach of the teeth. Pair I entered in "
+        "this period, II one period before, and so on; the mesh is their sum."
+    )
+    yield _table(page)
+    for it in stiffness_panels(page.outcomes):
+        if it.title:
+            yield Heading(it.title)
+        yield it
+        if it.note:
+            yield Paragraph(it.note, "warning")
+
+
+def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+    told = stiffness_answer(outcome)
+    return [("Mesh stiffness", told)] if told else []
+
+
+def _warns(outcome: Outcome) -> list[str]:
+    """What the standard's estimate does not cover stands beside that estimate."""
+    data = outcome.parts.get("stiffness")
+    told = [] if data is None else _outside_standard(data)
+    return [*told, *(f"mesh stiffness: {text}" for text in told)]
+
+
+STIFFNESS = Section(
+    name="stiffness",
+    title="Mesh stiffness",
+    short="Mesh stiffness",
+    order=400.0,
+    parts=("stiffness",),
+    blocks=_blocks,
+    answer=_answer,
+    warns=_warns,
+)

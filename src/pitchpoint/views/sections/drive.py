@@ -6,20 +6,25 @@ the sense of positive rotation, which the page shows counter-clockwise.
 """
 
 import json
-from math import hypot
+from collections.abc import Iterator
+from math import degrees
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import wave
 from pitchpoint.views.inputs import words
+from pitchpoint.views.outlines import simplified
+from pitchpoint.views.point import of_geometry
+from pitchpoint.views.section import Block, Drawn, Page, Section
+from pitchpoint.views.sections.passing import gap_panel
+from pitchpoint.views.way import place_of
 
-__all__ = ["loaded_arcs", "picture", "simplified", "wave_dimensions"]
+__all__ = ["DRIVE", "loaded_arcs", "picture", "wave_dimensions"]
 
+_PARTS = ("teeth.wave_weights",)
 _FINE = 1e-3
 """Largest distance that a corner of an outline may be moved by, in tooth heights."""
 
@@ -34,16 +39,17 @@ def picture(outcome: Outcome, name: str) -> dict[str, Any]:
         outcome: a result whose teeth are carried by a wave.
         name: of the drawing in the page.
     """
-    teeth, fact = outcome.parts["teeth"], wave(outcome)
+    teeth, members = outcome.parts["teeth"], outcome.manifest["members"]
+    numbers, rates = _numbers(teeth), _rates(outcome)
     tooth, space = (1e3 * teeth[key].values for key in ("tooth", "space"))
     height = float(np.ptp(tooth[:, 1]))
     outside = float(space[:, 1].max()) + 2.5 * height
     radius = 1e3 * float(teeth["neutral_radius"])
-    pitch = round(2.0 * np.pi * radius / fact.teeth[0], 5)
+    pitch = round(2.0 * np.pi * radius / numbers[0], 5)
     motion = {
-        "teeth": fact.teeth,
-        "rates": [round(rate, 9) for rate in _rates(fact.rates)],
-        "members": MEMBERS,
+        "teeth": numbers,
+        "rates": [round(rate, 9) for rate in rates],
+        "members": members,
         "radius": round(radius, 6),
         "deflection": round(1e3 * float(teeth["deflection"]), 6),
         "weights": [round(float(w), 7) for w in np.trim_zeros(teeth["wave_weights"].values, "b")],
@@ -63,13 +69,18 @@ def picture(outcome: Outcome, name: str) -> dict[str, Any]:
         "overview": [round(v, 3) for v in _around(1.02 * outside)],
         "window": [round(v, 4) for v in (-wide / 2.0, -middle - wide / 3.8, wide, wide / 1.9)],
         "loaded": bool(motion["arcs"]),
-        "turns": MEMBERS[int(np.argmax(np.abs(_rates(fact.rates))))],
-        "fact": fact,
+        "turns": members[int(np.argmax(np.abs(rates)))],
     }
 
 
-def _rates(rates: tuple[float, float, float]) -> list[float]:
+def _numbers(teeth: xr.Dataset) -> list[int]:
+    """Numbers of teeth of both splines."""
+    return [round(float(number)) for number in teeth["teeth"].values]
+
+
+def _rates(outcome: Outcome) -> list[float]:
     """Rates for a radian of the wave generator, or of the faster spline where that one is fixed."""
+    rates = [float(rate) for rate in outcome.manifest["motion"]]
     most = abs(rates[0]) or max(abs(rate) for rate in rates)
     return [rate / most for rate in rates]
 
@@ -82,30 +93,6 @@ def _corners(outline: np.ndarray, fine: float) -> list[list[float]]:
     return simplified(outline, fine).round(5).tolist()  # type: ignore[no-any-return]
 
 
-def simplified(outline: np.ndarray, fine: float) -> np.ndarray:
-    """Outline without the corners that lie closer than `fine` to a line between others [corner, xy].
-
-    Source: Douglas and Peucker's method.
-    """
-    kept = np.zeros(len(outline), bool)
-    kept[[0, -1]] = True
-    stack = [(0, len(outline) - 1)]
-    while stack:
-        first, last = stack.pop()
-        inside = outline[first + 1 : last]
-        if not len(inside):
-            continue
-        (dx, dy), (x, y) = outline[last] - outline[first], (inside - outline[first]).T
-        span = hypot(dx, dy)
-        away = np.abs(dx * y - dy * x) / span if span > 0.0 else np.hypot(x, y)
-        farthest = int(np.argmax(away))
-        if away[farthest] > fine:
-            middle = first + 1 + farthest
-            kept[middle] = True
-            stack += [(first, middle), (middle, last)]
-    return outline[kept]
-
-
 def loaded_arcs(outcome: Outcome) -> list[list[float]]:
     """Angles from the long axis between which teeth carry under the first law [rad]; empty if unknown.
 
@@ -114,7 +101,7 @@ def loaded_arcs(outcome: Outcome) -> list[list[float]]:
     data = outcome.parts.get("cycle")
     if data is None:
         return []
-    angle, load = arc_of(data), data["load"].values[0]
+    angle, load = np.radians(place_of(data)), data["load"].values[0]
     order = np.argsort(angle.ravel(), kind="stable")
     angle, carries = angle.ravel()[order], load.ravel()[order] > 0.0
     found = angle[carries]
@@ -125,28 +112,24 @@ def loaded_arcs(outcome: Outcome) -> list[list[float]]:
     return [[round(float(one[0]), 5), round(float(one[-1]), 5)] for one in np.split(found, cuts)]
 
 
-def arc_of(data: xr.Dataset) -> np.ndarray:
-    """Angle of each contact from the long axis [rad], of its path in turns."""
-    return np.asarray(2.0 * np.pi * data["path"].values)
-
-
 def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     """Names of the main dimensions, each with the values of flexspline and circular spline or of both."""
-    teeth, fact = outcome.parts["teeth"], wave(outcome)
+    teeth, manifest = outcome.parts["teeth"], outcome.manifest
 
     def length(name: str, factor: float = 1.0) -> str:
         return show.number(1e3 * factor * float(teeth[name]), 6)
 
     tip = 1e3 * (float(teeth["neutral_radius"]) + float(teeth["tooth"].values[:, 1].max()))
-    drives, carries = (fact.rates[MEMBERS.index(name)] for name in (fact.driver, fact.loaded))
-    rows: list[tuple[str, ...]] = [("number of teeth z", *map(str, fact.teeth))]
+    driver, loaded = manifest["driver"], manifest["loaded"]
+    motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
+    rows: list[tuple[str, ...]] = [("number of teeth z", *map(str, _numbers(teeth)))]
     module, width = (show.pretty(words(outcome, "gears", key)) for key in ("module", "face_width"))
     rows += [("module m", module)] if module else []
     rows += [("face width b", width)] if width else []
     return [
         *rows,
-        (f"speed ratio, {fact.driver} to {fact.loaded}", show.number(drives / carries, 6)),
-        ("fixed member", fact.fixed),
+        (f"speed ratio, {driver} to {loaded}", show.number(motion[driver] / motion[loaded], 6)),
+        ("fixed member", next(name for name in motion if name not in (driver, loaded))),
         ("deflection w_0 [mm]", length("deflection")),
         ("diameter of the undeformed neutral line [mm]", length("neutral_radius", 2.0)),
         ("rim thickness of the flexspline [mm]", length("rim_thickness")),
@@ -167,3 +150,35 @@ def _mm(teeth: xr.Dataset) -> float:
 def _depth(teeth: xr.Dataset) -> float:
     """From the tip of the circular spline's teeth to the deepest point of their spaces [mm]."""
     return 1e3 * float(np.ptp(teeth["space"].values[:, 1]))
+
+
+def _told_arcs(outcome: Outcome) -> str:
+    """Angles between which teeth carry, in words; empty if unknown."""
+    arcs = loaded_arcs(outcome)
+    each = [f"{degrees(a):.1f}° to {degrees(b):.1f}°".replace("-", "−") for a, b in arcs]
+    return " and ".join(each)
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    groups = of_geometry(page.having(*_PARTS), page.several)
+    for position, (variants, outcome) in enumerate(groups):
+        gap = gap_panel(outcome, f"drive{position}")
+        values = {
+            "variants": variants,
+            "picture": picture(outcome, f"drive{position}"),
+            "gap": gap,
+            "dimensions": wave_dimensions(outcome),
+            "arcs": _told_arcs(outcome),
+        }
+        yield Drawn("drive.html.jinja", {"d": values}, [gap])
+
+
+DRIVE = Section(
+    name="drive",
+    title="Drive and path of the teeth",
+    short="Drive",
+    order=120.0,
+    parts=_PARTS,
+    lacks=lambda page: None if page.having(*_PARTS) else "",
+    blocks=_blocks,
+)

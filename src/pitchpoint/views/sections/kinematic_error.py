@@ -1,12 +1,12 @@
 """Kinematic error by deviations of the teeth: over a turn, and by order."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint.results.variables import VARIABLES
+from pitchpoint.analyses.figures import error_ranges
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -24,8 +24,15 @@ from pitchpoint.views.figures import (
     short_axis,
     text,
 )
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
 
-__all__ = ["kinematic_error_answer", "kinematic_error_panels"]
+__all__ = [
+    "KINEMATIC_ERROR",
+    "error_rows",
+    "kinematic_error_answer",
+    "kinematic_error_panels",
+]
 
 _KEYS = {
     "geometry": Key("rigid teeth without load", GREY),
@@ -56,7 +63,9 @@ def kinematic_error_answer(outcome: Outcome) -> str:
     if not np.isfinite(data["kinematic_error_range"].values).all():
         return "no equilibrium was found at some places of the turn"
     loaded, rigid = (
-        show.quantity("kinematic_error_range", float(data["kinematic_error_range"].values[k, -1]))
+        show.quantity(
+            "kinematic_error_range", float(data["kinematic_error_range"].values[k, -1]), of=data
+        )
         for k in (-1, 0)
     )
     return (
@@ -84,9 +93,13 @@ def _the(member: str) -> str:
 def _turn(name: str, data: xr.Dataset) -> Figure:
     """Error by the deviations of both members."""
     angle = display("turn_angle", data["turn_angle"])
-    unit = show.unit(VARIABLES["kinematic_error"].display)
+    unit = show.unit_of("kinematic_error", data)
     traces = [
-        plain(key, *continued(angle, display("kinematic_error", data["kinematic_error"][k])), unit)
+        plain(
+            key,
+            *continued(angle, display("kinematic_error", data["kinematic_error"][k], data)),
+            unit,
+        )
         for k, key in enumerate(_KEYS.values())
     ]
     return Figure(
@@ -95,7 +108,7 @@ def _turn(name: str, data: xr.Dataset) -> Figure:
         traces,
         layout(
             f"{data.attrs['turn_angle']} θ [°]",
-            short_axis("kinematic_error"),
+            short_axis("kinematic_error", data),
             xaxis={"range": [0, 360], "dtick": 90},
         ),
         "Rotation of the loaded member in the sense of its torque, less that of teeth without "
@@ -107,22 +120,22 @@ def _turn(name: str, data: xr.Dataset) -> Figure:
 
 def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> Figure:
     """Amplitudes of the orders that the deviations of one member make."""
-    lines = display("kinematic_error_spectrum", data["kinematic_error_spectrum"][:, position])
+    lines = display("kinematic_error_spectrum", data["kinematic_error_spectrum"][:, position], data)
     alone = float(data["kinematic_error_range"].values[-1, position])
-    shown = _orders(lines)
+    orders, unit = _orders(lines), show.unit_of("kinematic_error_spectrum", data)
     return Figure(
         name,
         f"Orders by {_the(member)}",
-        [_bars(key, lines[k], shown) for k, key in enumerate(_KEYS.values())],
+        [_bars(key, lines[k], orders, unit) for k, key in enumerate(_KEYS.values())],
         layout(
             f"order, per {data.attrs['own_turn'].format(member)}",
-            short_axis("kinematic_error_spectrum"),
-            xaxis={"range": [0.4, shown[-1] + 0.6], "dtick": 1 if shown.size < 25 else None},
+            short_axis("kinematic_error_spectrum", data),
+            xaxis={"range": [0.4, orders[-1] + 0.6], "dtick": 1 if orders.size < 25 else None},
             yaxis={"rangemode": "tozero"},
             barmode="group",
         ),
         f"With deviations of {_the(member)} alone, over {data.attrs['turn_alone']}: "
-        f"{show.quantity('kinematic_error_range', alone)} peak to peak under the operating torque. "
+        f"{show.quantity('kinematic_error_range', alone, of=data)} peak to peak under the operating torque. "
         "Orders of the mesh, about the number of teeth, are not drawn.",
         tuple(replace(key, dash="") for key in _KEYS.values()),
         missing="No equilibrium was found.",
@@ -136,14 +149,52 @@ def _orders(lines: np.ndarray) -> np.ndarray:
     return np.arange(1, max(int(seen[-1]) if seen.size else 0, _FEWEST) + 1)
 
 
-def _bars(key: Key, amplitudes: np.ndarray, shown: np.ndarray) -> Trace:
-    unit = show.unit(VARIABLES["kinematic_error_spectrum"].display)
+def _bars(key: Key, amplitudes: np.ndarray, orders: np.ndarray, unit: str) -> Trace:
     return {
         "type": "bar",
         "name": text(key.label),
         "meta": "",
-        "x": shown.tolist(),
-        "y": rounded(amplitudes[shown]),
+        "x": orders.tolist(),
+        "y": rounded(amplitudes[orders]),
         "marker": {"color": key.colour},
         "hovertemplate": f"%{{y:.4~g}} {unit}<br>order %{{x}}",
     }
+
+
+def error_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Kinematic error, peak to peak, by the deviations of each member and of both."""
+    name, data = "kinematic_error_range", outcome.parts.get("kinematic_error")
+    return [
+        {f"kinematic error {head(name, data)}": curve}
+        | {cause: shown(name, float(v), data) for cause, v in zip(causes, values, strict=True)}
+        for curve, causes, values in error_ranges(data)
+    ]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield Paragraph(
+        "By the deviations that the case gives for the teeth, which differ from tooth to tooth: the mesh "
+        "cycle, its losses and stiffness are those of teeth without them."
+    )
+    for it in kinematic_error_panels(page.outcomes):
+        if it.title:
+            yield Heading(it.title)
+        yield Paragraph(it.note)
+        yield it
+
+
+def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+    told = kinematic_error_answer(outcome)
+    return [("Kinematic error", told)] if told else []
+
+
+KINEMATIC_ERROR = Section(
+    name="kinematic",
+    title="Kinematic error",
+    short="Kinematic error",
+    order=310.0,
+    parts=("kinematic_error",),
+    blocks=_blocks,
+    answer=_answer,
+    screen=lambda outcome: [Printed(rows=error_rows(outcome))],
+)

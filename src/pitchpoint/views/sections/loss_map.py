@@ -9,7 +9,6 @@ import xarray as xr
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (
     DASHES,
     INK,
@@ -28,8 +27,10 @@ from pitchpoint.views.figures import (
     rounded,
     short_axis,
 )
+from pitchpoint.views.point import operating_point
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
-__all__ = ["efficiency_panel", "map_panel"]
+__all__ = ["LOSS_MAP", "efficiency_panel", "map_panel"]
 
 _SHOWN = ("mean_loss", "mean_efficiency")
 _MOST = 60
@@ -80,8 +81,8 @@ def _heat(name: str, data: xr.Dataset, law: int, temperature: int) -> dict[str, 
     values = data[name].transpose("law", "temperature", "torque", "speed").values[law, temperature]
     rows, columns = (_thinned(size) for size in values.shape)
     return {
-        "x": rounded(display("speed", data["speed"].values[columns])),
-        "y": rounded(display("torque", data["torque"].values[rows])),
+        "x": rounded(display("speed", data["speed"].values[columns], data)),
+        "y": rounded(display("torque", data["torque"].values[rows], data)),
         "z": rounded(display(name, values[np.ix_(rows, columns)])),
     }
 
@@ -92,7 +93,7 @@ def _thinned(size: int) -> np.ndarray:
 
 def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature: int) -> Figure:
     variable, fact = VARIABLES[name], operating_point(outcome)
-    unit = show.unit(variable.display)
+    unit, units = show.unit(variable.display), [show.unit_of(n, data) for n in ("speed", "torque")]
     heat = {
         "type": "heatmap",
         **_heat(name, data, law, temperature),
@@ -100,13 +101,14 @@ def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature
         "reversescale": name != "mean_efficiency",
         "hoverongaps": False,
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}} rpm, %{{y:.4~g}} N m<extra></extra>",
+        "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}} {units[0]}, %{{y:.4~g}} {units[1]}"
+        "<extra></extra>",
     }
     point = {
         "type": "scatter",
         "mode": "markers",
-        "x": rounded(display("speed", [fact.speed])),
-        "y": rounded(display("torque", [fact.torque])),
+        "x": rounded(display("speed", [fact.speed], data)),
+        "y": rounded(display("torque", [fact.torque], data)),
         "marker": {
             "symbol": "x",
             "size": 10,
@@ -119,7 +121,7 @@ def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature
         f"map_{name}",
         variable.long_name[0].upper() + variable.long_name[1:],
         [heat, point],
-        layout("driver speed [rpm]", "output torque [N m]"),
+        layout(show.axis_title("speed", data), show.axis_title("torque", data)),
         "The cross marks the operating point.",
     )
 
@@ -154,23 +156,27 @@ def _lines(axis: str, other: str, seen: list[tuple[Curve, Outcome, int]]) -> Fig
         data = outcome.parts["loss_map"].isel(law=law)
         (third,) = {"torque", "speed", "temperature"} - {axis, other}
         near = data.sel({third: getattr(operating_point(outcome), third)}, method="nearest")
-        held[level(third, float(near[third]))] = None
+        held[level(third, float(near[third]), data)] = None
         for dash, value in zip(DASHES, values, strict=False):
             if value not in near[other].values:
                 continue
             found = near["mean_efficiency"].sel({other: value})
-            trace = line(curve, display(axis, near[axis]), display("mean_efficiency", found), unit)
+            trace = line(
+                curve, display(axis, near[axis], data), display("mean_efficiency", found), unit
+            )
             trace["line"] = {"color": curve.colour, "dash": dash, "width": 2}
             traces.append(trace)
-    words = VARIABLES[axis].long_name
+    like = seen[0][1].parts["loss_map"]
+    words = show.described(axis, like).long_name
     return Figure(
         f"efficiency_{axis}",
         f"Mean efficiency against {words}",
         traces,
-        layout(f"{words} [{show.unit(VARIABLES[axis].display)}]", short_axis("mean_efficiency")),
+        layout(show.axis_title(axis, like), short_axis("mean_efficiency")),
         f"At {' and '.join(held)}, which of the loss map is nearest to the operating point.",
         tuple(
-            Key(level(other, value), INK, dash) for dash, value in zip(DASHES, values, strict=False)
+            Key(level(other, value, like), INK, dash)
+            for dash, value in zip(DASHES, values, strict=False)
         ),
         missing="Undefined here: no power is transmitted, or the mesh is locked.",
     )
@@ -183,3 +189,39 @@ def _spread(axes: list[np.ndarray], name: str) -> list[float]:
         every = every[every > 0.0]
     count = min(every.size, len(DASHES))
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
+
+
+_LOSSY = 0.95
+"""Efficiency at the operating point below which lines of it say more than the map does."""
+
+
+def _lossy(outcome: Outcome) -> bool:
+    point = outcome.parts.get("operation")
+    lost = point is not None and bool((point["mean_efficiency"] < _LOSSY).any())
+    return "running" in outcome.parts or lost
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    there = page.having("loss_map")
+    data = next(iter(there.values())).parts["loss_map"]
+    load = show.described("torque", data).long_name
+    yield Paragraph(
+        f"Mean loss and mean efficiency over driver speed and {load}. At zero {load.split()[-1]} or zero "
+        "speed no power is transmitted and the efficiency is undefined; those cells are blank. Every choice "
+        "has its own colour scale."
+    )
+    yield map_panel(there, page.curves)
+    lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)
+    if lines.figures:
+        yield Heading("Efficiency against torque, speed and temperature")
+        yield lines
+
+
+LOSS_MAP = Section(
+    name="map",
+    title="Loss map",
+    short="Loss map",
+    order=700.0,
+    parts=("loss_map",),
+    blocks=_blocks,
+)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.studies import is_study
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -49,7 +50,7 @@ def _studies(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, Seen]]:
     found: dict[str, list[tuple[str, xr.Dataset]]] = {}
     for variant, outcome in outcomes.items():
         for name, data in outcome.parts.items():
-            if name.startswith("study_") and is_design_chart(data):
+            if is_study(name) and is_design_chart(data):
                 found.setdefault(name, []).append((variant, data))
     for name, each in found.items():
         yield (

@@ -3,16 +3,15 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import pi
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.figures import VIBRATION as FIGURES
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import Facts, facts
 from pitchpoint.views.figures import (
     DASHES,
     PALETTE,
@@ -23,15 +22,27 @@ from pitchpoint.views.figures import (
     continued,
     display,
     layout,
+    pair_key,
     plain,
     rounded,
     short_axis,
     text,
 )
 from pitchpoint.views.inputs import words
-from pitchpoint.views.stiffness import pair_key
+from pitchpoint.views.point import period_of
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    Table,
+    reason,
+)
 
-__all__ = ["resonance_panels", "vibration_answer", "vibration_panels", "vibration_tables"]
+__all__ = ["VIBRATION", "resonance_panels", "vibration_answer", "vibration_panels"]
 
 ORDERS = range(1, 21)
 """Orders of the mesh frequency that are drawn."""
@@ -57,21 +68,6 @@ def vibration_panels(outcomes: Mapping[str, Outcome]) -> list[Panel]:
     return [
         _panel(f"vibration{position}", name if len(outcomes) > 1 else "", one)
         for position, (name, one) in enumerate(outcomes.items())
-        if "vibration" in one.parts
-    ]
-
-
-def vibration_tables(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
-    """Figures of every torque, a table for each variant."""
-    return [
-        {
-            "variant": name if len(outcomes) > 1 else "",
-            "contact": str(one.parts["vibration"].attrs.get("contact", "")),
-            "head": _torques(one.parts["vibration"]),
-            "rows": _rows(one),
-            "status": _status(one.parts["vibration"]),
-        }
-        for name, one in outcomes.items()
         if "vibration" in one.parts
     ]
 
@@ -105,8 +101,9 @@ def _found(data: xr.Dataset) -> list[bool]:
 
 
 def _torques(data: xr.Dataset) -> list[str]:
-    unit = show.unit(VARIABLES["torque"].display)
-    return [f"{show.number(float(value))} {unit}" for value in display("torque", data["torque"])]
+    unit = show.unit_of("torque", data)
+    values = display("torque", data["torque"], data)
+    return [f"{show.number(float(value))} {unit}" for value in values]
 
 
 def _cell(data: xr.Dataset, name: str, torque: int) -> str:
@@ -115,14 +112,15 @@ def _cell(data: xr.Dataset, name: str, torque: int) -> str:
     return show.quantity(name, float(data[name].values[torque]))
 
 
-def _rows(outcome: Outcome) -> list[tuple[str, list[str]]]:
+def _table(outcome: Outcome) -> Table:
+    """Figures of every torque."""
     data = outcome.parts["vibration"]
-    count = range(data.sizes["torque"])
-    rows = [(_title(name), [_cell(data, name, k) for k in count]) for name in _ROWS]
+    count, load = range(data.sizes["torque"]), show.described("torque", data).long_name
+    rows = [(_title(name), *(_cell(data, name, k) for k in count)) for name in _ROWS]
     damping = words(outcome, "dynamics", "damping_ratio")
     if damping:
-        rows.insert(3, ("damping ratio ξ", [damping] * len(count)))
-    return rows
+        rows.insert(3, ("damping ratio ξ", *[damping] * len(count)))
+    return Table([f"At the {load}", *_torques(data)], rows, compact=True)
 
 
 def _status(data: xr.Dataset) -> str:
@@ -139,8 +137,7 @@ def _title(name: str) -> str:
 
 
 def _panel(name: str, variant: str, outcome: Outcome) -> Panel:
-    data, fact = outcome.parts["vibration"], facts(outcome) if "teeth" in outcome.parts else None
-    backwards = fact.backwards if fact else False
+    data, backwards = outcome.parts["vibration"], period_of(outcome).backwards
     figures = [
         _errors(name, data, backwards),
         _factors(name, data, backwards),
@@ -217,7 +214,7 @@ def _factors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
 def _over_time(
     data: xr.Dataset, values: np.ndarray, backwards: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Time over period, and values; where gear 2 drives the phase runs backwards."""
+    """Time over period, and values; time may run against the phase."""
     phase = data["phase"].values
     return continued(1.0 - phase[::-1], values[::-1]) if backwards else continued(phase, values)
 
@@ -272,7 +269,7 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
     data = outcome.parts["resonance"]
     values = np.where(data["vibration_status"].values == 0, data[variable].values, np.nan)
     rising, falling = display(variable, values)
-    speed, unit = display("speed", data["speed"].values), show.unit(VARIABLES[variable].display)
+    speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable)
     same = np.allclose(rising, falling, rtol=1e-6, equal_nan=True)
     traces = []
     for key, up, down in zip(_keys(data), rising, falling, strict=True):
@@ -300,7 +297,7 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
         f"{name}_{variable}",
         f"{title[0].upper()}{title[1:]} against speed",
         traces,
-        layout("driver speed [rpm]", short_axis(variable), yaxis={"rangemode": "tozero"})
+        layout(show.axis_title("speed", data), short_axis(variable), yaxis={"rangemode": "tozero"})
         | _verticals(marks),
         note,
         tuple(keys),
@@ -315,23 +312,18 @@ def _dots(colour: str, branch: str) -> dict[str, Any]:
 
 
 def _resonances(outcome: Outcome, speed: np.ndarray) -> list[tuple[str, float]]:
-    """Driver speeds in rpm at which a part of the natural frequency is the mesh frequency."""
-    if not {"vibration", "teeth"} <= outcome.parts.keys():
+    """Driver speeds, as shown, at which a part of the natural frequency is the mesh frequency."""
+    if "vibration" not in outcome.parts:
         return []
     natural = float(outcome.parts["vibration"]["natural_frequency"].values[-1])
-    fact = facts(outcome)
+    angle = period_of(outcome).angle
     found: list[tuple[str, float]] = []
     for part in range(1, _FEW + 1):
-        rpm = _rpm(natural / part, fact)
-        near = found and abs(found[-1][1] - rpm) < 0.13 * np.ptp(speed)
-        if speed.min() <= rpm <= speed.max() and not near:
-            found.append(("f_n" if part == 1 else f"f_n/{part}", rpm))
+        there = float(display("speed", natural / part * angle, outcome.parts["resonance"]))
+        near = found and abs(found[-1][1] - there) < 0.13 * np.ptp(speed)
+        if speed.min() <= there <= speed.max() and not near:
+            found.append(("f_n" if part == 1 else f"f_n/{part}", there))
     return found
-
-
-def _rpm(mesh_frequency: float, fact: Facts) -> float:
-    rate = mesh_frequency * fact.period_angle
-    return rate * 60.0 / (2.0 * pi)
 
 
 def _verticals(marks: Sequence[tuple[str, float]]) -> dict[str, Any]:
@@ -353,14 +345,74 @@ def _gaps(data: xr.Dataset) -> Iterator[str]:
     """For each direction and torque how many speeds have no steady state, and why."""
     told = json.loads(data.attrs.get("sentences", "[]"))
     codes = data["vibration_status"].values
-    speed = display("speed", data["speed"].values)
+    speed, unit = display("speed", data["speed"].values, data), show.unit_of("speed", data)
     for way, by_torque in zip(data["direction"].values, codes, strict=True):
         for torque, found in zip(_torques(data), by_torque, strict=True):
             for code in np.unique(found[found != 0]):
                 where = speed[found == code]
-                ends = f"{show.number(where[0])} to {show.number(where[-1])} rpm"
-                words = ends if where.size > 1 else f"{show.number(where[0])} rpm"
+                ends = f"{show.number(where[0])} to {show.number(where[-1])} {unit}"
+                words = ends if where.size > 1 else f"{show.number(where[0])} {unit}"
                 yield (
                     f"At {torque}, speed {way}: {where.size} of {speed.size} speeds ({words}) "
                     f"are left out, {told[int(code)] if int(code) < len(told) else 'not solved'}."
                 )
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    panels = zip(vibration_panels(page.outcomes), page.having("vibration").values(), strict=True)
+    for it, outcome in panels:
+        yield from _steady(it, outcome)
+    for it in resonance_panels(page.outcomes):
+        yield Heading(f"Against speed: {it.title}" if it.title else "Against speed")
+        if it.note:
+            yield Paragraph(it.note, "warning")
+        yield it
+
+
+def _steady(it: Panel, outcome: Outcome) -> Iterator[Block]:
+    data = outcome.parts["vibration"]
+    if it.title:
+        yield Heading(it.title)
+    yield Paragraph(
+        "Steady state at the operating speed; the motion of one member against the other, measured along "
+        f"the line of action. Contact: {data.attrs.get('contact', '')}."
+    )
+    if it.note:
+        yield Paragraph(it.note, "warning")
+    yield _table(outcome)
+    yield Paragraph(f"Steady state: {_status(data)}.", "note")
+    yield it
+
+
+def _lacks(page: Page) -> str | None:
+    there = page.having("vibration") or page.having("resonance")
+    return None if there else reason(page, "vibration")
+
+
+def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+    told = vibration_answer(outcome)
+    return [("Transmission error", "; ".join(told))] if told else []
+
+
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    """Stiffness and transmission error for every torque."""
+    data = outcome.parts.get("vibration")
+    if data is not None:
+        rows = [
+            {head("torque", data): f"{torque:.5g}"}
+            | {head(name): shown(name, float(data[name].values[k])) for name in FIGURES}
+            for k, torque in enumerate(data["torque"].values)
+        ]
+        yield Printed(rows=rows)
+
+
+VIBRATION = Section(
+    name="vibration",
+    title="Vibration",
+    short="Vibration",
+    order=410.0,
+    lacks=_lacks,
+    blocks=_blocks,
+    answer=_answer,
+    screen=_screen,
+)

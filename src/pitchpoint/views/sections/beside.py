@@ -6,10 +6,8 @@ from functools import reduce
 import numpy as np
 import xarray as xr
 
-from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.facts import operating_point
 from pitchpoint.views.figures import (
     DASHES,
     INK,
@@ -26,10 +24,14 @@ from pitchpoint.views.figures import (
     level,
     line,
     rounded,
+    short_axis,
     text,
 )
+from pitchpoint.views.lines import titled
+from pitchpoint.views.point import operating_point
+from pitchpoint.views.section import Block, Page, Section, reason
 
-__all__ = ["bearing_answer", "drag_answer", "drag_panel", "starting_answer"]
+__all__ = ["BESIDE", "drag_panel", "loss_split", "starting_answer"]
 
 _TEETH = Key("in the teeth", PALETTE[5], "")
 _BESIDE = Key("beside the teeth", "#9aa5ad", "")
@@ -49,37 +51,6 @@ def drag_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     return Panel("Losses beside the teeth", figures, curves)
 
 
-def drag_answer(outcome: Outcome, law: int) -> str:
-    """Loss in and beside the teeth in words; empty where there is none beside."""
-    found = _parts(outcome.parts["operation"], law)
-    if found is None or not found[1] > 0.0:
-        return ""
-    teeth, beside = (show.quantity("mean_loss", value) for value in found)
-    return f"{teeth} in the teeth, {beside} beside them"
-
-
-def bearing_answer(outcome: Outcome, law: int) -> list[tuple[str, str]]:
-    """What the teeth put on the shafts, and each bearing beside them bears: names and words."""
-    data = outcome.parts["operation"]
-    found = []
-    for words, name in (
-        ("radial load on the shafts", "radial"),
-        ("axial load on the shafts", "axial"),
-    ):
-        both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
-        if any(both):
-            shown = dict.fromkeys(show.quantity(f"{name}_reaction_1", value) for value in both)
-            found.append((words, " and ".join(shown)))
-    if "bearing_load" in data:
-        loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
-        found += [
-            (f"load on {place}", show.quantity("bearing_load", load))
-            for place, load in loads
-            if load > 0.0
-        ]
-    return found
-
-
 def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     """Torque without load and torques that start the drive at the operating point, names and words."""
     data = outcome.parts.get("running")
@@ -90,20 +61,25 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     # The operating point is on both axes; where it is read from words it is so up to rounding.
     there = own.sel(speed=at.speed, temperature=at.temperature, method="nearest")
     return [
-        (words, _held(name, float(there[name])))
+        (words.format(_load(data, name)), _held(data, name, float(there[name])))
         for words, name in (
-            ("torque without load", "no_load_torque"),
-            ("starting torque", "starting_torque"),
-            ("back-driving torque", "back_driving_torque"),
+            ("{} without load", "no_load_torque"),
+            ("starting {}", "starting_torque"),
+            ("back-driving {}", "back_driving_torque"),
         )
     ]
 
 
-def _held(name: str, value: float) -> str:
-    return show.quantity(name, value) if np.isfinite(value) else "friction holds the drive"
+def _load(data: xr.Dataset, name: str) -> str:
+    """What moves a member, as a word."""
+    return "force" if show.described(name, data).unit == "N" else "torque"
 
 
-def _parts(data: xr.Dataset, law: int) -> tuple[float, float] | None:
+def _held(data: xr.Dataset, name: str, value: float) -> str:
+    return show.quantity(name, value, of=data) if np.isfinite(value) else "friction holds the drive"
+
+
+def loss_split(data: xr.Dataset, law: int) -> tuple[float, float] | None:
     """Loss in the teeth and beside them [W]."""
     if "mean_drag_loss" not in data:
         return None
@@ -118,7 +94,7 @@ def _split(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[Cur
             continue
         data = outcome.parts["operation"]
         for position, law in enumerate(laws(data)):
-            found = _parts(data, position)
+            found = loss_split(data, position)
             if found is not None:
                 yield known[variant, law], *found
 
@@ -173,57 +149,50 @@ def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
 
 def _no_load(axis: str, other: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> Figure:
     values = _chosen([data[other].values for _, data, *_ in seen])
-    unit = show.unit(VARIABLES["no_load_torque"].display)
+    like = seen[0][1]
     traces = [
-        _dashed(curve, data[axis], data["no_load_torque"][law].sel({other: value}), dash, unit)
+        _dashed(curve, data.isel(law=law).sel({other: value}), axis, "no_load_torque", dash)
         for curve, data, law, _ in seen
         for dash, value in zip(DASHES, values, strict=False)
         if value in data[other].values
     ]
     return Figure(
         f"no_load_{axis}",
-        f"Input torque without load against {_WORDS[axis]}",
+        f"{titled('no_load_torque', like)} against {axis}",
         traces,
-        _look(axis, "T_0"),
+        _look(like, axis, "no_load_torque"),
         keys=tuple(
-            Key(level(other, value), INK, dash) for dash, value in zip(DASHES, values, strict=False)
+            Key(level(other, value, like), INK, dash)
+            for dash, value in zip(DASHES, values, strict=False)
         ),
         missing="Friction holds the drive whatever the torque.",
     )
 
 
-_WORDS = {"speed": "speed", "temperature": "temperature"}
-_TITLES = {
-    "starting_torque": ("Input torque that starts the drive", "T_start"),
-    "back_driving_torque": ("Output torque that starts the drive backwards", "T_back"),
-}
-
-
 def _starting(name: str, seen: list[tuple[Curve, xr.Dataset, int, Outcome]]) -> Figure:
-    title, symbol = _TITLES[name]
-    unit = show.unit(VARIABLES[name].display)
+    like = seen[0][1]
     traces = [
-        _dashed(curve, data["temperature"], data[name][law], curve.dash, unit)
+        _dashed(curve, data.isel(law=law), "temperature", name, curve.dash)
         for curve, data, law, _ in seen
     ]
     return Figure(
         f"running_{name}",
-        title,
+        titled(name, like),
         traces,
-        _look("temperature", symbol),
+        _look(like, "temperature", name),
         "From rest, without load, at the worst phase of the mesh.",
         missing="Friction holds the drive whatever the torque.",
     )
 
 
-def _look(axis: str, symbol: str) -> dict[str, object]:
-    words, unit = VARIABLES[axis].long_name, show.unit(VARIABLES[axis].display)
+def _look(data: xr.Dataset, axis: str, name: str) -> dict[str, object]:
     axes = {"yaxis": {"rangemode": "tozero"}}
-    return layout(f"{words} [{unit}]", f"{symbol} [{show.unit('N m')}]", **axes)
+    return layout(show.axis_title(axis, data), short_axis(name, data), **axes)
 
 
-def _dashed(curve: Curve, x: xr.DataArray, y: xr.DataArray, dash: str, unit: str) -> Trace:
-    trace = line(curve, display(str(x.name), x), display("no_load_torque", y), unit)
+def _dashed(curve: Curve, data: xr.Dataset, axis: str, name: str, dash: str) -> Trace:
+    x, y = (display(each, data[each], data) for each in (axis, name))
+    trace = line(curve, x, y, show.unit_of(name, data))
     return {**trace, "line": {"color": curve.colour, "dash": dash, "width": 2}}
 
 
@@ -233,3 +202,23 @@ def _chosen(axes: list[np.ndarray]) -> list[float]:
     every = common if common.size else np.unique(np.concatenate(axes))
     count = min(every.size, len(DASHES))
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
+
+
+def _lacks(page: Page) -> str | None:
+    there = drag_panel(page.outcomes, page.curves).figures
+    return None if there else reason(page, "running")
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield drag_panel(page.outcomes, page.curves)
+
+
+BESIDE = Section(
+    name="beside",
+    title="Losses beside the teeth",
+    short="Beside the teeth",
+    order=320.0,
+    lacks=_lacks,
+    blocks=_blocks,
+    card=starting_answer,
+)

@@ -1,0 +1,126 @@
+"""Contact lines of involute flanks in the plane of action: along the path of contact, and across the face."""
+
+import abc
+from functools import cached_property
+
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.errors import InputError
+
+__all__ = ["LARGEST_CONTACT_RATIO", "SLICES", "PathOfContact", "lanes_for"]
+
+# Few values, so that few programs are compiled for many pairs.
+_LANES_FOR_RATIO_BELOW = (2.0, 3.0, 4.0, 6.0, 9.0, 14.0, 24.0)
+
+LARGEST_CONTACT_RATIO = _LANES_FOR_RATIO_BELOW[-1]
+"""Contact ratio above which no lanes are held."""
+
+SLICES = 12
+"""Slices of each contact line of helical gears, an even number: midpoints, so errors fall with its square."""
+
+# Share of the face width that a contact line has at least while it is in mesh: a length of zero has
+# no load per length.
+_SHORTEST = 1e-9
+
+
+class PathOfContact(abc.ABC):
+    """Lengths along the line of action, and what they follow from, each computed when first asked for.
+
+    One program asks for the same lengths in many places; this record answers one question of it
+    and is then thrown away, so that no traced value outlives its trace. Source: ISO 21771:2007.
+    """
+
+    @property
+    @abc.abstractmethod
+    def limits(self) -> Float[Array, "2"]:
+        """Positions of A and E from N1 [m]."""
+
+    @property
+    @abc.abstractmethod
+    def base_pitch(self) -> Float[Array, ""]:
+        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
+
+    @property
+    @abc.abstractmethod
+    def pitch_position(self) -> Float[Array, ""]:
+        """Position of the pitch point C from N1 [m]."""
+
+    @property
+    @abc.abstractmethod
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+
+    @cached_property
+    def pitch_path(self) -> Float[Array, ""]:
+        """Position of the pitch point from A [base pitches]."""
+        return (self.pitch_position - self.limits[0]) / self.base_pitch
+
+    @cached_property
+    def transverse_contact_ratio(self) -> Float[Array, ""]:
+        """Transverse contact ratio eps_alpha."""
+        return jnp.asarray((self.limits[1] - self.limits[0]) / self.base_pitch)
+
+    @cached_property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
+        return self.transverse_contact_ratio + self.overlap_ratio
+
+    def bounds(self, *, helical: bool) -> list[Float[Array, ""]]:
+        """Base pitches from the entry of a pair at which it leaves, or passes the pitch point.
+
+        Of helical teeth also those at which a contact line stops growing and begins to shrink, and
+        at which the pitch line enters and leaves it.
+
+        Args:
+            helical: static.
+        """
+        found = [jnp.zeros_like(self.pitch_path), self.contact_ratio, self.pitch_path]
+        if not helical:
+            return found
+        overlap = self.overlap_ratio
+        return [*found, self.transverse_contact_ratio, overlap, self.pitch_path + overlap]
+
+    def lines(
+        self, entered: Float[Array, "pair 1 *b"], *, helical: bool, slices: int
+    ) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
+        """Middles of the slices of each contact line, and the share of the face that each slice takes.
+
+        Both are parts of the face width, counted from the end that enters first. Half of the slices
+        lie on each side of the pitch line, so that sliding changes its sense in no slice.
+
+        Args:
+            entered: base pitches since the pair entered.
+            helical: False for straight teeth, whose lines take the whole face; static.
+            slices: of each line; even, or one; static.
+        """
+        if not helical:
+            whole = jnp.zeros_like(entered)
+            return _sliced(whole, whole + 1.0, slices)
+        overlap = self.overlap_ratio
+        low = jnp.clip((entered - self.transverse_contact_ratio) / overlap, 0.0, 1.0)
+        high = jnp.clip(entered / overlap, 0.0, 1.0)
+        if slices == 1:
+            return (low + high) / 2.0, jnp.maximum(high - low, _SHORTEST)
+        pitch_line = jnp.clip((entered - self.pitch_path) / overlap, low, high)
+        parts = [_sliced(*ends, slices // 2) for ends in ((low, pitch_line), (pitch_line, high))]
+        middles, shares = zip(*parts, strict=True)
+        return jnp.concatenate(middles, axis=1), jnp.concatenate(shares, axis=1)
+
+
+def _sliced(
+    low: Float[Array, "pair 1 *b"], high: Float[Array, "pair 1 *b"], count: int
+) -> tuple[Float[Array, "pair slice *b"], Float[Array, "pair slice *b"]]:
+    """Middles and lengths of equal slices between two ends."""
+    share = jnp.maximum(high - low, _SHORTEST) / count
+    middle = (jnp.arange(count) + 0.5).reshape(-1, *([1] * (low.ndim - 2)))
+    return low + middle * share, jnp.broadcast_to(share, (low.shape[0], count, *low.shape[2:]))
+
+
+def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
+    """Static count of pairs to hold for a contact ratio: few values, so that few programs are compiled."""
+    for limit in _LANES_FOR_RATIO_BELOW:
+        if contact_ratio < limit:
+            return max(int(limit), 3) if helical else int(limit)
+    message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
+    raise InputError(message, value=contact_ratio)

@@ -1,0 +1,133 @@
+"""A rack and pinion from its table in a case file."""
+
+from dataclasses import replace
+from math import nan
+from typing import Any
+
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import lanes_for
+from pitchpoint.gears.family import Family
+from pitchpoint.gears.involute import InvoluteGear, usual_fillet
+from pitchpoint.gears.layers import LAYERS, LEVELS
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rack_and_pinion import MEMBERS
+from pitchpoint.gears.rack_and_pinion.checks import check_rack_and_pinion
+from pitchpoint.gears.rack_and_pinion.mesh import RackAndPinion
+from pitchpoint.gears.rack_and_pinion.rack import Rack
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
+from pitchpoint.programs import program
+
+__all__ = ["FAMILY"]
+
+RIM_RATIO = 1.0 / 0.3
+"""Root radius over bore radius of the pinion where no bore is given."""
+
+
+def _build(gears: RackAndPinionGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+    mesh, limit, ratio = _complete(_mesh(gears, slices))
+    if gears.profile_shift < float(limit):
+        pinion = replace(mesh.pinion, undercut=True)
+        mesh, _, ratio = _complete(replace(mesh, pinion=pinion))
+    told = check_rack_and_pinion(mesh)
+    mesh = replace(mesh, lanes=lanes_for(float(ratio), helical=mesh.helical))
+    return _bored(mesh, gears.bore_diameter), tuple(told)
+
+
+def _mesh(gears: RackAndPinionGears, slices: int) -> RackAndPinion:
+    """The mesh; a distance that follows from the pinion is NaN."""
+    helical = gears.helix_angle > 0.0
+    common = {"module": array(gears.module), "pressure_angle": array(gears.pressure_angle)}
+    pinion, rack = _racks(gears)
+    return RackAndPinion(
+        pinion=InvoluteGear(
+            teeth=array(gears.teeth),
+            helix_angle=array(gears.helix_angle),
+            profile_shift=array(gears.profile_shift),
+            tip_alteration=array(0.0),
+            undercut=False,
+            crossing=array(gears.pressure_angle),
+            internal=False,
+            **common,
+            **pinion,
+        ),
+        rack=Rack(**common, **rack),
+        face_width=array(gears.face_width),
+        distance=array(gears.mounting_distance or nan),
+        rim_ratio=array(RIM_RATIO),
+        moved_mass=array(gears.mass or nan),
+        rack_drives=array(False),
+        right_flank=array(gears.flank == "right"),
+        helical=helical,
+        lanes=2,
+        slices=slices if helical else 1,
+    )
+
+
+def _racks(gears: RackAndPinionGears) -> list[dict[str, jax.Array]]:
+    """Addendum, dedendum and rounding of the rack that cuts the pinion, and of the rack itself."""
+    given = _depths(gears)
+    names = ("addendum", "dedendum", "fillet_radius")
+    return [
+        dict(zip(names, map(array, each), strict=True))
+        for each in zip(gears.addendum, *given, strict=True)
+    ]
+
+
+def _depths(gears: RackAndPinionGears) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Dedenda and fillet radii in modules, the usual ones where none are given."""
+    depth = gears.dedendum or tuple(each + 0.25 for each in gears.addendum)
+    usual = tuple(usual_fillet(each, gears.pressure_angle) for each in depth)
+    return depth, gears.fillet_radius or usual
+
+
+@program
+def _complete(
+    mesh: RackAndPinion,
+) -> tuple[RackAndPinion, Float[Array, ""], Float[Array, ""]]:
+    """The mesh with the distance and the undercut that follow, undercut limit, contact ratio."""
+    pinion = mesh.pinion
+    if pinion.undercut:
+        pinion = replace(pinion, crossing=pinion.crossing_angle())
+    given = mesh.distance
+    distance = jnp.where(jnp.isnan(given), mesh.zero_backlash_distance, given)
+    whole = replace(mesh, pinion=pinion, distance=distance)
+    return whole, pinion.undercut_limit, whole.contact_ratio
+
+
+def _bored(mesh: RackAndPinion, bore: float | None) -> RackAndPinion:
+    """The mesh with the bore of its pinion; InputError for one that leaves no body."""
+    root = 2.0 * float(mesh.pinion.root_radius)
+    if bore is None:
+        return mesh
+    if bore >= root:
+        raise InputError(
+            f"the bore diameter of the pinion is {1e3 * bore:.6g} mm; it must be smaller than its root "
+            f"circle, {1e3 * root:.6g} mm",
+            key="bore_diameter",
+        )
+    return replace(mesh, rim_ratio=array(root / bore))
+
+
+def _following(gears: RackAndPinionGears, mesh: RackAndPinion) -> dict[str, Any]:
+    """Values that the table leaves open."""
+    depth, fillet = _depths(gears)
+    return {"dedendum": depth, "fillet_radius": fillet, "mounting_distance": mesh.distance}
+
+
+FAMILY = Family(
+    _build,
+    _following,
+    drawing={**LAYERS, "points": ("point",)},
+    coordinates={
+        "gear": [1, 2],
+        "xy": ["x", "y"],
+        "point": list("ABCDE"),
+        "body": [*MEMBERS],
+        "level": [*LEVELS],
+        "line": ["action", "path"],
+        "mark": [*"ABCDE", "N1"],
+    },
+)

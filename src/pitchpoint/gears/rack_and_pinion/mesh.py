@@ -1,0 +1,406 @@
+"""Rack and pinion: an involute gear on straight flanks that travel."""
+
+import dataclasses
+from functools import cached_property
+from typing import ClassVar, Self
+
+import equinox as eqx
+from jaxtyping import Array, Bool, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Offset, Spot, Surfaces
+from pitchpoint.factored import Arrays
+from pitchpoint.gears.contact_lines import PathOfContact
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.involute import InvoluteGear
+from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
+from pitchpoint.gears.members import number_of
+from pitchpoint.gears.mesh import Mesh, Path, Reference
+from pitchpoint.gears.rack_and_pinion import MEMBERS
+from pitchpoint.gears.rack_and_pinion.rack import Rack
+from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.roots import hypot
+
+__all__ = ["RackAndPinion"]
+
+
+class LineOfAction(PathOfContact):
+    """Lengths on the line of action of rack and pinion.
+
+    Args:
+        mesh: whose dimensions count.
+    """
+
+    def __init__(self, mesh: "RackAndPinion") -> None:
+        self.mesh = mesh
+
+    @cached_property
+    def angle(self) -> Float[Array, ""]:
+        """Transverse pressure angle of rack and pinion [rad]: it is that in operation, at any distance."""
+        return self.mesh.pinion.transverse_pressure_angle
+
+    @cached_property
+    def base_radius(self) -> Float[Array, ""]:
+        """Base radius of the pinion [m]."""
+        return self.mesh.pinion.base_radius
+
+    @cached_property
+    def base_pitch(self) -> Float[Array, ""]:
+        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
+        return 2.0 * jnp.pi * self.base_radius / self.mesh.pinion.teeth
+
+    @cached_property
+    def slope(self) -> Float[Array, ""]:
+        """Cosine of the helix angle on the base cylinder."""
+        return jnp.cos(self.mesh.pinion.base_helix_angle)
+
+    @cached_property
+    def limits(self) -> Float[Array, "2"]:
+        """Positions of A and E from N1 [m]: A where the rack or an undercut ends, E on the pinion's tip."""
+        pinion, mesh = self.mesh.pinion, self.mesh
+        start = self.at_depth(mesh.distance - mesh.rack.tip)
+        if pinion.undercut:
+            start = jnp.maximum(start, pinion.form_roll_length)
+        return jnp.stack([start, pinion.tip_roll_length])
+
+    def at_depth(self, across: Float[Array, ""]) -> Float[Array, ""]:
+        """Position from N1 of the point that lies so far from the pinion's axis, towards the rack [m]."""
+        return (across - self.base_radius * jnp.cos(self.angle)) / jnp.sin(self.angle)
+
+    @cached_property
+    def pitch_position(self) -> Float[Array, ""]:
+        """Position of the pitch point C from N1 [m]."""
+        return self.base_radius * jnp.tan(self.angle)
+
+    @cached_property
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+        pinion = self.mesh.pinion
+        return self.mesh.face_width * jnp.sin(pinion.helix_angle) / (jnp.pi * pinion.module)
+
+
+class RackAndPinion(Mesh):
+    """A pinion on a fixed axis and a rack that travels at right angles to it.
+
+    Coordinates: rotation of the pinion, travel of the rack. Lengths along the line of action are
+    transverse and counted from N1, where it touches the base circle of the pinion; A is the end of the
+    path of contact near N1, where the rack has its tips, E the other end. The pitch circle is the reference
+    circle at any distance of the rack.
+
+    Attributes:
+        pinion: the gear.
+        rack: the straight flanks.
+        face_width: common to both [m].
+        distance: from the pinion's axis to the reference line of the rack [m].
+        rim_ratio: root radius over bore radius of the pinion.
+        moved_mass: of the rack and what it carries [kg]; NaN where it is not known.
+        rack_drives: True if the rack drives and the pinion carries the load; the same flanks touch.
+        right_flank: False while the pinion pushes with its left flanks (seen with the tip up), turning
+            counter-clockwise when it drives; True for the other ones.
+        helical: False if the helix angle is zero; static.
+        lanes: static count of pairs held, at least the contact ratio rounded up.
+        slices: static count of slices of each contact line; even, or one.
+        surfaces: how all flanks of both members differ from their design.
+    """
+
+    pitch_point: ClassVar[bool] = True
+    toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
+    counts: ClassVar[Path] = "action"
+
+    pinion: InvoluteGear
+    rack: Rack
+    face_width: Float[Array, ""]
+    distance: Float[Array, ""]
+    rim_ratio: Float[Array, ""]
+    moved_mass: Float[Array, ""]
+    rack_drives: Bool[Array, ""]
+    right_flank: Bool[Array, ""]
+    helical: bool = eqx.field(static=True)
+    lanes: int = eqx.field(static=True)
+    slices: int = eqx.field(static=True)
+    surfaces: Surfaces = ((), ())
+
+    @property
+    def line(self) -> LineOfAction:
+        """Lengths on the line of action, for one question."""
+        return LineOfAction(self)
+
+    @property
+    def sections(self) -> tuple[ToothSection, ToothSection]:
+        """Teeth of pinion and rack in the normal section."""
+        return self.pinion.section(self.rim_ratio), self.rack.section(self.line.angle)
+
+    @property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
+        return self.line.contact_ratio
+
+    @property
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+        return self.line.overlap_ratio
+
+    @property
+    def zero_backlash_distance(self) -> Float[Array, ""]:
+        """Distance of the reference line at which the flanks touch on both sides, r + x m [m]."""
+        return self.pinion.reference_radius + self.pinion.profile_shift * self.pinion.module
+
+    @property
+    def backlash(self) -> Float[Array, ""]:
+        """Play of the rack along its travel j_wt = 2 (a - a_0) tan(alpha_t) [m]."""
+        return 2.0 * (self.distance - self.zero_backlash_distance) * jnp.tan(self.line.angle)
+
+    @property
+    def normal_backlash(self) -> Float[Array, ""]:
+        """Backlash along the normal of the flanks j_bn = j_wt cos(alpha_t) cos(beta_b) [m]."""
+        return self.backlash * jnp.cos(self.line.angle) * self.line.slope
+
+    @property
+    def motion(self) -> Float[Array, "2"]:
+        """Rates of both for one radian of the pinion, or one metre of the rack where that drives."""
+        radius = self.pinion.reference_radius
+        turned = jnp.stack([jnp.ones_like(radius), radius])
+        return self._side * jnp.where(self.rack_drives, -1.0 / radius, 1.0) * turned
+
+    @property
+    def driver(self) -> Float[Array, "2"]:
+        """The pinion, or the rack where that drives."""
+        return jnp.where(self.rack_drives, jnp.array([0.0, 1.0]), jnp.array([1.0, 0.0]))
+
+    @property
+    def loaded(self) -> Float[Array, "2"]:
+        """The driven one."""
+        return 1.0 - self.driver
+
+    def driven_by(self, member: str | int) -> Self:
+        """The same with this member driving the other one; the same flanks touch."""
+        return dataclasses.replace(self, rack_drives=array(number_of(member, MEMBERS) == 1))
+
+    @property
+    def onward(self) -> Float[Array, ""]:
+        """Pairs run from A to E where the pinion drives, else from E to A."""
+        return jnp.where(self.rack_drives, -1.0, 1.0)
+
+    @property
+    def period(self) -> Float[Array, ""]:
+        """Motion of the driver over one pitch [rad or m]."""
+        turn = 2.0 * jnp.pi / self.pinion.teeth
+        return jnp.where(self.rack_drives, turn * self.pinion.reference_radius, turn)
+
+    @property
+    def line_of_action(self) -> Float[Array, "2"]:
+        """Base radius of the pinion and cos(alpha_t) of the rack, with the sense in which they close."""
+        line = self.line
+        return self._side * jnp.stack([line.base_radius, -jnp.cos(line.angle)])
+
+    @property
+    def reference(self) -> Reference:
+        """Values at the pitch point C, where the rack is straight."""
+        line = self.line
+        speed = jnp.where(self.rack_drives, 1.0, self.pinion.reference_radius)
+        return Reference(
+            width=self.face_width,
+            line_length=self.face_width / line.slope,
+            radius=line.pitch_position / line.slope,
+            sum_speed=2.0 * speed * jnp.sin(line.angle),
+            pitch_line_speed=speed,
+        )
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, Coordinate]:
+        """Pinion about z at the origin, x towards the rack; the rack along y on its reference line."""
+        rack = jnp.zeros(3).at[0].set(self.distance)
+        travel = jnp.array([0.0, 1.0, 0.0])
+        return (
+            Coordinate(MEMBERS[0], jnp.zeros(3), jnp.asarray(AXIAL), 0),
+            Coordinate(MEMBERS[1], rack, travel, 1, turns=False),
+        )
+
+    def events(self) -> Float[Array, " event"]:
+        """Phases of entry, exit and pitch point; of helical teeth also where lines grow and shrink."""
+        found = self.line.bounds(helical=self.helical)
+        return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
+
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+        """Contacts of all pairs in mesh; phase 0 is the entry of a pair at A [base pitches]."""
+        line = self.line
+        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+        entered = jnp.mod(phase, 1.0) + number
+        across, share = line.lines(entered, helical=self.helical, slices=self.slices)
+        lanes = jnp.shape(across)
+        path = jnp.broadcast_to(entered - line.overlap_ratio * across * self.helical, lanes)
+        active = jnp.broadcast_to(entered <= line.contact_ratio, lanes)
+        position = jnp.where(active, line.limits[0] + path * line.base_pitch, line.pitch_position)
+        width = jnp.broadcast_to(self.face_width * (across - 0.5), lanes)
+        return Contacts(
+            active=active,
+            path=path,
+            width=width,
+            weight=jnp.broadcast_to(self.face_width * share / line.slope, lanes),
+            gap=jnp.zeros(lanes),
+            **self._at(line, position, width),
+            shape="line",
+        )
+
+    def _at(
+        self, line: LineOfAction, position: Float[Array, "pair slice *b"], width: Array
+    ) -> dict[str, Array]:
+        """Curvature, motion and place at positions on the line of action [m from N1]."""
+        side, none = self._side, jnp.zeros_like(position)
+        cosine, sine = jnp.cos(line.angle), jnp.sin(line.angle)
+        start = line.base_radius * jnp.stack([cosine, -side * sine])
+        along = jnp.stack([sine, side * cosine])
+        point = jnp.stack([*(start[k] + position * along[k] for k in (0, 1)), width])
+
+        def everywhere(*parts: Array) -> Array:
+            return jnp.stack([none + part for part in parts])
+
+        return {
+            "curvature": everywhere(line.slope / position, none, none, none).reshape(
+                2, 2, *none.shape
+            ),
+            "surface": everywhere(side * position, none, none, none + side * sine).reshape(
+                2, 2, *none.shape
+            ),
+            "normal": everywhere(*(self.line_of_action * line.slope)),
+            "flank": jnp.stack(
+                [
+                    position**2 / (2.0 * line.base_radius),
+                    self.rack.arc(self.distance - point[0], line.angle),
+                ]
+            ),
+            "point": point,
+            "direction": everywhere(*(line.slope * along), jnp.sin(self.pinion.base_helix_angle)),
+            "tangent": everywhere(-cosine, side * sine, jnp.zeros(())),
+        }
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same teeth on their other flanks, which lie back by the backlash."""
+        first, second = self.surfaces
+        surfaces = ((*first, Offset(self.normal_backlash)), second)
+        return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
+
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
+        """The line of action stands still; the pinion turns on against it, the rack travels past it."""
+        lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
+        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+        entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
+        turned = jnp.broadcast_to(-self._side * phase * 2.0 * jnp.pi / self.pinion.teeth, lanes)
+        tooth = (-self._side * entered).astype(int)
+        flank = [jnp.broadcast_to(each, lanes) for each in contacts.flank]
+        across, ones = jnp.broadcast_to(contacts.width, lanes), jnp.ones(lanes)
+        around = jnp.mod(tooth, self.pinion.teeth.astype(int))
+        return (
+            Spot(flank[0], across, turned, around, ones),
+            # A rack has no end here, and no angle: whatever repeats on it counts in turns of the pinion.
+            Spot(flank[1], across, turned, tooth, ones),
+        )
+
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
+        """Moment of inertia of the pinion as a disc [kg m2], and the mass that the rack moves [kg]."""
+        root = self.pinion.root_radius
+        outer, bore = self.pinion.reference_radius, root / self.rim_ratio
+        disc = jnp.pi / 2.0 * density[0] * self.face_width * (outer**4 - bore**4)
+        return jnp.stack([disc, self.moved_mass])
+
+    def dimensions(self) -> dict[str, Float[Array, "..."]]:
+        """Contact ratios, distance and backlash, and of the pinion tip and undercut limit."""
+        line, pinion = self.line, self.pinion
+        return {
+            "module": pinion.module,
+            "transverse_contact_ratio": line.transverse_contact_ratio,
+            "overlap_ratio": line.overlap_ratio,
+            "mounting_distance": self.distance,
+            "circumferential_backlash": self.backlash,
+            "normal_backlash": self.normal_backlash,
+            "tip_thickness_1": pinion.tip_thickness,
+            "undercut_limit_1": pinion.undercut_limit,
+        }
+
+    def drawing(self) -> dict[str, Float[Array, "..."]]:
+        """Layers of the picture, circles of the pinion alone, points of the path [m]."""
+        line, pinion = self.line, self.pinion
+        radii = {
+            "base_radius": pinion.base_radius,
+            "tip_radius": pinion.tip_radius,
+            "root_radius": pinion.root_radius,
+            "reference_radius": pinion.reference_radius,
+            "form_radius": hypot(pinion.base_radius, pinion.form_roll_length),
+            "active_root_radius": hypot(pinion.base_radius, line.limits[0]),
+        }
+        own = {"tip_thickness": pinion.tip_thickness, "undercut_limit": pinion.undercut_limit}
+        alone = {"teeth": pinion.teeth, **radii, **own}
+        none = jnp.asarray(jnp.nan)
+        named = self.dimensions()
+        return {
+            **self._layers(line),
+            "points": self._points(line),
+            **{name: jnp.stack([value, none]) for name, value in alone.items()},
+            "working_pressure_angle": line.angle,
+            "base_pitch": line.base_pitch,
+            "base_helix_angle": pinion.base_helix_angle,
+            "face_width": self.face_width,
+            "contact_ratio": line.contact_ratio,
+            **{name: value for name, value in named.items() if not name.endswith("_1")},
+        }
+
+    def _points(self, line: LineOfAction) -> Float[Array, "5"]:
+        """Positions of A, B, C, D, E from N1 [m]; B and D one base pitch from the far end."""
+        (start, end), pitch = line.limits, line.base_pitch
+        return jnp.stack([start, end - pitch, line.pitch_position, start + pitch, end])
+
+    def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
+        """The transverse section at the middle of the face, the rack above the pinion."""
+        side, base = self._side, line.base_radius
+        sine, cosine = jnp.sin(line.angle), jnp.cos(line.angle)
+        path = DrawnPath(
+            origin=base * jnp.stack([side * sine, cosine]),
+            along=jnp.stack([-side * cosine, sine]),
+            limits=line.limits,
+            points=self._points(line),
+            ends=jnp.zeros(1),
+            base_pitch=line.base_pitch,
+            behind=line.overlap_ratio / 2.0,
+        )
+        contact = path.at(line.limits[0])
+        pinion = drawn_gear(
+            self.pinion,
+            place=jnp.zeros(2),
+            contact=contact,
+            side=side,
+            earlier=side * 2.0 * jnp.pi / self.pinion.teeth * path.behind,
+            working_radius=self.pinion.reference_radius,
+        )
+        none = jnp.zeros(())
+        rolling = [[none, none + 1.0], [self.pinion.reference_radius * sine, none]]
+        drawn = [pinion, self._drawn_rack(contact, path.behind)]
+        return layers(drawn, path) | {"rolling": jnp.array(rolling)}
+
+    def _drawn_rack(self, contact: Float[Array, "2"], behind: Float[Array, ""]) -> DrawnBody:
+        """The rack, one tooth of which goes through a contact, its teeth downwards.
+
+        Args:
+            contact: on the flank of that tooth [m].
+            behind: periods in which it gets there from where it is at phase zero.
+        """
+        rack, side, slope = self.rack, self._side, jnp.cos(self.pinion.helix_angle)
+        pitch = jnp.pi * rack.module / slope
+        half = rack.half_thickness(self.distance - contact[1]) / slope
+        working, none = self.distance - self.pinion.reference_radius, jnp.asarray(jnp.nan)
+        rim = rack.root - RIM * (rack.tip - rack.root)
+        return DrawnBody(
+            tooth=rack.outline(slope),
+            place=jnp.stack([contact[0] - side * (half - pitch * behind), self.distance]),
+            turned=jnp.asarray(jnp.pi),
+            levels=jnp.stack([rack.tip, working, none, rack.root, rim]),
+            count=self.pinion.teeth,
+            pitch=pitch,
+            travel=jnp.array([-1.0, 0.0]),
+        )
+
+    @property
+    def _side(self) -> Float[Array, ""]:
+        return jnp.where(self.right_flank, -1.0, 1.0)

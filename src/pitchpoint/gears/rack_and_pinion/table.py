@@ -1,0 +1,63 @@
+"""The table [gears] of a rack and pinion."""
+
+from math import pi
+from typing import Annotated, ClassVar, Literal
+
+from pitchpoint.gears.rack_and_pinion import MEMBERS
+from pitchpoint.gears.table import (
+    ANGLE,
+    BORE,
+    DISTANCE,
+    FILLET,
+    HELIX,
+    MODULE,
+    RACK,
+    SHIFT,
+    WIDTH,
+    GearsTable,
+    Load,
+)
+from pitchpoint.input.quantities import Pair, Quantity
+
+__all__ = ["RackAndPinionGears"]
+
+TEETH = Quantity("dimensionless", 2, 10_000, whole=True)
+MASS = Quantity("mass", 0.0, 1e6, "kg", open_low=True)
+
+
+class RackAndPinionGears(GearsTable):
+    """A pinion that drives a rack. Gear 1 is the pinion, gear 2 the rack, in all lists of two.
+
+    The mounting distance is that from the pinion's axis to the reference line of the rack, without backlash
+    if it is not given. The mass is that of the rack and of all that moves with it; a vibration asks for it.
+    """
+
+    members: ClassVar[tuple[str, ...]] = MEMBERS
+    load: ClassVar[Load] = "force"
+    carries: ClassVar[str] = "a rack carries a force"
+    friction: ClassVar[str] = "iso_tr_14179_2"
+
+    family: Literal["rack_and_pinion"] = "rack_and_pinion"
+    teeth: Annotated[float, TEETH]
+    module: Annotated[float, MODULE]
+    face_width: Annotated[float, WIDTH]
+    pressure_angle: Annotated[float, ANGLE] = pi / 9
+    helix_angle: Annotated[float, HELIX] = 0.0
+    profile_shift: Annotated[float, SHIFT] = 0.0
+    addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
+    dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
+    fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
+    mounting_distance: Annotated[float, DISTANCE] | None = None
+    bore_diameter: Annotated[float, BORE] | None = None
+    mass: Annotated[float, MASS] | None = None
+    flank: Literal["left", "right"] = "left"
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """The pinion; a speed is that of a rotation."""
+        return MEMBERS[:1]
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """A rack travels."""
+        return MEMBERS[:1]

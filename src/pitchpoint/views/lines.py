@@ -1,0 +1,94 @@
+"""Lines over the mesh cycle and along the way of a pair: gaps at events, bands of lubrication regimes."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.views.figures import Trace
+from pitchpoint.views.show import described
+
+__all__ = ["SHORT", "Points", "folded", "gapped", "regimes", "titled", "values_of"]
+
+_EVENT, SHORT = 1e-7, 1e-6
+"""Nodes beside an event are closer than the first; a segment shorter than the second is no segment."""
+
+_REGIMES = (
+    (0.0, 1.0, "#fbe9e2", "boundary"),
+    (1.0, 3.0, "#fdf5dc", "mixed"),
+    (3.0, np.inf, "#e7f2ea", "full film"),
+)
+
+Points = tuple[np.ndarray, np.ndarray]
+
+
+def gapped(x: np.ndarray, y: np.ndarray) -> Points:
+    """Points with a gap (NaN) at every event, so that no line crosses a jump."""
+    cuts = np.flatnonzero(np.abs(np.diff(x)) < _EVENT) + 1
+    parts = [
+        part for part in np.split(np.arange(x.size), cuts) if part.size and np.ptp(x[part]) > SHORT
+    ]
+    if not parts:
+        return x[:0], y[:0]
+    gap = np.array([np.nan])
+    return (
+        np.concatenate([piece for part in parts for piece in (x[part], x[part[-1:]])]),
+        np.concatenate([piece for part in parts for piece in (y[part], gap)]),
+    )
+
+
+def folded(phase: np.ndarray, values: np.ndarray) -> Points:
+    """Values of one period in the order of their phases from 0 to 1, wherever the period begins."""
+    inside = np.where(phase > 1.0, phase - 1.0, phase)
+    order = np.argsort(inside, kind="stable")
+    return inside[order], values[order]
+
+
+def values_of(data: xr.Dataset, name: str) -> np.ndarray:
+    """SI values of a mesh cycle by name; "loss" is all of it."""
+    if name == "loss":
+        return np.asarray((data["sliding_loss"] + data["rolling_loss"]).values)
+    return np.asarray(data[name].values)
+
+
+def titled(name: str, of: Any = None) -> str:
+    """Long name of a variable as a title, see `show.described`."""
+    words = described(name, of).long_name
+    return words[0].upper() + words[1:]
+
+
+def regimes(look: dict[str, Any], traces: list[Trace]) -> None:
+    """Bands of the lubrication regimes behind the curves; sets the range of the axis of values.
+
+    Args:
+        look: layout with lists of shapes and annotations.
+        traces: curves of the film thickness over the roughness.
+    """
+    values = [y for t in traces for y in t["y"] if y is not None]
+    top = max(1.25, 1.1 * max(values, default=1.0))
+    bottom = 0.0
+    if look["yaxis"].get("type") == "log":
+        bottom = 0.7 * min(values)
+        top *= 1.3
+    if "range" in look["yaxis"]:
+        bottom, top = (10.0**end for end in look["yaxis"]["range"])
+        top = max(top, 1.25)
+    look["yaxis"]["range"] = [_place(bottom, bottom), _place(top, bottom)]
+    bands = [band for band in _REGIMES if bottom < band[1] and band[0] < top]
+    for low, high, colour, words in bands:
+        ends = {"y0": max(low, bottom), "y1": min(high, top)}
+        look["shapes"].insert(
+            0,
+            {"type": "rect", "xref": "paper", "x0": 0, "x1": 1, **ends}
+            | {"fillcolor": colour, "line": {"width": 0}, "layer": "below"},
+        )
+        look["annotations"].append(
+            {"text": words, "xref": "paper", "x": 0.99, "xanchor": "right", "showarrow": False}
+            | {"y": _place(ends["y1"], bottom), "yanchor": "top", "yshift": 3}
+            | {"font": {"size": 11, "color": "#7a6a4f"}}
+        )
+
+
+def _place(value: float, bottom: float) -> float:
+    """Place on the axis: logarithmic axes, which begin above zero, count in powers of ten."""
+    return float(np.log10(value)) if bottom > 0.0 else value

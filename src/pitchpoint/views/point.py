@@ -1,0 +1,118 @@
+"""Where a result was run, and the period of its mesh."""
+
+from dataclasses import dataclass
+from math import degrees
+
+import numpy as np
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.inputs import given, number
+
+__all__ = ["OperatingPoint", "Period", "of_geometry", "operating_point", "period_of"]
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """Where a variant is run.
+
+    Attributes:
+        torque: of the loaded member [N m], or force on one that travels [N].
+        speed: of the driver [rad/s].
+        temperature: of the oil [K].
+    """
+
+    torque: float
+    speed: float
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Period:
+    """What the phase of a mesh counts.
+
+    Attributes:
+        angle: driver angle after which the state of the mesh repeats [rad]; its way [m] where it travels.
+        travels: True if the driver travels.
+        time: after which it does [s].
+        pitch: what it is called.
+        against: why time runs against the phase; empty where it does not.
+    """
+
+    angle: float
+    travels: bool
+    time: float
+    pitch: str
+    against: str
+
+    @property
+    def backwards(self) -> bool:
+        """True if the phase falls while the drive turns on."""
+        return bool(self.against)
+
+    @property
+    def words(self) -> str:
+        """How far the driver moves in a period."""
+        if self.travels:
+            return f"{show.number(1e3 * self.angle)} mm of the driver"
+        return f"{show.number(degrees(self.angle))}° of the driver"
+
+    @property
+    def axis(self) -> str:
+        """Title of an axis of the phase."""
+        return f"phase of the mesh cycle [{self.pitch}es]"
+
+
+def operating_point(outcome: Outcome) -> OperatingPoint:
+    """Where a result was run, whatever its gears."""
+    load = "torque" if given(outcome, "operation", "torque") is not None else "force"
+    names = {"torque": load, "speed": "speed", "temperature": "temperature"}
+    return OperatingPoint(
+        **{name: number(outcome, "operation", key) for name, key in names.items()}
+    )
+
+
+def period_of(outcome: Outcome) -> Period:
+    """Period of a result's mesh."""
+    manifest = outcome.manifest
+    angle = float(manifest["period"])
+    return Period(
+        angle,
+        "driver" in manifest["travels"],
+        angle / number(outcome, "operation", "speed"),
+        str(manifest["pitch"]),
+        str(manifest["against"]),
+    )
+
+
+def of_geometry(outcomes: dict[str, Outcome], several: bool) -> list[tuple[str, Outcome]]:
+    """Names of the variants that share their teeth, and one of them; no names if all do.
+
+    Args:
+        outcomes: by variant, whose teeth are there.
+        several: True if the page has several variants.
+    """
+    groups: list[tuple[list[str], Outcome]] = []
+    for variant, outcome in outcomes.items():
+        for names, other in groups:
+            if _same_geometry(other, outcome):
+                names.append(variant)
+                break
+        else:
+            groups.append(([variant], outcome))
+    told = several and len(groups) > 1
+    return [(", ".join(names) if told else "", outcome) for names, outcome in groups]
+
+
+def _same_geometry(first: Outcome, second: Outcome) -> bool:
+    """True if both variants have the same teeth and turn the same way, driven by the same member."""
+    one, two = first.parts["teeth"], second.parts["teeth"]
+    return (
+        one.sizes == two.sizes
+        and set(one.data_vars) == set(two.data_vars)
+        and all(
+            np.array_equal(one[name].values, two[name].values, equal_nan=True)
+            for name in one.data_vars
+        )
+        and all(first.manifest[key] == second.manifest[key] for key in ("driver", "motion"))
+    )

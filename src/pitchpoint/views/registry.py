@@ -1,0 +1,56 @@
+"""All sections of the report and the screen."""
+
+from pitchpoint.registry import Registry
+from pitchpoint.views.section import Section
+from pitchpoint.views.sections.answer import ANSWER
+from pitchpoint.views.sections.arc import ARC
+from pitchpoint.views.sections.beside import BESIDE
+from pitchpoint.views.sections.compared import COMPARED
+from pitchpoint.views.sections.cycle import CYCLE
+from pitchpoint.views.sections.drive import DRIVE
+from pitchpoint.views.sections.inputs import INPUTS
+from pitchpoint.views.sections.issues import ISSUES
+from pitchpoint.views.sections.kinematic_error import KINEMATIC_ERROR
+from pitchpoint.views.sections.loss_map import LOSS_MAP
+from pitchpoint.views.sections.models import MODELS
+from pitchpoint.views.sections.path import PATH
+from pitchpoint.views.sections.sources import SOURCES
+from pitchpoint.views.sections.stiffness import STIFFNESS
+from pitchpoint.views.sections.studies import STUDIES
+from pitchpoint.views.sections.teeth import TEETH
+from pitchpoint.views.sections.torsion import TORSION
+from pitchpoint.views.sections.vibration import VIBRATION
+
+__all__ = ["SECTIONS", "in_order", "register_section"]
+
+SECTIONS: Registry[Section] = Registry(
+    "section",
+    ANSWER,
+    INPUTS,
+    TEETH,
+    PATH,
+    DRIVE,
+    ARC,
+    CYCLE,
+    TORSION,
+    KINEMATIC_ERROR,
+    BESIDE,
+    STIFFNESS,
+    VIBRATION,
+    STUDIES,
+    LOSS_MAP,
+    COMPARED,
+    ISSUES,
+    MODELS,
+    SOURCES,
+)
+
+
+def register_section(section: Section) -> None:
+    """Add a section of one's own to the report and the screen."""
+    SECTIONS.add(section)
+
+
+def in_order() -> list[Section]:
+    """All sections in the order in which they are shown."""
+    return sorted(SECTIONS.values(), key=lambda section: section.order)

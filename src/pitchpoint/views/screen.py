@@ -1,0 +1,34 @@
+"""Cells of the tables that the command line prints."""
+
+from typing import Any
+
+import numpy as np
+
+from pitchpoint import units
+from pitchpoint.views.show import described
+
+__all__ = ["cell", "head", "shown"]
+
+
+def head(name: str, of: Any = None) -> str:
+    """Symbol and unit of a variable, see `show.described`."""
+    variable = described(name, of)
+    unit = f" [{variable.display}]" if variable.display != "1" else ""
+    return f"{variable.symbol}{unit}"
+
+
+def cell(data: Any, name: str, position: int) -> str:
+    """Value of a variable under the friction law at a position, at the first point."""
+    return shown(name, float(data[name].values[position, 0]), data)
+
+
+def shown(name: str, value: float, of: Any = None) -> str:
+    """Value of a variable in its display unit, without the unit [SI in], see `show.described`."""
+    variable = described(name, of)
+    if np.isnan(value):
+        return "undefined"
+    if np.isinf(value):
+        return "none"
+    if variable.display == "1":
+        return f"{value:.4f}"
+    return f"{units.convert(value, variable.display, variable.kind):.5g}"

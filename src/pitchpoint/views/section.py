@@ -1,0 +1,188 @@
+"""The contract of a section of the report and the screen: what it shows, what it lacks, its words."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views.figures import Curves, Panel
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+__all__ = [
+    "Block",
+    "Drawn",
+    "Heading",
+    "Page",
+    "Paragraph",
+    "Printed",
+    "Section",
+    "Table",
+    "reason",
+    "said",
+]
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading inside a section."""
+
+    words: "str | Markup"
+    block: ClassVar[str] = "heading"
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A paragraph; `kind` is empty, "note" or "warning"."""
+
+    words: "str | Markup"
+    kind: str = ""
+    block: ClassVar[str] = "paragraph"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: names in the first column, numbers in the others."""
+
+    head: Sequence[str]
+    rows: Iterable[Sequence[str]]
+    compact: bool = False
+    block: ClassVar[str] = "table"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What a template of its own draws: a picture, say.
+
+    Attributes:
+        template: in `templates/sections`.
+        values: by the names that it knows.
+        panels: of the figures in it.
+    """
+
+    template: str
+    values: Mapping[str, Any]
+    panels: Sequence[Panel] = ()
+    block: ClassVar[str] = "drawn"
+
+
+Block = Heading | Paragraph | Table | Panel | Drawn
+
+
+@dataclass(frozen=True)
+class Printed:
+    """What the screen shows: a title, a table by columns, a line under it; each may be left out."""
+
+    title: str = ""
+    rows: Sequence[Mapping[str, str]] = ()
+    line: str = ""
+
+
+@dataclass(frozen=True)
+class Page:
+    """What sections look at.
+
+    Attributes:
+        outcomes: results by variant, at least one.
+        curves: by variant and friction law.
+        sections: those that are shown, in order.
+    """
+
+    outcomes: Mapping[str, Outcome]
+    curves: Curves
+    sections: "Sequence[Section]" = ()
+
+    @property
+    def several(self) -> bool:
+        """True if there are several variants."""
+        return len(self.outcomes) > 1
+
+    @property
+    def first(self) -> Mapping[str, Any]:
+        """Record of the first variant."""
+        return next(iter(self.outcomes.values())).manifest
+
+    @property
+    def version(self) -> str:
+        """Versions of the package that computed the parts; one, unless an old result was completed."""
+        parts = (data for one in self.outcomes.values() for data in one.parts.values())
+        return ", ".join(dict.fromkeys(str(data.attrs["version"]) for data in parts))
+
+    def having(self, *parts: str) -> dict[str, Outcome]:
+        """Outcomes that have all of some parts; "teeth.points" is a part that holds an array of that name."""
+        return {
+            name: one
+            for name, one in self.outcomes.items()
+            if all(_has(one, part) for part in parts)
+        }
+
+    def each(self, part: str) -> Iterator[tuple[int, str, Outcome]]:
+        """Position, title and outcome of every variant that has a part; no title where there is one."""
+        there = self.having(part)
+        for position, (name, one) in enumerate(self.outcomes.items()):
+            if name in there:
+                yield position, name if self.several else "", one
+
+
+def _has(outcome: Outcome, part: str) -> bool:
+    name, _, variable = part.partition(".")
+    return name in outcome.parts and (not variable or variable in outcome.parts[name])
+
+
+Words = str | Callable[[Page], str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """One section of the report, and what its results add to the answer at the top and to the screen.
+
+    Attributes:
+        name: anchor in the page.
+        title: heading, or a function of the page that gives it.
+        short: title in the line of contents, likewise.
+        order: place among the sections; that of the answer is 0, of the sources 1000.
+        parts: of a result that it shows, see `Page.having`.
+        blocks: what stands in it, in order.
+        lacks: None, or why it is left out, in one sentence; empty where nobody asked for it. By default a
+            part is lacking, for the reason that its analysis gave.
+        answer: main figures of one variant, terms and words.
+        card: the same for one friction law, by name.
+        closing: blocks at the end of the answer.
+        warns: warnings that stand in the section, not at the top.
+        screen: what the command line prints of one variant.
+    """
+
+    name: str
+    title: Words
+    short: Words
+    order: float
+    parts: tuple[str, ...] = ()
+    blocks: Callable[[Page], Iterable[Block]]
+    lacks: Callable[[Page], str | None] | None = None
+    answer: Callable[[Outcome], Iterable[tuple[str, str]]] = lambda outcome: ()
+    card: Callable[[Outcome, str], Iterable[tuple[str, str]]] = lambda outcome, law: ()
+    closing: Callable[[Page], Iterable[Block]] = lambda page: ()
+    warns: Callable[[Outcome], Iterable[str]] = lambda outcome: ()
+    screen: Callable[[Outcome], Iterable[Printed]] = lambda outcome: ()
+
+    def lacking(self, page: Page) -> str | None:
+        """None if the section is shown, else why not."""
+        if self.lacks is not None:
+            return self.lacks(page)
+        return None if page.having(*self.parts) else reason(page, *self.parts)
+
+
+def reason(page: Page, *parts: str) -> str:
+    """Why no outcome has some parts, as their analyses told; empty where nobody asked for them."""
+    told = (
+        one.manifest.get("lacks", {}).get(part.partition(".")[0], "")
+        for one in page.outcomes.values()
+        for part in parts
+    )
+    return next(filter(None, told), "")
+
+
+def said(words: Words, page: Page) -> str:
+    """Words, or what the function gives for the page."""
+    return words if isinstance(words, str) else words(page)

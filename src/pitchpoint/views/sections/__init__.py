@@ -1,0 +1,1 @@
+"""Sections of the report and the screen, each in its file."""

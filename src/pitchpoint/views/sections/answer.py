@@ -1,0 +1,252 @@
+"""The answer: operating point, main figures by friction law, and how far the laws disagree."""
+
+import json
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.figures import (
+    CONTACT,
+    REACTIONS,
+    bearing_loads,
+    covers,
+    main_figures,
+    of_contact,
+)
+from pitchpoint.cases.inputs import OIL
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import Curve, law_title, laws
+from pitchpoint.views.inputs import set_for_run, words
+from pitchpoint.views.screen import cell, head, shown
+from pitchpoint.views.section import Block, Drawn, Page, Printed, Section
+from pitchpoint.views.sections.back_driving import back_driving, jamming
+from pitchpoint.views.sections.beside import loss_split
+from pitchpoint.views.sections.spread import spread, spread_sentence
+
+__all__ = ["ANSWER", "bearing_rows", "summary"]
+
+AVERAGES = {
+    "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
+    "path": "Averages run over the path of one pair, so double contact counts twice, as published.",
+}
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
+    yield Drawn("answer.html.jinja", {"variants": variants, "several": page.several})
+    for section in page.sections:
+        yield from section.closing(page)
+
+
+def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
+    """What the top of the page says about one variant."""
+    manifest, parts = outcome.manifest, outcome.parts
+    single = of_contact(parts.get("operation", ()))
+    return {
+        "name": name,
+        "oil": manifest["oil"],
+        "oil_note": _oil_note(outcome),
+        "sharing": "" if single else manifest["models"][0]["title"],
+        "facts": [fact for section in page.sections for fact in section.answer(outcome)],
+        "averaging": "" if single else _averaging(outcome),
+        "operation": _operation(outcome),
+        "laws": manifest["laws"],
+        "warnings": _warnings(page, outcome),
+        "finished": manifest["finished"],
+        "settings": set_for_run(manifest),
+        "spread": spread(outcome),
+        "answers": [
+            _answer(page, outcome, law, position, page.curves[name, law])
+            for position, law in enumerate(laws(parts["operation"]))
+        ]
+        if "operation" in parts
+        else [],
+    }
+
+
+def _averaging(outcome: Outcome) -> str:
+    told = str(outcome.manifest["averaging"])
+    return AVERAGES.get(told, told).format(pitch=outcome.manifest["pitch"])
+
+
+def _oil_note(outcome: Outcome) -> str:
+    """Viscosities of the oil as resolved, with their status."""
+    status = {
+        row["key"]: row["status"] for row in outcome.manifest["inputs"] if row["table"] == OIL
+    }
+    return "; ".join(
+        show.pretty(f"{words(outcome, OIL, nu)} ({status[nu]}) at {words(outcome, OIL, at)}")
+        for nu, at in (("nu_1", "T_1"), ("nu_2", "T_2"))
+        if nu in status
+    )
+
+
+def _operation(outcome: Outcome) -> str:
+    """The operating point in words."""
+    speed, torque, force, temperature = (
+        show.pretty(words(outcome, "operation", key))
+        for key in ("speed", "torque", "force", "temperature")
+    )
+    driver, loaded = outcome.manifest["driver"], outcome.manifest["loaded"]
+    return f"{driver} drives at {speed}, {loaded} carries {torque or force}, oil at {temperature}"
+
+
+def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve) -> dict[str, Any]:
+    """Main figures of one law at the operating point, in words."""
+    data = outcome.parts["operation"]
+
+    def value(name: str) -> float:
+        return float(data[name].values[position, 0])
+
+    defined = bool(np.isfinite(value("mean_efficiency")))
+    return {
+        "curve": curve,
+        "title": law_title(outcome, law),
+        "defined": defined,
+        "efficiency": show.quantity("mean_efficiency", value("mean_efficiency")),
+        "range": _range(data, "efficiency", value),
+        "loss": show.quantity("mean_loss", value("mean_loss")),
+        "torque": show.quantity("mean_input_torque", value("mean_input_torque"), of=data),
+        "input": show.described("mean_input_torque", data).long_name,
+        "rippling": "force ripple"
+        if show.described("torque_ripple", data).unit == "N"
+        else "torque ripple",
+        "torque_range": _range(data, "input_torque", value),
+        "ripple": show.quantity("torque_ripple", value("torque_ripple"), of=data),
+        "covers": str(data["mean_efficiency"].attrs.get("covers", "")),
+        "locked": bool(data["locked"].values[position, 0]),
+        "jamming": jamming(data, position),
+        "back": back_driving(outcome, law),
+        "contact": [
+            (VARIABLES[name].long_name, show.quantity(name, value(name), of=data))
+            for name in _at_contact(data)
+        ],
+        "drag": _drag(data, position),
+        "bearings": _bearings(data, position),
+        "more": [row for section in page.sections for row in section.card(outcome, law)],
+    }
+
+
+def _at_contact(data: Any) -> tuple[str, ...]:
+    """Names of the figures of a test rig; none of a drive."""
+    return CONTACT if of_contact(data) else ()
+
+
+def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
+    ends = f"min_{name}", f"max_{name}"
+    return show.span(*ends, [value(end) for end in ends], data)
+
+
+def _warnings(page: Page, outcome: Outcome) -> list[str]:
+    """Sentences of the design and of the parts, each once, but for those that a section tells itself."""
+    texts = list(outcome.manifest["warnings"])
+    for data in outcome.parts.values():
+        found = [str(text) for text in json.loads(data.attrs.get("warnings", "[]"))]
+        texts += [f"{data.attrs['title']}: {text}" for text in found if text not in texts]
+    elsewhere = {text for section in page.sections for text in section.warns(outcome)}
+    return [text for text in dict.fromkeys(texts) if text not in elsewhere]
+
+
+def _drag(data: xr.Dataset, law: int) -> str:
+    """Loss in and beside the teeth in words; empty where there is none beside."""
+    found = loss_split(data, law)
+    if found is None or not found[1] > 0.0:
+        return ""
+    teeth, beside = (show.quantity("mean_loss", value) for value in found)
+    return f"{teeth} in the teeth, {beside} beside them"
+
+
+def _bearings(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
+    """What the teeth put on the shafts, and each bearing beside them bears: names and words."""
+    found = []
+    for title, name in (
+        ("radial load on the shafts", "radial"),
+        ("axial load on the shafts", "axial"),
+    ):
+        both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
+        if any(both):
+            each = dict.fromkeys(show.quantity(f"{name}_reaction_1", value) for value in both)
+            found.append((title, " and ".join(each)))
+    if "bearing_load" in data:
+        loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
+        found += [
+            (f"load on {place}", show.quantity("bearing_load", load))
+            for place, load in loads
+            if load > 0.0
+        ]
+    return found
+
+
+_LOCKS = "locks from μ"
+
+
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    yield Printed(line=_oil(outcome))
+    if "operation" in outcome.parts:
+        yield summary(outcome)
+        yield Printed(rows=bearing_rows(outcome))
+
+
+def _oil(outcome: Outcome) -> str:
+    manifest = outcome.manifest
+    single = of_contact(outcome.parts.get("operation", ()))
+    averages = "" if single else f" Averages over: {manifest['averaging']}."
+    return f"Oil: {manifest['oil']}.{averages}"
+
+
+def summary(outcome: Outcome) -> Printed:
+    """The operating point by law, and under it how far the laws disagree."""
+    data = outcome.parts["operation"]
+    rows = [
+        {
+            "friction law": str(law),
+            **{head(name, data): cell(data, name, position) for name in main_figures(data)},
+            **_of_power(outcome, position),
+        }
+        for position, law in enumerate(data["law"].values)
+    ]
+    return Printed(rows=rows, line=spread_sentence(outcome))
+
+
+def _of_power(outcome: Outcome, position: int) -> dict[str, str]:
+    """Cells on the power that goes through, for the law at a position; none where nothing does."""
+    data, back = outcome.parts["operation"], outcome.parts.get("back_driving")
+    if back is None:
+        return {}
+    locked = bool(back["locked"].values[position, 0])
+    return {
+        "η of": covers(data),
+        _LOCKS: cell(data, "jamming_coefficient", position),
+        "back-driving": "locked" if locked else cell(back, "mean_efficiency", position),
+        f"back-driving {_LOCKS}": cell(back, "jamming_coefficient", position),
+    }
+
+
+def bearing_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Load on the bearings by law, those that are nothing anywhere left out."""
+    data = outcome.parts["operation"]
+    rows = [
+        {"friction law": str(law)}
+        | {head(name): cell(data, name, k) for name in REACTIONS if np.any(data[name])}
+        | {
+            f"{head('bearing_load')} {place}": shown("bearing_load", float(load))
+            for place, load in bearing_loads(data, k)
+        }
+        for k, law in enumerate(data["law"].values)
+    ]
+    return rows if len(rows[0]) > 1 else []
+
+
+ANSWER = Section(
+    name="answer",
+    title="The answer",
+    short="Answer",
+    order=0.0,
+    lacks=lambda page: None,
+    blocks=_blocks,
+    screen=_screen,
+)

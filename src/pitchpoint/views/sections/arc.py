@@ -1,0 +1,220 @@
+"""Along a way without letters: quantities of one pair over the coordinate that its family has for it."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    Curve,
+    Curves,
+    Figure,
+    Panel,
+    Trace,
+    continued,
+    display,
+    laws,
+    layout,
+    line,
+    merged,
+    short_axis,
+)
+from pitchpoint.views.lines import regimes, titled, values_of
+from pitchpoint.views.point import period_of
+from pitchpoint.views.section import Block, Page, Paragraph, Section, reason
+from pitchpoint.views.way import at_origin, beside, place_of
+from pitchpoint.views.where_lost import where_lost
+
+__all__ = ["ARC", "arc_panel", "wave_losses", "wave_sentence"]
+
+_ARC = {
+    "load": "It leaps where the contact passes from the root of a tooth to its tip.",
+    "pressure": "By Hertz, for the load on the tooth and the radius of its contact; elastic steel, high on "
+    "the roundings of root and tip, which wear.",
+    "radius": "Where an edge touches it is small, where flanks fit into each other it is large.",
+    "entrainment": "Mean speed of both flanks against their contact; it draws the oil in.",
+    "sliding_velocity": "Flexspline over circular spline; teeth slide most far from the long axis.",
+    "film_thickness": "",
+    "lambda_ratio": "Below 1 boundary, 1 to 3 mixed, above 3 full film.",
+    "friction": "",
+    "loss": "Loss of the one tooth that is at this place.",
+}
+_POSITIVE = ("pressure", "radius", "entrainment", "film_thickness", "lambda_ratio")
+_WIDE = 30.0
+"""Ratio of the largest to the smallest value above which an axis is logarithmic."""
+
+
+def _ways(page: Page) -> dict[str, Outcome]:
+    """Outcomes whose pairs go a way that is told, and that has no letters."""
+    there, lettered = page.having("teeth", "cycle"), page.having("teeth.points")
+    return {
+        name: one
+        for name, one in there.items()
+        if name not in lettered and one.parts["cycle"]["path"].attrs["title"]
+    }
+
+
+def _told(page: Page, name: str) -> str:
+    """Words of the way, see `Way`."""
+    return str(next(iter(_ways(page).values())).parts["cycle"]["path"].attrs[name])
+
+
+def _lacks(page: Page) -> str | None:
+    return None if _ways(page) else reason(page, "cycle")
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield Paragraph(_told(page, "told"))
+    yield arc_panel(_ways(page), page.curves)
+
+
+def _closing(page: Page) -> Iterator[Block]:
+    def words(outcome: Outcome, law: int) -> str:
+        return wave_sentence(wave_losses(outcome, law), _told(page, "origin"))
+
+    return where_lost(page, _ways(page), words)
+
+
+def arc_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+    """Quantities of one pair over its place on the way."""
+    seen = list(_seen(outcomes, known))
+    figures = [_arc_figure(name, seen) for name in _ARC] if seen else []
+    return Panel("", figures, [curve for curve, *_ in seen])
+
+
+def wave_losses(outcome: Outcome, law: int) -> dict[str, float]:
+    """Power lost where teeth go in, where they come out, and beside the teeth [W].
+
+    Args:
+        outcome: with a mesh cycle.
+        law: position of the law.
+    """
+    data, backwards = outcome.parts["cycle"], period_of(outcome).backwards
+    each = (data["sliding_loss"] + data["rolling_loss"]).values[law]
+    energy = each * data["weight"].values[:, None, None] / data["weight"].values.sum()
+    place = place_of(data)
+    inwards = place > 0.0 if backwards else place < 0.0
+    beside = outcome.parts.get("operation")
+    return {
+        "in": float(energy[inwards].sum()),
+        "out": float(energy[~inwards].sum()),
+        "beside": 0.0 if beside is None else float(beside["mean_drag_loss"].values[law, 0]),
+    }
+
+
+def wave_sentence(lost: Mapping[str, float], origin: str) -> str:
+    """Where the loss is made, in words.
+
+    Args:
+        lost: as `wave_losses` gives it.
+        origin: what lies in the middle of the way.
+    """
+    whole = sum(lost.values())
+    if not whole > 0.0:
+        return "There is no loss."
+    share = {name: f"{100 * value / whole:.0f} %" for name, value in lost.items()}
+    both = f"{100 * (lost['in'] + lost['out']) / whole:.0f} % in the teeth"
+    told = (
+        f"{both}: {share['in']} before they reach {origin}, on their way in, and "
+        f"{share['out']} after it, on their way out"
+    )
+    return f"{told}; {share['beside']} beside the teeth." if lost["beside"] else f"{told}."
+
+
+def _seen(
+    outcomes: Mapping[str, Outcome], known: Curves
+) -> Iterator[tuple[Curve, xr.Dataset, int]]:
+    for variant, outcome in outcomes.items():
+        if "cycle" in outcome.parts:
+            data = outcome.parts["cycle"]
+            for position, law in enumerate(laws(data)):
+                yield known[variant, law], data, position
+
+
+def _along(data: xr.Dataset, name: str, law: int) -> tuple[np.ndarray, np.ndarray]:
+    """Place and SI value of a pair in one zone; NaN where it does not carry.
+
+    Every node of every pair is one place of the same way; all zones are alike.
+    """
+    half = data.sizes["pair"] // int(data["path"].attrs["zones"])
+    angle = place_of(data)[:, :half].ravel()
+    order = np.argsort(angle, kind="stable")
+    load = data["load"].values[law][:, :half].ravel()[order]
+    values = values_of(data, name)[law][:, :half].ravel()[order]
+    near = beside(load > 0.0)
+    if not near.any():
+        return angle[:0], load[:0]
+    values = np.where(load > 0.0, values, 0.0 if name in ("load", "loss") else np.nan)
+    return continued(angle[order][near], values[near], most=400)
+
+
+def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
+    unit = show.unit(VARIABLES[name].display)
+    traces = []
+    for curve, data, law in seen:
+        x, y = _along(data, name, law)
+        traces.append(line(curve, x, display(name, y), unit))
+    shown, same = merged(traces)
+    title = "Loss of a pair" if name == "loss" else titled(name)
+    look = layout(
+        seen[0][1]["path"].attrs["axis"],
+        short_axis(name),
+        xaxis={"range": _range(seen)},
+        shapes=[at_origin()] if seen[0][1]["path"].attrs["origin"] else [],
+        annotations=[],
+    )
+    cut = ""
+    if name not in _POSITIVE and name != "sliding_velocity":
+        look["yaxis"]["rangemode"] = "tozero"
+    elif name in _POSITIVE and _scale(look, shown):
+        cut = "The outermost values are outside the figure."
+    if name == "lambda_ratio":
+        regimes(look, shown)
+    note = " ".join(filter(None, (_ARC[name], cut, same)))
+    return Figure(f"arc_{name}", title, shown, look, note, missing="No tooth carries.")
+
+
+def _range(seen: list[tuple[Curve, xr.Dataset, int]]) -> list[float]:
+    """Places of all pairs that carry, and a little beside them."""
+    ends = [
+        float(angle)
+        for _, data, law in seen
+        for angle in place_of(data)[data["load"].values[law] > 0.0]
+    ]
+    if not ends:
+        return [-30.0, 30.0]
+    low, high = min([*ends, 0.0]), max([*ends, 0.0])
+    edge = 0.06 * (high - low)
+    return [round(low - edge, 3), round(high + edge, 3)]
+
+
+def _scale(look: dict[str, Any], traces: list[Trace]) -> bool:
+    """Logarithmic axis for positive values that differ by much; True if it leaves out the outermost.
+
+    Where flanks fit into each other for a moment, radius and film are out of all proportion.
+    """
+    values = np.array([y for trace in traces for y in trace["y"] if y])
+    if not values.size or values.max() <= _WIDE * values.min():
+        look["yaxis"]["rangemode"] = "tozero"
+        return False
+    low, high = np.quantile(values, [0.01, 0.97]) * np.array([0.5, 3.0])
+    low, high = max(low, 0.7 * values.min()), min(high, 1.4 * values.max())
+    decades = float(np.log10(high / low))
+    ends = [round(float(np.log10(low)), 3), round(float(np.log10(high)), 3)]
+    look["yaxis"] |= {"type": "log", "dtick": 2 if decades > 6.0 else 1, "range": ends}
+    return bool(values.min() < low or values.max() > high)
+
+
+ARC = Section(
+    name="arc",
+    title=lambda page: _told(page, "title"),
+    short=lambda page: _told(page, "title"),
+    order=130.0,
+    lacks=_lacks,
+    blocks=_blocks,
+    closing=_closing,
+)

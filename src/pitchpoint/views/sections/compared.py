@@ -1,0 +1,92 @@
+"""Printed against computed numbers, misses first."""
+
+from collections.abc import Iterator, Mapping
+from math import ceil, log10
+from typing import Any
+
+from pitchpoint.cases.comparison import Row, counts
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
+
+__all__ = ["COMPARED"]
+
+KINDS = {
+    "predicted": "nothing was tuned to it",
+    "calibrated": "a constant or a reading of the model was found with it",
+    "fitted": "an input was tuned to it",
+    "trend": "only a direction was printed",
+    "reference": "a value of an independent calculation, not of the publication",
+    "excluded": "not computed, for the reason given",
+}
+_ORDER = {"miss": 0, "excluded": 1, "pass": 2}
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield Drawn("compared.html.jinja", {"rows": _rows(page.outcomes), "kinds": KINDS})
+
+
+def _closing(page: Page) -> Iterator[Block]:
+    yield Heading("Printed numbers")
+    yield Drawn("met.html.jinja", {"rows": _rows(page.outcomes)})
+
+
+def _none(page: Page) -> str | None:
+    return None if any(one.rows for one in page.outcomes.values()) else ""
+
+
+def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
+    """Printed against computed, misses first."""
+    by_variant = {name: outcome.rows for name, outcome in outcomes.items() if outcome.rows}
+    every = [(name, row) for name, rows in by_variant.items() for row in rows]
+    ordered = sorted(every, key=lambda pair: _ORDER.get(pair[1].verdict, 0))
+    table = [{**_row(row), "variant": name} for name, row in ordered]
+    return {
+        "table": table,
+        "counts": [
+            {"kind": kind, "verdicts": dict(verdicts), "variant": name}
+            for name, rows in by_variant.items()
+            for kind, verdicts in counts(rows).items()
+        ],
+        "missed": [row for row in table if row["verdict"] == "miss"],
+        "excluded": [row for row in table if row["verdict"] == "excluded"],
+        "variants": [*by_variant],
+        "others": [name for name in outcomes if name not in by_variant],
+    }
+
+
+def _row(row: Row) -> dict[str, str]:
+    unit = show.unit(row.unit)
+    computed, deviation, tolerance = "not computed", "", ""
+    if row.computed is not None and row.deviation is not None:
+        digits = _decimals(row.tolerance)
+        computed = f"{row.computed:.{digits}f} {unit}".strip()
+        deviation = show.signed(row.deviation, digits)
+        tolerance = "" if row.bound else f"± {row.tolerance:g}"
+    return {
+        "quantity": show.pretty(row.quantity),
+        "where": row.where,
+        "printed": f"{row.bound}{row.printed:g} {unit}".strip(),
+        "computed": computed,
+        "deviation": deviation,
+        "tolerance": tolerance,
+        "kind": row.kind,
+        "verdict": row.verdict,
+        "reason": row.reason or ("no reason is known" if row.verdict == "miss" else ""),
+    }
+
+
+def _decimals(tolerance: float) -> int:
+    """Decimals that show a deviation to a tenth of the tolerance or finer."""
+    return max(ceil(-log10(tolerance)), 0) + 1 if tolerance > 0.0 else 4
+
+
+COMPARED = Section(
+    name="compared",
+    title="Printed against computed",
+    short="Printed and computed",
+    order=800.0,
+    lacks=_none,
+    blocks=_blocks,
+    closing=_closing,
+)

@@ -1,0 +1,216 @@
+"""Over the mesh cycle: efficiency and input torque, friction of the pairs."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    Curve,
+    Curves,
+    Figure,
+    Panel,
+    display,
+    laws,
+    layout,
+    line,
+    merged,
+    short_axis,
+)
+from pitchpoint.views.lines import Points, folded, gapped, titled
+from pitchpoint.views.path import path_of
+from pitchpoint.views.point import Period, period_of
+from pitchpoint.views.section import Block, Page, Paragraph, Section
+
+__all__ = ["CYCLE", "cycle_panel"]
+
+_FEW = 8
+"""Pairs above which the friction of each cannot be told apart."""
+
+_PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    there = page.having("teeth")
+    period = period_of(next(iter(there.values())))
+    one = f"{_start(page)} one" if _start(page) else "One"
+    yield Paragraph(f"{one} period is one {period.pitch}: {_cycle_words(there)}.")
+    yield cycle_panel(there, page.curves)
+
+
+def _start(page: Page) -> str:
+    """At which moment a period begins; empty where no point of the way stands out."""
+    paths = [path_of(one) for one in page.having("teeth.points").values()]
+    if not paths:
+        return ""
+    helical = any(path.helical for path in paths)
+    entry = "enters at one end of the face" if helical else "is at A"
+    return f"Phase 0 is the moment at which a pair {entry};"
+
+
+def cycle_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+    """Efficiency and input torque over phase and time and against each other, friction of the pairs."""
+    seen = list(_timed(outcomes, known))
+    if not seen:
+        return Panel("Over the mesh cycle", [])
+    figures = [
+        _over("efficiency", "phase", seen),
+        _over("input_torque", "phase", seen),
+        _over("efficiency", "time", seen),
+        _over("input_torque", "time", seen),
+        _against(seen),
+        (_pairs if seen[0][1].sizes["pair"] <= _FEW else _count)(seen),
+    ]
+    return Panel("Over the mesh cycle", figures, [curve for curve, *_ in seen])
+
+
+def _timed(
+    outcomes: Mapping[str, Outcome], known: Curves
+) -> Iterator[tuple[Curve, xr.Dataset, int, Period]]:
+    """Curve, cycle, position of the law and period for every law of every variant."""
+    for variant, outcome in outcomes.items():
+        if "cycle" in outcome.parts:
+            data, period = outcome.parts["cycle"], period_of(outcome)
+            for position, law in enumerate(laws(data)):
+                yield known[variant, law], data, position, period
+
+
+def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+    first = seen[0][3]
+    abscissa = _phase if axis == "phase" else _time
+    like = seen[0][1]
+    unit = show.unit_of(name, like)
+    traces = []
+    for curve, data, law, period in seen:
+        x, y = abscissa(data, data[name].values[law], period)
+        traces.append(line(curve, x, display(name, y, data), unit))
+    words = {"phase": first.axis, "time": "time [ms]"}[axis]
+    title = {"phase": f"over one {first.pitch}", "time": f"over time, two {first.pitch}es"}[axis]
+    note = f"Time runs against the phase: {first.against}." if first.backwards else ""
+    return Figure(
+        f"cycle_{name}_{axis}",
+        f"{titled(name, like)} {title}",
+        traces,
+        layout(words, short_axis(name, like)),
+        note if axis == "time" else "",
+    )
+
+
+def _phase(data: xr.Dataset, values: np.ndarray, _: Period) -> Points:
+    return gapped(*folded(data["phase"].values, values))
+
+
+def _time(data: xr.Dataset, values: np.ndarray, period: Period) -> Points:
+    phase = data["phase"].values
+    if period.backwards:
+        phase, values = 1.0 - phase[::-1], values[::-1]
+    x, y = gapped(np.concatenate([phase, phase + 1.0]) - phase[0], np.tile(values, 2))
+    return x * period.time * 1e3, y
+
+
+def _against(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+    """Efficiency against input torque; curves lie on each other, so the first ones are wider."""
+    traces = []
+    for position, (curve, data, law, _) in enumerate(seen):
+        order = np.argsort(data["input_torque"].values[law], kind="stable")
+        trace = line(
+            curve,
+            display("input_torque", data["input_torque"].values[law][order], data),
+            display("efficiency", data["efficiency"].values[law][order]),
+            "%",
+        )
+        trace["line"] = {"color": curve.colour, "width": 2 + 3 * (len(seen) - 1 - position)}
+        trace |= {"mode": "lines+markers", "marker": {"size": 3, "color": curve.colour}}
+        traces.append(trace)
+    return Figure(
+        "cycle_against",
+        "Instantaneous efficiency against input torque",
+        traces,
+        layout(short_axis("input_torque", seen[0][1]), short_axis("efficiency")),
+        "With the output torque held, all laws lie on one curve and cover different parts of it; "
+        "the first laws are drawn wider.",
+    )
+
+
+def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+    """Friction of all pairs that are in contact at a phase."""
+    traces = []
+    for curve, data, law, _ in seen:
+        for pair in range(data.sizes["pair"]):
+            active = data["active"].values[:, pair, 0]
+            friction = np.where(active, _mean_friction(data, law)[:, pair], np.nan)
+            x, y = gapped(data["phase"].values, friction)
+            trace = line(curve, x, y, f"(pair {pair + 1})")
+            trace["line"] = {
+                "color": curve.colour,
+                "width": 2,
+                "dash": _PAIR_DASHES[pair % len(_PAIR_DASHES)],
+            }
+            traces.append(trace)
+    names = ", ".join(
+        f"{dash} for the pair that entered {_ago(pair)}"
+        for pair, dash in enumerate(_PAIR_DASHES[: seen[0][1].sizes["pair"]])
+    )
+    return Figure(
+        "cycle_friction",
+        "Friction coefficient of the pairs in contact",
+        traces,
+        layout(seen[0][3].axis, "μ", yaxis={"rangemode": "tozero"}),
+        f"Line styles here: {names}.",
+    )
+
+
+def _count(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+    """Number of pairs that carry; steps, since it is a whole number."""
+    traces = []
+    for curve, data, law, period in seen:
+        carrying = (data["load"].values[law].max(axis=-1) > 0.0).sum(axis=-1)
+        traces.append(line(curve, *_phase(data, carrying, period), "pairs"))
+    shown, same = merged(traces)
+    for trace in shown:
+        trace["line"]["shape"] = "hvh"
+    return Figure(
+        "cycle_pairs",
+        "Number of pairs that carry",
+        shown,
+        layout(seen[0][3].axis, "pairs", yaxis={"rangemode": "tozero"}),
+        same,
+    )
+
+
+def _mean_friction(data: xr.Dataset, law: int) -> np.ndarray:
+    """Friction coefficient of each contact line [node, pair], slices weighted by their load."""
+    friction, load = (data[name].values[law] for name in ("friction", "load"))
+    total = load.sum(axis=-1)
+    even = friction.mean(axis=-1)
+    return np.asarray(
+        np.where(total > 0.0, (friction * load).sum(axis=-1) / np.where(total, total, 1.0), even)
+    )
+
+
+def _ago(pair: int) -> str:
+    return ("in this period", "one period before")[pair] if pair < 2 else f"{pair} periods before"
+
+
+def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
+    """Driver angle and time of one period."""
+    seen: dict[str, list[str]] = {}
+    for variant, outcome in outcomes.items():
+        period = period_of(outcome)
+        time = show.number(1e3 * period.time)
+        seen.setdefault(f"{period.words}, {time} ms", []).append(variant)
+    if len(seen) < 2:
+        return next(iter(seen), "")
+    return "; ".join(f"{words} ({', '.join(names)})" for words, names in seen.items())
+
+
+CYCLE = Section(
+    name="cycle",
+    title="Over the mesh cycle",
+    short="Over the cycle",
+    order=200.0,
+    parts=("teeth",),
+    blocks=_blocks,
+)

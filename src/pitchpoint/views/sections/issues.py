@@ -1,0 +1,89 @@
+"""Issues of a publication, and what each variant says."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pitchpoint.analyses.figures import MAIN
+from pitchpoint.views import show
+from pitchpoint.views.figures import laws
+from pitchpoint.views.section import Block, Drawn, Heading, Page, Section, Table
+from pitchpoint.views.sections.back_driving import back_driving
+from pitchpoint.views.sections.spread import spread
+
+__all__ = ["ISSUES"]
+
+_SIDE_BY_SIDE = (
+    *MAIN,
+    "loss_factor",
+    "contact_ratio",
+    "mean_stiffness",
+    "stiffness_variation",
+    "mean_transmission_error",
+    "transmission_error_range",
+    "largest_dynamic_factor",
+)
+_STEADY = ("mean_transmission_error", "transmission_error_range", "largest_dynamic_factor")
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    issues = page.first["issues"]
+    if page.several:
+        if issues:
+            yield Heading("What each variant says")
+        yield _side_by_side(page)
+    if issues:
+        yield Heading("Issues and verdicts")
+        yield Drawn("issues.html.jinja", {"issues": issues})
+
+
+def _side_by_side(page: Page) -> Table:
+    """Main figures of all variants and laws in one table, with the spread of the laws."""
+    columns = [
+        (variant, outcome, position, law)
+        for variant, outcome in page.having("operation").items()
+        for position, law in enumerate(laws(outcome.parts["operation"]))
+    ]
+    lines = [
+        (
+            show.axis_title(name, columns[0][1].parts["operation"]),
+            *(_told(one.parts["operation"], name, k) for _, one, k, _ in columns),
+        )
+        for name in _SIDE_BY_SIDE
+        if any(name in one.parts["operation"] for _, one, *_ in columns)
+    ]
+    within = [(spread(one) or {"text": "not computed"})["text"] for _, one, *_ in columns]
+    back = [back_driving(one, law) for _, one, _, law in columns]
+    return Table(
+        [
+            "At the operating point",
+            *(page.curves[variant, law].label for variant, _, _, law in columns),
+        ],
+        [
+            *lines,
+            ("mean efficiency by the friction laws that apply", *within),
+            ("back-driving", *back),
+        ],
+    )
+
+
+def _told(data: Any, name: str, law: int) -> str:
+    """A figure at the operating point; one of a vibration only if there is a steady state."""
+    if name not in data:
+        return "not computed"
+    if name in _STEADY and "vibration_status" in data and data["vibration_status"].values[law, 0]:
+        return "none"
+    return show.quantity(name, float(data[name].values[law, 0]), with_unit=False, of=data)
+
+
+def _titled(page: Page) -> str:
+    return "Issues of the publication" if page.first["issues"] else "Variants side by side"
+
+
+ISSUES = Section(
+    name="issues",
+    title=_titled,
+    short=lambda page: "Issues" if page.first["issues"] else "Variants",
+    order=810.0,
+    lacks=lambda page: None if page.several or page.first["issues"] else "",
+    blocks=_blocks,
+)

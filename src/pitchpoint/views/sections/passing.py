@@ -1,0 +1,193 @@
+"""A tooth on its way into its space, and the clearance along the wave."""
+
+from math import degrees
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    INK,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    layout,
+    plain,
+    rounded,
+    short_axis,
+)
+from pitchpoint.views.outlines import simplified
+from pitchpoint.views.point import operating_point
+from pitchpoint.views.way import at_origin, place_of
+
+__all__ = ["gap_panel"]
+
+_LEAST = 1e-8
+"""Smallest clearance drawn [m]: flanks that slide on each other have none."""
+
+_TEETH = Key("teeth that carry", "#c0392b", "dot")
+
+
+def gap_panel(outcome: Outcome, name: str) -> Panel:
+    """Path of a tooth into its space, and clearance along the wave.
+
+    Args:
+        outcome: a result whose teeth are carried by a wave.
+        name: with which the figures begin in the page.
+    """
+    return Panel("", [_passing(f"{name}_passing", outcome), _clearance(f"{name}_gap", outcome)])
+
+
+def _clearance(name: str, outcome: Outcome) -> Figure:
+    """Clearance of unloaded flanks, with the teeth that carry at one moment."""
+    teeth = outcome.parts["teeth"]
+    angle = np.degrees(teeth["clearance_angle"].values)
+    given = np.maximum(teeth["clearance"].values, _LEAST)
+    unit = show.unit(VARIABLES["clearance"].display)
+    key = Key("clearance of the unloaded flanks", PALETTE[0])
+    traces = [plain(key, angle, display("clearance", given), unit)]
+    keys = [key]
+    told = "Clearances below 0.01 µm are drawn there: flanks without one slide on each other."
+    places = _carrying(outcome)
+    if places.size:
+        there = np.interp(places, angle, display("clearance", given))
+        traces.append(
+            plain(_TEETH, places, there, unit)
+            | {"mode": "markers", "marker": {"size": 7, "color": _TEETH.colour}}
+        )
+        keys.append(_TEETH)
+        told = (
+            f"Dots: the teeth of one end of the long axis that carry at "
+            f"{_torque(outcome)} at one moment; load has closed their clearance. {told}"
+        )
+    ends = angle[np.isfinite(given)][[0, -1]].tolist()
+    return Figure(
+        name,
+        "Clearance along the wave",
+        traces,
+        layout(
+            _angle_axis(),
+            short_axis("clearance"),
+            xaxis={"range": ends},
+            yaxis={"type": "log", "dtick": 1, "exponentformat": "none"},
+            shapes=[at_origin()],
+        ),
+        told,
+        tuple(keys),
+    )
+
+
+def _angle_axis() -> str:
+    variable = VARIABLES["clearance_angle"]
+    return f"{variable.long_name} {variable.symbol} [{show.unit(variable.display)}]"
+
+
+def _torque(outcome: Outcome) -> str:
+    return show.quantity("torque", operating_point(outcome).torque)
+
+
+def _carrying(outcome: Outcome) -> np.ndarray:
+    """Angles of the teeth of one zone that carry at the start of the mesh cycle [deg]."""
+    data = outcome.parts.get("cycle")
+    if data is None:
+        return np.zeros(0)
+    half = data.sizes["pair"] // int(data["path"].attrs["zones"])
+    carries = data["load"].values[0, 0, :half].max(axis=-1) > 0.0
+    return np.asarray(place_of(data)[0, :half, 0][carries])
+
+
+def _passing(name: str, outcome: Outcome) -> Figure:
+    """One tooth in its space at several angles, seen from the circular spline."""
+    teeth = outcome.parts["teeth"]
+    low = float(teeth["space"].values[:, 1].min())
+    angle = np.degrees(teeth["passing_angle"].values)
+    shown = np.flatnonzero(teeth["passing"].values[..., 1].max(axis=1) > low - _reach(teeth))
+    traces = [_space(teeth, low)]
+    for k in shown:
+        traces.append(_outline(teeth["passing"].values[k], low, float(angle[k]), _reach(teeth)))
+    traces.append(_track(teeth["passing"].values[shown], low))
+    wide = 1e3 * np.abs(teeth["space"].values[:, 0]).max()
+    deep = 1e3 * float(np.ptp(teeth["space"].values[:, 1]))
+    height = 1e3 * float(np.ptp(teeth["tooth"].values[:, 1]))
+    axis = {"constrain": "domain", "scaleanchor": "x", "scaleratio": 1}
+    return Figure(
+        name,
+        "Path of a tooth into its space",
+        traces,
+        layout(
+            "across [mm]",
+            "outwards [mm]",
+            xaxis={"range": [3.2 * wide, -3.2 * wide], "constrain": "domain"},
+            yaxis={"range": [-1.15 * height, 1.2 * deep], **axis},
+        ),
+        f"Every {degrees(_step(teeth)):.3g}° of p. Seen from the circular spline, "
+        "which is shaded, outwards from its tip circle; positive rotation is to the left. Equal scale "
+        "in both directions.",
+        (
+            Key("tooth on the long axis, p = 0", INK),
+            Key("p > 0", PALETTE[0]),
+            Key("p < 0", PALETTE[1]),
+            Key("middle of its tip", GREY, "dash"),
+        ),
+    )
+
+
+def _step(teeth: xr.Dataset) -> float:
+    return float(np.diff(teeth["passing_angle"].values[:2])[0])
+
+
+def _reach(teeth: xr.Dataset) -> float:
+    """Distance inside the tip circle to which a tooth is shown [m]."""
+    return 0.6 * float(np.ptp(teeth["tooth"].values[:, 1]))
+
+
+def _space(teeth: xr.Dataset, low: float) -> Trace:
+    """The circular spline around the space and half of its neighbours."""
+    x, y = simplified(teeth["space"].values, 2e-7).T
+    turns = np.exp(2j * np.pi * np.array([-1, 0, 1]) / float(teeth["teeth"].values[1]))
+    places = 1e3 * ((turns[:, None] * (y + 1j * x)).ravel() - low)
+    across, outwards = places.imag, places.real
+    deep = 1.3 * float(outwards.max())
+    ends = across[[-1, 0]].tolist()
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": rounded([*across.tolist(), *ends]),
+        "y": rounded([*outwards.tolist(), deep, deep]),
+        "fill": "toself",
+        "fillcolor": "#ece5d6",
+        "line": {"color": "#8a7b55", "width": 1.5},
+        "hoverinfo": "skip",
+    }
+
+
+def _outline(corners: np.ndarray, low: float, angle: float, reach: float) -> Trace:
+    colour = INK if abs(angle) < 1e-9 else PALETTE[0] if angle > 0.0 else PALETTE[1]
+    x, y = 1e3 * (simplified(corners, 1e-6) - np.array([0.0, low])).T
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": rounded(x, 4),
+        "y": rounded(y, 4),
+        "line": {"color": colour, "width": 2.4 if colour == INK else 0.9},
+        "hovertemplate": f"p = {show.number(angle)}°<extra></extra>",
+    }
+
+
+def _track(passing: np.ndarray, low: float) -> Trace:
+    middle = passing.shape[1] // 2
+    x, y = 1e3 * (passing[:, middle - 1 : middle + 1].mean(axis=1) - np.array([0.0, low])).T
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": rounded(x, 4),
+        "y": rounded(y, 4),
+        "line": {"color": GREY, "width": 1.2, "dash": "dash"},
+        "hoverinfo": "skip",
+    }

@@ -1,0 +1,51 @@
+"""Sources behind a result, and the files that hold it."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views.inputs import set_for_run
+from pitchpoint.views.section import Block, Drawn, Heading, Page, Section
+
+__all__ = ["SOURCES"]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    every = [source for one in page.outcomes.values() for source in one.manifest["sources"]]
+    sources = list({source["key"]: source for source in every}.values())
+    if sources:
+        yield Drawn("sources.html.jinja", {"sources": sources})
+    yield Heading("This result")
+    yield Drawn(
+        "files.html.jinja",
+        {
+            "version": page.version,
+            "case": page.first["case"],
+            "settings": {n: set_for_run(one.manifest) for n, one in page.outcomes.items()},
+            "several": page.several,
+            "parts": _parts(page.outcomes),
+        },
+    )
+
+
+def _parts(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
+    """Files of the result with the fingerprint of what they were computed from."""
+    return [
+        {
+            "file": f"{variant}/{name}.nc",
+            "title": str(data.attrs.get("title", name)),
+            "fingerprint": str(data.attrs.get("fingerprint", "")),
+        }
+        for variant, outcome in outcomes.items()
+        for name, data in outcome.parts.items()
+    ]
+
+
+SOURCES = Section(
+    name="sources",
+    title="Sources",
+    short="Sources",
+    order=1000.0,
+    lacks=lambda page: None,
+    blocks=_blocks,
+)

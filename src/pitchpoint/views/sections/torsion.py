@@ -1,0 +1,336 @@
+"""Wind-up of a drive under torque: load on every tooth, torque loop, stiffness, load on the bearing."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.figures import WIND_UP
+from pitchpoint.results.rounding import ROUNDING
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    INK,
+    PALETTE,
+    Curves,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    laws,
+    layout,
+    level,
+    plain,
+    short_axis,
+)
+from pitchpoint.views.lines import folded
+from pitchpoint.views.point import Period, operating_point, period_of
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
+from pitchpoint.views.way import beside, place_of
+
+__all__ = ["TORSION", "torsion_answer", "torsion_panels", "wind_up_rows"]
+
+_SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
+"""Colours from small to large torque, which differ in lightness alone."""
+
+_ELASTIC = Key("without friction", INK, "dash")
+_PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
+_ENDS = (Key("one end of the long axis", PALETTE[0]), Key("the other end", PALETTE[1], "dash"))
+
+
+def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
+    """Figures for each variant whose wind-up is there."""
+    return [
+        _panel(f"torsion{position}", name, len(outcomes) > 1, one, known)
+        for position, (name, one) in enumerate(outcomes.items())
+        if "torsion" in one.parts
+    ]
+
+
+def torsion_answer(outcome: Outcome) -> str:
+    """Wind-up and stiffness at the operating point in words; empty if they are not there."""
+    data = outcome.parts.get("torsion")
+    if data is None:
+        return ""
+    at = operating_point(outcome).torque
+    if not at > 0.0:
+        return "nothing is carried at the operating point"
+    values = {
+        name: float(np.interp(at, data["torque"], data[name]))
+        for name in ("torsional_stiffness", "wind_up", "loaded_pairs")
+    }
+    if not np.isfinite([*values.values()]).all():
+        return "no equilibrium was found at the operating point"
+    told = {name: level(name, value, data) for name, value in values.items()}
+    return (
+        f"{told['torsional_stiffness']} at the operating point, where the drive has "
+        f"{_words(data).yielded} by {told['wind_up']} and {told['loaded_pairs'].strip()} pairs carry in "
+        "the mean"
+        + _free(data)
+        + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
+    )
+
+
+def _free(data: xr.Dataset) -> str:
+    """Play between the flanks in words; empty without any."""
+    if not data["lost_motion"] > ROUNDING * data["wind_up"].max():
+        return ""
+    free = level("lost_motion", float(data["lost_motion"]), data)
+    return f"; without load it is free to {_words(data).moves} by {free} between its flanks"
+
+
+def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
+    data = outcome.parts["torsion"]
+    words = _words(data)
+    slope = Key(f"slope of the {words.load} over the {words.way}", PALETTE[0])
+    spread = Key(f"largest less smallest {words.motion} over the mesh cycle", PALETTE[3])
+    figures = [
+        _distribution(f"{name}_load", data),
+        _loop(f"{name}_loop", variant, data, known),
+        _against(
+            f"{name}_stiffness",
+            "torsional_stiffness",
+            words.stiffness,
+            data,
+            slope,
+        ),
+        _against(f"{name}_pairs", "loaded_pairs", "Pairs that carry", data, _PAIRS),
+        _over_cycle(f"{name}_error", data, period_of(outcome)),
+        _against(
+            f"{name}_range",
+            "angular_transmission_error_range",
+            "Static transmission error, peak to peak,",
+            data,
+            spread,
+        ),
+        *([_bearing(f"{name}_bearing", data)] if "zone_load" in data else []),
+    ]
+    return Panel(variant if several else "", figures, note=str(data.attrs.get("note", "")))
+
+
+@dataclass(frozen=True)
+class _Words:
+    """Words of the load on the loaded member and of its way under it."""
+
+    load: str
+    load_axis: str
+    way: str
+    way_axis: str
+    stiffness: str
+    yielded: str
+    moves: str
+    motion: str
+
+
+def _words(data: xr.Dataset) -> _Words:
+    """Words for a member that turns, or for one that travels."""
+    load, way = (show.unit_of(name, data) for name in ("torque", "wind_up"))
+    if show.described("torque", data).unit == "N":
+        axes = (f"force F [{load}]", "deflection", f"deflection Δs [{way}]")
+        return _Words("force", *axes, "Stiffness", "yielded", "travel", "travel")
+    axes = (f"torque T [{load}]", "wind-up", f"wind-up Δθ [{way}]")
+    return _Words("torque", *axes, "Torsional stiffness", "wound up", "turn", "rotation")
+
+
+def _distribution(name: str, data: xr.Dataset) -> Figure:
+    """Force on every tooth at one end of the long axis at several torques, all phases together."""
+    force = display("tooth_force", data["tooth_force"])
+    zones, origin = (data["path"].attrs[name] for name in ("zones", "origin"))
+    half = data.sizes["pair"] // int(zones)
+    angle = place_of(data)[:, :half].ravel()
+    order = np.argsort(angle, kind="stable")
+    drawn = _shades(data)
+    traces = [_course(key, angle[order], force[k, :, :half].ravel()[order]) for k, key in drawn]
+    touched = [x for trace in traces for x, y in zip(trace["x"], trace["y"], strict=True) if y]
+    ends = [min(touched, default=-20.0), max(touched, default=20.0)]
+    edge = 0.06 * (ends[1] - ends[0])
+    return Figure(
+        name,
+        f"Load on the teeth at one end of {origin}" if zones > 1 else "Load on the teeth",
+        traces,
+        layout(
+            data["path"].attrs["axis"],
+            short_axis("tooth_force"),
+            xaxis={"range": [ends[0] - edge, ends[1] + edge]},
+            yaxis={"rangemode": "tozero"},
+        ),
+        "Without friction. Every line is the way of a tooth through the zone; the teeth stand one pitch "
+        f"apart on it.{f' The other end of {origin} carries alike.' if zones > 1 else ''}",
+        tuple(key for _, key in drawn),
+        missing="No tooth carries.",
+    )
+
+
+def _shades(data: xr.Dataset) -> list[tuple[int, Key]]:
+    """Some torques, by place, and how they are drawn."""
+    torques = data["torque"].values
+    chosen = np.unique(np.linspace(0, torques.size - 1, len(_SHADES) + 1).round().astype(int))
+    chosen = chosen[torques[chosen] > 0.0]
+    return [
+        (int(k), Key(level("torque", float(torques[k]), data), shade))
+        for k, shade in zip(chosen, _SHADES, strict=False)
+    ]
+
+
+def _over_cycle(name: str, data: xr.Dataset, period: Period) -> Figure:
+    """Motion of the loaded member under load over one mesh cycle less its mean, at several torques."""
+    ripple, shown = "angular_transmission_error_range", _shades(data)
+    symbol = show.described("angular_transmission_error", data).symbol
+    unit = show.unit_of(ripple, data)
+    traces = []
+    for k, key in shown:
+        values = data["angular_transmission_error"].values[k]
+        phase, error = folded(data["phase"].values, values - _mean(data["phase"].values, values))
+        around = np.concatenate([phase[-1:] - 1.0, phase, phase[:1] + 1.0])
+        error = display(ripple, np.concatenate([error[-1:], error, error[:1]]), data)
+        traces.append(plain(key, around, error, unit))
+    return Figure(
+        name,
+        "Static transmission error over the mesh cycle, less its mean",
+        traces,
+        layout(period.axis, f"{symbol} less its mean [{unit}]", xaxis={"range": [0, 1]}),
+        f"{_words(data).motion.capitalize()} of the loaded member under load, without gaps between the "
+        "flanks as designed; the mean grows with the load as the "
+        f"{_words(data).way} does.",
+        tuple(key for _, key in shown),
+        missing="No equilibrium was found.",
+    )
+
+
+def _mean(phase: np.ndarray, values: np.ndarray) -> float:
+    """Mean over one period, the last value followed by the first one of the next."""
+    around = np.append(phase, phase[0] + 1.0)
+    return float(np.trapezoid(np.append(values, values[0]), around))
+
+
+def _course(key: Key, angle: np.ndarray, force: np.ndarray) -> Trace:
+    unit = show.unit(VARIABLES["tooth_force"].display)
+    near = beside(force > 0.0)
+    return plain(key, angle[near], force[near], unit)
+
+
+def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
+    """Torque over wind-up: growing, shrinking, and without friction."""
+    wind_up, unit = display("wind_up", data["wind_up"], data), show.unit_of("torque", data)
+    words = _words(data)
+    keys, traces = [], []
+    for position, law in enumerate(laws(data)):
+        curve = known.get((variant, law))
+        key = Key(law if curve is None else curve.label, PALETTE[position % len(PALETTE)])
+        up, down = (
+            display("torque", data[branch].values[position], data)
+            for branch in ("loading_torque", "unloading_torque")
+        )
+        x = np.concatenate([wind_up, wind_up[::-1]])
+        colour = key.colour if curve is None else curve.colour
+        key = Key(f"with friction: {key.label}", colour)
+        trace = plain(key, x, np.concatenate([up, down[::-1]]), unit)
+        traces.append({**trace, "fill": "toself", "fillcolor": f"{colour}22"})
+        keys.append(key)
+    traces.append(plain(_ELASTIC, wind_up, display("torque", data["torque"], data), unit))
+    return Figure(
+        name,
+        f"{words.load.capitalize()} over {words.way}, growing and shrinking",
+        traces,
+        layout(
+            words.way_axis,
+            words.load_axis,
+            xaxis={"rangemode": "tozero"},
+            yaxis={"rangemode": "tozero"},
+        ),
+        f"Upper branch: the {words.load} grows; lower branch: it shrinks. The loop is that of tooth friction "
+        f"alone, for one sense of {words.load} from first touch of the flanks.",
+        (*keys, _ELASTIC),
+    )
+
+
+def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -> Figure:
+    unit = show.unit_of(variable, data)
+    values = data[variable].where(data["torque"] > 0.0)
+    return Figure(
+        name,
+        f"{title} against {_words(data).load}",
+        [
+            plain(
+                key, display("torque", data["torque"], data), display(variable, values, data), unit
+            )
+        ],
+        layout(
+            _words(data).load_axis,
+            short_axis(variable, data),
+            xaxis={"rangemode": "tozero"},
+            yaxis={"rangemode": "tozero"},
+        ),
+        keys=(key,),
+    )
+
+
+def _bearing(name: str, data: xr.Dataset) -> Figure:
+    """Inward load of the teeth at both ends of the long axis."""
+    unit = show.unit(VARIABLES["zone_load"].display)
+    torque, loads = display("torque", data["torque"], data), display("zone_load", data["zone_load"])
+    traces = [plain(key, torque, values, unit) for key, values in zip(_ENDS, loads.T, strict=False)]
+    alike = np.allclose(loads[:, 0], loads[:, -1], rtol=1e-4, equal_nan=True)
+    keys = (Key("either end of the long axis", GREY),) if alike else _ENDS
+    if alike:
+        traces = [plain(keys[0], torque, loads[:, 0], unit)]
+    return Figure(
+        name,
+        "Radial load of the teeth on the wave generator",
+        traces,
+        layout(
+            _words(data).load_axis,
+            short_axis("zone_load"),
+            xaxis={"rangemode": "tozero"},
+            yaxis={"rangemode": "tozero"},
+        ),
+        "Inwards, sum over the teeth of one end.",
+        keys,
+    )
+
+
+def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Wind-up, transmission error and stiffness at some torques."""
+    data = outcome.parts["torsion"]
+    torques = data["torque"].values
+    return [
+        {head("torque", data): f"{torques[k]:.5g}"}
+        | {head(name, data): shown(name, float(data[name].values[k]), data) for name in WIND_UP}
+        | {"K is that of": str(data["torsional_stiffness"].attrs.get("covers", ""))}
+        for k in range(torques.size // 4, torques.size, torques.size // 4)
+    ]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    panels = torsion_panels(page.outcomes, page.curves)
+    for it, outcome in zip(panels, page.having("torsion").values(), strict=True):
+        if it.title:
+            yield Heading(it.title)
+        note = f"In it: {it.note}." if it.note else ""
+        yield Paragraph(
+            f"{_words(outcome.parts['torsion']).way.capitalize()} of the loaded member with the other "
+            f"members held, mean over the mesh cycle. {note}"
+        )
+        yield it
+
+
+def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+    told = torsion_answer(outcome)
+    return [(_words(outcome.parts["torsion"]).stiffness, told)] if told else []
+
+
+TORSION = Section(
+    name="torsion",
+    title="Torsion",
+    short="Torsion",
+    order=300.0,
+    parts=("torsion",),
+    blocks=_blocks,
+    answer=_answer,
+    screen=lambda one: [Printed(rows=wind_up_rows(one))] if "torsion" in one.parts else [],
+)

@@ -1,0 +1,115 @@
+"""A rack and pinion from its case file: units of a travel, closed forms of its result, and refusals."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pitchpoint.errors import InputError
+from pitchpoint.gears.families import sample_of
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
+from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.run import Outcome, describe, run
+
+SAMPLE = str(sample_of(RackAndPinionGears))
+EXAMPLE = Path(__file__).parents[2] / "examples" / "rack_and_pinion.toml"
+FORCE, SPEED, RADIUS = 2000.0, 300.0 * 2.0 * np.pi / 60.0, 0.03
+FRICTIONLESS = {"models.friction": "frictionless"}
+SMALL = {"loss_map": {"count": 2, "force": "4000 N"}}
+
+
+@pytest.fixture(scope="module")
+def outcome() -> Outcome:
+    return run(SAMPLE, settings=SMALL)["default"]
+
+
+def test_the_shipped_example_is_short() -> None:
+    assert len(EXAMPLE.read_text("utf-8").splitlines()) <= 15
+    (manifest,) = describe(str(EXAMPLE))
+    assert (manifest["driver"], manifest["loaded"]) == ("pinion", "rack")
+
+
+def test_power_goes_from_the_pinion_to_the_rack(outcome: Outcome) -> None:
+    data = outcome.parts["operation"]
+    lost, seal = float(data["mean_loss"].values[0, 0]), 0.1 * SPEED
+    power = FORCE * SPEED * RADIUS
+    efficiency = power / (power + lost)
+    assert float(data["mean_efficiency"].values[0, 0]) == pytest.approx(efficiency, rel=1e-12)
+    torque = (power + lost) / SPEED
+    assert float(data["mean_input_torque"].values[0, 0]) == pytest.approx(torque, rel=1e-12)
+    assert float(data["mean_drag_loss"].values[0, 0]) == pytest.approx(seal, rel=1e-12)
+
+
+def test_guides_of_the_rack_bear_the_separating_force_alone() -> None:
+    data = run(SAMPLE, settings={**SMALL, **FRICTIONLESS})["default"].parts["operation"]
+    radial, axial = (
+        np.array([float(data[f"{way}_reaction_{k}"].values[0, 0]) for k in (1, 2)])
+        for way in ("radial", "axial")
+    )
+    expected = FORCE / np.cos(np.radians(20.0)), FORCE * np.tan(np.radians(20.0))
+    np.testing.assert_allclose(radial, expected, rtol=1e-12)
+    np.testing.assert_array_equal(axial, 0.0)
+
+
+def test_what_travels_has_units_of_its_own(outcome: Outcome) -> None:
+    torsion, back = outcome.parts["torsion"], outcome.parts["back_driving"]
+    units = {
+        "torque": "N",
+        "wind_up": "m",
+        "torsional_stiffness": "N/m",
+        "lost_motion": "m",
+        "mesh_torsional_stiffness": "N/m",
+    }
+    assert {name: torsion[name].attrs["units"] for name in units} == units
+    assert outcome.parts["loss_map"]["torque"].attrs["units"] == "N"
+    assert outcome.parts["operation"]["mean_input_torque"].attrs["units"] == "N m"
+    assert back["mean_input_torque"].attrs["units"] == "N"
+    assert outcome.parts["running"]["back_driving_torque"].attrs["units"] == "N"
+    assert outcome.parts["vibration"]["torque"].attrs["long_name"] == "output force"
+
+
+def test_stiffness_against_the_force_is_that_along_the_line_of_action(outcome: Outcome) -> None:
+    """A travel s closes the flanks by s cos(alpha), and the force along them is F/cos(alpha)."""
+    torsion, stiffness = outcome.parts["torsion"], outcome.parts["stiffness"]
+    at = int(np.argmin(np.abs(torsion["torque"].values - FORCE)))
+    assert torsion["torque"].values[at] == pytest.approx(FORCE)
+    mean = float(stiffness["mean_stiffness"]) * np.cos(np.radians(20.0)) ** 2
+    # One is the tangent of the other's secant, by Weber's law.
+    assert float(torsion["torsional_stiffness"].values[at]) == pytest.approx(mean, rel=0.06)
+
+
+def test_the_map_reaches_the_force_that_was_asked_for(outcome: Outcome) -> None:
+    assert outcome.parts["loss_map"]["torque"].values.tolist() == [0.0, 4000.0]
+
+
+def test_json_says_the_units_of_a_travel(outcome: Outcome) -> None:
+    shown = figures(outcome)
+    assert shown["units"]["wind_up"] == "m"
+    assert shown["units"]["mean_input_torque"] == "N m"
+
+
+REFUSED = {
+    "operation.torque": ({"operation.torque": "5 N m"}, "a rack carries a force"),
+    "operation.driver": ({"operation.driver": "rack"}, "cannot drive"),
+    "loss_map.torque": ({"loss_map.torque": "5 N m"}, "give force in place of torque"),
+    "dynamics.torques": ({"dynamics.torques": ["5 N m"]}, "give forces in place of torques"),
+    "dynamics.inertia": ({"dynamics.inertia": "1 kg cm2"}, "gears.mass"),
+    "losses.seal.between": ({"losses.seal.between": ["rack", "housing"]}, "travels"),
+    "gears.mounting_distance": ({"gears.mounting_distance": "29 mm"}, "flanks overlap"),
+}
+
+
+@pytest.mark.parametrize("key", REFUSED)
+def test_what_a_rack_does_not_take_is_one_sentence(key: str) -> None:
+    given, words = REFUSED[key]
+    with pytest.raises(InputError, match=words) as caught:
+        describe(SAMPLE, settings=given)
+    assert caught.value.key == key
+
+
+def test_a_vibration_asks_for_the_mass(tmp_path: Path) -> None:
+    text = Path(SAMPLE).read_text("utf-8").replace('mass = "40 kg"\n', "")
+    (tmp_path / "light.toml").write_text(text, "utf-8")
+    with pytest.raises(InputError, match="the mass of the rack") as caught:
+        describe(str(tmp_path / "light.toml"))
+    assert caught.value.key == "gears.mass"
