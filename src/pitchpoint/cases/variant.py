@@ -8,6 +8,7 @@ from typing import Any
 from pitchpoint.cases.build import Built, build
 from pitchpoint.cases.document import Document, resolve
 from pitchpoint.cases.schema import validate
+from pitchpoint.errors import InputError
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 
 __all__ = [
@@ -62,7 +63,11 @@ class Variant:
     def built(self, changes: Mapping[str, Any]) -> Built:
         """Case with some values changed."""
         document = (self._computed if changes else self).document(**changes)
-        return build(validate(document), document, self.own)
+        cold = build(validate(document), document, self.own)
+        try:
+            return cold.warmed
+        except InputError as error:
+            raise error.at(file=document.name) from None
 
 
 def _without(tree: Mapping[str, Any]) -> dict[str, Any]:
