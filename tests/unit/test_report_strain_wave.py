@@ -84,7 +84,7 @@ def angles(phase: np.ndarray) -> np.ndarray:
 def on_the_way(*args: Any, **told: Any) -> xr.Dataset:
     """A dataset whose places of contacts are those along a wave."""
     data = dataset(*args, **told)
-    data["path"].attrs.update(PATHS["wave"].attributes)
+    data["path"].attrs.update(PATHS["wave"].attributes(MEMBERS[1:]))
     return data
 
 
@@ -535,6 +535,25 @@ def test_torque_loop_lies_around_the_line_without_friction(whole: Outcome) -> No
     assert first["y"][half - 1] == pytest.approx(1.1 * elastic["y"][-1])
     assert first["y"][half] == pytest.approx(0.9 * elastic["y"][-1])
     assert max(second["y"]) < max(first["y"])
+
+
+def test_the_transmission_error_is_drawn_around_its_mean(whole: Outcome) -> None:
+    """Over one period from 0 to 1, wherever the mesh cycle begins."""
+    data = whole.parts["torsion"].assign_coords(phase=[0.8, 1.3])
+    one = replace(whole, parts={**whole.parts, "torsion": data})
+    error = figure(torsion_panels({"default": one}, curves({"default": one}))[0], "_error")
+    assert error.layout["xaxis"]["range"] == [0, 1]
+    (*_, last) = error.data
+    half = 0.005 * float(data["wind_up"][-1]) * np.degrees(1.0) * 3600.0
+    assert last["x"] == pytest.approx([-0.2, 0.3, 0.8, 1.3])
+    assert last["y"] == pytest.approx([-half, half, -half, half], rel=1e-4)
+
+
+def test_play_that_rounding_leaves_is_none(whole: Outcome) -> None:
+    data = whole.parts["torsion"].copy()
+    data["lost_motion"] = 1e-17
+    one = replace(whole, parts={**whole.parts, "torsion": data})
+    assert "without load" not in torsion_answer(one)
 
 
 def test_both_ends_are_one_line_only_if_they_are_alike(whole: Outcome) -> None:

@@ -15,6 +15,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.mesh import PATHS
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Figure, Panel, continued
@@ -45,11 +46,13 @@ def pair_of(**changes: Any) -> CylindricalPair:
 def teeth_of(pair: CylindricalPair) -> xr.Dataset:
     numbers = {name: np.asarray(value) for name, value in pair.drawing().items()}
     dims = FAMILY.drawing
-    return dataset(
+    teeth = dataset(
         {name: (dims.get(name, ("gear",)[: v.ndim]), v) for name, v in numbers.items()},
         dict(FAMILY.coordinates),
         title="teeth",
     )
+    teeth["points"].attrs.update(PATHS[pair.counts].attributes(["gear 1", "gear 2"]))
+    return teeth
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,6 @@ from pitchpoint.analyses.caveats import (
 )
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
-from pitchpoint.gears.mesh import PATHS
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
@@ -61,7 +60,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )
-    data["path"].attrs.update(PATHS[built.design.mesh.counts].attributes)
+    data["path"].attrs.update(built.way)
     return data.isel(pair=built.design.mesh.filled)
 
 

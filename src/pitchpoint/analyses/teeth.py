@@ -22,7 +22,10 @@ def _teeth(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     dims, labels = built.family.drawing, built.family.coordinates
     data = {name: (dims.get(name) or _dims(name, v), v) for name, v in numbers.items()}
     used = {name for each, _ in data.values() for name in each}
-    return dataset(data, {k: v for k, v in labels.items() if k in used}, title="teeth")
+    drawn = dataset(data, {k: v for k, v in labels.items() if k in used}, title="teeth")
+    if "points" in drawn:
+        drawn["points"].attrs.update(built.way)
+    return drawn
 
 
 def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:

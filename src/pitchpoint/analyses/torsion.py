@@ -14,7 +14,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.quasi_static import coupling, engagement
 from pitchpoint.efficiency.summary import summarise
-from pitchpoint.gears.mesh import PATHS, Mesh
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.wind_up import hysteresis, wound_up
@@ -62,7 +62,7 @@ def torsion_part(built: Built) -> xr.Dataset:
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
     mesh = built.design.mesh
-    whole["path"].attrs.update(PATHS[mesh.counts].attributes)
+    whole["path"].attrs.update(built.way)
     return whole.isel(pair=mesh.filled)
 
 

@@ -31,7 +31,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import built_gears, family_of
 from pitchpoint.gears.family import Family
-from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
@@ -180,6 +180,12 @@ class Built:
         return frozenset(
             end for end in _ENDS if not self.bodies[int(self.nominal[end].argmax())].turns
         )
+
+    @property
+    def way(self) -> dict[str, str | float]:
+        """Words of the way of a pair, as attributes of places on it."""
+        touching = [one.body for one in self.bodies if one.member is not None]
+        return PATHS[self.design.mesh.counts].attributes(touching)
 
     @property
     def carried(self) -> Quantity:

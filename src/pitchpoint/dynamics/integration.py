@@ -186,6 +186,7 @@ def _largest(error: tuple[Array, Array]) -> Array:
 
 
 def _largest_of_last(error: tuple[Array, Array]) -> Array:
+    # Derivatives jump where teeth part, which would take many short steps for digits that nothing needs.
     return jnp.max(jnp.abs(jnp.stack(error)[..., -1]))
 
 

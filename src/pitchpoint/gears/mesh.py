@@ -1,7 +1,7 @@
 """What every gear family answers."""
 
 import abc
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import inf
 from typing import ClassVar, Literal, Self
@@ -37,6 +37,7 @@ class Way:
         title: of figures along it; empty where there is no way to show.
         told: what stands above them.
         origin: what lies at zero, where it has a name.
+        sliding: whose speed over whose the sliding is; {} are the two members that touch.
         zones: number of zones of mesh that are alike, in which pairs stand one zone after the other.
     """
 
@@ -49,12 +50,17 @@ class Way:
     title: str = ""
     told: str = ""
     origin: str = ""
+    sliding: str = "Flank of {} over flank of {}."
     zones: int = 1
 
-    @property
-    def attributes(self) -> dict[str, str | float]:
-        """What a figure along it needs, for the places in a dataset."""
-        return asdict(self)
+    def attributes(self, members: Sequence[str]) -> dict[str, str | float]:
+        """What a figure along it needs, for the places in a dataset.
+
+        Args:
+            members: names of the two that touch.
+        """
+        sliding = self.sliding.format(*members)
+        return {**asdict(self), "sliding": sliding[:1].upper() + sliding[1:]}
 
 
 PATHS: Mapping[Path, Way] = {
@@ -65,6 +71,7 @@ PATHS: Mapping[Path, Way] = {
         1.0,
         "base pitch",
         title="Along the path of contact",
+        sliding="Flank of {} over flank of {}; zero at the pitch point C.",
     ),
     "wave": Way(
         "angle from the long axis, in turns",
@@ -78,6 +85,7 @@ PATHS: Mapping[Path, Way] = {
         "that is nearest; the dotted line is the long axis. Values stand where the tooth carries; both ends "
         "of the long axis are alike.",
         origin="the long axis",
+        sliding="{} over {}; teeth slide most far from the long axis.",
         zones=2,
     ),
     "turn": Way("turns of the driver", "θ/2π", "angle of the driver [°]", 360.0, "period"),

@@ -7,9 +7,7 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["PLACE", "PathOfContact", "marks", "path_of"]
-
-PLACE = "place on the path from A [base pitches]"
+__all__ = ["PathOfContact", "marks", "path_of"]
 
 
 @dataclass(frozen=True)
@@ -19,12 +17,16 @@ class PathOfContact:
     Attributes:
         points: by letter, positions from A in base pitches, in order.
         transverse_ratio, overlap_ratio: transverse contact ratio and overlap ratio.
+        axis: title of an axis along it.
+        pitch: what a base pitch is called.
         against: why pairs run from E to A; empty where they run from A to E.
     """
 
     points: dict[str, float]
     transverse_ratio: float
     overlap_ratio: float
+    axis: str
+    pitch: str
     against: str
 
     @property
@@ -51,6 +53,8 @@ def path_of(outcome: Outcome) -> PathOfContact:
         points=_inside(teeth, ratio),
         transverse_ratio=ratio,
         overlap_ratio=float(teeth["overlap_ratio"]),
+        axis=str(teeth["points"].attrs["axis"]),
+        pitch=str(outcome.manifest["pitch"]),
         against=str(outcome.manifest["against"]),
     )
 

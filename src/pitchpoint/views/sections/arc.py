@@ -37,7 +37,7 @@ _ARC = {
     "the roundings of root and tip, which wear.",
     "radius": "Where an edge touches it is small, where flanks fit into each other it is large.",
     "entrainment": "Mean speed of both flanks against their contact; it draws the oil in.",
-    "sliding_velocity": "Flexspline over circular spline; teeth slide most far from the long axis.",
+    "sliding_velocity": "",
     "film_thickness": "",
     "lambda_ratio": "Below 1 boundary, 1 to 3 mixed, above 3 full film.",
     "friction": "",
@@ -174,7 +174,8 @@ def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
         cut = "The outermost values are outside the figure."
     if name == "lambda_ratio":
         regimes(look, shown)
-    note = " ".join(filter(None, (_ARC[name], cut, same)))
+    told = seen[0][1]["path"].attrs["sliding"] if name == "sliding_velocity" else _ARC[name]
+    note = " ".join(filter(None, (told, cut, same)))
     return Figure(f"arc_{name}", title, shown, look, note, missing="No tooth carries.")
 
 

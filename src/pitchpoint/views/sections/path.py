@@ -23,7 +23,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.lines import SHORT, Points, gapped, regimes, titled, values_of
-from pitchpoint.views.path import PLACE, PathOfContact, marks, path_of
+from pitchpoint.views.path import PathOfContact, marks, path_of
 from pitchpoint.views.section import Block, Page, Paragraph, Section
 from pitchpoint.views.where_lost import where_lost
 
@@ -32,7 +32,7 @@ __all__ = ["PATH", "along", "loss_places", "loss_sentence", "path_panel"]
 _ALONG = {
     "load_share": "",
     "contact_force_ratio": "Normal force of the mesh over that without friction.",
-    "sliding_velocity": "Flank of gear 1 over flank of gear 2; zero at the pitch point C.",
+    "sliding_velocity": "",
     "pressure": "",
     "film_thickness": "",
     "lambda_ratio": "Below 1 boundary, 1 to 3 mixed, above 3 full film.",
@@ -169,7 +169,7 @@ def _along_figure(
     of_line = first.helical and name in _WHOLE
     end = first.contact_ratio if of_line else first.transverse_ratio
     look = layout(
-        "base pitches since the pair entered" if of_line else PLACE,
+        f"{first.pitch}es since the pair entered" if of_line else first.axis,
         short_axis(name),
         xaxis={"range": [-0.02 * end, 1.02 * end]},
         yaxis={} if name == "sliding_velocity" else {"rangemode": "nonnegative"},
@@ -179,6 +179,8 @@ def _along_figure(
     if name == "lambda_ratio":
         regimes(look, shown)
     note = _LINES.get(name, _ALONG[name]) if first.helical else _ALONG[name]
+    if name == "sliding_velocity":
+        note = str(seen[0][1]["path"].attrs["sliding"])
     note, missing = " ".join(filter(None, (note, same))), _MISSING.get(name, NO_POWER)
     return Figure(f"along_{name}", title, shown, look, note, missing=missing)
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import PALETTE, Figure, Key, layout, plain
-from pitchpoint.views.path import PLACE, marks, path_of
+from pitchpoint.views.path import marks, path_of
 
 __all__ = ["sliding_figure", "specific_sliding"]
 
@@ -34,7 +34,9 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
         name,
         "Specific sliding along the path of contact",
         [plain(key, place, course, "") for key, course in zip(keys, values.T, strict=True)],
-        layout(PLACE, "ζ", xaxis={"range": [-0.02 * end, 1.02 * end]}, yaxis=cut, **marks(path)),
+        layout(
+            path.axis, "ζ", xaxis={"range": [-0.02 * end, 1.02 * end]}, yaxis=cut, **marks(path)
+        ),
         note + (f" The lowest value is {lowest:.3g}." if cut else ""),
         keys,
     )

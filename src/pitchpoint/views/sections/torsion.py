@@ -40,7 +40,6 @@ _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 
 _ELASTIC = Key("without friction", INK, "dash")
 _PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
-_ENDS = (Key("one end of the long axis", PALETTE[0]), Key("the other end", PALETTE[1], "dash"))
 
 
 def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
@@ -194,9 +193,8 @@ def _over_cycle(name: str, data: xr.Dataset, period: Period) -> Figure:
         "Static transmission error over the mesh cycle, less its mean",
         traces,
         layout(period.axis, f"{symbol} less its mean [{unit}]", xaxis={"range": [0, 1]}),
-        f"{_words(data).motion.capitalize()} of the loaded member under load, without gaps between the "
-        "flanks as designed; the mean grows with the load as the "
-        f"{_words(data).way} does.",
+        f"{_words(data).motion.capitalize()} of the loaded member against its place without load and "
+        "without gaps between the flanks as designed, each line less its mean.",
         tuple(key for _, key in shown),
         missing="No equilibrium was found.",
     )
@@ -272,11 +270,12 @@ def _against(name: str, variable: str, title: str, data: xr.Dataset, key: Key) -
 
 def _bearing(name: str, data: xr.Dataset) -> Figure:
     """Inward load of the teeth at both ends of the long axis."""
-    unit = show.unit(VARIABLES["zone_load"].display)
+    unit, origin = show.unit_of("zone_load", data), data["path"].attrs["origin"]
+    ends = (Key(f"one end of {origin}", PALETTE[0]), Key("the other end", PALETTE[1], "dash"))
     torque, loads = display("torque", data["torque"], data), display("zone_load", data["zone_load"])
-    traces = [plain(key, torque, values, unit) for key, values in zip(_ENDS, loads.T, strict=False)]
+    traces = [plain(key, torque, values, unit) for key, values in zip(ends, loads.T, strict=False)]
     alike = np.allclose(loads[:, 0], loads[:, -1], rtol=1e-4, equal_nan=True)
-    keys = (Key("either end of the long axis", GREY),) if alike else _ENDS
+    keys = (Key(f"either end of {origin}", GREY),) if alike else ends
     if alike:
         traces = [plain(keys[0], torque, loads[:, 0], unit)]
     return Figure(
