@@ -1,5 +1,6 @@
 """A rack and pinion from its case file: units of a travel, closed forms of its result, and refusals."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, describe, run
+from pitchpoint.views.report import render
 
 SAMPLE = str(sample_of(RackAndPinionGears))
 EXAMPLE = Path(__file__).parents[2] / "examples" / "rack_and_pinion.toml"
@@ -86,6 +88,26 @@ def test_json_says_the_units_of_a_travel(outcome: Outcome) -> None:
     shown = figures(outcome)
     assert shown["units"]["wind_up"] == "m"
     assert shown["units"]["mean_input_torque"] == "N m"
+
+
+def test_every_section_that_applies_is_in_the_report_in_words_of_a_travel(outcome: Outcome) -> None:
+    page = render({"default": outcome})
+    sections = re.findall(r'<section id="(\w+)"', page)
+    assert sections[:6] == ["answer", "inputs", "teeth", "path", "cycle", "torsion"]
+    assert sections[6:11] == ["beside", "stiffness", "vibration", "studies", "map"]
+    assert sections[11:] == ["models", "sources"]
+    assert 'id="absent"' not in page
+    for words in (
+        "pinion drives at 300 rpm, rack carries 2000 N",
+        "pinion (below), ",
+        "rack (above). Pinion drives, turning counter-clockwise",
+        "A at the tip of the rack; C is the pitch point",
+        "Flank of pinion over flank of rack",
+        "Force over deflection, growing and shrinking",
+        "driver speed and output force",
+        "back-driving force",
+    ):
+        assert words in re.sub(r"<[^>]*>", "", page), words
 
 
 REFUSED = {

@@ -16,6 +16,7 @@ __all__ = [
     "quantity",
     "signed",
     "span",
+    "the",
     "unit",
     "unit_of",
 ]
@@ -130,6 +131,16 @@ def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
     if first == last:
         return first
     return f"{quantity(low, values[0], with_unit=False, of=of)} to {last}"
+
+
+def the(member: str) -> str:
+    """Name of a body in a sentence.
+
+    Example:
+        >>> the("rack"), the("gear 2")
+        ('the rack', 'gear 2')
+    """
+    return member if member.startswith("gear") else f"the {member}"
 
 
 def axis_title(name: str, of: Any = None) -> str:

@@ -86,10 +86,6 @@ def _panel(name: str, title: str, outcome: Outcome) -> Panel:
     return Panel(title, [_turn(f"{name}_turn", data), *bars], note=data.attrs["note"])
 
 
-def _the(member: str) -> str:
-    return member if member.startswith("gear") else f"the {member}"
-
-
 def _turn(name: str, data: xr.Dataset) -> Figure:
     """Error by the deviations of both members."""
     angle = display("turn_angle", data["turn_angle"])
@@ -125,7 +121,7 @@ def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> Figure
     orders, unit = _orders(lines), show.unit_of("kinematic_error_spectrum", data)
     return Figure(
         name,
-        f"Orders by {_the(member)}",
+        f"Orders by {show.the(member)}",
         [_bars(key, lines[k], orders, unit) for k, key in enumerate(_KEYS.values())],
         layout(
             f"order, per {data.attrs['own_turn'].format(member)}",
@@ -134,7 +130,7 @@ def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> Figure
             yaxis={"rangemode": "tozero"},
             barmode="group",
         ),
-        f"With deviations of {_the(member)} alone, over {data.attrs['turn_alone']}: "
+        f"With deviations of {show.the(member)} alone, over {data.attrs['turn_alone']}: "
         f"{show.quantity('kinematic_error_range', alone, of=data)} peak to peak under the operating torque. "
         "Orders of the mesh, about the number of teeth, are not drawn.",
         tuple(replace(key, dash="") for key in _KEYS.values()),

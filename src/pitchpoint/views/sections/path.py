@@ -228,9 +228,10 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     if not path.helical and any(cycle.sizes["slice"] > 1 for cycle in cycles):
         notes.append("What differs over the face is shown where the load on it is highest.")
     if path.backwards:
-        driver = str(first.manifest["driver"]).capitalize()
+        driver = show.the(str(first.manifest["driver"]))
         notes.append(
-            f"{driver} drives, so every pair runs from E to A, and the phase runs backwards."
+            f"{driver[0].upper()}{driver[1:]} drives, so every pair runs from E to A, and the phase runs "
+            "backwards."
         )
     return notes
 
@@ -238,7 +239,7 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
 def _letters(path: PathOfContact, second: str) -> str:
     ends = (
         "A and E are the ends of the path of contact, A at the tip of "
-        f"{second}; C is the pitch point"
+        f"{show.the(second)}; C is the pitch point"
     )
     return f"{ends}; B and D lie one base pitch from E and A." if "B" in path.points else f"{ends}."
 
