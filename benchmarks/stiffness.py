@@ -35,7 +35,8 @@ import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.flattening import yang_sun_1985
-from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.compliance import slice_stiffness
 from pitchpoint.loading.foundation import sainsot_2004

@@ -37,7 +37,8 @@ from pitchpoint.dynamics.steady_state import steady_state
 from pitchpoint.dynamics.system import System
 from pitchpoint.dynamics.vibration import Vibrating, excitation, frequency_ratio, system
 from pitchpoint.efficiency.quasi_static import Operation
-from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.materials.solids import Solid

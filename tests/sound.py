@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 
 PAIR = """
 [gears]

@@ -25,6 +25,7 @@ class Code(IntEnum):
     TAKEN_ALONG = 8
     NO_CONTACT = 9
     NOT_CONVERGED = 10
+    NO_DESIGN = 11
 
     @property
     def sentence(self) -> str:
@@ -51,6 +52,7 @@ _SENTENCES = {
     "its other flanks would touch",
     Code.NO_CONTACT: "no contact can carry the load",
     Code.NOT_CONVERGED: "the iteration ended without a solution",
+    Code.NO_DESIGN: "the dimensions give no gears that can run",
 }
 
 

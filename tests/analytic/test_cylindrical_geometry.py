@@ -10,7 +10,7 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 
 ANGLE = np.deg2rad(20.0)
 MODULE = 2e-3

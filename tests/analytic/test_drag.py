@@ -14,7 +14,7 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.sharing import LOAD_SHARING

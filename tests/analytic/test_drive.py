@@ -12,7 +12,7 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Stage, chained, drive_cycle
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE

@@ -6,7 +6,7 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation, State, cycle, state
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.period import nodes
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.sharing import LOAD_SHARING

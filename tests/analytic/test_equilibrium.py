@@ -168,6 +168,13 @@ def test_no_load_gives_the_first_pairs_that_touch():
     np.testing.assert_array_equal(no_gap.approach, 0.0)
 
 
+def test_rounding_does_not_choose_among_flanks_that_touch():
+    exact = springs([0.0], gap=(3.0, 1.0, 1.0, 2.0), arm=2.0)
+    noisy = springs([0.0], gap=(3.0, 1.0 + 1e-12, 1.0, 2.0), arm=2.0)
+    for name in ("share", "stiffness", "loaded"):
+        np.testing.assert_array_equal(getattr(noisy, name), getattr(exact, name))
+
+
 def test_gaps_count_from_anywhere_and_units_are_free():
     base = springs([0.3, 5.0, 30.0])
     shifted = springs([0.3, 5.0, 30.0], gap=np.array([0.0, 2.0, 4.5, 7.5]) - 3.0)

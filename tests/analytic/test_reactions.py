@@ -10,7 +10,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.reactions import Bearing, radial_and_axial, unit_forces
 
 PHASE = jnp.linspace(0.03, 0.97, 11)

@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.involute import inverse_involute, involute
 
 ANGLE = np.deg2rad(20.0)

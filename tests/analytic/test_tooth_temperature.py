@@ -1,21 +1,29 @@
 """Tooth temperature of VDI 2736 Part 2 against estimates by hand, and the modulus it leads to."""
 
+import dataclasses
 import math
+from pathlib import Path
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
+import pitchpoint
 from pitchpoint import citations
+from pitchpoint.cases.solids import heated, heating, surrounded
+from pitchpoint.efficiency.summary import heat
 from pitchpoint.efficiency.tooth_temperature import (
     TOOTH_TEMPERATURE,
     isothermal,
     modulus_at,
     vdi_2736_2,
 )
+from pitchpoint.efficiency.warm_teeth import warm_teeth
 from pitchpoint.errors import InputError
 from pitchpoint.materials import solids
+from pitchpoint.programs import program
+from pitchpoint.status import Code, Status
 
 # Four steel/PA66 pairs at 0.42 N m and 1800 rpm: wheel teeth, normal module [mm], loss factor as
 # printed with two digits, rise of the flank temperature [K] at mu = 0.2.
@@ -149,3 +157,69 @@ def test_single_modulus_is_used_and_the_status_says_it():
 def test_a_tooth_hotter_than_its_table_is_refused():
     with pytest.raises(InputError, match=r"POM-H .* a temperature of 140 degC is not allowed"):
         modulus_at(solids.find("POM-H"), 413.15)
+
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "helical_few_teeth_plastic.toml"
+
+
+def plastic(friction):
+    """A pinion of steel and a wheel of plastic, as a case file builds them."""
+    return pitchpoint.load_case(EXAMPLE, settings={"models.friction": friction})
+
+
+@pytest.fixture(scope="module")
+def warm():
+    return plastic("xu_2007")
+
+
+def test_heat_modulus_and_friction_are_in_balance(warm):
+    """Pressure by the modulus at the root, friction by the pressure, heat by the friction, and back."""
+    assert int(warm.warming.code) == Code.SOLVED
+    assert 2 < int(warm.warming.iterations) < 20
+    assert float(warm.warming.residual) < 1e-11
+    found = heat(warm.design, warm.operation, warm.models[0])
+    figures = {name: float(value) for name, value in found.items()}
+    cool = surrounded(warm.solids, warm.case.operation.temperature)
+    again = heated(warm.case, warm.design.mesh, cool, figures)
+    for ours, theirs in zip(warm.solids, again, strict=True):
+        np.testing.assert_allclose(ours.temperature, theirs.temperature, rtol=1e-12)
+        np.testing.assert_allclose(ours.solid.young, theirs.solid.young, rtol=1e-11)
+
+
+def test_one_pass_is_the_balance_where_friction_does_not_ask_the_modulus():
+    warm = plastic("constant")
+    assert int(warm.warming.iterations) == 2
+
+
+@program
+def _root_and_rate(given, load):
+    design, operation, models, heated = given
+
+    def root(at):
+        point = dataclasses.replace(operation, load=at)
+        return warm_teeth(design, point, models, heated).root[1]
+
+    return root(load), jax.grad(root)(load)
+
+
+def test_derivatives_of_the_balance_agree_with_differences(warm):
+    cool = surrounded(warm.solids, warm.case.operation.temperature)
+    given = warm.design, warm.operation, warm.models[0], heating(warm.case, cool)
+    load = warm.operation.load
+    step = 1e-4 * load
+    _, rate = _root_and_rate(given, load)
+    beyond, _ = _root_and_rate(given, load + step)
+    before, _ = _root_and_rate(given, load - step)
+    np.testing.assert_allclose(rate, (beyond - before) / (2.0 * step), rtol=1e-7)
+
+
+def test_a_balance_that_is_not_found_says_so(warm):
+    lost = Status(jnp.asarray(Code.NOT_CONVERGED), jnp.asarray(0.1), jnp.asarray(40))
+    assert any("no balance" in text for text in dataclasses.replace(warm, warming=lost).warnings)
+    assert not any("no balance" in text for text in warm.warnings)
+
+
+def test_backwards_has_a_balance_of_its_own(warm):
+    other = warm.backwards
+    assert int(other.warming.code) == Code.SOLVED
+    assert other.solids[1].temperature != warm.solids[1].temperature

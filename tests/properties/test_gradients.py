@@ -19,7 +19,7 @@ from pitchpoint.efficiency.gradients import (
     ripple_gradient,
 )
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS

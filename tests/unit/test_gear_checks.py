@@ -10,7 +10,8 @@ from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import lanes_for
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
-from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 
 
 def build(teeth=(18, 36), degrees=20.0, **changes) -> CylindricalPair:

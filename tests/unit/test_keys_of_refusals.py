@@ -9,12 +9,13 @@ import pytest
 
 from pitchpoint.cases import build
 from pitchpoint.cases.schema import quantity_at
-from pitchpoint.gears.cylindrical import checks, pair
+from pitchpoint.gears.cylindrical import checks
+from pitchpoint.gears.cylindrical import design as cylindrical_design
 from pitchpoint.gears.cylindrical import family as cylindrical
 from pitchpoint.gears.strain_wave import design
 from pitchpoint.gears.strain_wave import family as strain_wave
 
-MODULES = (checks, pair, cylindrical, design, strain_wave)
+MODULES = (checks, cylindrical_design, cylindrical, design, strain_wave)
 MEMBER = "driver"  # a case checks it before it builds: operation.driver
 
 

@@ -14,8 +14,8 @@ import pytest
 import xarray as xr
 from records import entries
 
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
-from pitchpoint.gears.cylindrical.pair import build_cylindrical_pair
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY

@@ -12,8 +12,9 @@ import xarray as xr
 from records import entries
 
 from pitchpoint._jax import jnp
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
-from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.mesh import PATHS
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome

@@ -3,7 +3,6 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from math import isfinite
 from typing import Any
 
 import equinox as eqx
@@ -28,6 +27,7 @@ from pitchpoint.cases.solids import (
     datum,
     failures,
     heated,
+    heating,
     solids_in_use,
     surrounded,
 )
@@ -35,7 +35,8 @@ from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
-from pitchpoint.efficiency.summary import engaged, heat
+from pitchpoint.efficiency.summary import engaged
+from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import built_gears, family_of
@@ -55,12 +56,17 @@ from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variables import End
+from pitchpoint.status import Code, Status
 
 __all__ = ["TEETH_ALONE", "Built", "build", "drags", "operation_at"]
 
 TEETH_ALONE = (
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
     "churning take their part."
+)
+UNSETTLED = (
+    "Heat, modulus and friction of the teeth found no balance: their temperatures are those of the last "
+    "pass."
 )
 NO_PLASTIC = "No gear is of plastic: the tooth temperature changes nothing."
 
@@ -76,6 +82,7 @@ class Built:
         lubricant: record of the oil with the origin of its values.
         solids: of both gears, with the temperature at which they are taken.
         told: sentences about the design.
+        warming: what became of the balance of heat, modulus and friction; None where nothing warms up.
     """
 
     case: Case
@@ -85,11 +92,33 @@ class Built:
     lubricant: lubricants.LubricantRecord
     solids: tuple[SolidInUse, SolidInUse]
     told: tuple[str, ...]
+    warming: Status | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences about gears that are too hot, and about the design."""
-        return (*failures(self.solids), *self.told)
+        lost = self.warming is not None and int(self.warming.code) == Code.NOT_CONVERGED
+        return (*failures(self.solids), *[UNSETTLED] * lost, *self.told)
+
+    @cached_property
+    def warmed(self) -> "Built":
+        """The case with its gears at the temperature that their own loss gives them.
+
+        Raises:
+            InputError: the temperature is outside what is known of a material.
+        """
+        case = self.case
+        cool = surrounded(self.solids, case.operation.temperature)
+        if case.models.tooth_temperature == "isothermal" or not any(one.plastic for one in cool):
+            return self
+        cold = _of_solids(self, cool)
+        given = cold.design, cold.operation, cold.models[0], heating(case, cool)
+        found = jax.device_get(balance(*given))
+        known = replace(cold, warming=found.status)
+        if int(found.status.code) == Code.LOCKED:
+            return known  # friction locks the mesh, which the computation says
+        loss = {name: float(getattr(found, name)) for name in ("mean_friction", "loss_factor")}
+        return _of_solids(known, heated(case, cold.design.mesh, cool, loss))
 
     @property
     def heated(self) -> list[str]:
@@ -240,7 +269,7 @@ class Built:
             design=replace(self.design, mesh=self.design.mesh.driven_by(self.loaded)),
             operation=operation_at(point),
         )
-        return warmed(other)
+        return other.warmed
 
 
 _ENDS: tuple[End, ...] = ("driver", "loaded")
@@ -283,10 +312,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
     models = _models(case, own)
     built = Built(case, design, operation_at(case.operation), models, record, used, tuple(told))
-    try:
-        return warmed(replace(built, told=(*told, *_left_out(built))))
-    except InputError as error:
-        raise error.at(file=document.name) from None
+    return replace(built, told=(*told, *_left_out(built)))
 
 
 def _left_out(built: Built) -> list[str]:
@@ -294,24 +320,6 @@ def _left_out(built: Built) -> list[str]:
     heats = built.case.models.tooth_temperature != "isothermal"
     idle = heats and not any(used.plastic for used in built.solids)
     return [TEETH_ALONE] * bool(built.covers) + [NO_PLASTIC] * idle
-
-
-def warmed(built: Built) -> Built:
-    """The case with its gears at the temperature that their own loss gives them.
-
-    Raises:
-        InputError: the temperature is outside what is known of a material.
-    """
-    case = built.case
-    cool = surrounded(built.solids, case.operation.temperature)
-    if case.models.tooth_temperature == "isothermal" or not any(used.plastic for used in cool):
-        return built
-    cold = _of_solids(built, cool)
-    found = jax.device_get(heat(cold.design, cold.operation, cold.models[0]))
-    figures = {name: float(value) for name, value in found.items()}
-    if not all(map(isfinite, figures.values())):
-        return cold  # friction locks the mesh, which the computation says
-    return _of_solids(cold, heated(case, cold.design.mesh, cool, figures))
 
 
 def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:

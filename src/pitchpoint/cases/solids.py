@@ -4,17 +4,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import cast, get_args
 
+import numpy as np
+
+from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.failures import fails
 from pitchpoint.cases.schema import Case, Materials, SolidValues
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE, modulus_at
+from pitchpoint.efficiency.warm_teeth import Heated
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
 from pitchpoint.materials._leaves import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
 
-__all__ = ["SolidInUse", "datum", "failures", "heated", "solids_in_use", "surrounded"]
+__all__ = ["SolidInUse", "datum", "failures", "heated", "heating", "solids_in_use", "surrounded"]
 
 BY_VALUE = "by value"
 _PLASTIC_BELOW = 30e9  # Pa; no metal for gears is as soft, no plastic without fibres as stiff
@@ -120,6 +124,48 @@ def heated(case: Case, mesh: Mesh, used: Used, found: Mapping[str, float]) -> Us
     return first, second
 
 
+def heating(case: Case, used: Used) -> Heated:
+    """What decides how warm the teeth of a case get.
+
+    Args:
+        case: gears, housing, and the name of the thermal model.
+        used: materials at the temperature of the surroundings.
+    """
+    gears, housing = case.gears, case.housing
+    assert hasattr(gears, "teeth") and hasattr(gears, "module")
+    tables = [_table(one) for one in used]
+    length = max(len(places) for places, _ in tables)
+    known, moduli = (
+        np.stack([np.pad(part, (0, length - len(part)), "edge") for part in parts])
+        for parts in zip(*tables, strict=True)
+    )
+    return Heated(
+        plastic=array([one.plastic for one in used]),
+        known=array(known),
+        moduli=array(moduli),
+        teeth=array(np.abs(gears.teeth), float),
+        module=array(gears.module),
+        housing=array((housing.thermal_resistance or 0.0) / (housing.area or 1.0)),
+        duty=array(housing.duty),
+        mates=_mates(used),
+        function=TOOTH_TEMPERATURE[case.models.tooth_temperature].function,
+    )
+
+
+def _mates(used: Used) -> tuple[str, str]:
+    """Materials of the mates of both gears, as the thermal model tells them apart."""
+    first, second = ("plastic" if one.plastic else "steel" for one in reversed(used))
+    return first, second
+
+
+def _table(used: SolidInUse) -> tuple[list[float], list[float]]:
+    """Temperatures and moduli of a material; one modulus at all where no more are known."""
+    points = used.record.young_at
+    if not points:
+        return [0.0, 1.0], [float(used.solid.young)] * 2
+    return [point.temperature for point in points], [point.young.value for point in points]
+
+
 def datum(value: float, key: str, document: Document) -> Datum:
     """Value of the case file with the mark that it carries there."""
     mark = document.provenance.get(key)
@@ -140,7 +186,7 @@ def _warm(case: Case, mesh: Mesh, used: Used, gear: int, found: Mapping[str, flo
         teeth=abs(gears.teeth[gear]),
         pitch_speed=pair.pitch_line_speed * point.speed,
         normal_module=gears.module,
-        mate="plastic" if used[1 - gear].plastic else "steel",
+        mate=_mates(used)[gear],
         housing_resistance=case.housing.thermal_resistance or None,
         housing_area=case.housing.area,
         duty=case.housing.duty,

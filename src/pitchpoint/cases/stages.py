@@ -235,9 +235,18 @@ def ready(case: Case | DriveCase, document: Document, own: FrictionLaw | None = 
         InputError: see `build`; stages that do not follow each other.
     """
     if isinstance(case, Case):
-        return build(case, document, own)
+        return _warm(case, document, own)
     try:
         return _built(case, document, own)
+    except InputError as error:
+        raise error.at(file=document.name) from None
+
+
+def _warm(case: Case, document: Document, own: FrictionLaw | None) -> Built:
+    """One mesh with its teeth as warm as their loss makes them."""
+    cold = build(case, document, own)
+    try:
+        return cold.warmed
     except InputError as error:
         raise error.at(file=document.name) from None
 
@@ -256,7 +265,7 @@ def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> Buil
     for number, one, point in zip(numbers, alone, points, strict=True):
         with _told_of_stage(document, number):
             loaded = one.model_copy(update={"operation": point})
-            built.append(build(loaded, documents[number - 1], own))
+            built.append(_warm(loaded, documents[number - 1], own))
     drive = _drive(case, built)
     made = BuiltDrive(
         case,

@@ -167,8 +167,8 @@ def _housing(resistance: Each | None, area: Each | None) -> Each:
 def modulus_at(record: SolidRecord, temperature: float) -> ModulusInUse:
     """Young's modulus of a gear at its temperature, and how it was come by.
 
-    The modulus changes deflection, load sharing and film, but to first order not the loss
-    P mu H_V that heats the tooth, so that one pass from temperature to modulus closes the loop.
+    The modulus changes deflection, load sharing, pressure and film, and with them the loss that heats the
+    tooth: `warm_teeth` finds both in balance.
 
     Args:
         record: material of the gear.

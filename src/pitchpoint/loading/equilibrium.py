@@ -30,7 +30,7 @@ UNSOLVED = 1e-10
 FAR = 1e6
 """Approach, over elastic deflection and clearance, at which a body that nothing holds is looked at."""
 
-LIGHTEST = 1e-9
+LIGHTEST = 1e-8
 """Least elastic deflection over the largest clearance: what lighter loads do is its limit."""
 
 
@@ -216,9 +216,14 @@ def _normalised(
     mean_arm = constant(_mean(arms, may))
     mean_compliance = constant(_mean(own, may))
     force = jnp.broadcast_to(load, batch) / mean_arm
-    least = LIGHTEST * constant(jnp.max(gaps, axis=-1)) / mean_compliance
+    small = LIGHTEST * constant(jnp.max(gaps, axis=-1))
+    least = small / mean_compliance
     light = (force < least) | (force <= 0.0)
     reference = jnp.where(light, jnp.where(least > 0.0, least, 1.0), constant(force))
+    # Of flanks that touch all along, rounding says which gap is the least: what closes first has none.
+    first = gaps <= small[..., None]
+    gaps = jnp.where(light[..., None] & first, 0.0, gaps)
+    may &= first | ~light[..., None]
     problem = _Problem(
         own=jnp.where(may, own / mean_compliance[..., None], 1.0),
         matrix=None if matrix is None else _masked(matrix / mean_compliance[..., None, None], may),

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-import math
-from typing import TYPE_CHECKING, NoReturn
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
+from pitchpoint.gears.designs import Faults, Number
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
 from pitchpoint.programs import program
 from pitchpoint.roots import root
@@ -17,11 +20,10 @@ from pitchpoint.roots import root
 if TYPE_CHECKING:
     from pitchpoint.gears.cylindrical.pair import CylindricalPair
 
-__all__ = ["check_cylindrical"]
+__all__ = ["cannot_run", "check_cylindrical"]
 
 _THIN_TIP = 0.2  # modules
 _SMALL_CLEARANCE = 0.1  # modules
-_LARGEST_CONTACT_RATIO = 24.0
 _GIVEN = ("module", "profile_shift", "addendum", "dedendum", "fillet_radius")
 # Drawings round the centre distance; an overlap this small is no fault [modules].
 _ROUNDED_DISTANCE = 1e-4
@@ -33,7 +35,7 @@ _ROUNDED_FILLET = 1e-3
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class _Gear:
-    """Plain numbers of one gear: positive diameters and lengths [m], those of the rack in modules.
+    """Numbers of one gear, plain or traced: positive diameters and lengths [m], those of the rack in modules.
 
     Lengths on the line of action are counted from the gear's own base circle.
     """
@@ -42,24 +44,24 @@ class _Gear:
     undercut: bool
     internal: bool
     helical: bool
-    tip_diameter: float
-    root_diameter: float
-    base_diameter: float
-    form_diameter: float
-    pointed_diameter: float
-    tip_thickness: float
-    profile_shift: float
-    undercut_limit: float
-    addendum: float
-    dedendum: float
-    fillet_radius: float
-    deepest_dedendum: float
-    largest_fillet_radius: float
-    clearance: float
-    form_length: float
-    mate_reach: float
-    missing: float
-    fillet_overlap: float
+    tip_diameter: Number
+    root_diameter: Number
+    base_diameter: Number
+    form_diameter: Number
+    pointed_diameter: Number
+    tip_thickness: Number
+    profile_shift: Number
+    undercut_limit: Number
+    addendum: Number
+    dedendum: Number
+    fillet_radius: Number
+    deepest_dedendum: Number
+    largest_fillet_radius: Number
+    clearance: Number
+    form_length: Number
+    mate_reach: Number
+    missing: Number
+    fillet_overlap: Number
 
     @property
     def modules(self) -> str:
@@ -76,26 +78,26 @@ class _Gear:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class _Pair:
-    """Plain numbers of the pair: lengths [m]; the zero-backlash distance is NaN if none exists.
+    """Numbers of the pair, plain or traced: lengths [m]; the zero-backlash distance is NaN if none exists.
 
     The base sum is that of signed radii, without its sign; the gaps are those of a ring [modules].
     """
 
     internal: bool
     helical: bool
-    module: float
-    base_pitch: float
-    centre_distance: float
-    zero_backlash: float
-    base_sum: float
-    shift_sum: float
-    limit_shift_sum: float
-    transverse_ratio: float
-    contact_ratio: float
-    pinion_teeth: float
-    wheel_teeth: float
-    tip_gap: float = 0.0
-    radial_gap: float = 0.0
+    module: Number
+    base_pitch: Number
+    centre_distance: Number
+    zero_backlash: Number
+    base_sum: Number
+    shift_sum: Number
+    limit_shift_sum: Number
+    transverse_ratio: Number
+    contact_ratio: Number
+    pinion_teeth: Number
+    wheel_teeth: Number
+    tip_gap: Number = 0.0
+    radial_gap: Number = 0.0
 
     @property
     def modules(self) -> str:
@@ -127,25 +129,52 @@ def check_cylindrical(pair: CylindricalPair) -> list[str]:
     Source: geometry of ISO 21771:2007; tool tip of ISO 53:1998.
     """
     whole, gears = _measure(pair)
-    _check_finite(whole, gears, only=_GIVEN)
-    _check_teeth(whole)
-    _check_distance(whole)
-    for gear in gears:
-        _check_ring_root(gear) if gear.internal else _check_tool(gear)
-        _check_circles(gear)
-    for gear in gears:
-        _check_meeting(whole, gear)
-    _check_contact_ratio(whole, gears)
-    _check_tips(whole)
-    _check_finite(whole, gears)  # whatever the checks above did not think of
+    for fails, refuse in _faults(whole, gears):
+        if fails:
+            refuse()
     found = [text for gear in gears for text in _warnings(whole, gear)]
     return found + _pair_warnings(whole)
+
+
+def cannot_run(pair: CylindricalPair) -> Bool[Array, ""]:
+    """True for a pair that `check_cylindrical` refuses; can be traced and vectorised.
+
+    Args:
+        pair: with the dimensions that follow.
+    """
+    return jnp.any(jnp.stack([jnp.asarray(fails) for fails, _ in _faults(*_named(pair))]))
+
+
+def _faults(whole: _Pair, gears: list[_Gear]) -> Faults:
+    """Whether a design has each fault, and what refuses one that has it, the first one first."""
+    yield from _check_finite(whole, gears, only=_GIVEN)
+    yield from _check_teeth(whole)
+    yield from _check_distance(whole)
+    for gear in gears:
+        yield from (_check_ring_root(gear) if gear.internal else _check_tool(gear))
+        yield from _check_circles(gear)
+    for gear in gears:
+        yield from _check_meeting(whole, gear)
+    yield from _check_contact_ratio(whole, gears)
+    yield from _check_tips(whole)
+    yield from _check_finite(whole, gears)  # whatever the checks above did not think of
 
 
 def _measure(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
     alike = dataclasses.replace(pair, lanes=2, slices=1)  # of no account here: few programs
     numbers = jax.device_get(_measures(alike))
-    whole, *gears = [{key: float(x) for key, x in part.items()} for part in numbers]
+    return _records(pair, [{key: float(x) for key, x in part.items()} for part in numbers])
+
+
+def _named(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
+    """Measures in a trace."""
+    return _records(pair, _measures(pair))
+
+
+def _records(
+    pair: CylindricalPair, numbers: Sequence[Mapping[str, Number]]
+) -> tuple[_Pair, list[_Gear]]:
+    whole, *gears = numbers
     return _Pair(internal=pair.internal, helical=pair.helical, **whole), [
         _Gear(
             number=i + 1,
@@ -318,213 +347,255 @@ def _pointed_radius(gear: InvoluteGear) -> Float[Array, ""]:
     return base / jnp.where(value > 0.0, jnp.cos(crossing), 1.0)
 
 
-def _check_teeth(pair: _Pair) -> None:
-    if pair.internal and pair.pinion_teeth >= pair.wheel_teeth:
-        _refuse(
+def _check_teeth(pair: _Pair) -> Faults:
+    yield (
+        pair.internal & (pair.pinion_teeth >= pair.wheel_teeth),
+        lambda: _refuse(
             "teeth",
             pair.wheel_teeth,
             f"the ring, gear 2, has {pair.wheel_teeth:g} teeth and must have more than gear 1, "
             f"which has {pair.pinion_teeth:g}",
-        )
+        ),
+    )
 
 
-def _check_distance(pair: _Pair) -> None:
-    if math.isnan(pair.zero_backlash):
-        _check_shift_sum(pair)
-    if pair.centre_distance <= pair.base_sum:
-        _refuse(
+def _check_distance(pair: _Pair) -> Faults:
+    yield from _check_shift_sum(pair)
+    yield (
+        pair.centre_distance <= pair.base_sum,
+        lambda: _refuse(
             "centre_distance",
             pair.centre_distance,
             f"the centre distance {_mm(pair.centre_distance)} of gear 1 and gear 2 must be larger "
             f"than the {'difference' if pair.internal else 'sum'} of their base radii, "
             f"{_mm(pair.base_sum)}; there is no working pressure angle",
-        )
+        ),
+    )
     overlap = pair.zero_backlash - pair.centre_distance
-    if (-overlap if pair.internal else overlap) > _ROUNDED_DISTANCE * pair.module:
-        allowed = "allow at most" if pair.internal else "need at least"
-        _refuse(
+    allowed = "allow at most" if pair.internal else "need at least"
+    yield (
+        (-overlap if pair.internal else overlap) > _ROUNDED_DISTANCE * pair.module,
+        lambda: _refuse(
             "centre_distance",
             pair.centre_distance,
             f"the flanks of gear 1 and gear 2 overlap at the centre distance "
             f"{_mm(pair.centre_distance)}; these teeth {allowed} {_mm(pair.zero_backlash)}, "
             "which is without backlash",
-        )
+        ),
+    )
 
 
-def _check_shift_sum(pair: _Pair) -> None:
-    told = f"the profile shifts of gear 1 and gear 2 sum to {pair.shift_sum:.4g}"
-    if pair.internal and pair.shift_sum >= pair.limit_shift_sum:
-        _refuse(
-            "profile_shift",
-            pair.shift_sum,
-            f"{told}, which must be below {pair.limit_shift_sum:.4g}: above it the flanks overlap "
-            "at any centre distance",
-        )
-    if (-pair.shift_sum if pair.internal else pair.shift_sum) > 0.0:
-        _refuse(
-            "profile_shift",
-            pair.shift_sum,
-            f"{told}; the working pressure angle would be above 65 degrees",
-        )
-    if math.isnan(pair.centre_distance) and pair.shift_sum <= pair.limit_shift_sum:
-        _refuse(
-            "profile_shift",
-            pair.shift_sum,
-            f"{told}, which must be above {pair.limit_shift_sum:.4g}: below it the teeth have "
-            "backlash at any centre distance",
-        )
+def _check_shift_sum(pair: _Pair) -> Faults:
+    none = _unknown(pair.zero_backlash)
+
+    def refused(end: str) -> NoReturn:
+        told = f"the profile shifts of gear 1 and gear 2 sum to {pair.shift_sum:.4g}"
+        _refuse("profile_shift", pair.shift_sum, f"{told}{end}")
+
+    yield (
+        none & pair.internal & (pair.shift_sum >= pair.limit_shift_sum),
+        lambda: refused(
+            f", which must be below {pair.limit_shift_sum:.4g}: above it the flanks overlap "
+            "at any centre distance"
+        ),
+    )
+    yield (
+        none & ((-pair.shift_sum if pair.internal else pair.shift_sum) > 0.0),
+        lambda: refused("; the working pressure angle would be above 65 degrees"),
+    )
+    yield (
+        none & _unknown(pair.centre_distance) & (pair.shift_sum <= pair.limit_shift_sum),
+        lambda: refused(
+            f", which must be above {pair.limit_shift_sum:.4g}: below it the teeth have "
+            "backlash at any centre distance"
+        ),
+    )
 
 
-def _check_tool(gear: _Gear) -> None:
-    if gear.dedendum <= gear.fillet_radius:
-        _refuse(
+def _check_tool(gear: _Gear) -> Faults:
+    yield (
+        gear.dedendum <= gear.fillet_radius,
+        lambda: _refuse(
             "dedendum",
             gear.dedendum,
             f"the dedendum of {gear.name} is {gear.dedendum:.4g} {gear.modules} and must be larger "
             f"than its fillet radius, {gear.fillet_radius:.4g} {gear.modules}",
-        )
-    if gear.dedendum >= gear.deepest_dedendum:
-        _refuse(
+        ),
+    )
+    yield (
+        gear.dedendum >= gear.deepest_dedendum,
+        lambda: _refuse(
             "dedendum",
             gear.dedendum,
             f"the rack that cuts {gear.name} has no tip left at the dedendum {gear.dedendum:.4g} "
             f"{gear.modules}; it may be {gear.deepest_dedendum:.4g} {gear.modules} at most",
-        )
-    _check_fillet_radius(gear, "the tip of its rack has")
+        ),
+    )
+    yield from _check_fillet_radius(gear, "the tip of its rack has")
 
 
-def _check_ring_root(gear: _Gear) -> None:
-    if gear.root_diameter <= gear.base_diameter:
-        _refuse(
+def _check_ring_root(gear: _Gear) -> Faults:
+    yield (
+        gear.root_diameter <= gear.base_diameter,
+        lambda: _refuse(
             "dedendum",
             gear.dedendum,
             f"the root circle of {gear.name} ({_mm(gear.root_diameter)}) lies inside its base "
             f"circle ({_mm(gear.base_diameter)}); it must be larger",
-        )
-    if gear.dedendum >= gear.deepest_dedendum:
-        _refuse(
+        ),
+    )
+    yield (
+        gear.dedendum >= gear.deepest_dedendum,
+        lambda: _refuse(
             "dedendum",
             gear.dedendum,
             f"the flanks of {gear.name} cross in the space between its teeth at the dedendum "
             f"{gear.dedendum:.4g} {gear.modules}; it may be {gear.deepest_dedendum:.4g} "
             f"{gear.modules} at most",
-        )
-    _check_fillet_radius(gear, "the root of its spaces has")
+        ),
+    )
+    yield from _check_fillet_radius(gear, "the root of its spaces has")
 
 
-def _check_fillet_radius(gear: _Gear, where: str) -> None:
-    if gear.fillet_radius > gear.largest_fillet_radius * (1.0 + 1e-9):
-        _refuse(
+def _check_fillet_radius(gear: _Gear, where: str) -> Faults:
+    yield (
+        gear.fillet_radius > gear.largest_fillet_radius * (1.0 + 1e-9),
+        lambda: _refuse(
             "fillet_radius",
             gear.fillet_radius,
             f"the fillet radius of {gear.name} is {gear.fillet_radius:.4g} {gear.modules}, but "
             f"{where} room for {gear.largest_fillet_radius:.4g} {gear.modules} at most",
-        )
+        ),
+    )
 
 
-def _check_circles(gear: _Gear) -> None:
-    if gear.root_diameter <= 0.0:
-        _refuse(
+def _check_circles(gear: _Gear) -> Faults:
+    yield (
+        gear.root_diameter <= 0.0,
+        lambda: _refuse(
             "dedendum",
             gear.dedendum,
             f"the root circle of {gear.name} has the diameter {_mm(gear.root_diameter)}; it must "
             "be positive",
-        )
-    _check_ring_tip(gear) if gear.internal else _check_tip(gear)
-    if gear.tip_thickness < 0.0:
-        _refuse(
+        ),
+    )
+    yield from (_check_ring_tip(gear) if gear.internal else _check_tip(gear))
+    yield (
+        gear.tip_thickness < 0.0,
+        lambda: _refuse(
             "addendum",
             gear.addendum,
             f"{_tip_circle(gear)} lies beyond the point of the teeth, where the flanks cross; it "
             f"may be {_mm(gear.pointed_diameter)} at {'least' if gear.internal else 'most'}; without a "
             "tip_alteration, least_tip_thickness shortens it",
-        )
+        ),
+    )
     left = gear.tip_diameter - gear.form_diameter
-    if (-left if gear.internal else left) <= 0.0:
-        _refuse(
+    yield (
+        (-left if gear.internal else left) <= 0.0,
+        lambda: _refuse(
             "profile_shift",
             gear.profile_shift,
             f"no involute is left on {gear.name}: its form circle ({_mm(gear.form_diameter)}) must "
             f"lie {'outside' if gear.internal else 'inside'} its tip circle "
             f"({_mm(gear.tip_diameter)})",
+        ),
+    )
+
+
+def _check_tip(gear: _Gear) -> Faults:
+    def inside(name: str, diameter: Number) -> NoReturn:
+        _refuse(
+            "addendum",
+            gear.addendum,
+            f"{_tip_circle(gear)} lies inside its {name} circle ({_mm(diameter)}); it must be larger",
         )
 
-
-def _check_tip(gear: _Gear) -> None:
-    for name, diameter in (("root", gear.root_diameter), ("base", gear.base_diameter)):
-        if gear.tip_diameter <= diameter:
-            _refuse(
-                "addendum",
-                gear.addendum,
-                f"{_tip_circle(gear)} lies inside its {name} circle ({_mm(diameter)}); it must be "
-                "larger",
-            )
+    root, base = gear.root_diameter, gear.base_diameter
+    yield gear.tip_diameter <= root, lambda: inside("root", root)
+    yield gear.tip_diameter <= base, lambda: inside("base", base)
 
 
-def _check_ring_tip(gear: _Gear) -> None:
-    if gear.tip_diameter >= gear.root_diameter:
-        _refuse(
+def _check_ring_tip(gear: _Gear) -> Faults:
+    yield (
+        gear.tip_diameter >= gear.root_diameter,
+        lambda: _refuse(
             "addendum",
             gear.addendum,
             f"{_tip_circle(gear)} lies outside its root circle ({_mm(gear.root_diameter)}); that "
             "of a ring must be smaller",
-        )
-    if gear.tip_diameter <= gear.base_diameter:
-        _refuse(
+        ),
+    )
+    yield (
+        gear.tip_diameter <= gear.base_diameter,
+        lambda: _refuse(
             "addendum",
             gear.addendum,
             f"{_tip_circle(gear)} lies inside its base circle ({_mm(gear.base_diameter)}), where "
             "there is no involute; it must be larger",
-        )
+        ),
+    )
 
 
 def _tip_circle(gear: _Gear) -> str:
-    return f"the tip circle of {gear.name} ({_mm(abs(gear.tip_diameter))})"
+    return f"the tip circle of {gear.name} ({_mm(abs(float(gear.tip_diameter)))})"
 
 
-def _check_meeting(pair: _Pair, gear: _Gear) -> None:
-    if gear.clearance < 0.0:
-        _refuse(
+def _check_meeting(pair: _Pair, gear: _Gear) -> Faults:
+    yield (
+        gear.clearance < 0.0,
+        lambda: _refuse(
             "dedendum",
             gear.clearance,
             f"the tip of {gear.name} runs into the root of {gear.mate}: the tip clearance is "
             f"{gear.clearance:.4g} {gear.modules} and must be positive",
-        )
-    if gear.fillet_overlap > _ROUNDED_FILLET:
-        _refuse(
+        ),
+    )
+    yield (
+        gear.fillet_overlap > _ROUNDED_FILLET,
+        lambda: _refuse(
             "addendum",
             gear.fillet_overlap,
             f"the tip of {gear.mate} runs into the undercut fillet of {gear.name}: they overlap by "
             f"{gear.fillet_overlap:.3g} {gear.modules}; a shorter addendum of {gear.mate} or a "
             f"larger profile shift of {gear.name} parts them",
-        )
-    if not gear.undercut and gear.missing > _ROUNDED_FILLET * pair.module:
-        out, ends = ("out", "ends") if gear.internal else ("down", "begins")
-        _refuse(
+        ),
+    )
+    out, ends = ("out", "ends") if gear.internal else ("down", "begins")
+    yield (
+        (not gear.undercut) & (gear.missing > _ROUNDED_FILLET * pair.module),
+        lambda: _refuse(
             "addendum",
             gear.mate_reach,
             f"the tip of {gear.mate} meets the fillet of {gear.name}: on the line of action, "
             f"counted from the base circle of {gear.name}, it reaches {out} to "
             f"{_mm(gear.mate_reach)}, but the involute {ends} at {_mm(gear.form_length)}; a "
             f"shorter addendum of {gear.mate} or a larger dedendum of {gear.name} parts them",
-        )
+        ),
+    )
 
 
-def _check_contact_ratio(pair: _Pair, gears: list[_Gear]) -> None:
-    lost = sum(_lost_ratio(pair, gear) for gear in gears)
-    if pair.helical and pair.transverse_ratio <= 0.0:
-        _refuse_contact_ratio(pair, "transverse contact ratio", pair.transverse_ratio, 0.0, lost)
-    if pair.contact_ratio < 1.0:
-        name = "total contact ratio" if pair.helical else "contact ratio"
-        _refuse_contact_ratio(pair, name, pair.contact_ratio, 1.0, lost)
-    if pair.contact_ratio >= _LARGEST_CONTACT_RATIO:
-        _refuse(
+def _check_contact_ratio(pair: _Pair, gears: list[_Gear]) -> Faults:
+    def low(name: str, value: Number, least: float) -> NoReturn:
+        lost = sum(_lost_ratio(pair, gear) for gear in gears)
+        _refuse_contact_ratio(pair, name, float(value), least, lost)
+
+    yield (
+        pair.helical & (pair.transverse_ratio <= 0.0),
+        lambda: low("transverse contact ratio", pair.transverse_ratio, 0.0),
+    )
+    name = "total contact ratio" if pair.helical else "contact ratio"
+    yield pair.contact_ratio < 1.0, lambda: low(name, pair.contact_ratio, 1.0)
+    yield (
+        pair.contact_ratio >= LARGEST_CONTACT_RATIO,
+        lambda: _refuse(
             "face_width" if pair.contact_ratio > 2.0 * pair.transverse_ratio else "addendum",
             pair.contact_ratio,
             f"the contact ratio of gear 1 and gear 2 is {pair.contact_ratio:.4g} and must be below "
-            f"{_LARGEST_CONTACT_RATIO:g}; shorter addenda "
+            f"{LARGEST_CONTACT_RATIO:g}; shorter addenda "
             f"{'or a narrower face lower' if pair.helical else 'lower'} it",
-        )
+        ),
+    )
 
 
 def _refuse_contact_ratio(
@@ -543,26 +614,36 @@ def _refuse_contact_ratio(
     )
 
 
-def _check_tips(pair: _Pair) -> None:
-    if pair.internal and pair.tip_gap < 0.0:
-        _refuse(
+def _check_tips(pair: _Pair) -> Faults:
+    yield (
+        pair.internal & (pair.tip_gap < 0.0),
+        lambda: _refuse(
             "addendum",
             pair.tip_gap,
             f"the tips of gear 1 and gear 2 run into each other where their tip circles cross: "
             f"they overlap by {-pair.tip_gap:.3g} {pair.modules}; shorter addenda, fewer teeth of "
             "gear 1 or more teeth of gear 2 part them",
-        )
+        ),
+    )
 
 
-def _check_finite(pair: _Pair, gears: list[_Gear], only: tuple[str, ...] = ()) -> None:
+def _check_finite(pair: _Pair, gears: list[_Gear], only: tuple[str, ...] = ()) -> Faults:
     named = [*((gear.name, vars(gear)) for gear in gears), ("the pair", vars(pair))]
     for name, numbers in named:
         for key in only or numbers:
             value = numbers.get(key, 0.0)
-            if key != "zero_backlash" and not math.isfinite(value):
-                what = key.replace("_", " ")
-                message = f"the {what} of {name} is {value} and must be a finite number"
-                raise InputError(message, value=value)
+            if key != "zero_backlash":
+                yield value - value != 0.0, partial(_refuse_endless, name, key, value)
+
+
+def _refuse_endless(name: str, key: str, value: Number) -> NoReturn:
+    message = f"the {key.replace('_', ' ')} of {name} is {value} and must be a finite number"
+    raise InputError(message, value=value)
+
+
+def _unknown(value: Number) -> Any:
+    """True for no number, of plain ones and of traced ones."""
+    return value != value
 
 
 def _warnings(pair: _Pair, gear: _Gear) -> list[str]:
@@ -615,13 +696,13 @@ def _undercut_warning(pair: _Pair, gear: _Gear) -> str:
 
 def _lost_ratio(pair: _Pair, gear: _Gear) -> float:
     """Contact ratio between the mate's tip circle and the form circle of an undercut gear."""
-    return max(gear.missing, 0.0) / pair.base_pitch if gear.undercut else 0.0
+    return float(max(gear.missing, 0.0) / pair.base_pitch) if gear.undercut else 0.0
 
 
-def _refuse(entry: str, value: float, message: str) -> NoReturn:
+def _refuse(entry: str, value: Number, message: str) -> NoReturn:
     raise InputError(message, key=entry, value=value)
 
 
-def _mm(length: float) -> str:
+def _mm(length: Number) -> str:
     # Enough digits to take the number back as input.
     return f"{1e3 * length:.8g} mm"

@@ -8,13 +8,14 @@ from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,
     class_deviations,
     class_warnings,
     modified,
 )
-from pitchpoint.gears.cylindrical.pair import CylindricalPair, build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.family import Family, waves
 from pitchpoint.gears.involute import usual_fillet

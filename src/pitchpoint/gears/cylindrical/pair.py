@@ -5,7 +5,6 @@ from functools import cached_property
 from typing import ClassVar, Self
 
 import equinox as eqx
-import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
@@ -14,14 +13,10 @@ from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.contact_lines import (
-    LARGEST_CONTACT_RATIO,
-    SLICES,
     PathOfContact,
-    lanes_for,
 )
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.cylindrical import MEMBERS
-from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.involute import (
     InvoluteGear,
     base_helix,
@@ -33,16 +28,9 @@ from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
 from pitchpoint.gears.tooth_section import ToothSection
-from pitchpoint.programs import program
 from pitchpoint.roots import hypot, root
 
 __all__ = ["CylindricalPair", "zero_backlash_centre_distance"]
-
-RIM_RATIO = 1.0 / 0.3
-"""Root radius over bore radius where no bore is given."""
-
-RING_RIM_RATIO = 1.2
-"""Outer over root radius of a ring where it is not given."""
 
 
 def zero_backlash_centre_distance(
@@ -701,112 +689,3 @@ class CylindricalPair(Mesh):
             crossing=self.crossing[index],
             internal=self.internal and index == 1,
         )
-
-
-def build_cylindrical_pair(
-    *,
-    teeth: tuple[int, int],
-    module: float,
-    pressure_angle: float,
-    face_width: float,
-    helix_angle: float = 0.0,
-    profile_shift: tuple[float, float] = (0.0, 0.0),
-    addendum: tuple[float, float] = (1.0, 1.0),
-    dedendum: tuple[float, float] | None = None,
-    fillet_radius: tuple[float, float] = (0.38, 0.38),
-    tip_alteration: tuple[float, float] | None = None,
-    least_tip: float = 0.0,
-    centre_distance: float | None = None,
-    rim_ratio: tuple[float, float] | None = None,
-    driver: int = 1,
-    right_flank: bool = False,
-    slices: int = SLICES,
-) -> CylindricalPair:
-    """Pair from what an engineer knows; the rest by ISO 21771.
-
-    Args:
-        teeth: z1, z2; z2 negative for a ring with internal teeth.
-        module: normal module [m].
-        face_width, centre_distance: [m]; without backlash if no centre distance is given.
-        pressure_angle, helix_angle: of the basic rack and of the reference cylinders [rad].
-        profile_shift: x1, x2.
-        addendum, dedendum, fillet_radius: of the basic racks in modules; dedendum defaults to
-            addendum + 0.25.
-        tip_alteration: k1, k2; keeps the rack's tip clearance by default.
-        least_tip: thickness in the normal section, in modules, to which tips that would be thinner
-            are shortened; for tip alterations that are not given.
-        rim_ratio: root radius over bore radius of each gear; outer over root radius of a ring.
-        driver: 1 or 2, the gear that drives.
-        right_flank: True if the right flanks of both gears touch.
-        slices: of each contact line, for helical gears; even, or one for its middle alone.
-
-    Raises:
-        InputError: the flanks cannot meet at all; `check_cylindrical` says what else is wrong.
-
-    Example:
-        >>> from math import radians
-        >>> pair = build_cylindrical_pair(
-        ...     teeth=(18, 36), module=3e-3, pressure_angle=radians(20.0), face_width=0.02
-        ... )
-        >>> round(float(pair.centre_distance), 6)
-        0.081
-    """
-    helical = bool(helix_angle != 0.0)
-    pair = CylindricalPair(
-        teeth=array(teeth, jnp.float64),
-        module=array(module, jnp.float64),
-        pressure_angle=array(pressure_angle, jnp.float64),
-        helix_angle=array(helix_angle, jnp.float64),
-        profile_shift=array(profile_shift, jnp.float64),
-        tip_alteration=array(tip_alteration or (0.0, 0.0), jnp.float64),
-        addendum=array(addendum, jnp.float64),
-        dedendum=array(dedendum or (addendum[0] + 0.25, addendum[1] + 0.25), jnp.float64),
-        fillet_radius=array(fillet_radius, jnp.float64),
-        least_tip=array(least_tip, jnp.float64),
-        face_width=array(face_width, jnp.float64),
-        centre_distance=array(centre_distance or 0.0, jnp.float64),
-        rim_ratio=array(rim_ratio or (RIM_RATIO, RING_RIM_RATIO if teeth[1] < 0 else RIM_RATIO)),
-        wheel_drives=array(driver == 2),
-        right_flank=array(right_flank),
-        follows=(centre_distance is None, tip_alteration is None),
-        shortened=(False, False),
-        undercut=(False, False),
-        crossing=array((pressure_angle, pressure_angle), jnp.float64),
-        helical=helical,
-        internal=bool(teeth[1] < 0),
-        lanes=2,
-        slices=slices if helical else 1,
-    )
-    pair, ratio, limit, thickness = _complete(pair)
-    first, second = (bool(one) for one in np.asarray(profile_shift) < np.asarray(limit))
-    if first or (second and not pair.internal):
-        undercut = (first, second and not pair.internal)
-        pair, ratio = _with_crossings(dataclasses.replace(pair, undercut=undercut))
-    asked = least_tip > 0.0 and tip_alteration is None
-    short = tuple(asked and bool(one < least_tip) for one in np.asarray(thickness))
-    if any(short):
-        pair, ratio, _, _ = _complete(dataclasses.replace(pair, shortened=(short[0], short[1])))
-    if not 0.0 < float(ratio) < LARGEST_CONTACT_RATIO:
-        check_cylindrical(pair)  # says why, in gear words
-    return dataclasses.replace(pair, lanes=lanes_for(float(ratio), helical=helical))
-
-
-@program
-def _complete(
-    pair: CylindricalPair,
-) -> tuple[CylindricalPair, Float[Array, ""], Float[Array, "2"], Float[Array, "2"]]:
-    """Pair with the dimensions that follow, contact ratio, undercut limits, tip thicknesses in modules."""
-    pair = pair.completed()
-    return (
-        pair,
-        pair.contact_ratio,
-        jnp.stack([gear.undercut_limit for gear in pair.gears]),
-        jnp.stack([gear.tip_thickness for gear in pair.gears]) / pair.module,
-    )
-
-
-@program
-def _with_crossings(pair: CylindricalPair) -> tuple[CylindricalPair, Float[Array, ""]]:
-    found = [gear.crossing_angle() if gear.undercut else gear.crossing for gear in pair.gears]
-    pair = dataclasses.replace(pair, crossing=jnp.stack(found))
-    return pair, pair.contact_ratio

@@ -1,28 +1,44 @@
 """Strain wave gears from the dimensions that a designer gives, and the checks that go with them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
+from inspect import signature
+from itertools import groupby
 from math import ceil, floor, inf, pi, radians
+from typing import Any, NoReturn
 
+import equinox as eqx
 import numpy as np
-from jaxtyping import Array
+from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, rates, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
-from pitchpoint.gears.strain_wave.groove import NODES, Groove, given, swept, tip_with_land
+from pitchpoint.gears.strain_wave.groove import (
+    NEWTON_STEPS,
+    NODES,
+    Groove,
+    given,
+    swept,
+    tip_with_land,
+)
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
-from pitchpoint.programs import program
+from pitchpoint.programs import fast_program, program
+from pitchpoint.status import Code, Status
 
 __all__ = [
     "DOUBLE_ARCS",
     "DoubleArcForm",
     "InvoluteForm",
     "build_strain_wave",
+    "build_strain_waves",
     "check_strain_wave",
+    "designed",
     "double_arc_flank",
 ]
 
@@ -118,6 +134,204 @@ def build_strain_wave(
     Raises:
         InputError: dimensions that give no drive; the key is the name of the argument.
     """
+    built = _built(_planned(**locals()), _ALONE)
+    return built(lanes_for(built.held))
+
+
+def build_strain_waves(**values: Any) -> Designs[StrainWave]:
+    """Many strain wave gears in one call, each as `build_strain_wave` builds it.
+
+    Args:
+        values: the arguments of `build_strain_wave`, each as there, common to all designs, or a list with
+            one for each design (an array of numbers counts as a list).
+
+    Returns:
+        Drives in groups with one form of teeth, with an even or an odd number of them on the flexspline,
+        swept or given grooves; a group holds as many pairs of teeth as its widest zone asks for. The status
+        of each design has the overlap of its rigid flanks, over the module, as residual.
+
+    Raises:
+        InputError: lists for different numbers of designs.
+
+    Example:
+        >>> import numpy as np
+        >>> designs = build_strain_waves(
+        ...     teeth=(100, 102), module=0.5e-3, face_width=0.01, deflection=np.array([0.98, 1.0, 3.0])
+        ... )
+        >>> designs.good.tolist()
+        [True, True, False]
+        >>> designs.sentence(2)[:48]
+        'deflection: the wave generator deflects the flex'
+    """
+    given = signature(build_strain_wave).bind(**values)
+    given.apply_defaults()
+    found: dict[int, _Built] = {}
+    refused: dict[int, InputError] = {}
+    rows = _listed(given.arguments)
+    for number, row in enumerate(rows):
+        try:
+            found[number] = _built(_planned(**row), _TOGETHER)
+        except InputError as error:
+            refused[number] = error
+    kinds = groupby(sorted(found, key=lambda number: found[number].kind), lambda n: found[n].kind)
+    groups = tuple(_group(found, list(numbers)) for _, numbers in kinds)
+    residual = [found[n].overlap if n in found else inf for n in range(len(rows))]
+    code = [Code.SOLVED if n in found else Code.NO_DESIGN for n in range(len(rows))]
+    status = Status(array(code, int), array(residual), array(NEWTON_STEPS))
+    return Designs(groups, status, check_strain_wave, refused)
+
+
+def designed(drive: StrainWave) -> tuple[StrainWave, Status]:
+    """The drive with all that follows from its dimensions, and whether it can run.
+
+    A pure function that can be traced, vectorised and differentiated: `jax.vmap` makes it that of a batch.
+
+    Args:
+        drive: with its dimensions and its static structure, see `StrainWave.completed` for what stays.
+
+    Returns:
+        The drive, and the status: the residual is the overlap of rigid flanks over the module.
+    """
+    drive = drive.completed()
+    at = _touching(drive.surveyed, drive.module)
+    faults = _faults(at, drive.module, drive.backlash, conjugate=drive.conjugate)
+    fails = jnp.any(jnp.stack([jnp.asarray(fails) for fails, _ in faults]))
+    code = jnp.where(fails, int(Code.NO_DESIGN), int(Code.SOLVED))
+    residual = jnp.maximum(-at.least, 0.0) / drive.module
+    return drive, Status(code, residual, jnp.asarray(NEWTON_STEPS))
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """What is known of a drive before its groove.
+
+    Attributes:
+        parts: of the mesh, by name; those that are arrays.
+        travel: how its teeth move.
+        low: height of the tips as meant [m].
+        mate: form of the circular spline; None where its flanks are swept.
+        splines: numbers of teeth.
+        module, edge, backlash: [m].
+    """
+
+    parts: dict[str, Any]
+    travel: ToothMotion
+    low: float
+    mate: InvoluteForm | None
+    splines: tuple[int, int]
+    module: float
+    edge: float
+    backlash: float
+
+    @property
+    def mate_angle(self) -> Array:
+        """Angle of one pitch of the circular spline [rad]."""
+        return array(2.0 * pi / self.splines[1])
+
+
+@dataclass(frozen=True)
+class _Built:
+    """A drive but for the places of its pairs.
+
+    Attributes:
+        parts: of the mesh, by name.
+        held: pairs in each of both zones.
+        overlap: of rigid flanks, over the module.
+    """
+
+    parts: dict[str, Any]
+    held: int
+    overlap: float
+
+    @property
+    def kind(self) -> tuple[str, bool, bool]:
+        """Static structure that drives of a group have in common."""
+        return type(self.parts["flank"]).__name__, self.parts["conjugate"], self.parts["odd"]
+
+    def __call__(self, lanes: int) -> StrainWave:
+        """The drive with so many places in each zone."""
+        return StrainWave(**self.parts, held=array(float(self.held)), lanes=lanes)
+
+
+class _Contact(eqx.Module):
+    """Where rigid teeth are nearest to each other.
+
+    Attributes:
+        least: clearance there; infinite where no tooth engages [m].
+        angle: from the long axis [rad].
+        rolls: True if flanks touch near there with a positive relative curvature.
+    """
+
+    least: Number
+    angle: Number
+    rolls: bool | Bool[Array, ""]
+
+
+def _touching(found: Survey, module: Float[Array, ""]) -> _Contact:
+    clearance = jnp.nan_to_num(found.clearance, nan=jnp.inf)
+    least = jnp.argmin(clearance)
+    near = clearance < clearance[least] + _NEAR * module
+    return _Contact(clearance[least], found.angle[least], jnp.any(near & found.rolls))
+
+
+def _swept(
+    travel: ToothMotion,
+    low: Float[Array, ""],
+    edge: Float[Array, ""],
+    mate_angle: Float[Array, ""],
+    land: Float[Array, ""],
+) -> tuple[Groove, Float[Array, ""], Float[Array, ""]]:
+    """Groove, height at which the teeth between keep a tip land, and the land that they have [m]."""
+    groove = swept(travel, low, edge)
+    return groove, tip_with_land(groove, mate_angle, land, edge), groove.land(mate_angle)[0]
+
+
+def _surveyed(
+    travel: ToothMotion,
+    groove: Groove,
+    backlash: Float[Array, ""],
+    module: Float[Array, ""],
+    tooth_angle: Float[Array, ""],
+) -> tuple[Survey, _Contact]:
+    """Clearances along the wave, and where the least one is."""
+    found = survey(travel, groove, backlash, module, tooth_angle)
+    return found, _touching(found, module)
+
+
+@dataclass(frozen=True)
+class _Programs:
+    """Programs of the steps that take long, for one drive."""
+
+    sweep: Callable[..., tuple[Groove, Array, Array]]
+    survey: Callable[..., tuple[Survey, _Contact]]
+
+
+_ALONE = _Programs(program(_swept), program(_surveyed))
+_TOGETHER = _Programs(fast_program(_swept), fast_program(_surveyed))
+"""For many drives, which repay what the compiler takes; one after the other, as each fills the cache."""
+
+
+def _planned(
+    *,
+    teeth: tuple[int, int],
+    module: float,
+    face_width: float,
+    form: DoubleArcForm | InvoluteForm,
+    shape: str | tuple[float, ...],
+    deflection: float,
+    force_angle: float,
+    rim_thickness: float | None,
+    wall_thickness: float | None,
+    cup_length: float | None,
+    support_stiffness: float,
+    clearance: float,
+    tip_rounding: float,
+    backlash: float,
+    fixed: str,
+    driver: str,
+    groove: InvoluteForm | None,
+) -> _Plan:
+    """What follows without the groove; arguments as in `build_strain_wave`."""
     z1, z2 = _checked_teeth(teeth)
     motion, drives, loaded = rates(np.array([z1, z2], dtype=float), *_roles(fixed, driver))
     rim = 2.0 * module if rim_thickness is None else rim_thickness
@@ -129,27 +343,15 @@ def build_strain_wave(
     w0 = deflection * module * (z2 - z1) / 2.0
     _check_depth(form, deflection, clearance, module, z2 - z1)
     weights = _weights(shape, force_angle, w0 / neutral)
-    line = NeutralLine(jnp.asarray(neutral), jnp.asarray(w0), jnp.asarray(weights))
-    travel = ToothMotion(_prepared(flank), line, jnp.asarray(1.0 - z1 / z2))
-    low = neutral + w0 + rim / 2.0 + clearance * module
+    line = NeutralLine(array(neutral), array(w0), array(weights))
     edge = tip_rounding * module
-    if groove is None:
-        low, space = _swept(travel, low, edge, module, z2)
-    else:
-        space = _given(groove, z2, module, low, travel)
-    _check_play(backlash, space, edge, z2)
-    array = jnp.asarray
-    found = _survey(travel, space, *map(array, (backlash, module, 2.0 * pi / z1)))
-    _check_contact(found, module, backlash, conjugate=groove is None)
-    held = _held(z1, found, module)
-    return StrainWave(
-        teeth=array([z1, z2], dtype=float),
-        module=array(module),
-        face_width=array(face_width),
-        flank=flank,
-        line=line,
-        groove=space,
-        rim=FlexibleRing(
+    parts = {
+        "teeth": array([z1, z2], float),
+        "module": array(module),
+        "face_width": array(face_width),
+        "flank": flank,
+        "line": line,
+        "rim": FlexibleRing(
             radius=array(neutral),
             thickness=array(rim),
             width=array(face_width),
@@ -157,18 +359,79 @@ def build_strain_wave(
             cup_length=array(module * z1 / 2.0 if cup_length is None else cup_length),
             support_stiffness=array(support_stiffness),
         ),
-        tip_height=array(low),
-        tip_rounding=array(edge),
-        backlash=array(backlash),
-        motion_of=array(motion),
-        driver_of=array(drives),
-        loaded_of=array(loaded),
-        held=array(float(held)),
-        surveyed=found,
-        conjugate=groove is None,
-        odd=z1 % 2 == 1,
-        lanes=lanes_for(held),
-    )
+        "tip_rounding": array(edge),
+        "backlash": array(backlash),
+        "motion_of": array(motion),
+        "driver_of": array(drives),
+        "loaded_of": array(loaded),
+        "conjugate": groove is None,
+        "odd": z1 % 2 == 1,
+    }
+    travel = ToothMotion(_prepared(flank), line, array(1.0 - z1 / z2))
+    low = neutral + w0 + rim / 2.0 + clearance * module
+    return _Plan(parts, travel, low, groove, (z1, z2), module, edge, backlash)
+
+
+def _built(plan: _Plan, programs: _Programs) -> _Built:
+    """The drive with its groove and its survey.
+
+    Raises:
+        InputError: it cannot run.
+    """
+    if plan.mate is None:
+        low, groove, land = _cut(plan, programs)
+    else:
+        low, groove, land = _given(plan, plan.mate)
+    _check_play(plan, land)
+    numbers = map(array, (plan.backlash, plan.module, 2.0 * pi / plan.splines[0]))
+    found, touching = programs.survey(plan.travel, groove, *numbers)
+    at = _plain(touching)
+    for fails, refuse in _faults(at, plan.module, plan.backlash, conjugate=plan.mate is None):
+        if fails:
+            refuse()
+    parts = plan.parts | {"groove": groove, "tip_height": array(low), "surveyed": found}
+    overlap = max(-float(at.least), 0.0) / plan.module
+    return _Built(parts, _held(plan.splines[0], found, plan.module), overlap)
+
+
+def _plain(at: _Contact) -> _Contact:
+    """The same as plain numbers."""
+    found = jax.device_get(at)
+    return _Contact(float(found.least), float(found.angle), bool(found.rolls))
+
+
+def _group(found: dict[int, _Built], numbers: list[int]) -> Group[StrainWave]:
+    """Drives of one structure, with places for the pairs of the widest zone."""
+    lanes = lanes_for(max(found[number].held for number in numbers))
+    each = [found[number](lanes) for number in numbers]
+    return Group(jax.tree.map(lambda *leaves: np.stack(leaves), *each), np.array(numbers))
+
+
+def _listed(given: dict[str, Any]) -> list[dict[str, Any]]:
+    """Arguments of each design.
+
+    Raises:
+        InputError: lists for different numbers of designs.
+    """
+    several = {key: value for key, value in given.items() if _is_several(key, value)}
+    check_counts({key: len(value) for key, value in several.items()})
+    count = max(map(len, several.values()), default=1)
+    return [
+        {key: _one_of(value[n]) if key in several else value for key, value in given.items()}
+        for n in range(count)
+    ]
+
+
+def _is_several(key: str, value: Any) -> bool:
+    """True for a list of values; pairs of teeth and amplitudes of a wave are tuples themselves."""
+    if isinstance(value, tuple) and key in ("teeth", "shape"):
+        return not np.isscalar(value[0])
+    return isinstance(value, list | tuple | np.ndarray | jax.Array) and np.ndim(value) > 0
+
+
+def _one_of(value: Any) -> Any:
+    """A value of a list as the builder takes it."""
+    return value.tolist() if isinstance(value, np.generic | np.ndarray | jax.Array) else value
 
 
 def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
@@ -405,32 +668,30 @@ def _prepared(flank: Flank) -> Flank:
     return flank.prepared()
 
 
-_sweep = program(swept)
-_survey = program(survey)
-_tip = program(tip_with_land)
 _given_groove = program(given)
 _lands = program(Groove.land)
 
 
-def _swept(
-    travel: ToothMotion, low: float, edge: float, module: float, z2: int
-) -> tuple[float, Groove]:
-    """Groove whose teeth between keep a tip land, and the height of their tips."""
-    space = _sweep(travel, jnp.asarray(low), jnp.asarray(edge))
-    numbers = map(jnp.asarray, (2.0 * pi / z2, LEAST_LAND * module, edge))
-    raised = float(_tip(space, *numbers))
-    if raised == low:
-        return low, space
-    if not np.isfinite(raised):
+def _cut(plan: _Plan, programs: _Programs) -> tuple[float, Groove, float]:
+    """Height of tips that keep a land, the groove whose teeth between keep it, and the land [m]."""
+    numbers = array(plan.edge), plan.mate_angle, array(LEAST_LAND * plan.module)
+    groove, raised, land = programs.sweep(plan.travel, array(plan.low), *numbers)
+    tips = float(raised)
+    if tips == plan.low:
+        return tips, groove, float(land)
+    if not np.isfinite(tips):
         raise InputError(
             "the flexspline's teeth leave nothing of the circular spline's: they are too thick or come "
             "free too late",
             key="form",
         )
-    return raised, _sweep(travel, jnp.asarray(raised), jnp.asarray(edge))
+    groove, _, land = programs.sweep(plan.travel, raised, *numbers)
+    return tips, groove, float(land)
 
 
-def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: ToothMotion) -> Groove:
+def _given(plan: _Plan, form: InvoluteForm) -> tuple[float, Groove, float]:
+    """Height of the tips, groove and land of an involute circular spline [m]."""
+    z2, module, travel = plan.splines[1], plan.module, plan.travel
     flank = _involute(form, z2, module, 0.0, 0.0)
     high = jnp.real(travel.place(travel.flank.length, jnp.zeros(())))
     root = module * (z2 / 2.0 + form.profile_shift + form.dedendum)
@@ -440,51 +701,56 @@ def _given(form: InvoluteForm, z2: int, module: float, low: float, travel: Tooth
             f"the root circle of the circular spline has {1e3 * root:.5g} mm",
             key="groove",
         )
-    tip = max(low, module * (z2 / 2.0 + form.profile_shift - form.addendum))
-    return _given_groove(flank, jnp.asarray(tip), high)
+    tip = max(plan.low, module * (z2 / 2.0 + form.profile_shift - form.addendum))
+    groove = _given_groove(flank, array(tip), high)
+    return plan.low, groove, float(_lands(groove, plan.mate_angle)[0])
 
 
-def _check_play(backlash: float, space: Groove, edge: float, z2: int) -> None:
+def _check_play(plan: _Plan, without: float) -> None:
     """Play is taken off the circular spline's teeth; something must be left of their tips."""
-    land = float(_lands(space, jnp.asarray(2.0 * pi / z2))[0]) + 2.0 * edge
-    if backlash >= land:
+    land = without + 2.0 * plan.edge
+    if plan.backlash >= land:
         raise InputError(
-            f"a play of {1e6 * backlash:.6g} um leaves nothing of the circular spline's tips, which are "
+            f"a play of {1e6 * plan.backlash:.6g} um leaves nothing of the circular spline's tips, which are "
             f"{1e6 * land:.3g} um wide without it",
             key="backlash",
         )
 
 
-def _check_contact(found: Survey, module: float, backlash: float, *, conjugate: bool) -> None:
+def _faults(at: _Contact, module: Number, backlash: Number, *, conjugate: bool) -> Faults:
     """Rigid teeth must touch, without overlap, and somewhere with a positive relative curvature."""
-    clearance = np.nan_to_num(np.asarray(found.clearance), nan=np.inf)
     where = "form" if conjugate else "groove"
-    least = int(np.argmin(clearance))
-    allowed = SWEPT_ACCURACY if conjugate else INTERFERENCE
-    if clearance[least] < -allowed * module:
-        raise InputError(
-            f"flexspline and circular spline interfere: {-1e6 * clearance[least]:.3g} um of overlap "
-            f"{np.degrees(found.angle[least]):.3g} degrees from the long axis",
-            key=where,
-        )
-    if not np.isfinite(clearance[least]):
-        raise InputError(
+
+    def refuse(text: str) -> NoReturn:
+        raise InputError(text, key=where)
+
+    yield (
+        at.least < -(SWEPT_ACCURACY if conjugate else INTERFERENCE) * module,
+        lambda: refuse(
+            f"flexspline and circular spline interfere: {-1e6 * at.least:.3g} um of overlap "
+            f"{np.degrees(at.angle):.3g} degrees from the long axis"
+        ),
+    )
+    yield (
+        at.least == inf,
+        lambda: refuse(
             "no tooth of the flexspline engages: nowhere along the wave do its teeth reach those of the "
-            "circular spline",
-            key=where,
-        )
-    beyond = clearance[least] - backlash / 2.0  # each flank has half of the play
-    if not beyond < _FARTHEST * module:
-        raise InputError(
+            "circular spline"
+        ),
+    )
+    beyond = at.least - backlash / 2.0  # each flank has half of the play
+    yield (
+        beyond >= _FARTHEST * module,
+        lambda: refuse(
             "no tooth of the flexspline engages: the least clearance is "
             f"{1e6 * beyond:.3g} um beyond the backlash, and a tenth of "
-            "the module is the most that load can close",
-            key=where,
-        )
-    near = clearance < clearance[least] + _NEAR * module
-    if not (near & np.asarray(found.rolls)).any():
-        raise InputError(
+            "the module is the most that load can close"
+        ),
+    )
+    yield (
+        at.rolls == 0,
+        lambda: refuse(
             "the relative curvature is nowhere positive where the flanks touch: the teeth meet at "
-            "edges alone",
-            key=where,
-        )
+            "edges alone"
+        ),
+    )

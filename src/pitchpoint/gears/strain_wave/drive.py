@@ -17,7 +17,7 @@ from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
-from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
+from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.groove import Groove, swept
 from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance
 from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
@@ -314,12 +314,12 @@ class StrainWave(Mesh):
         roll = (at.turning - found.mate * at.sliding) / sum_curvature
         roll = jnp.where(found.held, 0.0, roll)
         velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])
-        local = jnp.exp(-1j * at.direction) * velocity
+        local = unit(-at.direction) * velocity
         first = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
         # The space that a tooth meets lies at its angle around the circular spline.
         zone = _as_lanes(self._place[0], jnp.asarray(phase))
-        turned = jnp.exp(1j * (given * self.teeth[0] / self.teeth[1] + jnp.pi * zone))
+        turned = unit(given * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
         return Contacts(
             active=active,
             path=given / (2.0 * jnp.pi),
@@ -331,8 +331,8 @@ class StrainWave(Mesh):
             gap=jnp.maximum(found.clearance, 0.0) + play,
             flank=jnp.stack([found.along, self.groove.depth(jnp.real(at.place))]),
             point=_vector(turned * at.place),
-            direction=_vector(1j * turned * jnp.exp(1j * at.direction)),
-            tangent=_vector(turned * jnp.exp(1j * at.direction)),
+            direction=_vector(1j * turned * unit(at.direction)),
+            tangent=_vector(turned * unit(at.direction)),
             shape="line",
         )
 
@@ -448,7 +448,7 @@ class StrainWave(Mesh):
         tooth = self._outline
         angle = jnp.deg2rad(jnp.linspace(-90.0, 90.0, 37))
         foot, axis = self.tooth_motion.foot(angle)
-        placed = foot[:, None] + jnp.exp(1j * axis[:, None]) * tooth
+        placed = foot[:, None] + unit(axis[:, None]) * tooth
         width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.heights
         space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
         return {
@@ -531,7 +531,7 @@ def survey(
     angle = jnp.asarray(_ALONG)
     found = nearest_points(motion, groove, angle, backlash)
     overlaps = _overlaps(motion, groove, angle)
-    upright = jnp.abs(jnp.imag(jnp.exp(-1j * found.at.direction) * found.at.whole))
+    upright = jnp.abs(jnp.imag(unit(-found.at.direction) * found.at.whole))
     part = upright / jnp.abs(found.at.whole)
     reaches = overlaps & (part > 0.0)
     play = jnp.min(jnp.where(reaches, found.clearance / jnp.where(reaches, part, 1.0), jnp.inf))
@@ -604,18 +604,15 @@ def nearest_points(
     stations = flank.stations(*TRIES)
     last = stations.shape[0] - 1
     station = jax.lax.stop_gradient(stations)
-    local = frozen.flank.place(station).reshape(-1, *(1 for _ in where.shape))
-    stand, lean = frozen.foot(where)
-    place = stand + jnp.exp(1j * lean) * local
-    width, _ = space.width_and_slope(jnp.real(place))
-    height = jnp.real(place)
+    height, across = frozen.passed(station, where)
+    width, _ = space.width_and_slope(height)
     # Near the long axis root and tip of a tooth touch at once: the root, which is stiffer, then counts.
     bias = (_PREFERENCE * station).reshape(-1, *(1 for _ in where.shape))
-    apart = jnp.where(height < space.low, jnp.inf, width - jnp.imag(place) + bias)
-    nearest = jnp.argmin(apart, axis=0)
+    play = jnp.where(height < space.low, jnp.inf, width - across + bias)
+    nearest = jnp.argmin(play, axis=0)
     # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
-    turned = jnp.exp(1j * axis)
+    turned = unit(axis)
     before, after = (stations[k] for k in (jnp.maximum(nearest - 1, 0), nearest))
     # What lies below the tip of the mate meets nothing.
     below, above = (jnp.real(foot + turned * flank.place(along)) for along in (before, after))
@@ -630,15 +627,19 @@ def nearest_points(
         direction = axis - flank.angle(first + beyond)
         return slope * jnp.cos(direction) - jnp.sin(direction)
 
-    # At an end of the flank the play may still fall: then the end is nearest.
-    ends = jnp.where(nearest == 0, 0.0, most)
+    # At an end of the flank the play may still fall: then the end is nearest. Where the tip of the mate is
+    # nearest it grows from there on, and teeth apart have no nearest point: none waits for those.
+    grows = growth(jnp.zeros_like(most)) > 0.0
+    apart = ~_overlaps(motion, groove, angle)
+    ends = jnp.where((nearest == 0) | grows, 0.0, most)
     inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
-    bounded = ((nearest == 0) | (nearest == last)) & (inwards < 0.0)
+    bounded = (((nearest == 0) | (nearest == last)) & (inwards < 0.0)) | grows | apart
 
     def widening(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
         return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
 
-    beyond, _ = root(widening, most / 2.0, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
+    guess = jnp.where(bounded, ends, most / 2.0)
+    beyond, _ = root(widening, guess, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
     found = first + jnp.clip(beyond, 0.0, most)
     at = motion.at(found, angle)
     width, _ = groove.width_and_slope(jnp.real(at.place))

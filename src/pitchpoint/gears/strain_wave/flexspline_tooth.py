@@ -1,21 +1,33 @@
 """Flanks of flexspline teeth: double arc and involute, as curves by arc length from root to tip."""
 
 import abc
+from functools import partial
 
 import equinox as eqx
 from jaxtyping import Array, Complex, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.involute import involute
 
-__all__ = ["ArcChain", "DoubleArcFlank", "Flank", "InvoluteFlank"]
+__all__ = ["ArcChain", "DoubleArcFlank", "Flank", "InvoluteFlank", "unit"]
 
 Along = Float[Arrays, "*#b"]
 Place = Complex[Array, "*#b"]
 
 STEEPEST = 1.4
 """Flank angle at which the rounding of the tip ends [rad]: what lies beyond meets no flank."""
+
+
+def unit(angle: Along) -> Place:
+    """Place on the unit circle at an angle [rad]: exp(i angle) without the exponential of nothing."""
+    found: Place = _on_circle(jnp.asarray(angle))
+    return found
+
+
+@partial(jax.jit, inline=True)
+def _on_circle(angle: Array) -> Array:
+    return jax.lax.complex(jnp.cos(angle), jnp.sin(angle))
 
 
 class Flank(eqx.Module):
@@ -101,7 +113,7 @@ class ArcChain(Flank):
         piece, way = self._piece(along)
         half = self.curvatures[piece] * way / 2.0
         chord = way * jnp.sinc(half / jnp.pi)
-        return self.places[piece] + chord * jnp.exp(-1j * (self.angles[piece] + half))
+        return self.places[piece] + chord * unit(-(self.angles[piece] + half))
 
     def angle(self, along: Along) -> Along:
         """Flank angle [rad]."""
@@ -207,7 +219,7 @@ class DoubleArcFlank(Flank):
         tangent, edge = self.tangent_angle, self.rounding_angle
 
         def on(centre: Place, radius: Along, angle: Along) -> Place:
-            return centre + radius * 1j * jnp.exp(-1j * angle)
+            return centre + radius * 1j * unit(-angle)
 
         places = [
             on(self.concave_centre, -self.concave_radius, self.root_angle),
@@ -331,12 +343,12 @@ class InvoluteFlank(Flank):
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
         roll, angle = self._roll(along), self.angle(along)
-        turned = jnp.exp(-1j * (roll - self._half_angle))
+        turned = unit(self._half_angle - roll)
         foot = self.base_radius * turned
         # The rounding shares the normal of the involute where it begins.
         reach = jnp.where(along > self.lengths[0], self.tip_rounding, 0.0)
         involute_part = foot + (self.base_radius * roll - reach) * 1j * turned
-        return involute_part + reach * 1j * jnp.exp(-1j * angle) - self.neutral_radius
+        return involute_part + reach * 1j * unit(-angle) - self.neutral_radius
 
     def curvature(self, along: Along) -> Along:
         """Curvature, positive where the flank is convex [1/m]."""

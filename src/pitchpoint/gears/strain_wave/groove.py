@@ -11,10 +11,13 @@ from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.roots import hypot
 
-__all__ = ["Groove", "given", "swept", "tip_with_land"]
+__all__ = ["NEWTON_STEPS", "NODES", "Groove", "given", "swept", "tip_with_land"]
 
 NODES = 640
 """Heights at which the flank is known; cubic between them."""
+
+NEWTON_STEPS = 8
+"""Steps from a place on a grid to the envelope."""
 
 _PHASES = np.deg2rad(
     np.concatenate(
@@ -22,7 +25,6 @@ _PHASES = np.deg2rad(
     )
 )
 _STATIONS = (120, 40)
-_STEPS = 8
 _CURVATURES = (-1e6, 1e6)  # 1/m: sharper than any edge that is made
 _FLATTEST = 1e-2  # 1/m
 _APART = np.deg2rad(1.0)
@@ -30,6 +32,8 @@ _JUMP = 0.1  # relative change of the curvature between neighbours
 _KINK = 3e-3  # rad between neighbours that no smooth flank turns
 _STRIDE = 0.02  # rad: the longest step of an iteration
 _END = 1e-3  # of the length of the flank: nearer to its end a place counts as the end
+
+_FROM_TOP = np.stack([np.ones(NODES), np.linspace(1.0, 0.0, NODES) ** 2])
 
 Each = Float[Array, "*b"]
 
@@ -127,7 +131,8 @@ class Groove(eqx.Module):
 
 
 def _heights(low: Float[Array, ""], high: Float[Array, ""]) -> Float[Array, " node"]:
-    return high - (high - low) * jnp.linspace(1.0, 0.0, NODES) ** 2
+    # As a product the compiler works them out once, and not wherever one is looked up.
+    return jnp.stack([high, low - high]) @ _FROM_TOP
 
 
 def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -> Groove:
@@ -215,20 +220,63 @@ def _outermost(motion: ToothMotion, heights: Array) -> tuple[Array, Array]:
     frozen, targets = jax.lax.stop_gradient((motion, heights))
     stations = frozen.flank.stations(*_STATIONS)
     phases = jnp.asarray(_PHASES)
-    places = frozen.place(stations[None, :], phases[:, None])
-
-    def reach(at: Array) -> tuple[Array, Array]:
-        height, far = jnp.real(at), jnp.imag(at)
-        found = jnp.interp(targets, height, far, left=-jnp.inf, right=-jnp.inf)
-        return found, jnp.interp(targets, height, stations)
-
-    far, along = jax.vmap(reach)(places)
+    known, across = (part.T for part in frozen.passed(stations, phases))
+    after = _stations_below(known, targets)
+    far = _interpolated(targets, known, across, after)
+    far = jnp.where((targets < known[:, :1]) | (targets > known[:, -1:]), -jnp.inf, far)
     beside = jnp.pad(far, ((1, 1), (0, 0)), constant_values=-jnp.inf)
     peaks = jnp.where((far >= beside[2:]) & (far >= beside[:-2]), far, -jnp.inf)
-    first = jnp.argmax(peaks, axis=0)
+    first = _largest(peaks)
     others = jnp.where(jnp.abs(phases[:, None] - phases[first]) < _APART, -jnp.inf, peaks)
-    best = jnp.stack([first, jnp.argmax(others, axis=0)])
-    return jnp.take_along_axis(along, best, 0), phases[best]
+    best = jnp.stack([first, _largest(others)])
+    at = jnp.take_along_axis(after, best, 0)
+    low, high = known[best, at - 1], known[best, at]
+    part = jnp.clip((targets - low) / (high - low), 0.0, 1.0)
+    return stations[at - 1] + part * (stations[at] - stations[at - 1]), phases[best]
+
+
+def _largest(values: Float[Array, "phase node"]) -> Int[Array, " node"]:
+    """First phase with the largest value; `jnp.argmax` takes twice as long."""
+    count = values.shape[0]
+    place = jnp.arange(count, dtype=jnp.int32)[:, None]
+    found = jnp.min(jnp.where(values == jnp.max(values, axis=0), place, count), axis=0)
+    return jnp.minimum(found, count - 1)
+
+
+def _stations_below(
+    known: Float[Array, "phase station"], targets: Float[Array, " node"]
+) -> Int[Array, "phase node"]:
+    """Number of stations that do not lie above each target, from one to all but one.
+
+    Both ascend. The targets are nodes of a groove, so the first one at or above a station follows from
+    its height up to rounding; a search for each target would take as long as all else.
+    """
+    count, low, high = targets.shape[0], targets[0], targets[-1]
+    from_top = jnp.clip((high - known) / (high - low), 0.0, 1.0)
+    first = jnp.ceil((1.0 - jnp.sqrt(from_top)) * (count - 1)).astype(jnp.int32)
+    first = jnp.where(targets[first] < known, first + 1, first)
+    lower = targets[jnp.maximum(first - 1, 0)]
+    first = jnp.where((first > 0) & (lower >= known), first - 1, first)
+    rows = jnp.arange(known.shape[0], dtype=jnp.int32)[:, None]
+    passed = jnp.zeros((known.shape[0], count), jnp.int32).at[rows, first].add(1, mode="drop")
+    return jnp.clip(jnp.cumsum(passed, axis=1), 1, known.shape[1] - 1)
+
+
+def _interpolated(
+    targets: Float[Array, " node"],
+    known: Float[Array, "phase station"],
+    values: Float[Array, "phase station"],
+    after: Int[Array, "phase node"],
+) -> Float[Array, "phase node"]:
+    """Values at targets between the stations before and after each."""
+
+    def take(of: Array, at: Array) -> Array:
+        return jnp.take_along_axis(of, at, 1)
+
+    low, first = take(known, after - 1), take(values, after - 1)
+    step = take(known, after) - low
+    rise = take(values, after) - first
+    return first + (targets - low) / jnp.where(step == 0.0, 1.0, step) * rise
 
 
 def _farther(smooth: Array, width: Array, *others: Array) -> tuple[Array, ...]:
@@ -280,7 +328,7 @@ def _enveloping(
         s = at[0] - jnp.clip(by_s, -length / 50.0, length / 50.0)
         return jnp.clip(s, 0.0, length), at[1] - jnp.clip(by_p, -_STRIDE, _STRIDE)
 
-    s, p = jax.lax.fori_loop(0, _STEPS, bounded, (along, angle))
+    s, p = jax.lax.fori_loop(0, NEWTON_STEPS, bounded, (along, angle))
     found = frozen.at(s, p)
     close = (jnp.abs(p - angle) < 0.05) & (jnp.abs(s - along) < length / 20.0)
     solved = (jnp.abs(jnp.real(found.place) - targets) < 1e-9 * length) & (

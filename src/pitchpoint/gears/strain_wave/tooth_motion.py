@@ -5,7 +5,7 @@ from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.strain_wave.flexspline_tooth import Flank
+from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 
 __all__ = ["Passing", "ToothMotion"]
@@ -40,7 +40,7 @@ class Passing(eqx.Module):
     @property
     def _velocity(self) -> Place:
         """Velocity along the tangent (real part) and the normal (imaginary part)."""
-        return jnp.exp(-1j * self.direction) * self.velocity
+        return unit(-self.direction) * self.velocity
 
     @property
     def closing(self) -> Each:
@@ -55,10 +55,7 @@ class Passing(eqx.Module):
     @property
     def change(self) -> Each:
         """Derivative of `closing` with respect to the phase."""
-        return (
-            jnp.imag(jnp.exp(-1j * self.direction) * self.acceleration)
-            - self.turning * self.sliding
-        )
+        return jnp.imag(unit(-self.direction) * self.acceleration) - self.turning * self.sliding
 
     @property
     def approach(self) -> Each:
@@ -105,12 +102,30 @@ class ToothMotion(eqx.Module):
         line = self.line
         polar = self.lag * angle + line.tangential(angle) / line.radius
         reach = line.radius + line.radial(angle)
-        return reach * jnp.exp(1j * polar), polar + line.rotation(angle)
+        return reach * unit(polar), polar + line.rotation(angle)
 
     def place(self, along: Each, angle: Each) -> Place:
         """Where a point of the flank is [m]."""
         foot, axis = self.foot(angle)
-        return foot + jnp.exp(1j * axis) * self.flank.place(along)
+        return foot + unit(axis) * self.flank.place(along)
+
+    def passed(
+        self, stations: Float[Array, " station"], angle: Float[Array, "*b"]
+    ) -> tuple[Float[Array, "station *b"], Float[Array, "station *b"]]:
+        """Heights of all stations of a flank and their distances from the middle of the space [m].
+
+        As products of matrices: what is looked up by these heights works them out once, not for each look.
+
+        Args:
+            stations: arc lengths on the flank from its root [m].
+            angle: p [rad].
+        """
+        foot, axis = self.foot(angle)
+        local = self.flank.place(stations)
+        parts = jnp.stack([jnp.ones_like(stations), jnp.real(local), jnp.imag(local)], axis=1)
+        cosine, sine = jnp.cos(axis), jnp.sin(axis)
+        height = jnp.tensordot(parts, jnp.stack([jnp.real(foot), cosine, -sine]), 1)
+        return height, jnp.tensordot(parts, jnp.stack([jnp.imag(foot), sine, cosine]), 1)
 
     def at(self, along: Each, angle: Each) -> Passing:
         """Place and motion of a point of the flank.
@@ -126,7 +141,7 @@ class ToothMotion(eqx.Module):
         rise, rise_2 = line.radial(angle, 1), line.radial(angle, 2)
         foot, axis = self.foot(angle)
         outwards = foot / reach
-        arm = jnp.exp(1j * axis) * flank.place(along)
+        arm = unit(axis) * flank.place(along)
         polar, turning = self.lag + turn, self.lag + turn + tilt
         place = foot + arm
         bend = rise_2 + 2j * rise * polar + 1j * reach * turn_2 - reach * polar**2

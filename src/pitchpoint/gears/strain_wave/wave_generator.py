@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Complex, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.registry import Registry
 
@@ -45,12 +46,19 @@ class NeutralLine(eqx.Module):
 
     def _series(self, angle: Float[Arrays, "*b"], order: int) -> Float[Array, "*b"]:
         """Derivative of the radial displacement; its integral for order -1."""
-        angle = jnp.asarray(angle)
-        count = self.weights.shape[0]
-        harmonics = 2.0 * jnp.arange(1.0, count + 1.0)
-        turned = harmonics.reshape(count, *(1 for _ in angle.shape)) * angle
-        wave = (jnp.cos, lambda x: -jnp.sin(x), lambda x: -jnp.cos(x), jnp.sin)[order % 4]
+        harmonics = 2.0 * jnp.arange(1.0, self.weights.shape[0] + 1.0)
+        turned = _powers(jnp.asarray(angle), self.weights.shape[0])
+        wave = (jnp.real, lambda z: -jnp.imag(z), lambda z: -jnp.real(z), jnp.imag)[order % 4]
         return self.deflection * jnp.tensordot(self.weights * harmonics**order, wave(turned), 1)
+
+
+@partial(jax.jit, static_argnums=1, inline=True)
+def _powers(angle: Float[Array, "*b"], count: int) -> Complex[Array, "term *b"]:
+    """Powers of exp(2ip): sines of all harmonics for the price of one."""
+    known = jax.lax.complex(jnp.cos(2.0 * angle), jnp.sin(2.0 * angle))[None]
+    while known.shape[0] < count:
+        known = jnp.concatenate([known, known * known[-1]])
+    return known[:count]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,320 @@
+"""Cylindrical pairs from what an engineer knows of them, one at a time or many in one call."""
+
+import dataclasses
+from collections.abc import Callable, Iterator
+from functools import partial
+from inspect import signature
+from typing import Any
+
+import numpy as np
+from jaxtyping import Array
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, lanes_for
+from pitchpoint.gears.cylindrical.checks import cannot_run, check_cylindrical
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.designs import Designs, Group, alike, check_counts, each, padded, rows
+from pitchpoint.programs import program
+from pitchpoint.status import Code, Status
+
+__all__ = [
+    "build_cylindrical_pair",
+    "build_cylindrical_pairs",
+    "designed",
+]
+
+RIM_RATIO = 1.0 / 0.3
+"""Root radius over bore radius where no bore is given."""
+
+RING_RIM_RATIO = 1.2
+"""Outer over root radius of a ring where it is not given."""
+
+_OF_BOTH = (
+    "teeth",
+    "profile_shift",
+    "addendum",
+    "dedendum",
+    "fillet_radius",
+    "tip_alteration",
+    "rim_ratio",
+)
+Values = dict[str, Any]
+Grown = tuple[CylindricalPair, Array | np.ndarray, np.ndarray]
+
+
+def build_cylindrical_pair(
+    *,
+    teeth: tuple[int, int],
+    module: float,
+    pressure_angle: float,
+    face_width: float,
+    helix_angle: float = 0.0,
+    profile_shift: tuple[float, float] = (0.0, 0.0),
+    addendum: tuple[float, float] = (1.0, 1.0),
+    dedendum: tuple[float, float] | None = None,
+    fillet_radius: tuple[float, float] = (0.38, 0.38),
+    tip_alteration: tuple[float, float] | None = None,
+    least_tip: float = 0.0,
+    centre_distance: float | None = None,
+    rim_ratio: tuple[float, float] | None = None,
+    driver: int = 1,
+    right_flank: bool = False,
+    slices: int = SLICES,
+) -> CylindricalPair:
+    """Pair from what an engineer knows; the rest by ISO 21771.
+
+    Args:
+        teeth: z1, z2; z2 negative for a ring with internal teeth.
+        module: normal module [m].
+        face_width, centre_distance: [m]; without backlash if no centre distance is given.
+        pressure_angle, helix_angle: of the basic rack and of the reference cylinders [rad].
+        profile_shift: x1, x2.
+        addendum, dedendum, fillet_radius: of the basic racks in modules; dedendum defaults to
+            addendum + 0.25.
+        tip_alteration: k1, k2; keeps the rack's tip clearance by default.
+        least_tip: thickness in the normal section, in modules, to which tips that would be thinner
+            are shortened; for tip alterations that are not given.
+        rim_ratio: root radius over bore radius of each gear; outer over root radius of a ring.
+        driver: 1 or 2, the gear that drives.
+        right_flank: True if the right flanks of both gears touch.
+        slices: of each contact line, for helical gears; even, or one for its middle alone.
+
+    Raises:
+        InputError: the flanks cannot meet at all; `check_cylindrical` says what else is wrong.
+
+    Example:
+        >>> from math import radians
+        >>> pair = build_cylindrical_pair(
+        ...     teeth=(18, 36), module=3e-3, pressure_angle=radians(20.0), face_width=0.02
+        ... )
+        >>> round(float(pair.centre_distance), 6)
+        0.081
+    """
+    given = dict(locals())
+    helical, internal = bool(helix_angle != 0.0), bool(teeth[1] < 0)
+    ((pair, found, _),) = _grown(_opened(given, helical, internal), axes=0)
+    ratio = float(found)
+    if not _in_reach(ratio):
+        check_cylindrical(pair)  # says why, in gear words
+    return dataclasses.replace(pair, lanes=lanes_for(ratio, helical=helical))
+
+
+def build_cylindrical_pairs(**values: Any) -> Designs[CylindricalPair]:
+    """Many pairs in one call, each as `build_cylindrical_pair` builds it.
+
+    Args:
+        values: the arguments of `build_cylindrical_pair`, each as there, common to all designs, or an
+            array with an axis of designs before its own. `slices` is common to all.
+
+    Returns:
+        Pairs in groups that are spur or helical, external or internal, undercut or not, shortened or not
+        on each gear; a group holds as many pairs of teeth as its largest contact ratio asks for. The status
+        of each design says whether it can run, `Designs.check` why not.
+
+    Raises:
+        InputError: arrays for different numbers of designs.
+
+    Example:
+        >>> import numpy as np
+        >>> shifts = np.stack([np.linspace(0.0, 0.5, 6), np.zeros(6)], axis=1)
+        >>> designs = build_cylindrical_pairs(
+        ...     teeth=(18, 36),
+        ...     module=3e-3,
+        ...     pressure_angle=np.radians(20.0),
+        ...     face_width=0.02,
+        ...     profile_shift=shifts,
+        ... )
+        >>> bool(designs.good.all())
+        True
+        >>> [round(1e3 * float(pair.centre_distance), 2) for pair in designs][:3]
+        [81.0, 81.3, 81.58]
+    """
+    given = signature(build_cylindrical_pair).bind(**values)
+    given.apply_defaults()
+    slices = given.arguments.pop("slices")
+    table = _table(given.arguments)
+    flags = np.stack([table["helix_angle"] != 0.0, table["teeth"][:, 1] < 0], axis=1)
+    groups = [
+        Group(_with_lanes(pair, ratio), numbers[which])
+        for kind, numbers in alike(flags)
+        for pair, ratio, which in _grown(
+            _opened(_of(table, numbers) | {"slices": slices}, *kind), axes=1
+        )
+    ]
+    order = np.argsort(np.concatenate([group.numbers for group in groups]))
+    each_status = [_over(_judged, _plain(group.mesh), axes=1) for group in groups]
+    status: Status = jax.tree.map(lambda *parts: np.concatenate(parts)[order], *each_status)
+    return Designs(tuple(groups), status, check_cylindrical)
+
+
+def designed(pair: CylindricalPair) -> tuple[CylindricalPair, Status]:
+    """The pair with all that follows from its dimensions, and whether it can run.
+
+    A pure function that can be traced, vectorised and differentiated: `jax.vmap` makes it that of a batch.
+
+    Args:
+        pair: with its dimensions and its static structure, as `build_cylindrical_pairs` finds it.
+
+    Returns:
+        The pair, and the status: no number of it comes from an iteration that may fail, so a code alone.
+    """
+    pair = pair.completed()
+    pair = _crossed(pair) if any(pair.undercut) else pair
+    code = jnp.where(cannot_run(pair), int(Code.NO_DESIGN), int(Code.SOLVED))
+    return pair, Status(code, jnp.zeros(()), jnp.asarray(0))
+
+
+def _table(given: Values) -> Values:
+    """Arguments with an axis of designs before their own; those that are not given stay None.
+
+    Raises:
+        InputError: arrays for different numbers of designs.
+    """
+    table: Values = {
+        key: None if value is None else np.asarray(value) for key, value in given.items()
+    }
+    own = {key: (2,) if key in _OF_BOTH else () for key in table}
+    of_designs = {key for key, value in table.items() if np.ndim(value) > len(own[key])}
+    counts = {key: np.shape(table[key])[0] for key in of_designs}
+    check_counts(counts)
+    count = max(counts.values(), default=1)
+    return {
+        key: None if value is None else np.broadcast_to(value, (count, *own[key]))
+        for key, value in table.items()
+    }
+
+
+def _of(table: Values, numbers: np.ndarray) -> Values:
+    """Arguments of some designs."""
+    return {key: None if value is None else value[numbers] for key, value in table.items()}
+
+
+def _opened(given: Values, helical: bool, internal: bool) -> CylindricalPair:
+    """Pairs with what is given of them; what follows is still open.
+
+    Args:
+        given: arguments of `build_cylindrical_pair`, all with the same leading axes.
+        helical, internal: common to them.
+    """
+    values = {key: value for key, value in given.items() if value is not None}
+    slices = values.pop("slices")
+    of_both = np.asarray(values["addendum"], dtype=float)
+    angle = np.asarray(values["pressure_angle"], dtype=float)
+    rims = RIM_RATIO, RING_RIM_RATIO if internal else RIM_RATIO
+    usual: Values = {
+        "dedendum": of_both + 0.25,
+        "tip_alteration": np.zeros_like(of_both),
+        "centre_distance": np.zeros_like(angle),
+        "rim_ratio": np.broadcast_to(rims, of_both.shape),
+        "crossing": np.stack([angle, angle], axis=-1),
+    }
+    flags = {
+        "wheel_drives": np.asarray(values.pop("driver")) == 2,
+        "right_flank": np.asarray(values.pop("right_flank"), dtype=bool),
+    }
+    static: dict[str, Any] = {
+        "follows": (given["centre_distance"] is None, given["tip_alteration"] is None),
+        "shortened": (False, False),
+        "undercut": (False, False),
+        "helical": helical,
+        "internal": internal,
+        "lanes": 2,
+        "slices": slices if helical else 1,
+    }
+    numbers: Values = {key: array(value, jnp.float64) for key, value in (usual | values).items()}
+    arrays = numbers | {key: array(value) for key, value in flags.items()}
+
+    def one(parts: Values) -> CylindricalPair:
+        return CylindricalPair(**parts, **static)
+
+    return each(one, arrays, angle.ndim)
+
+
+def _grown(pair: CylindricalPair, axes: int) -> Iterator[Grown]:
+    """Pairs with all that follows, by what is undercut or shortened, contact ratios, and which ones they are.
+
+    Args:
+        pair: still open, with so many leading axes, none or one.
+        axes: their number.
+    """
+    pair, ratio, limit, thickness = _over(_complete, pair, axes)
+    undercut = np.asarray(pair.profile_shift) < np.asarray(limit)
+    undercut &= (True, not pair.internal)
+    least = np.asarray(pair.least_tip)[..., None] if pair.follows[1] else 0.0
+    short = (least > 0.0) & (np.asarray(thickness) < least)
+    flags = np.concatenate([undercut, short], axis=-1).reshape(-1, 4)
+    for (first, second, *shortened), which in alike(flags):
+        part, found = (rows((pair, ratio), which)) if axes else (pair, ratio)
+        if first or second:
+            cut = _replaced(part, axes, undercut=(first, second))
+            part, found = _over(_with_crossings, cut, axes)
+        if any(shortened):
+            shorter = _replaced(part, axes, shortened=tuple(shortened))
+            part, found, _, _ = _over(_complete, shorter, axes)
+        yield part, found, which
+
+
+def _replaced(pair: CylindricalPair, axes: int, **static: Any) -> CylindricalPair:
+    replaced: Callable[[CylindricalPair], CylindricalPair] = partial(dataclasses.replace, **static)
+    return each(replaced, pair, axes)
+
+
+def _plain(pair: CylindricalPair) -> CylindricalPair:
+    """A batch without what is of no account to its dimensions: few programs."""
+    return _replaced(pair, 1, lanes=2, slices=1)
+
+
+def _with_lanes(pair: CylindricalPair, ratio: Array | np.ndarray) -> CylindricalPair:
+    """A batch with places for the pairs of its largest contact ratio."""
+    known = [value for value in np.asarray(ratio).tolist() if _in_reach(value)]
+    return _replaced(pair, 1, lanes=lanes_for(max(known, default=1.0), helical=pair.helical))
+
+
+def _in_reach(ratio: float) -> bool:
+    return 0.0 < ratio < LARGEST_CONTACT_RATIO
+
+
+def _over(compute: Callable[[CylindricalPair], Any], pair: CylindricalPair, axes: int) -> Any:
+    """Results of a program for one pair or for a batch."""
+    if not axes:
+        return compute(pair)
+    count = len(pair.module)
+    return rows(compute(padded(pair, count)), slice(count))
+
+
+@program
+def _complete(
+    pair: CylindricalPair,
+) -> tuple[CylindricalPair, Array, Array, Array]:
+    """Pair with the dimensions that follow, contact ratio, undercut limits, tip thicknesses in modules."""
+
+    def alone(one: CylindricalPair) -> tuple[CylindricalPair, Array, Array, Array]:
+        one = one.completed()
+        return (
+            one,
+            one.contact_ratio,
+            jnp.stack([gear.undercut_limit for gear in one.gears]),
+            jnp.stack([gear.tip_thickness for gear in one.gears]) / one.module,
+        )
+
+    return each(alone, pair, pair.module.ndim)
+
+
+@program
+def _with_crossings(pair: CylindricalPair) -> tuple[CylindricalPair, Array]:
+    def alone(one: CylindricalPair) -> tuple[CylindricalPair, Array]:
+        one = _crossed(one)
+        return one, one.contact_ratio
+
+    return each(alone, pair, pair.module.ndim)
+
+
+@program
+def _judged(pair: CylindricalPair) -> Status:
+    return each(lambda one: designed(one)[1], pair, pair.module.ndim)
+
+
+def _crossed(pair: CylindricalPair) -> CylindricalPair:
+    """The pair with the places where undercuts cross its flanks."""
+    found = [gear.crossing_angle() if gear.undercut else gear.crossing for gear in pair.gears]
+    return dataclasses.replace(pair, crossing=jnp.stack(found))
