@@ -131,14 +131,22 @@ def test_a_tooth_of_the_rack_yields_as_that_of_a_wheel_with_very_many():
         np.testing.assert_allclose(own[2][0, at], wheel[2][0, at], rtol=2e-3)
 
 
+@program
+def starts(mesh):
+    """Place of A on the line of action, of the form circle, and of the tips of the rack [m]."""
+    line = mesh.line
+    tips = line.at_depth(mesh.distance - mesh.rack.tip)
+    return line.limits[0], mesh.pinion.form_roll_length, tips
+
+
 def test_an_undercut_pinion_loses_the_path_below_its_form_circle():
     mesh, told = built(teeth=12)
     whole = rack(teeth=12, profile_shift=0.4)
     assert any("undercut" in sentence for sentence in told)
     assert mesh.pinion.undercut and not whole.pinion.undercut
-    line = mesh.line
-    assert float(line.limits[0]) == pytest.approx(float(mesh.pinion.form_roll_length), rel=1e-12)
-    assert float(line.limits[0]) > float(line.at_depth(mesh.distance - mesh.rack.tip))
+    start, form, tips = map(float, starts(mesh))
+    assert start == pytest.approx(form, rel=1e-12)
+    assert start > tips
 
 
 BAD = {
