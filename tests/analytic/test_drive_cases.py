@@ -7,8 +7,9 @@ import equinox as eqx
 import numpy as np
 import pytest
 
+from pitchpoint._jax import jnp
 from pitchpoint.analyses.loss_map import LOSS_MAP
-from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
+from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.torsion import TORSION
 from pitchpoint.cases.stages import BuiltDrive
 from pitchpoint.cases.variant import Variant
@@ -68,6 +69,10 @@ def figure(data, name):
     return float(data[name].values[0, 0])
 
 
+def stages(*gears):
+    return "".join(f"[[stages]]\n[stages.gears]\n{one}" for one in gears)
+
+
 def test_the_second_stage_turns_the_other_way_and_so_presses_its_right_flanks():
     case = two()
     assert [one.case.gears.flank for one in case.stages] == ["left", "right"]
@@ -125,6 +130,9 @@ def test_one_stage_is_the_plain_case():
     case = built(f"[[stages]]\n[stages.gears]\n{FIRST}{COMMON}")
     plain = alone(FIRST)
     assert isinstance(case, BuiltDrive)
+    assert (case.driver, case.loaded) == ("shaft 1", "shaft 2")
+    back = case.backwards
+    assert (back.driver, back.loaded) == ("shaft 2", "shaft 1")
     found, beside = part(OPERATION, case), part(OPERATION, plain)
     shared = [name for name in found if name in beside]
     assert {"mean_efficiency", "torque_ripple", "min_efficiency", "mean_friction"} <= {*shared}
@@ -159,6 +167,54 @@ def test_the_drive_backwards_locks_before_it_does_forwards():
     assert not locked[0.999]["locked"].values.any()
     assert locked[1.001]["locked"].values.all()
     assert np.isnan(figure(locked[1.001], "mean_efficiency"))
+
+
+RACK = "family = 'rack_and_pinion'\nteeth = 20\nmodule = '3 mm'\nface_width = '29 mm'\n"
+
+
+def test_figures_of_a_drive_that_a_rack_drives_have_one_unit_each():
+    case = built(stages(FIRST, RACK) + COMMON.replace('torque = "300 N m"', 'force = "3000 N"'))
+    assert (case.driver, case.loaded) == ("shaft 1", "shaft 3")
+    data = part(BACK_DRIVING, case)
+    assert data["mean_input_torque"].attrs["units"] == "N"
+    of_drivers = {"stage_input_torque", "stage_speed"}
+    assert of_drivers <= {*operation()}
+    assert not of_drivers & {*data}
+    assert float(data["stage_loss"].sum()) == pytest.approx(figure(data, "mean_loss"), rel=1e-12)
+
+
+def test_a_loss_map_stays_in_the_range_of_all_oils():
+    hot = {"loss_map.temperatures": ["60 degC", "300 degC"]}
+    with pytest.raises(InputError, match=r"loss_map.temperatures: 300 degC is outside the range"):
+        built(TWO, **hot)
+
+
+def test_no_other_friction_law_is_tried_where_all_stages_have_their_own():
+    own = {"name": "constant", "coefficient": 0.05}
+    first = {"stages.1.models.friction": own}
+    assert LAWS_THERE.why_not(built(TWO, **first)) is None
+    told = LAWS_THERE.why_not(built(TWO, **first, **{"stages.2.models.friction": own}))
+    assert told.startswith("every stage has a friction law of its own")
+    assert LAWS_THERE.shown({})["friction_laws"] == {}
+
+
+HELICAL = f"{FIRST}helix_angle = '15 deg'\n"
+
+
+@pytest.mark.parametrize("member", [0, 1])
+def test_axial_forces_on_a_shaft_counteract_but_for_those_of_two_gears_of_one_number(member):
+    driver = {"stages.2.driver": f"gear {member + 1}"}
+    case = built(stages(HELICAL, HELICAL) + COMMON, **driver)
+    told = [text for text in case.told if "axial forces" in text]
+    thrusts = [thrust(case.stages[0], 1), thrust(case.stages[1], member)]
+    assert bool(told) == (thrusts[0] * thrusts[1] > 0.0) == (member == 1)
+    assert not [text for text in told if not text.startswith("On shaft 2 the helical gear 2s of")]
+
+
+def thrust(one, member):
+    """Axial component of the normals that press on a member of a stage."""
+    contacts = one.design.mesh.contacts(jnp.zeros(1))
+    return (-1.0, 1.0)[member] * float(np.sum(contacts.direction[2] * contacts.active))
 
 
 def test_stiffness_at_the_output_is_that_of_springs_in_series():

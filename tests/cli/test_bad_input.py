@@ -602,6 +602,15 @@ def bad_stages() -> Iterator[Bad]:
         ("none", ("stages",), [], ("no stage was given", "[[stages]]"), "stages: "),
         ("six", ("stages",), [{}] * 6, ("6 were given; allowed are at most 5",), "stages: "),
         ("a gap", ("stages",), {"1": {}, "3": {}}, ("there is no stage 2",), "stages: "),
+        ("nought", ("stages", "0"), {}, ('no stage "0"; use stages.1 to stages.2',), "stages: "),
+        ("no number", ("stages", "x"), {}, ('no stage "x"; use stages.1 to stages.2',), "stages: "),
+        (
+            "path of one pair",
+            ("stages", "2", "models"),
+            {"averaging": "path"},
+            ("the path of one pair does not stand for several meshes",),
+            "stages.2.models.averaging",
+        ),
         ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
         ("dynamics", ("dynamics",), {}, ("computed for one mesh",), "dynamics: "),
         (

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from pitchpoint import cli
+from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError
 from pitchpoint.results.store import load
 from pitchpoint.runs.run import describe
 
@@ -153,3 +155,35 @@ def test_show_tells_where_values_of_a_stage_come_from(tmp_path: Path) -> None:
     (manifest,) = describe(str(path))
     (row,) = (one for one in manifest["inputs"] if one["key"] == "1.gears.module")
     assert (row["status"], row["where"], row["value"]) == ("printed", "Table 1", 0.002)
+
+
+ONE = """
+[[stages]]
+gears = { teeth = [23, 61], module = "2 mm", face_width = "18 mm" }
+""" + TWO.partition('place = "40 mm"')[2].partition("[losses.seal]")[0]
+BEARING = """
+[losses.seat]
+between = ["shaft 2", "housing"]
+bearing = "palmgren_1959"
+mean_diameter = "46 mm"
+f0 = 2.0
+f1 = 0.001
+"""
+
+
+def test_a_drive_of_one_stage_names_its_shafts_and_bearings(tmp_path: Path) -> None:
+    path = tmp_path / "one.toml"
+    path.write_text(ONE + BEARING)
+    (manifest,) = describe(str(path))
+    assert (manifest["driver"], manifest["loaded"]) == ("shaft 1", "shaft 2")
+    assert [one["effect"] for one in manifest["models"]].count("bearing seat") == 1
+    assert "palmgren_1959" in {one["key"] for one in manifest["sources"]}
+
+
+def test_a_sweep_of_stages_names_one_of_them(tmp_path: Path) -> None:
+    path = tmp_path / "two.toml"
+    path.write_text(TWO)
+    for key in ("stages.gears.module", "stages.0.gears.module"):
+        wrong = {"swept": Study(sweep=Sweep(key=key, values=("2 mm",)))}
+        with pytest.raises(InputError, match=r"there is no stage .*; use stages.1 to stages.2"):
+            describe(str(path), studies=wrong)

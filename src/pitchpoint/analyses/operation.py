@@ -19,7 +19,7 @@ from pitchpoint.analyses.figures import (
 )
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import Ready
+from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.results.store import without_nan
 
 __all__ = [
@@ -60,6 +60,13 @@ def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     return data.isel(law=kept).assign_attrs(outside=json.dumps(without_nan(outside)))
 
 
+def _untried(built: Ready) -> str | None:
+    """Why no other friction law is tried."""
+    if isinstance(built, BuiltDrive) and all(built.own_friction):
+        return "every stage has a friction law of its own, in whose place no other is tried"
+    return None
+
+
 def _why_outside(built: Ready, under: Sequence[Any]) -> list[list[str]]:
     """Why each of some laws does not hold; in a drive the stages where it acts, with their numbers."""
     if isinstance(built, Built):
@@ -81,7 +88,9 @@ def _back_driving(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
 
 
 def _law_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    laws = parts["laws"]
+    laws = parts.get("laws")
+    if laws is None:
+        return {"friction_laws": {}, "friction_laws_out_of_range": []}
     return {
         "friction_laws": by_law(laws, ("mean_efficiency",)),
         "friction_laws_out_of_range": out_of_range(laws),
@@ -109,7 +118,12 @@ OPERATION = Analysis(
     figures=of_operation,
 )
 LAWS_THERE = Analysis(
-    name="laws", title="spread of the friction laws", alone="", compute=_laws, figures=_law_figures
+    name="laws",
+    title="spread of the friction laws",
+    alone="",
+    lacks=_untried,
+    compute=_laws,
+    figures=_law_figures,
 )
 BACK_DRIVING = Analysis(
     name="back_driving",

@@ -41,6 +41,9 @@ Point = TypeVar("Point", bound=Ready)
 AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "sliding_velocity")
 """Figures of a test rig, whose contact stays as it is."""
 
+OF_STAGE_DRIVERS = ("stage_input_torque", "stage_speed")
+"""Figures of the drivers of stages, which have one unit only where all of these turn."""
+
 _SHOWN = 3
 
 _WITH_FRICTION = {"largest_contact_force_ratio"} | {
@@ -79,6 +82,7 @@ def summaries(
 ) -> xr.Dataset:
     """Figures of points under several laws; among several, or with `may_lock`, locked ones are NaN."""
     names = [models.law.name for models in under]
+    travels = points[0].travels
     runs = [_grouped(points, models, progress) for models in under]
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
     carrying, slices = (out.pop(name, None) for name in ("carrying_slices", "slices"))
@@ -94,6 +98,8 @@ def summaries(
         for name in ("mean_loss", "mean_efficiency", "mean_input_torque"):
             out[name] = out[f"{name}_path"]
     out = {name: values for name, values in out.items() if not name.endswith("_path")}
+    if "driver" in travels:
+        out = {name: values for name, values in out.items() if name not in OF_STAGE_DRIVERS}
     out["efficiency_fluctuation"] = difference(out["max_efficiency"], out["min_efficiency"])
     out["torque_ripple"] = difference(out["max_input_torque"], out["min_input_torque"])
     if not _touching(points[0]):
@@ -118,7 +124,7 @@ def summaries(
         title=title,
         warnings=warnings,
         solve=_balances(out),
-        travels=points[0].travels,
+        travels=travels,
     )
     data["mean_efficiency"].attrs.update(points[0].covers)
     if not points[0].transmits:

@@ -1,6 +1,7 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import count
 from math import inf, pi
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
@@ -669,12 +670,20 @@ def _stages(value: Any) -> Any:
     if not given:
         told = "no stage was given" if value in ([], {}) else f"{shown(value)} was given"
         raise InputError(f"{told}; write a table [[stages]] for each mesh, input first")
+    numbers = {str(number) for number in range(1, len(given) + 1)}
+    if strange := [key for key in given if key not in numbers]:
+        raise _no_stage(strange[0], given)
     if len(given) > MOST_STAGES:
         raise InputError(_too_many(len(given), MOST_STAGES))
-    for number in range(1, len(given) + 1):
-        if str(number) not in given:
-            raise InputError(f"there is no stage {number} before {shown(max(given))}")
     return dict(sorted(given.items()))
+
+
+def _no_stage(key: str, given: Mapping[str, Any]) -> InputError:
+    """What is wrong with the number of a stage."""
+    last = next(number for number in count() if str(number + 1) not in given)
+    allowed = f"stages.1 to stages.{last}" if last > 1 else "stages.1"
+    before = f"{last + 1} before " if key.isdecimal() and not key.startswith("0") else ""
+    return InputError(f"there is no stage {before}{shown(key)}; use {allowed}")
 
 
 class DriveCase(Table):
@@ -721,11 +730,13 @@ class DriveCase(Table):
                 'driver = "gear 2" under [[stages]]',
                 key="operation.driver",
             )
-        if self.models.averaging != "base_pitch":
-            raise InputError(
-                "the path of one pair does not stand for several meshes; leave it out",
-                key="models.averaging",
-            )
+        tables = {f"stages.{number}.models": one.models for number, one in self.stages.items()}
+        for key, models in {"models": self.models, **tables}.items():
+            if models.averaging != "base_pitch":
+                raise InputError(
+                    "the path of one pair does not stand for several meshes; leave it out",
+                    key=f"{key}.averaging",
+                )
         travels = self.last.load == "force"
         _check_losses(self.losses, self.bodies[: len(self.bodies) - travels], self.bodies)
         return self
@@ -987,6 +998,7 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
     """
     models: list[type[BaseModel]] = [Case, DriveCase]
     if isinstance(tree, Mapping):
+        _check_stage(key, tree.get(STAGES))
         models = [DriveCase if STAGES in tree else Case]
     parts = [part for part in key.split(".") if not part.isdigit()]
     named = False
@@ -1011,6 +1023,13 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         if not models:
             raise InputError(f"{shown(part)} is a value, not a table", key=key)
     return None
+
+
+def _check_stage(key: str, stages: Any) -> None:
+    """InputError if a key of a stage does not begin with the number of one that the case has."""
+    table, *inside = key.split(".")
+    if table == STAGES and inside and isinstance(stages, Mapping) and inside[0] not in stages:
+        raise _no_stage(inside[0], stages).at(key=key)
 
 
 def keys(table: type[BaseModel] = Case) -> Iterator[str]:

@@ -14,7 +14,7 @@ from pitchpoint._jax import array
 from pitchpoint.cases.build import TEETH_ALONE, Built, build, drags, operation_at
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.failures import in_stage
-from pitchpoint.cases.schema import Case, DriveCase, Operating, StageTable, validated
+from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import InputError
@@ -164,12 +164,12 @@ class BuiltDrive:
     @property
     def driver(self) -> str:
         """Name of the shaft that drives."""
-        return f"shaft {1 if self.numbers[0] == 1 else len(self.numbers) + 1}"
+        return f"shaft {self.design.links[0][0] + 1}"
 
     @property
     def loaded(self) -> str:
         """Name of the shaft that carries the load."""
-        return f"shaft {1 if self.numbers[-1] == 1 else len(self.numbers) + 1}"
+        return f"shaft {self.design.links[-1][1] + 1}"
 
     @property
     def transmits(self) -> bool:
@@ -274,9 +274,22 @@ def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> Buil
         tuple(documents),
         drive,
         operation_at(case.operation),
-        tuple(_few_meetings(built)),
+        (*_few_meetings(built), *_adding_thrusts(built)),
     )
+    _check_map(made)
     return replace(made, told=(*made.told, *[TEETH_ALONE] * bool(made.covers)))
+
+
+def _check_map(made: BuiltDrive) -> None:
+    """InputError if the loss map runs over temperatures at which an oil of the drive is not known."""
+    low, high = made.temperatures
+    for asked in (made.case.loss_map and made.case.loss_map.temperatures) or ():
+        if not low <= asked <= high:
+            allowed = replace(TEMPERATURE, low=low, high=high).allowed
+            raise InputError(
+                f"{TEMPERATURE.show(asked)} is outside the range of the oil; {allowed}",
+                key="loss_map.temperatures",
+            )
 
 
 def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
@@ -469,3 +482,19 @@ def _per_turn(one: Built, end: str) -> float:
     """Mesh periods in a turn of the driver or of the loaded member of a stage."""
     rate = abs(float(one.nominal[end] @ one.nominal["motion"]))
     return 2.0 * pi / (float(one.nominal["period"]) * rate)
+
+
+def _adding_thrusts(built: Sequence[Built]) -> Iterator[str]:
+    """Shafts on which two helical gears press the same way along the axis.
+
+    The frame of a mesh gives its two members opposite hands, and other flanks turn both over.
+    """
+    for shaft, (before, behind) in enumerate(pairwise(built), 2):
+        helical = [float(one.design.mesh.overlap_ratio) > 0.0 for one in (before, behind)]
+        members = np.argmax(before.nominal["loaded"]), np.argmax(behind.nominal["driver"])
+        if all(helical) and members[0] == members[1]:
+            gear = before.case.gears.members[members[0]]
+            yield (
+                f"On shaft {shaft} the helical {gear}s of stages {shaft - 1} and {shaft} have opposite "
+                "hands: their axial forces add up. Those of a gear 2 and a gear 1 counteract."
+            )

@@ -52,7 +52,19 @@ from pitchpoint.results.store import (
 )
 from pitchpoint.runs.jobs import Job, job_of, jobs
 
-__all__ = ["Outcome", "Progress", "open_result", "pieces_of", "run", "run_piece", "run_variant"]
+__all__ = [
+    "MEETINGS",
+    "Outcome",
+    "Progress",
+    "open_result",
+    "pieces_of",
+    "run",
+    "run_piece",
+    "run_variant",
+]
+
+MEETINGS = "all meetings of phases"
+"""Over what figures of several meshes are averaged."""
 
 
 class Progress:
@@ -518,7 +530,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
         "against": way.against.format(first.driver) if backwards else "",
         "travels": sorted(built.travels),
         "lacks": {},
-        "averaging": case.models.averaging,
+        "averaging": MEETINGS if len(meshes) > 1 else case.models.averaging,
         "plastic": any(used.plastic for used in solids),
         "oil": ", ".join(
             dict.fromkeys(mesh.lubricant.title or mesh.lubricant.name for mesh in meshes)
@@ -539,9 +551,9 @@ def _lacking(built: Ready) -> dict[str, str]:
 
 def _models(built: Ready) -> dict[str, Any]:
     """Models that the case uses beside friction, by effect; with the stage where they differ."""
+    if isinstance(built, Built):
+        return _of_mesh(built)
     each = [_of_mesh(mesh) for mesh in built.meshes]
-    if len(each) == 1:
-        return each[0]
     bearings = _bearings(built.case.losses)
     found = {effect: law for effect, law in each[0].items() if _everywhere(effect, law, each)}
     for number, models in enumerate(each, 1):

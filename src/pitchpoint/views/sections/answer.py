@@ -1,7 +1,7 @@
 """The answer: operating point, main figures by friction law, and how far the laws disagree."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from pitchpoint.analyses.figures import (
 )
 from pitchpoint.cases.inputs import OIL
 from pitchpoint.results.variables import VARIABLES
-from pitchpoint.runs.run import Outcome
+from pitchpoint.runs.run import MEETINGS, Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
@@ -31,6 +31,7 @@ __all__ = ["ANSWER", "bearing_rows", "summary"]
 
 AVERAGES = {
     "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
+    MEETINGS: "Averages run over all meetings of the phases of the stages.",
     "path": "Averages run over the path of one pair, so double contact counts twice, as published.",
 }
 
@@ -50,7 +51,7 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         "name": name,
         "oil": manifest["oil"],
         "oil_note": _oil_note(outcome),
-        "sharing": "" if single else manifest["models"][0]["title"],
+        "sharing": "" if single else _sharing(manifest),
         "facts": [fact for section in page.sections for fact in section.answer(outcome)],
         "averaging": "" if single else _averaging(outcome),
         "operation": _operation(outcome),
@@ -66,6 +67,13 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         if "operation" in parts
         else [],
     }
+
+
+def _sharing(manifest: Mapping[str, Any]) -> str:
+    """How the load is shared; in a drive whose stages differ, that of each."""
+    each = ((model["effect"].partition(", "), model["title"]) for model in manifest["models"])
+    named = [(place, title) for (effect, _, place), title in each if effect == "load sharing"]
+    return "; ".join(f"{place}: {title}" if place else title for place, title in named)
 
 
 def _averaging(outcome: Outcome) -> str:

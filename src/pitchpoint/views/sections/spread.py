@@ -74,6 +74,8 @@ def _cell(data: Any, name: str, law: int) -> str:
 
 def spread_sentence(outcome: Outcome) -> str:
     """How far the friction laws that apply disagree about the mean efficiency, and which do not apply."""
+    if why := outcome.manifest["lacks"].get("laws"):
+        return f"{why[0].upper()}{why[1:]}."
     return " ".join([_within(outcome), *_apart(outcome)])
 
 

@@ -31,7 +31,7 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
     data = outcome.parts.get("operation")
     if data is None or "stage" not in data.coords:
         return []
-    names = [name for name in FIGURES if np.any(data[name])]
+    names = [name for name in FIGURES if name in data and np.any(data[name])]
     return [
         {"friction law": law, "stage": str(stage)}
         | {
@@ -62,16 +62,17 @@ def _blocks(page: Page) -> Iterator[Block]:
         if title:
             yield Heading(title)
         data = outcome.parts["operation"]
+        names = [name for name in FIGURES if name in data]
         rows = [
             (
                 str(stage),
                 law,
-                *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in FIGURES),
+                *(show.quantity(n, float(data[n].values[k, 0, at]), of=data) for n in names),
             )
             for k, law in enumerate(laws(data))
             for at, stage in enumerate(data["stage"].values)
         ]
-        titles = [show.described(name, data).long_name for name in FIGURES]
+        titles = [show.described(name, data).long_name for name in names]
         yield Table(["Stage", "Friction law", *titles], rows)
     for position, title, outcome in page.each("torsion.stage_wind_up"):
         figure = _wind_up(f"stages{position}", outcome.parts["torsion"])

@@ -94,7 +94,8 @@ def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curv
     one_mesh = "tooth_force" in data
     words = _words(data)
     slope = Key(f"slope of the {words.load} over the {words.way}", PALETTE[0])
-    spread = Key(f"largest less smallest {words.motion} over the mesh cycle", PALETTE[3])
+    over = "over the mesh cycle" if one_mesh else "of each stage, at the output, summed"
+    spread = Key(f"largest less smallest {words.motion} {over}", PALETTE[3])
     figures = [
         *([_distribution(f"{name}_load", data)] if one_mesh else []),
         *([_loop(f"{name}_loop", variant, data, known)] if one_mesh else []),
@@ -326,10 +327,14 @@ def _blocks(page: Page) -> Iterator[Block]:
         if it.title:
             yield Heading(it.title)
         note = f"In it: {it.note}." if it.note else ""
-        yield Paragraph(
-            f"{_words(outcome.parts['torsion']).way.capitalize()} of the loaded member with the other "
-            f"members held, mean over the mesh cycle. {note}"
+        data = outcome.parts["torsion"]
+        held = (
+            "with the other members held, mean over the mesh cycle"
+            if "tooth_force" in data
+            else "with the input held, while the shafts between them turn: the sum of those of the stages, "
+            "each the mean over its mesh cycle"
         )
+        yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
         yield it
 
 
