@@ -14,6 +14,7 @@ from pitchpoint.analyses.torsion import TORSION
 from pitchpoint.cases.stages import BuiltDrive
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.drive import drive_cycle
+from pitchpoint.efficiency.drive_summary import together
 from pitchpoint.errors import InputError
 
 COMMON = """
@@ -199,6 +200,21 @@ def test_no_other_friction_law_is_tried_where_all_stages_have_their_own():
 
 
 HELICAL = f"{FIRST}helix_angle = '15 deg'\n"
+
+
+def size(case):
+    return together(case.design, case.models[0].stages)
+
+
+def test_points_and_nodes_together_follow_from_the_memory_of_their_meetings():
+    slices = {"models.slices": 48.0}
+    assert size(two()) == (8, 12)
+    assert size(built(stages(FIRST, FIRST, FIRST) + COMMON)) == (8, 8)
+    four, five = (stages(*[HELICAL] * count) + COMMON for count in (4, 5))
+    assert size(built(four)) == (1, 6)
+    assert size(built(five)) == (1, 3)
+    with pytest.raises(InputError, match=r"stages: .* take fewer stages, or fewer slices"):
+        size(built(five, **slices))
 
 
 @pytest.mark.parametrize("member", [0, 1])

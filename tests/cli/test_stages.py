@@ -14,7 +14,9 @@ from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import load
-from pitchpoint.runs.run import describe
+from pitchpoint.runs.run import Outcome, describe
+from pitchpoint.views.report import render
+from pitchpoint.views.sections.spread import spread_sentence
 
 TWO = """
 title = "Two stages"
@@ -117,6 +119,10 @@ def test_the_report_shows_the_stages(folder: Path) -> None:
     for words in ('id="stages"', 'id="torsion"', 'id="map"', "Wind-up at the output by the stage"):
         assert words in page, words
     assert "shaft 1 drives at 1500 rpm, shaft 3 carries 300" in page
+    assert "Averages run over all meetings of the phases of the stages." in page
+    assert "Wind-up of the loaded member with the input held" in page
+    assert "with the other members held" not in page
+    assert "largest less smallest rotation of each stage, at the output, summed" in page
 
 
 def test_json_of_a_case_on_disk_has_the_figures_by_stage(
@@ -138,6 +144,7 @@ def test_the_screen_has_a_row_for_each_stage(
     call("run", folder / "out" / "default" / "manifest.json", "-o", folder / "again")
     lines = capsys.readouterr().out.splitlines()
     assert any(line.startswith("friction law") and "stage" in line for line in lines)
+    assert any("Averages over: all meetings of phases." in line for line in lines)
 
 
 def test_variants_change_one_stage() -> None:
@@ -187,3 +194,18 @@ def test_a_sweep_of_stages_names_one_of_them(tmp_path: Path) -> None:
         wrong = {"swept": Study(sweep=Sweep(key=key, values=("2 mm",)))}
         with pytest.raises(InputError, match=r"there is no stage .*; use stages.1 to stages.2"):
             describe(str(path), studies=wrong)
+
+
+def test_the_load_sharing_of_stages_that_differ_is_told_of_each(tmp_path: Path) -> None:
+    path = tmp_path / "two.toml"
+    path.write_text(TWO)
+    (manifest,) = describe(str(path), settings={"stages.1.models.load_sharing": "equal"})
+    titles = {one["effect"]: one["title"] for one in manifest["models"]}
+    first, second = (titles[f"load sharing, stage {number}"] for number in (1, 2))
+    page = render({"default": Outcome(manifest, {})})
+    assert f"<dt>Load sharing</dt><dd>stage 1: {first}; stage 2: {second}</dd>" in page
+
+
+def test_the_screen_says_why_no_other_friction_law_is_tried() -> None:
+    why = "every stage has a friction law of its own"
+    assert spread_sentence(Outcome({"lacks": {"laws": why}}, {})) == f"E{why[1:]}."

@@ -3,21 +3,43 @@
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 
+import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.efficiency.drive import Drive, DriveCycle, drive_cycle
-from pitchpoint.efficiency.quasi_static import Engagement, Models, Operation, State
+from pitchpoint.efficiency.quasi_static import (
+    Engagement,
+    Models,
+    Operation,
+    State,
+    cycle_nodes,
+)
 from pitchpoint.efficiency.rows import CHUNK, NODES
 from pitchpoint.efficiency.summary import engaged, mean_friction
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.programs import program
 
-__all__ = ["drive_figures", "drive_nodes"]
+__all__ = ["drive_figures", "drive_nodes", "together"]
 
-FEWEST_NODES = 4
-"""Nodes in each segment of each period below which no drive goes, however many stages it has."""
+FEW_NODES = 4
+"""Nodes in each segment of each period below which a drive goes only where memory asks for it."""
+
+FEWEST_NODES = 3
+"""Nodes in each segment that the formula of Lobatto needs."""
+
+MOST_BYTES = 1.5e9
+"""Memory that the states of one chunk of points may take [B]."""
+
+OF_A_MEETING = 680.0
+"""Memory for each meeting of phases where few contacts take less [B], as the compiler tells."""
+
+OF_A_LANE = {True: 17.0, False: 34.0}
+"""Memory for each contact at a meeting [B]: of rigid flanks that all touch, and of others."""
 
 Point = tuple[Drive, Operation]
 
@@ -29,7 +51,45 @@ def drive_nodes(stages: int) -> int:
         >>> drive_nodes(1), drive_nodes(2)
         (24, 12)
     """
-    return max(NODES // stages, FEWEST_NODES)
+    return max(NODES // stages, FEW_NODES)
+
+
+def together(drive: Drive, models: Sequence[Models]) -> tuple[int, int]:
+    """Points that are computed together, and nodes in each segment, so that memory suffices.
+
+    Args:
+        drive: any.
+        models: laws of each stage.
+
+    Raises:
+        InputError: a single point at the fewest nodes takes too much memory.
+    """
+    for nodes in range(drive_nodes(len(drive.stages)), FEWEST_NODES - 1, -1):
+        needed = _memory(drive, models, nodes)
+        if needed <= MOST_BYTES:
+            return min(CHUNK, int(MOST_BYTES // needed)), nodes
+    raise InputError(
+        f"the meetings of the phases of these stages would take {needed / 1e9:.2g} GB of memory, and "
+        f"{MOST_BYTES / 1e9:g} GB is the most allowed; take fewer stages, or fewer slices of their contact "
+        "lines with models.slices",
+        key="stages",
+    )
+
+
+def _memory(drive: Drive, models: Sequence[Models], nodes: int) -> float:
+    """Memory for the states of a drive at one operating point [B], from that of compiled programs."""
+    meetings, needed = 1, 0.0
+    for stage, laws in zip(drive.stages[::-1], models[::-1], strict=True):
+        mesh = stage.design.mesh
+        lanes, phases = eqx.filter_eval_shape(_sizes, mesh, laws.sharing, nodes)
+        meetings *= phases.size
+        needed += meetings * max(OF_A_MEETING, OF_A_LANE[mesh.touching] * lanes.size)
+    return needed
+
+
+def _sizes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
+    """Contacts at one phase, and phases of the period, of which the shapes count."""
+    return mesh.contacts(jnp.zeros(())).weight, cycle_nodes(mesh, sharing, nodes)[0]
 
 
 def drive_figures(
@@ -48,10 +108,11 @@ def drive_figures(
     """
     parts: list[dict[str, np.ndarray]] = []
     done = 0
+    size, nodes = together(points[0][0], models)
     for drive, operations in _of_one_drive(points, models):
-        for start in range(0, len(operations), CHUNK):
-            some = operations[start : start + CHUNK]
-            parts.append(_chunk(drive, some, models))
+        for start in range(0, len(operations), size):
+            some = operations[start : start + size]
+            parts.append(_chunk(drive, some, models, size, nodes))
             done += len(some)
             if progress is not None:
                 progress(done)
@@ -77,12 +138,12 @@ def _of_one_drive(
 
 
 def _chunk(
-    drive: Drive, operations: Sequence[Operation], models: Sequence[Models]
+    drive: Drive, operations: Sequence[Operation], models: Sequence[Models], size: int, nodes: int
 ) -> dict[str, np.ndarray]:
     """Figures of a few operating points of one drive, filled up by repetition."""
-    filled = [*operations, *([operations[-1]] * (CHUNK - len(operations)))]
+    filled = [*operations, *([operations[-1]] * (size - len(operations)))]
     stacked: Operation = jax.tree.map(lambda *v: array(np.stack(v)), *filled)
-    nodes, last = drive_nodes(len(drive.stages)), drive.stages[-1].design
+    last = drive.stages[-1].design
     known = engaged(last, operations[0], models[-1], nodes)
     found = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
     return {name: np.asarray(values)[: len(operations)] for name, values in found.items()}
