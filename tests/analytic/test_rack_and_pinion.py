@@ -168,8 +168,16 @@ def test_what_cannot_run_is_refused_in_one_sentence(key):
 
 
 def test_a_rack_far_away_loses_its_contact():
-    with pytest.raises(InputError, match="contact ratio"):
-        rack(mounting_distance="33 mm")
+    for distance in ("33 mm", "80 mm", "610 mm"):
+        with pytest.raises(InputError, match="reach too little into each other") as caught:
+            rack(mounting_distance=distance)
+        assert caught.value.key == "mounting_distance"
+
+
+def test_a_rack_without_a_tip_blames_what_can_be_changed():
+    with pytest.raises(InputError, match="no tip left at the dedendum") as caught:
+        rack(pressure_angle="45 deg")
+    assert caught.value.key == "dedendum"
 
 
 def test_both_senses_and_both_flanks_give_the_same_efficiency():

@@ -180,7 +180,7 @@ def cantilever(length=5e-3, thickness=2e-3, angle=0.0):
         root_radius=number(0.02),
         root_half_angle=number(0.05),
         rim_ratio=number(3.0),
-        body="disc",
+        stiff="",
     )
 
 

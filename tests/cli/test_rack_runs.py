@@ -96,7 +96,8 @@ def test_every_section_that_applies_is_in_the_report_in_words_of_a_travel(outcom
     assert sections[:6] == ["answer", "inputs", "teeth", "path", "cycle", "torsion"]
     assert sections[6:11] == ["beside", "stiffness", "vibration", "studies", "map"]
     assert sections[11:] == ["models", "sources"]
-    assert 'id="absent"' not in page
+    assert "Kinematic error (deviations of the teeth of these gears are not among" in page
+    assert "load on the guides of the rack, across its travel" in page
     for words in (
         "pinion drives at 300 rpm, rack carries 2000 N",
         "pinion (below), ",
@@ -114,6 +115,11 @@ REFUSED = {
     "operation.torque": ({"operation.torque": "5 N m"}, "a rack carries a force"),
     "operation.driver": ({"operation.driver": "rack"}, "cannot drive"),
     "loss_map.torque": ({"loss_map.torque": "5 N m"}, "give force in place of torque"),
+    "models.tooth_temperature": (
+        {"models.tooth_temperature": "vdi_2736_2", "materials.gear_1": "POM-H"},
+        "two gears that turn",
+    ),
+    "loss_map.torque_count": ({"loss_map.torque_count": 3}, "give force_count in place of"),
     "dynamics.torques": ({"dynamics.torques": ["5 N m"]}, "give forces in place of torques"),
     "dynamics.inertia": ({"dynamics.inertia": "1 kg cm2"}, "gears.mass"),
     "losses.seal.between": ({"losses.seal.between": ["rack", "housing"]}, "travels"),

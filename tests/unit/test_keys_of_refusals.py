@@ -12,16 +12,32 @@ from pitchpoint.cases.schema import quantity_at
 from pitchpoint.gears.cylindrical import checks
 from pitchpoint.gears.cylindrical import design as cylindrical_design
 from pitchpoint.gears.cylindrical import family as cylindrical
+from pitchpoint.gears.rack_and_pinion import checks as rack_checks
+from pitchpoint.gears.rack_and_pinion import family as rack
 from pitchpoint.gears.strain_wave import design
 from pitchpoint.gears.strain_wave import family as strain_wave
 
-MODULES = (checks, cylindrical_design, cylindrical, design, strain_wave)
+MODULES = (
+    checks,
+    cylindrical_design,
+    cylindrical,
+    rack_checks,
+    rack,
+    design,
+    strain_wave,
+)
 MEMBER = "driver"  # a case checks it before it builds: operation.driver
 
 
 def keys_told(module: ModuleType) -> Iterator[str]:
-    """Every key that a refusal of a module may name: first words of `_refuse`, or `key=` of an error."""
+    """Every key that a refusal of a module may name.
+
+    First words of `_refuse`, `key=` of an error, or the second of three that a check yields.
+    """
     for node in ast.walk(ast.parse(inspect.getsource(module))):
+        told = node.value if isinstance(node, ast.Yield) else None
+        if isinstance(told, ast.Tuple) and len(told.elts) == 3:
+            yield from words(told.elts[1])
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             given = {keyword.arg: keyword.value for keyword in node.keywords}
             if node.func.id == "_refuse":

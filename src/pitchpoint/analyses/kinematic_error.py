@@ -64,11 +64,10 @@ def kinematic_error_part(
         progress: told the number of states that are done, after each group of teeth.
     """
     design, gears = built.design, built.case.gears
-    assert hasattr(gears, "teeth")
     load = jnp.full((1, 1), built.case.operation.load)
     phases = PHASES if design.mesh.couples else FEW_PAIRS
     period = _period(design.mesh, design.solids, built.terms, load, phases)
-    teeth = np.abs(np.asarray(gears.teeth))
+    teeth = np.asarray(gears.tooth_numbers)
     solved: list[np.ndarray] = []
 
     def over(own: Surfaces, count: int) -> np.ndarray:
@@ -188,11 +187,11 @@ def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> K
 def _exact(built: Built) -> str | None:
     if any(built.deviations):
         return None
-    return (
-        Unasked("the teeth have no deviations around their gears")
-        if built.transmits
-        else "a test rig has no teeth"
-    )
+    if not built.transmits:
+        return "a test rig has no teeth"
+    if "deviations" not in type(built.case.gears).model_fields:
+        return "deviations of the teeth of these gears are not among the keys of a case"
+    return Unasked("the teeth have no deviations around their gears")
 
 
 def _computed(built: Built, _: Piece, progress: Progress) -> xr.Dataset:

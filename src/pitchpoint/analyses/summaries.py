@@ -107,7 +107,7 @@ def summaries(
     else:
         out["loss_factor_efficiency"] = 1.0 - out["mean_friction"] * out["loss_factor"]
     told = dict.fromkeys(text for point in points for text in point.warnings)
-    warnings = few([*told])
+    warnings = few([*told]) if len(points) > 1 else [*told]
     if "vibration_status" in extra:
         from pitchpoint.analyses.vibration import status_sentences
 

@@ -132,7 +132,7 @@ def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     if built.case.operation.load == 0.0:
         return [
             "Wind-up: nothing is carried at the operating point, so the coefficient of friction is taken "
-            "as zero and the torque loop has no width."
+            "as zero and the loop has no width."
         ]
     return [
         f"Wind-up: {models.law.title}: friction locks the drive at the operating point; there is "

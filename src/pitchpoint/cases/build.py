@@ -384,12 +384,8 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         LOAD_SHARING[models.load_sharing].check(mesh)
     except InputError as error:
         raise error.at(key="models.load_sharing") from None
-    if models.tooth_temperature != "isothermal" and not mesh.pitch_point:
-        raise InputError(
-            f"'{models.tooth_temperature}' asks for a pitch point, which these gears do not have; use "
-            "isothermal",
-            key="models.tooth_temperature",
-        )
+    if models.tooth_temperature != "isothermal":
+        _check_heat(case, mesh)
     if case.dynamics is not None and not mesh.along_action:
         raise InputError(
             "vibration is computed along a line of action, which these gears do not have; leave this "
@@ -398,6 +394,20 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         )
     if case.dynamics is not None:
         _check_masses(case, mesh)
+
+
+def _check_heat(case: Case, mesh: Mesh) -> None:
+    """InputError for gears that a model of the tooth temperature is not for."""
+    missing = (
+        "a pitch point, which these gears do not have"
+        if not mesh.pitch_point
+        else "two gears that turn, each with its number of teeth"
+    )
+    if not mesh.pitch_point or not case.gears.tooth_numbers:
+        raise InputError(
+            f"'{case.models.tooth_temperature}' asks for {missing}; use isothermal",
+            key="models.tooth_temperature",
+        )
 
 
 def _check_masses(case: Case, mesh: Mesh) -> None:

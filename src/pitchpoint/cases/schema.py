@@ -492,7 +492,7 @@ class Study(Table):
 class LossMap(Table):
     """Axes of the loss map; zero torque and zero speed are allowed. A force stands for a torque of travel.
 
-    `count` is that of both axes, `torque_count` and `speed_count` are those of one.
+    `count` is that of both axes, `torque_count` or `force_count` and `speed_count` are those of one.
     """
 
     torque: Annotated[float, TORQUE] | None = None
@@ -503,6 +503,7 @@ class LossMap(Table):
     ) = None
     count: Annotated[float, MAP_COUNT] = 9.0
     torque_count: Annotated[float, MAP_COUNT] | None = None
+    force_count: Annotated[float, MAP_COUNT] | None = None
     speed_count: Annotated[float, MAP_COUNT] | None = None
 
 
@@ -812,10 +813,11 @@ def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
         f"operation.{other}": getattr(point, other),
         f"dynamics.{other}s": getattr(getattr(case, "dynamics", None), f"{other}s", ()) or None,
         f"loss_map.{other}": getattr(case.loss_map, other, None),
+        f"loss_map.{other}_count": getattr(case.loss_map, f"{other}_count", None),
     }
     for key in (key for key, given in asked.items() if given is not None):
-        plural = "s" * key.endswith("s")
-        told = f"{gears.carries}; give {wanted}{plural} in place of {other}{plural}"
+        name = key.rpartition(".")[2]
+        told = f"{gears.carries}; give {name.replace(other, wanted)} in place of {name}"
         raise InputError(told, key=key)
     if getattr(point, wanted) is None:
         missing = f"is missing{_needed(('operation', wanted), Case)}"

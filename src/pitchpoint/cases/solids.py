@@ -132,7 +132,6 @@ def heating(case: Case, used: Used) -> Heated:
         used: materials at the temperature of the surroundings.
     """
     gears, housing = case.gears, case.housing
-    assert hasattr(gears, "teeth") and hasattr(gears, "module")
     tables = [_table(one) for one in used]
     length = max(len(places) for places, _ in tables)
     known, moduli = (
@@ -143,8 +142,8 @@ def heating(case: Case, used: Used) -> Heated:
         plastic=array([one.plastic for one in used]),
         known=array(known),
         moduli=array(moduli),
-        teeth=array(np.abs(gears.teeth), float),
-        module=array(gears.module),
+        teeth=array(gears.tooth_numbers, float),
+        module=array(gears.normal_module),
         housing=array((housing.thermal_resistance or 0.0) / (housing.area or 1.0)),
         duty=array(housing.duty),
         mates=_mates(used),
@@ -176,16 +175,15 @@ def datum(value: float, key: str, document: Document) -> Datum:
 
 def _warm(case: Case, mesh: Mesh, used: Used, gear: int, found: Mapping[str, float]) -> SolidInUse:
     pair, point, gears = mesh.reference, case.operation, case.gears
-    assert pair is not None and hasattr(gears, "teeth") and hasattr(gears, "module")
     temperature = TOOTH_TEMPERATURE[case.models.tooth_temperature].function(
         ambient=point.temperature,
         power=point.load * abs(float(mesh.loaded @ mesh.motion)) * point.speed,
         friction=found["mean_friction"],
         loss_factor=found["loss_factor"],
         face_width=pair.width,
-        teeth=abs(gears.teeth[gear]),
+        teeth=gears.tooth_numbers[gear],
         pitch_speed=pair.pitch_line_speed * point.speed,
-        normal_module=gears.module,
+        normal_module=gears.normal_module,
         mate=_mates(used)[gear],
         housing_resistance=case.housing.thermal_resistance or None,
         housing_area=case.housing.area,

@@ -321,7 +321,8 @@ def _contacts(mesh: Mesh, phase: Each) -> Contacts:
 @program
 def coupling(design: Design, contacts: Contacts) -> Coupling | None:
     """How far a unit force on one lane moves another; one program for all drives."""
-    return design.mesh.body_compliance(contacts, design.solids)
+    mesh = design.mesh
+    return mesh.body_compliance(contacts, design.solids) if mesh.couples else None
 
 
 @program

@@ -122,5 +122,5 @@ def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
     for limit in _LANES_FOR_RATIO_BELOW:
         if contact_ratio < limit:
             return max(int(limit), 3) if helical else int(limit)
-    message = f"contact ratio {contact_ratio:.3g} is out of reach of cylindrical gears"
+    message = f"contact ratio {contact_ratio:.3g} is out of reach"
     raise InputError(message, value=contact_ratio)

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
+from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
 from pitchpoint.roots import hypot, root
 
 __all__ = [
@@ -233,7 +233,7 @@ class InvoluteGear(eqx.Module):
             root_radius=jnp.abs(normal.root_radius),
             root_half_angle=start[1, 0],
             rim_ratio=rim_ratio,
-            body="ring" if self.internal else "disc",
+            stiff=RING_RIM if self.internal else "",
         )
 
     def outline(self, count: int = 24) -> Float[Array, "point 2"]:

@@ -101,8 +101,8 @@ class Reference(eqx.Module):
         line_length: length of a contact line across the whole face [m]: longer than the face on
             helical teeth.
         radius: relative radius of curvature at the pitch point [m].
-        sum_speed: sum of the surface speeds there per radian of the driver [m/rad].
-        pitch_line_speed: speed of the pitch circles per radian of the driver [m/rad].
+        sum_speed: sum of the surface speeds there for a unit rate of the driver [m/rad or 1].
+        pitch_line_speed: speed of the pitch circles for a unit rate of the driver [m/rad or 1].
     """
 
     width: Float[Array, ""]
@@ -221,17 +221,17 @@ class Mesh(eqx.Module):
 
     def body_compliance(
         self, contacts: Contacts, solids: tuple[Solid, Solid]
-    ) -> Float[Array, "lane lane *b"] | None:
+    ) -> Float[Array, "lane lane *b"]:
         """How far a unit force on one lane moves another through the body under the teeth [m/N].
 
         Lanes are pairs and slices, flattened; both ends along their normals. It does not depend on the
-        load. None for bodies that do not couple their teeth.
+        load. Of families that say so, see `couples`.
 
         Args:
             contacts: of the mesh.
             solids: material of each member.
         """
-        return None
+        raise self._without("body that couples its teeth")
 
     @property
     def other_flanks(self) -> Self:
@@ -311,7 +311,7 @@ class Mesh(eqx.Module):
     @property
     @abc.abstractmethod
     def motion(self) -> Float[Array, " dof"]:
-        """Nominal rate of each coordinate per radian of the driver."""
+        """Nominal rate of each coordinate for a unit rate of the driver."""
 
     @property
     @abc.abstractmethod
@@ -339,7 +339,7 @@ class Mesh(eqx.Module):
     @property
     @abc.abstractmethod
     def period(self) -> Float[Array, ""]:
-        """Driver angle of one period [rad]."""
+        """Motion of the driver in one period [rad or m]."""
 
     @property
     def reference(self) -> Reference:

@@ -1,7 +1,7 @@
 """What the table [gears] of every family says, and values that several families take."""
 
 from collections.abc import Mapping
-from math import pi
+from math import nan, pi
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -65,6 +65,16 @@ class GearsTable(Table):
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
     meaningless: ClassVar[Mapping[str, str]] = {}
     family: str
+
+    @property
+    def tooth_numbers(self) -> tuple[float, ...]:
+        """Numbers of teeth of both members in magnitude; empty where that says nothing."""
+        return ()
+
+    @property
+    def normal_module(self) -> float:
+        """Normal module [m]; not a number without teeth."""
+        return nan
 
     @property
     def shafts(self) -> tuple[str, ...]:

@@ -1,15 +1,15 @@
 """One tooth cut across its flank lines: the shape that yields under load."""
 
 from functools import cache
-from typing import Literal
 
 import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-__all__ = ["FLANK_NODES", "ToothSection", "chebyshev_nodes"]
+__all__ = ["FLANK_NODES", "RING_RIM", "ToothSection", "chebyshev_nodes"]
 
-Body = Literal["disc", "ring", "rack"]
+RING_RIM = "a ring's rim"
+"""What carries the teeth of a ring."""
 
 FLANK_NODES = 24
 """Chebyshev nodes along the flank; compliances are analytic there and converge like a power series."""
@@ -34,7 +34,8 @@ class ToothSection(eqx.Module):
         root_radius: of the body that carries the tooth [m].
         root_half_angle: half the angle that the tooth takes on the root circle [rad].
         rim_ratio: root radius over bore radius.
-        body: what carries the tooth; static.
+        stiff: what carries the tooth, in words, where no formula says how that yields; empty for a disc;
+            static.
     """
 
     fillet: Float[Array, "2 station"]
@@ -46,7 +47,7 @@ class ToothSection(eqx.Module):
     root_radius: Float[Array, ""]
     root_half_angle: Float[Array, ""]
     rim_ratio: Float[Array, ""]
-    body: Body = eqx.field(static=True)
+    stiff: str = eqx.field(static=True)
 
 
 @cache

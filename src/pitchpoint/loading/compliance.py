@@ -54,7 +54,7 @@ def compliance(
         load: that the driven coordinate carries [N m or N].
         body: see `Mesh.body_compliance`, where it is known already.
     """
-    if body is None:
+    if body is None and mesh.couples:
         body = mesh.body_compliance(contacts, solids)
     return Compliance(
         stiffness=slice_stiffness(mesh, contacts, solids, terms, load), body=body, load=load

@@ -75,7 +75,7 @@ def foundation_compliance(section: ToothSection) -> Float[Array, " node"]:
     Source: Sainsot, Velex and Duverger (2004), see `sainsot_2004`.
     """
     half_thickness, height = section.flank
-    if section.body != "disc":
+    if section.stiff:
         return jnp.zeros_like(height)
     clamped = height[0] - jnp.sum(section.step)
     arm = height - half_thickness * jnp.tan(section.load_angle) - clamped
@@ -88,9 +88,6 @@ def foundation_compliance(section: ToothSection) -> Float[Array, " node"]:
     )
 
 
-_UNDER = {"ring": "ring's rim", "rack": "rack's body"}
-
-
 def foundation_in_range(section: ToothSection) -> Bool[Array, ""]:
     """True where the polynomial is used inside the range for which it was fitted, under a disc.
 
@@ -99,15 +96,14 @@ def foundation_in_range(section: ToothSection) -> Bool[Array, ""]:
     within = _within(section.rim_ratio, RIM_RATIO_RANGE) & _within(
         section.root_half_angle, HALF_ANGLE_RANGE
     )
-    return within & (section.body == "disc")
+    return within & (not section.stiff)
 
 
 def foundation_warnings(section: ToothSection) -> tuple[str, ...]:
     """Sentences on what the foundation's compliance does not cover for this tooth; none if it does."""
-    if section.body != "disc":
+    if section.stiff:
         return (
-            f"the compliance of a {_UNDER[section.body]} under its teeth has no formula here and counts as "
-            "zero",
+            f"the compliance of {section.stiff} under its teeth has no formula here and counts as zero",
         )
     named = (
         ("root radius over bore radius", float(section.rim_ratio), RIM_RATIO_RANGE),

@@ -139,6 +139,17 @@ class CylindricalGears(GearsTable):
     deviations: GearDeviations | None = None
 
     @property
+    def tooth_numbers(self) -> tuple[float, float]:
+        """Of both members, in magnitude."""
+        first, second = self.teeth
+        return first, abs(second)
+
+    @property
+    def normal_module(self) -> float:
+        """Normal module [m]."""
+        return self.module
+
+    @property
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography for what is given."""
         modified = self.modifications is not None or self.misalignment is not None

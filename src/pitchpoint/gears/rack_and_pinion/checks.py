@@ -20,6 +20,9 @@ _ROUNDED_FILLET = 1e-3
 # Drawings round the mounting distance; an overlap this small is no fault [modules].
 _ROUNDED_DISTANCE = 1e-4
 
+_FAR = 0.05
+"""Modules beyond the distance without backlash from which on that is why teeth lose contact."""
+
 Refusal = tuple[bool, str, str]
 
 
@@ -104,6 +107,12 @@ def _teeth(at: SimpleNamespace) -> Iterator[Refusal]:
         "positive",
     )
     yield (
+        not at.land_1 > -1e-9 and at.fillet_1 == 0.0,
+        "dedendum",
+        f"the rack that cuts the pinion has no tip left at the dedendum {at.dedendum_1:.4g} modules; a "
+        "smaller dedendum or pressure angle leaves one",
+    )
+    yield (
         not at.land_1 > -1e-9,
         "fillet_radius",
         f"the fillet radius of the pinion is {at.fillet_1:.4g} modules, but the tip of the rack that cuts it "
@@ -140,6 +149,12 @@ def _meeting(at: SimpleNamespace) -> Iterator[Refusal]:
         "mounting_distance",
         f"the flanks overlap at the mounting distance {1e3 * at.distance:.6g} mm; without backlash it is "
         f"{1e3 * at.nearest:.6g} mm, r + x m",
+    )
+    yield (
+        at.play > _FAR and not at.contact_ratio >= 1.0,
+        "mounting_distance",
+        f"the teeth reach too little into each other at the mounting distance {1e3 * at.distance:.6g} mm; "
+        f"without backlash it is {1e3 * at.nearest:.6g} mm, r + x m",
     )
     for number, first, second in ((1, "pinion", "rack"), (2, "rack", "pinion")):
         yield (

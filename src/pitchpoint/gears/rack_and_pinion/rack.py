@@ -85,7 +85,7 @@ class Rack(eqx.Module):
             root_radius=jnp.asarray(jnp.inf),
             root_half_angle=jnp.zeros(()),
             rim_ratio=jnp.ones(()),
-            body="rack",
+            stiff="a rack's body",
         )
 
     def outline(self, slope: Float[Array, ""], count: int = 24) -> Float[Array, "point 2"]:

@@ -22,7 +22,7 @@ from pitchpoint.gears.strain_wave.groove import Groove, swept
 from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance
 from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
-from pitchpoint.gears.tooth_section import ToothSection, chebyshev_nodes
+from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
 from pitchpoint.materials.solids import Solid
 from pitchpoint.roots import hypot, root
 
@@ -694,5 +694,5 @@ def _section(
         root_radius=jnp.ones(()),
         root_half_angle=jnp.ones(()),
         rim_ratio=jnp.ones(()),
-        body="ring",
+        stiff=RING_RIM,
     )

@@ -200,6 +200,17 @@ class StrainWaveGears(GearsTable):
     deviations: SplineDeviations = SplineDeviations()
 
     @property
+    def tooth_numbers(self) -> tuple[float, float]:
+        """Of both members, in magnitude."""
+        first, second = self.teeth
+        return first, abs(second)
+
+    @property
+    def normal_module(self) -> float:
+        """Normal module [m]."""
+        return self.module
+
+    @property
     def drivers(self) -> tuple[str, ...]:
         """Members that may drive, the usual one first."""
         return tuple(name for name in self.members if name != self.fixed)

@@ -134,7 +134,7 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
             for name in _at_contact(data)
         ],
         "drag": _drag(data, position),
-        "bearings": _bearings(data, position),
+        "bearings": _bearings(outcome, position),
         "more": [row for section in page.sections for row in section.card(outcome, law)],
     }
 
@@ -168,19 +168,10 @@ def _drag(data: xr.Dataset, law: int) -> str:
     return f"{teeth} in the teeth, {beside} beside them"
 
 
-def _bearings(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
+def _bearings(outcome: Outcome, law: int) -> list[tuple[str, str]]:
     """What the teeth put on the shafts, and each bearing beside them bears: names and words."""
-    found = []
-    for title, name in (
-        ("radial load on the shafts", "radial"),
-        ("axial load on the shafts", "axial"),
-    ):
-        if f"{name}_reaction_1" not in data:
-            continue
-        both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
-        if any(both):
-            each = dict.fromkeys(show.quantity(f"{name}_reaction_1", value) for value in both)
-            found.append((title, " and ".join(each)))
+    data = outcome.parts["operation"]
+    found = [*_reactions(outcome, law)]
     if "bearing_load" in data:
         loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
         found += [
@@ -189,6 +180,30 @@ def _bearings(data: xr.Dataset, law: int) -> list[tuple[str, str]]:
             if load > 0.0
         ]
     return found
+
+
+_ACROSS = {
+    ("shaft", "radial"): "radial load on the shaft of the {}",
+    ("shaft", "axial"): "axial load on the shaft of the {}",
+    ("guides", "radial"): "load on the guides of the {}, across its travel",
+}
+
+
+def _reactions(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
+    """Loads of the teeth on the shafts of both members, or on the guides of one that travels."""
+    data, manifest = outcome.parts["operation"], outcome.manifest
+    if of_contact(data):
+        return  # a rig has bearings of its own
+    guided = [manifest[end] for end in manifest.get("travels", ())]
+    for name in (name for name in ("radial", "axial") if f"{name}_reaction_1" in data):
+        both = [abs(float(data[f"{name}_reaction_{gear}"].values[law, 0])) for gear in (1, 2)]
+        told = [show.quantity(f"{name}_reaction_1", value) for value in both]
+        if any(both) and not guided:
+            yield f"{name} load on the shafts", " and ".join(dict.fromkeys(told))
+        elif any(both):
+            for body, value, words in zip(manifest["members"], both, told, strict=True):
+                held = "guides" if body in guided else "shaft"
+                yield from [(_ACROSS[held, name].format(body), words)] * (value > 0.0)
 
 
 _LOCKS = "locks from μ"

@@ -129,7 +129,7 @@ def _against(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
         "Instantaneous efficiency against input torque",
         traces,
         layout(short_axis("input_torque", seen[0][1]), short_axis("efficiency")),
-        "With the output torque held, all laws lie on one curve and cover different parts of it; "
+        "With the load held, all laws lie on one curve and cover different parts of it; "
         "the first laws are drawn wider.",
     )
 

@@ -213,7 +213,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     yield map_panel(there, page.curves)
     lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)
     if lines.figures:
-        yield Heading("Efficiency against torque, speed and temperature")
+        yield Heading("Efficiency against load, speed and temperature")
         yield lines
 
 

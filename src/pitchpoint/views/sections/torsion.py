@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.figures import WIND_UP
-from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -40,6 +39,10 @@ _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 
 _ELASTIC = Key("without friction", INK, "dash")
 _PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
+
+
+_PLAY = 1e-6
+"""Play over the largest wind-up below which it is rounding of dimensions."""
 
 
 def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
@@ -83,7 +86,7 @@ def _carrying(pairs: str) -> str:
 
 def _free(data: xr.Dataset) -> str:
     """Play between the flanks in words; empty without any."""
-    if not data["lost_motion"] > ROUNDING * data["wind_up"].max():
+    if not data["lost_motion"] > _PLAY * data["wind_up"].max():
         return ""
     free = level("lost_motion", float(data["lost_motion"]), data)
     return f"; without load it is free to {_words(data).moves} by {free} between its flanks"
