@@ -113,7 +113,7 @@ def package_geometry(built: Built, known: Engagement) -> rival.Geometry:
         gap=np.asarray(contacts.gap[held, 0]),
         normal=np.asarray(contacts.normal[:, held, 0]),
         slip=np.asarray(contacts.slip_arm[:, held, 0]),
-        radial=np.asarray(built.design.mesh.support(contacts)[0, held, 0]),
+        radial=np.asarray(built.design.mesh.inner_load(contacts)).sum(axis=0)[held, 0],
     )
 
 
