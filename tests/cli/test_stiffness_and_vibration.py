@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 from pitchpoint import cli
+from pitchpoint.analyses.summaries import summaries
 from pitchpoint.analyses.vibration import _excited, stiffness_part, vibrating_of, vibration_part
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.library import find
@@ -304,6 +305,10 @@ def test_warm_wheel_is_softer_and_says_so(file: Callable[[str], str]) -> None:
     assert notes["gear 2, Young's modulus"] == sentence
     (manifest,) = describe(path, settings=WARM)
     assert not any("The teeth of gear 2" in text for text in manifest["warnings"])
+
+    told = summaries([warm], warm.models, {}, title="warm").attrs["warming"]
+    assert json.loads(told)["sentence"] == "a solution was found"
+    assert "warming" not in summaries([cold], cold.models, {}, title="cold").attrs
 
 
 @pytest.mark.parametrize(

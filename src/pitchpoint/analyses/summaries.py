@@ -125,11 +125,19 @@ def summaries(
         warnings=warnings,
         solve=_balances(out),
         travels=travels,
+        **_warming(points),
     )
     data["mean_efficiency"].attrs.update(points[0].covers)
     if not points[0].transmits:
         data["mean_efficiency"].attrs["note"] = "undefined (NaN): no power goes through a test rig"
     return data
+
+
+def _warming(points: Sequence[Ready]) -> dict[str, Any]:
+    """What became of the balances of heat, modulus and friction; nothing where no teeth warm up."""
+    found = [point.warming for point in _meshes(points)]
+    each = [(one.code, one.residual, one.iterations) for one in found if one is not None]
+    return {"warming": told_of(*map(np.array, zip(*each, strict=True)))} if each else {}
 
 
 def _balances(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -377,27 +377,24 @@ def _following(alone: Sequence[Case], document: Document) -> list[Case]:
 
 def _open(one: Case) -> bool:
     """True if the flanks are left to the reader."""
-    return hasattr(one.gears, "flank") and "flank" not in one.gears.model_fields_set
+    return one.gears.opposed is not None and "flank" not in one.gears.model_fields_set
 
 
 def _turned(one: Case) -> Case:
     """The stage with its other flanks in contact, so that all turns the other way."""
-    assert hasattr(one.gears, "flank")
-    other = {"left": "right", "right": "left"}[one.gears.flank]
-    return one.model_copy(update={"gears": one.gears.model_copy(update={"flank": other})})
+    return one.model_copy(update={"gears": one.gears.opposed})
 
 
 def _against(one: Case, number: int) -> InputError:
-    given = getattr(one.gears, "flank", None)
-    if given is None:
+    if one.gears.opposed is None:
         told = (
             f"these gears carry on the flanks for one sense of rotation alone, and shaft {number} turns "
             "the other way; leave the flanks of the stages before them open"
         )
         return InputError(told, key=_key(number, "gears"))
     told = (
-        f"with the {given} flanks in contact shaft {number} turns against the stage before it; leave flank "
-        "out, or take the others"
+        f"with these flanks in contact shaft {number} turns against the stage before it; leave flank out, or "
+        "take the others"
     )
     return InputError(told, key=_key(number, "gears.flank"))
 

@@ -77,6 +77,11 @@ class GearsTable(Table):
         return nan
 
     @property
+    def opposed(self) -> "GearsTable | None":
+        """The same gears pressing their other flanks; None where that is no choice of the table."""
+        return None
+
+    @property
     def shafts(self) -> tuple[str, ...]:
         """Bodies that turn, beside which power may be lost."""
         return self.members

@@ -139,6 +139,11 @@ class CylindricalGears(GearsTable):
     deviations: GearDeviations | None = None
 
     @property
+    def opposed(self) -> "CylindricalGears":
+        """The same gears pressing their other flanks."""
+        return self.model_copy(update={"flank": "right" if self.flank == "left" else "left"})
+
+    @property
     def tooth_numbers(self) -> tuple[float, float]:
         """Of both members, in magnitude."""
         first, second = self.teeth

@@ -53,6 +53,11 @@ class RackAndPinionGears(GearsTable):
     flank: Literal["left", "right"] = "left"
 
     @property
+    def opposed(self) -> "RackAndPinionGears":
+        """The same gears pressing their other flanks."""
+        return self.model_copy(update={"flank": "right" if self.flank == "left" else "left"})
+
+    @property
     def drivers(self) -> tuple[str, ...]:
         """The pinion; a speed is that of a rotation."""
         return MEMBERS[:1]
