@@ -174,7 +174,7 @@ class DriveCycle(eqx.Module):
 
     states: tuple[State, ...]
     pressed: tuple[tuple[Each, ...], ...]
-    weights: tuple[Float[Array, " node"], ...]
+    weights: tuple[Float[Array, " _"], ...]
     speed: Each
     nodes: int = eqx.field(static=True)
     smooth: tuple[bool, ...] = eqx.field(static=True)
