@@ -57,6 +57,12 @@ class PathOfContact(abc.ABC):
         return (self.pitch_position - self.limits[0]) / self.base_pitch
 
     @cached_property
+    def points(self) -> Float[Array, "5"]:
+        """Positions of A, B, C, D, E from N1 [m]; B and D one base pitch from the far end (1 < eps < 2)."""
+        (start, end), pitch = self.limits, self.base_pitch
+        return jnp.stack([start, end - pitch, self.pitch_position, start + pitch, end])
+
+    @cached_property
     def transverse_contact_ratio(self) -> Float[Array, ""]:
         """Transverse contact ratio eps_alpha."""
         return jnp.asarray((self.limits[1] - self.limits[0]) / self.base_pitch)

@@ -10,7 +10,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.roots import hypot
 
-__all__ = ["LAYERS", "LEVELS", "RIM", "DrawnBody", "DrawnPath", "drawn_gear", "layers"]
+__all__ = ["LAYERS", "LEVELS", "RIM", "DrawnBody", "DrawnPath", "drawn_gear", "labels", "layers"]
 
 LEVELS = ("tip", "working", "base", "root", "rim")
 """Circles of a body that turns, and lines of one that travels; the body itself lies between root and rim."""
@@ -33,6 +33,24 @@ LAYERS: Mapping[str, tuple[str, ...]] = {
 
 Those are polynomials of the position on it, by rising powers and up to a common factor.
 """
+
+
+def labels(members: Sequence[str], ends: Sequence[str]) -> dict[str, list[Any]]:
+    """Labels along the dimensions of a drawing with a path of contact.
+
+    Args:
+        members: bodies, in the order of the layers.
+        ends: names of the marks behind A to E, see `DrawnPath.ends`.
+    """
+    return {
+        "gear": [1, 2],
+        "xy": ["x", "y"],
+        "point": [*"ABCDE"],
+        "body": [*members],
+        "level": [*LEVELS],
+        "line": ["action", "path"],
+        "mark": [*"ABCDE", *ends],
+    }
 
 
 RIM = 0.8

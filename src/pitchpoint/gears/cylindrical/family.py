@@ -19,7 +19,7 @@ from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.family import Family, waves
 from pitchpoint.gears.involute import usual_fillet
-from pitchpoint.gears.layers import LAYERS, LEVELS
+from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["FAMILY"]
@@ -160,13 +160,5 @@ FAMILY = Family(
     _of_pair,
     _gear_deviations,
     drawing={**LAYERS, "points": ("point",)},
-    coordinates={
-        "gear": [1, 2],
-        "xy": ["x", "y"],
-        "point": list("ABCDE"),
-        "body": [*MEMBERS],
-        "level": [*LEVELS],
-        "line": ["action", "path"],
-        "mark": [*"ABCDE", "N1", "N2"],
-    },
+    coordinates=labels(MEMBERS, ("N1", "N2")),
 )

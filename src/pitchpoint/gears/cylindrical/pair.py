@@ -339,9 +339,7 @@ class CylindricalPair(Mesh):
     @property
     def points(self) -> Float[Array, "5"]:
         """Positions of A, B, C, D, E from N1 [m]; B and D one base pitch from the far end (1 < eps < 2)."""
-        line = self.line
-        (start, end), pitch = line.limits, line.base_pitch
-        return jnp.stack([start, end - pitch, line.pitch_position, start + pitch, end])
+        return self.line.points
 
     @property
     def transverse_contact_ratio(self) -> Float[Array, ""]:

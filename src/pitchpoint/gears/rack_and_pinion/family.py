@@ -11,7 +11,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import lanes_for
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.involute import InvoluteGear, usual_fillet
-from pitchpoint.gears.layers import LAYERS, LEVELS
+from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.checks import check_rack_and_pinion
@@ -121,13 +121,5 @@ FAMILY = Family(
     _build,
     _following,
     drawing={**LAYERS, "points": ("point",)},
-    coordinates={
-        "gear": [1, 2],
-        "xy": ["x", "y"],
-        "point": list("ABCDE"),
-        "body": [*MEMBERS],
-        "level": [*LEVELS],
-        "line": ["action", "path"],
-        "mark": [*"ABCDE", "N1"],
-    },
+    coordinates=labels(MEMBERS, ("N1",)),
 )

@@ -337,7 +337,7 @@ class RackAndPinion(Mesh):
         named = self.dimensions()
         return {
             **self._layers(line),
-            "points": self._points(line),
+            "points": line.points,
             **{name: jnp.stack([value, none]) for name, value in alone.items()},
             "working_pressure_angle": line.angle,
             "base_pitch": line.base_pitch,
@@ -347,11 +347,6 @@ class RackAndPinion(Mesh):
             **{name: value for name, value in named.items() if not name.endswith("_1")},
         }
 
-    def _points(self, line: LineOfAction) -> Float[Array, "5"]:
-        """Positions of A, B, C, D, E from N1 [m]; B and D one base pitch from the far end."""
-        (start, end), pitch = line.limits, line.base_pitch
-        return jnp.stack([start, end - pitch, line.pitch_position, start + pitch, end])
-
     def _layers(self, line: LineOfAction) -> dict[str, Float[Array, "..."]]:
         """The transverse section at the middle of the face, the rack above the pinion."""
         side, base = self._side, line.base_radius
@@ -360,7 +355,7 @@ class RackAndPinion(Mesh):
             origin=base * jnp.stack([side * sine, cosine]),
             along=jnp.stack([-side * cosine, sine]),
             limits=line.limits,
-            points=self._points(line),
+            points=line.points,
             ends=jnp.zeros(1),
             base_pitch=line.base_pitch,
             behind=line.overlap_ratio / 2.0,
