@@ -24,10 +24,10 @@ check = beartype(conf=CHECKED)
 
 
 def rooms() -> list[str]:
-    """All rooms that compute, and the laws of published cases."""
+    """All folders that compute."""
     (package,) = find_spec("pitchpoint").submodule_search_locations
     names = {path.stem for path in Path(package).iterdir() if path.suffix in ("", ".py")}
-    return [f"pitchpoint.{name}" for name in (*sorted(names - WORDS), "cases.tian2024")]
+    return [f"pitchpoint.{name}" for name in sorted(names - WORDS)]
 
 
 def install() -> None:

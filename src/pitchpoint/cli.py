@@ -17,8 +17,8 @@ import typer
 from pitchpoint.errors import InputError, PitchpointError, shorten, visible
 
 if TYPE_CHECKING:
-    from pitchpoint.cases.comparison import Row
     from pitchpoint.cases.schema import Study
+    from pitchpoint.results.target_rows import Row
     from pitchpoint.runs.run import Outcome, Progress
     from pitchpoint.views.section import Printed
 
@@ -439,7 +439,7 @@ def _rows(rows: "list[Row]") -> None:
 
 
 def _verdicts(rows: "list[Row]", of: str = "") -> None:
-    from pitchpoint.cases.comparison import counts
+    from pitchpoint.results.target_rows import counts
 
     for kind, verdicts in counts(rows).items():
         told = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())

@@ -41,6 +41,10 @@ class Registry(Mapping[str, Entry]):
                 f"'{shorten(name)}' is not a known {self.kind}{nearest(name, self._entries)}"
             ) from None
 
+    def __contains__(self, name: object) -> bool:
+        """True for the name of an entry."""
+        return name in self._entries
+
     def __iter__(self) -> Iterator[str]:
         """Names in order."""
         return iter(self._entries)

@@ -13,7 +13,7 @@ import pytest
 import typer
 
 from pitchpoint import cli
-from pitchpoint.cases.comparison import compare
+from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.schema import Target, validate
 from pitchpoint.cases.variant import Variant

@@ -12,12 +12,13 @@ import pytest
 import xarray as xr
 
 from pitchpoint._jax import jnp
-from pitchpoint.cases.comparison import compare, counts
+from pitchpoint.analyses.comparison import compare
+from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.library import find
-from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
+from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("atanasiu2011")

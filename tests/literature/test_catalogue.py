@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.comparison import compare
+from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.library import find
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement

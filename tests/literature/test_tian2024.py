@@ -8,9 +8,10 @@ import dataclasses
 
 import pytest
 
-from pitchpoint.cases.comparison import compare, counts
+from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
+from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import compare_case
 

@@ -13,13 +13,15 @@ import xarray as xr
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from pitchpoint.cases.comparison import compare, counts
+from pitchpoint.analyses.comparison import compare
+from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.cases.library import find
-from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.variant import Variant
-from pitchpoint.cases.xu2021 import printed
-from pitchpoint.cases.xu2021.printed import (
+from pitchpoint.citations import cite
+from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.published.xu2021 import printed
+from pitchpoint.published.xu2021.printed import (
     OIL,
     assumed_radius,
     curvature_radii,
@@ -36,8 +38,7 @@ from pitchpoint.cases.xu2021.printed import (
     tooth_forces,
     viscosity,
 )
-from pitchpoint.citations import cite
-from pitchpoint.materials.solids import Solid, reduced_modulus
+from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("xu2021")

@@ -12,13 +12,14 @@ import xarray as xr
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
-from pitchpoint.cases.comparison import compare, counts
+from pitchpoint.analyses.comparison import compare
+from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.cases.library import find
-from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.variant import Variant
-from pitchpoint.cases.zhao2022 import printed
-from pitchpoint.cases.zhao2022.printed import (
+from pitchpoint.citations import cite
+from pitchpoint.published.zhao2022 import printed
+from pitchpoint.published.zhao2022.printed import (
     arc_distance,
     closure_residual,
     deflection_offset,
@@ -27,7 +28,7 @@ from pitchpoint.cases.zhao2022.printed import (
     recovered_torque,
     tooth_forces,
 )
-from pitchpoint.citations import cite
+from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("zhao2022")

@@ -19,7 +19,8 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.cli import main
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import dataset, load
-from pitchpoint.results.variables import VARIABLES, Variable
+from pitchpoint.results.variable import Variable
+from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.jobs import job_of

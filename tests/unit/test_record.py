@@ -265,7 +265,7 @@ def test_a_file_named_like_a_shipped_case(pairs: Path) -> None:
     Path("tian2024.toml").write_text("")
     run_into(Path("results/tian2024"), "tian2024.toml")
     place = default_folder("tian2024", Path("results"))
-    assert place.name == "cases-tian2024"
+    assert place.name == "published-tian2024"
     run_into(place, "tian2024")
     assert default_folder("tian2024", Path("results")) == place
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sound import PAIR
 
-from pitchpoint.cases.comparison import compare, demand_parts
+from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.library import find, names
 from pitchpoint.cases.schema import Target, validate

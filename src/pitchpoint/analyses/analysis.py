@@ -9,7 +9,7 @@ import xarray as xr
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
-from pitchpoint.results.variables import Variable
+from pitchpoint.results.variable import Variable
 
 __all__ = ["ALONE", "Analysis", "Piece", "Progress", "Several", "Subject", "Unasked"]
 

@@ -10,18 +10,20 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, Unasked
 from pitchpoint.analyses.figures import by_law, json_figures
 from pitchpoint.analyses.summaries import beside, joined, summaries
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.readings import readings_of
 from pitchpoint.cases.schema import Study, Sweep, quantity_at
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
+from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.units import si_unit
 
 __all__ = [
     "STUDIES",
     "is_study",
+    "readings_of",
     "sweep_values",
 ]
 
@@ -99,6 +101,20 @@ class _Planned:
         """InputError for what is wrong with the first point or the last."""
         for change in (*self.changes[:1], *self.changes[1:][-1:]):
             self.point(change)
+
+
+def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
+    """Variables [law, point] that belong to the source of a case; none for most."""
+    source = points[0].case.source
+    alone = [point for point in points if isinstance(point, Built)]
+    if source not in PUBLICATIONS or not alone:
+        return {}
+    read = PUBLICATIONS[source].read
+    found = [read(point.case.gears, point.design, point.operation) for point in alone]
+    return {
+        name: (("law", "point"), np.array([[one[name] for one in found]] * laws))
+        for name in found[0]
+    }
 
 
 def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:

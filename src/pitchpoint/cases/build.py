@@ -55,7 +55,7 @@ from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
-from pitchpoint.results.variables import End
+from pitchpoint.results.variable import End
 from pitchpoint.status import Code, Status
 
 __all__ = ["TEETH_ALONE", "Built", "build", "drags", "operation_at"]

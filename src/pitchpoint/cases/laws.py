@@ -3,14 +3,16 @@
 from math import inf
 
 from pitchpoint import units
-from pitchpoint.cases.tian2024 import friction as tian2024
 from pitchpoint.lubrication.conditions import UNITS
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
+from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.registry import Registry
 
 __all__ = ["CASE_LAWS", "FRICTION", "limits_words"]
 
-CASE_LAWS: tuple[FrictionLaw, ...] = tian2024.LAWS
+CASE_LAWS: tuple[FrictionLaw, ...] = tuple(
+    law for publication in PUBLICATIONS.values() for law in publication.laws
+)
 """Readings of a publication that are needed to reproduce its tables; no spread counts them."""
 
 FRICTION: Registry[FrictionLaw] = Registry("friction law", *LAWS, *CASE_LAWS)

@@ -4,6 +4,7 @@ import os
 from importlib import resources
 from pathlib import Path
 
+from pitchpoint import published
 from pitchpoint.cases.document import Tree, read
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.registry import nearest
@@ -13,7 +14,7 @@ __all__ = ["as_text", "find", "names", "path_of"]
 
 def names() -> list[str]:
     """Names of the shipped cases."""
-    folder = resources.files(__package__)
+    folder = resources.files(published)
     return sorted(item.name for item in folder.iterdir() if (item / "case.toml").is_file())
 
 
@@ -24,7 +25,7 @@ def path_of(case: str) -> Path:
         InputError: neither a shipped case nor a file.
     """
     if case in names():
-        return Path(str(resources.files(__package__) / case / "case.toml"))
+        return Path(str(resources.files(published) / case / "case.toml"))
     if Path(case).suffix == "" and not _exists(Path(case)):
         told = f"'{shorten(case)}' is neither a shipped case nor a file"
         raise InputError(f"{told}{nearest(case, names())}")

@@ -21,13 +21,13 @@ from pydantic import (
 )
 
 from pitchpoint import units
-from pitchpoint.cases.comparison import Row
 from pitchpoint.cases.document import Tree, demand_shallow, put
 from pitchpoint.cases.library import as_text, names, path_of
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.programs import surroundings
 from pitchpoint.results.store import read_bytes, write_text
-from pitchpoint.results.variables import End
+from pitchpoint.results.target_rows import Row
+from pitchpoint.results.variable import End
 
 __all__ = ["MANIFEST", "RUN", "Manifest", "Record", "default_folder", "is_record", "owner"]
 

@@ -99,15 +99,16 @@ def _flag(value: Any) -> bool:
 
 
 def _reductions() -> list[str]:
-    from pitchpoint.cases.reductions import REDUCTIONS
+    from pitchpoint.results.reductions import REDUCTIONS
 
     return list(REDUCTIONS)
 
 
 def _variables() -> list[str]:
+    from pitchpoint.published.registry import PUBLICATIONS
     from pitchpoint.results.variables import VARIABLES
 
-    return list(VARIABLES)
+    return [*VARIABLES, *(name for one in PUBLICATIONS.values() for name in one.variables)]
 
 
 def _friction_laws() -> list[str]:

@@ -22,7 +22,7 @@ from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity, SIValue
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.results.variables import End
+from pitchpoint.results.variable import End
 
 __all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
 

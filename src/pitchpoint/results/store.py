@@ -18,7 +18,8 @@ import xarray as xr
 
 from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
-from pitchpoint.results.variables import VARIABLES, End
+from pitchpoint.results.variable import End
+from pitchpoint.results.variables import VARIABLES
 from pitchpoint.status import DIRECT
 
 __all__ = [

@@ -14,11 +14,11 @@ from uuid import uuid4
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, Unasked
+from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.comparison import Row, compare, demand_parts
 from pitchpoint.cases.document import variants
 from pitchpoint.cases.failures import worst_first
 from pitchpoint.cases.library import as_text, find, names
@@ -50,6 +50,7 @@ from pitchpoint.results.store import (
     without_nan,
     write_text,
 )
+from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.jobs import Job, job_of, jobs
 
 __all__ = [

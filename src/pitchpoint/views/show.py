@@ -6,7 +6,8 @@ from math import floor, isfinite, log10
 from typing import Any
 
 from pitchpoint import units
-from pitchpoint.results.variables import VARIABLES, Variable, variable_of
+from pitchpoint.results.variable import Variable
+from pitchpoint.results.variables import VARIABLES, variable_of
 
 __all__ = [
     "axis_title",

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from math import ceil, log10
 from typing import Any
 
-from pitchpoint.cases.comparison import Row, counts
+from pitchpoint.results.target_rows import Row, counts
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Section

@@ -6,9 +6,10 @@ from math import cos, sin, sqrt, tan
 import numpy as np
 
 from pitchpoint._jax import jnp
-from pitchpoint.cases.build import Built
+from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.input.tables import Table
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]
 
@@ -48,14 +49,14 @@ def equivalent_mass(*, inertia: Sequence[float], base_radius: Sequence[float]) -
     return first * second / (first * r_1**2 + second * r_2**2)
 
 
-def readings(built: Built) -> dict[str, float]:
+def readings(gears: Table, design: Design, _: Operation) -> dict[str, float]:
     """Both formulas for a case, under the names of result variables."""
-    gears, mesh = built.case.gears, built.design.mesh
+    mesh = design.mesh
     assert isinstance(gears, CylindricalGears)
     assert isinstance(mesh, CylindricalPair)
     angle = float(np.arctan(tan(gears.pressure_angle) / cos(gears.helix_angle)))
     pair = mesh.standard
-    density = jnp.stack([solid.density for solid in built.design.solids])
+    density = jnp.stack([solid.density for solid in design.solids])
     inertia, action = mesh.inertia(density), mesh.line_of_action
     return {
         "printed_undercut_limit_1": undercut_limit(

@@ -1,6 +1,5 @@
-"""Figures that only a published case needs: formulas as its source prints them, and what stands beside."""
+"""Where flanks of a strain wave drive touch their envelope, for publications on its meshing zones."""
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -8,22 +7,36 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.cases.atanasiu2011 import printed as atanasiu2011
-from pitchpoint.cases.build import Built
-from pitchpoint.cases.stages import Ready
-from pitchpoint.cases.xu2021 import printed as xu2021
-from pitchpoint.cases.zhao2022 import printed as zhao2022
+from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.input.tables import Table
 from pitchpoint.programs import program
+from pitchpoint.results.variable import Variable, angle, deviation, length, speed
 
-__all__ = ["READINGS", "conjugate_readings", "readings_of"]
+__all__ = ["VARIABLES", "readings"]
 
-READINGS: dict[str, Callable[[Built], dict[str, float]]] = {
-    "atanasiu_2011": atanasiu2011.readings,
-    "xu_2021": lambda built: {**xu2021.readings(built), **conjugate_readings(built)},
-    "zhao_2022": lambda built: {**zhao2022.readings(built), **conjugate_readings(built)},
+VARIABLES = {
+    "phase_rate": Variable("speed of the wave over the teeth over that of the driver", "φ'/ω", "1"),
+    "deep_angle_first": angle("least angle of the deep conjugate branch", "p"),
+    "deep_angle_last": angle("largest angle of the deep conjugate branch", "p"),
+    "deep_radius_root": Variable(
+        "relative radius on the deep branch at the root", "R", "m", "m", "length"
+    ),
+    "deep_radius_tip": Variable(
+        "relative radius on the deep branch at the tip", "R", "m", "m", "length"
+    ),
+    "deep_entrainment_root": speed("entrainment on the deep branch at the root", "u"),
+    "deep_entrainment_tip": speed("entrainment on the deep branch at the tip", "u"),
+    "outer_angle_first": angle("least angle of the outer conjugate branch", "p"),
+    "outer_angle_last": angle("largest angle of the outer conjugate branch", "p"),
+    "outer_radius_least": length("least relative radius on the outer branch, with its sign", "R"),
+    "outer_radius_largest": length(
+        "largest relative radius on the outer branch, with its sign", "R"
+    ),
+    "outer_clearance_least": deviation("least clearance on the outer branch", "g"),
+    "clearance_between": deviation("largest clearance between pairs that touch", "g"),
 }
-"""By source of the case."""
+"""What `readings` gives."""
 
 PLACES = 121
 """Points of the flank at which its conjugate branches are looked for."""
@@ -38,31 +51,18 @@ _TOUCHING = 1e-5  # modules
 Points = Float[Array, "branch place"]
 
 
-def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
-    """Variables [law, point] that belong to the source of a case; none for most."""
-    reading = READINGS.get(points[0].case.source)
-    alone = [point for point in points if isinstance(point, Built)]
-    if reading is None or not alone:
-        return {}
-    found = [reading(point) for point in alone]
-    return {
-        name: (("law", "point"), np.array([[one[name] for one in found]] * laws))
-        for name in found[0]
-    }
-
-
-def conjugate_readings(built: Built) -> dict[str, float]:
+def readings(_: Table, design: Design, operation: Operation) -> dict[str, float]:
     """Where points of the flank touch their envelope, how they roll on it, and what the groove leaves of it.
 
     Every point does so twice, deep in the space near the long axis and again on its way out. Ends are
     those of the flank without the rounding of its tip.
     """
-    mesh = built.design.mesh
+    mesh = design.mesh
     assert isinstance(mesh, StrainWave)
     found = _conjugate(mesh)
     rate = float(found["phase_rate"])
     (deep, outer), (r_deep, r_outer) = found["angle"], found["radius"]
-    speed = np.abs(found["entrainment"][0]) * rate * built.case.operation.speed
+    speed = np.abs(found["entrainment"][0]) * rate * float(operation.speed)
     return {
         "phase_rate": rate,
         "deep_angle_first": float(np.nanmin(deep)),
@@ -111,7 +111,7 @@ def _branches(mesh: StrainWave) -> dict[str, Array]:
     turns = turns & (grid[:-1] >= ends[:, 0]) & (grid[:-1] < ends[:, 1])
     along = jnp.broadcast_to(along, turns.shape[:2])
 
-    def newton(_: int, angle: Points) -> Points:
+    def newton(_: Any, angle: Points) -> Points:
         at = motion.at(along, angle)
         return angle - at.closing / at.change
 

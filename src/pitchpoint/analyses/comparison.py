@@ -1,55 +1,25 @@
 """Printed numbers against computed ones."""
 
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.cases.reductions import INVERSE_SLOPE, PLAIN, REDUCTIONS, SLOPE, SPANS
 from pitchpoint.cases.schema import Target
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
+from pitchpoint.results.reductions import INVERSE_SLOPE, PLAIN, REDUCTIONS, SLOPE, SPANS
+from pitchpoint.results.target_rows import Row
 from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["Row", "compare", "counts", "demand_parts"]
-
+__all__ = ["compare", "demand_parts"]
 
 OF_VIBRATION = ("mean_transmission_error", "transmission_error_range", "largest_dynamic_factor")
 """Variables whose numbers count only where the vibration is a steady one."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One printed number, in the unit of the print, and what was computed for it.
-
-    `bound` says whether the number, or so many times it, is to be exceeded (">") or not reached ("<")
-    instead of met: "< 2 x ".
-    """
-
-    quantity: str
-    where: str
-    printed: float
-    computed: float | None
-    unit: str
-    tolerance: float
-    kind: str
-    verdict: str
-    reason: str
-    bound: str = ""
-
-    @property
-    def deviation(self) -> float | None:
-        """Computed minus printed."""
-        return None if self.computed is None else self.computed - self.printed
-
-    def as_json(self) -> dict[str, Any]:
-        """The row for machines."""
-        return asdict(self)
 
 
 def compare(
@@ -74,14 +44,6 @@ def compare(
             key = ".".join(filter(None, (f"targets.{position}", error.key or "unit")))
             raise error.at(file=name, key=key) from None
     return rows
-
-
-def counts(rows: Sequence[Row]) -> dict[str, Counter[str]]:
-    """Verdicts counted for each kind of target, never summed over kinds."""
-    kinds: dict[str, Counter[str]] = {}
-    for row in rows:
-        kinds.setdefault(row.kind, Counter())[row.verdict] += 1
-    return kinds
 
 
 class _OutsideError(InputError):

@@ -6,11 +6,11 @@ from math import log, pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import Operating
+from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
+from pitchpoint.input.tables import Table
 
 __all__ = [
     "assumed_radius",
@@ -106,7 +106,8 @@ def curvature_radii(
     """
     first, second = base_radius
     polar = np.asarray(distance) + np.asarray(radial)
-    return np.sqrt(np.square(distance) - first**2), np.sqrt(polar**2 - second**2)
+    radii = np.square(distance) - first**2, polar**2 - second**2
+    return np.asarray(np.sqrt(radii[0])), np.asarray(np.sqrt(radii[1]))
 
 
 def relative_radius(*, first: ArrayLike, second: ArrayLike) -> Array:
@@ -269,27 +270,27 @@ OIL = {"viscosity_0": 0.04, "alpha": 2.2e-8, "beta": 0.0476, "temperature_0": 31
 """Table 2, without the density."""
 
 
-def readings(built: Built) -> dict[str, float]:
+def readings(gears: Table, design: Design, operation: Operation) -> dict[str, float]:
     """What the formulas give for a case, under the names of result variables.
 
     Those with base circles are left out for teeth that have none.
     """
-    gears, mesh, case = built.case.gears, built.design.mesh, built.case
+    mesh = design.mesh
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)
     return {
         "tooth_ratio": gears.teeth[0] / (gears.teeth[1] - gears.teeth[0]),
-        **_of_base_circles(gears, mesh, case.operation),
-        **_of_oil(case.operation.temperature),
+        **_of_base_circles(gears, mesh, operation),
+        **_of_oil(float(operation.temperature)),
         "effective_modulus": effective_modulus(
-            young=_both(built, "young"), poisson=_both(built, "poisson")
+            young=_both(design, "young"), poisson=_both(design, "poisson")
         ),
-        "composite_roughness": float(built.design.roughness.composite_rq),
+        "composite_roughness": float(design.roughness.composite_rq),
     }
 
 
-def _both(built: Built, name: str) -> tuple[float, float]:
-    first, second = built.design.solids
+def _both(design: Design, name: str) -> tuple[float, float]:
+    first, second = design.solids
     return float(getattr(first, name)), float(getattr(second, name))
 
 
@@ -301,7 +302,7 @@ def _of_oil(temperature: float) -> dict[str, float]:
 
 
 def _of_base_circles(
-    gears: StrainWaveGears, mesh: StrainWave, operation: Operating
+    gears: StrainWaveGears, mesh: StrainWave, operation: Operation
 ) -> dict[str, float]:
     if not isinstance(mesh.flank, InvoluteFlank):
         return {}
@@ -310,9 +311,9 @@ def _of_base_circles(
     return {
         "base_radius_flexspline": radii[0],
         "base_radius_circular_spline": radii[1],
-        **_loads(gears, radii, operation.load),
+        **_loads(gears, radii, float(operation.load)),
         **_curvatures(gears, radii, deflection),
-        **_speeds(gears, radii, deflection, operation.speed),
+        **_speeds(gears, radii, deflection, float(operation.speed)),
     }
 
 

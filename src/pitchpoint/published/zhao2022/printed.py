@@ -5,10 +5,11 @@ from math import atan, cos, pi, sin, sqrt, tan
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pitchpoint.cases.build import Built
+from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
+from pitchpoint.input.tables import Table
 
 __all__ = [
     "arc_distance",
@@ -131,12 +132,12 @@ def closure_residual(
     return start_y - (end_x - start_x) / tan(theta_b) - end_y
 
 
-def readings(built: Built) -> dict[str, float]:
+def readings(gears: Table, design: Design, operation: Operation) -> dict[str, float]:
     """What the formulas give for a case, under the names of result variables."""
-    gears, mesh = built.case.gears, built.design.mesh
+    mesh = design.mesh
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)
-    torque = built.case.operation.load
+    torque = float(operation.load)
     diameter = gears.module * (gears.teeth[0] - ENGAGED_HEIGHT)
     zone = {"half_zone": HALF_ZONE, "diameter": diameter, "face_width": gears.face_width}
     load = largest_tangential_load(torque=torque, **zone)

@@ -1,0 +1,94 @@
+"""What a quantity of a result is: its names, its unit, and how it is shown."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = [
+    "End",
+    "Variable",
+    "angle",
+    "deviation",
+    "force",
+    "length",
+    "percent",
+    "power",
+    "speed",
+    "stiffness",
+    "torque",
+]
+
+End = Literal["driver", "loaded"]
+"""One of the two members whose motion a drive passes on."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A quantity of a result: long name, symbol, SI unit, and unit and kind for display.
+
+    Attributes:
+        end: whose motion it counts in, None where it has nothing to do with one.
+        travel: the quantity where that member travels.
+    """
+
+    long_name: str
+    symbol: str
+    unit: str
+    shown: str = ""
+    kind: str = "dimensionless"
+    end: End | None = None
+    travel: "Variable | None" = None
+
+    @property
+    def display(self) -> str:
+        """Unit in which tables and figures show it."""
+        return self.shown or self.unit
+
+    def where(self, travels: Collection[End]) -> "Variable":
+        """The quantity in a drive some of whose members travel."""
+        return self.travel if self.travel is not None and self.end in travels else self
+
+
+def percent(long_name: str, symbol: str) -> Variable:
+    """A share, shown in percent."""
+    return Variable(long_name, symbol, "1", "%")
+
+
+def torque(long_name: str, symbol: str) -> Variable:
+    """A torque [N m]."""
+    return Variable(long_name, symbol, "N m", "N m", "torque")
+
+
+def stiffness(long_name: str, symbol: str) -> Variable:
+    """A stiffness along a line [N/m], shown in N/um."""
+    return Variable(long_name, symbol, "N/m", "N/um", "stiffness")
+
+
+def deviation(long_name: str, symbol: str) -> Variable:
+    """A small length [m], shown in um."""
+    return Variable(long_name, symbol, "m", "um", "length")
+
+
+def length(long_name: str, symbol: str) -> Variable:
+    """A length [m], shown in mm."""
+    return Variable(long_name, symbol, "m", "mm", "length")
+
+
+def power(long_name: str, symbol: str) -> Variable:
+    """A power [W]."""
+    return Variable(long_name, symbol, "W", "W", "power")
+
+
+def force(long_name: str, symbol: str) -> Variable:
+    """A force [N]."""
+    return Variable(long_name, symbol, "N", "N", "force")
+
+
+def angle(long_name: str, symbol: str) -> Variable:
+    """An angle [rad], shown in degrees."""
+    return Variable(long_name, symbol, "rad", "deg", "angle")
+
+
+def speed(long_name: str, symbol: str) -> Variable:
+    """A speed [m/s]."""
+    return Variable(long_name, symbol, "m/s", "m/s", "velocity")
