@@ -11,7 +11,7 @@ import xarray as xr
 from sound import PAIR
 
 from pitchpoint import programs
-from pitchpoint.cases.build import TEETH_ALONE
+from pitchpoint.cases.build import ALONE, TEETH_ALONE
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs import run as running
@@ -132,7 +132,8 @@ def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -
     alone = Variant({**tree, "losses": {}}, name, "default").built({})
     assert with_losses.covers == {}
     assert TEETH_ALONE not in with_losses.warnings
-    assert alone.covers == {"covers": "teeth alone"}
+    assert alone.covers == {"covers": ALONE}
+    assert ALONE.startswith("teeth alone: bearings, seals and grease")
     assert alone.warnings.count(TEETH_ALONE) == 1
 
 

@@ -58,7 +58,10 @@ from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
 from pitchpoint.status import Code, Status
 
-__all__ = ["TEETH_ALONE", "Built", "build", "drags", "operation_at"]
+__all__ = ["ALONE", "TEETH_ALONE", "Built", "build", "drags", "operation_at"]
+
+ALONE = "teeth alone: bearings, seals and grease are not in it"
+"""What an efficiency is of where a case has no losses beside the teeth."""
 
 TEETH_ALONE = (
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
@@ -240,9 +243,14 @@ class Built:
 
     @property
     def covers(self) -> dict[str, str]:
-        """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
-        alone = self.design.mesh.inner_bearing and not self.case.losses
-        return {"covers": "teeth alone"} if alone else {}
+        """What the efficiency is of, as an attribute, where it is less than a whole drive."""
+        alone = self.case.gears.transmits and not self.case.losses
+        return {"covers": ALONE} if alone else {}
+
+    @property
+    def lacks_bearing(self) -> bool:
+        """True where teeth press on a bearing inside the drive, and no loss of the case stands for it."""
+        return bool(self.design.mesh.inner_bearing) and not self.case.losses
 
     @property
     def loaded(self) -> str:
@@ -319,7 +327,7 @@ def _left_out(built: Built) -> list[str]:
     """What a model leaves out, or changes nothing of."""
     heats = built.case.models.tooth_temperature != "isothermal"
     idle = heats and not any(used.plastic for used in built.solids)
-    return [TEETH_ALONE] * bool(built.covers) + [NO_PLASTIC] * idle
+    return [TEETH_ALONE] * built.lacks_bearing + [NO_PLASTIC] * idle
 
 
 def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
