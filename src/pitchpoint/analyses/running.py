@@ -84,11 +84,11 @@ def _held(torques: np.ndarray) -> np.ndarray:
 def _unloaded(built: Built) -> list[str]:
     """Starting torques without what mostly makes them."""
     drags = built.design.drag
-    if any(float(drag.preload) or float(drag.breakaway_torque) for drag in drags):
+    if any(float(drag.preload) or drag.holds for drag in drags):
         return []
     return [
-        "No preload of a bearing and no breakaway_torque are given: measured drives take many times these "
-        "torques to start, either way."
+        "No preload of a bearing, no breakaway model and no breakaway_torque are given: measured drives take "
+        "many times these torques to start, either way."
     ]
 
 

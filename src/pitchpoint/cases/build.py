@@ -33,6 +33,7 @@ from pitchpoint.cases.solids import (
 )
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.summary import engaged
@@ -473,6 +474,8 @@ def _drag(
         churning_speed=array(loss.churning_speed or 1.0),
         churning_exponent=array(loss.churning_exponent),
         breakaway_torque=array(loss.breakaway_torque),
+        breakaway=BREAKAWAY[loss.breakaway],
+        breakaway_factors={name: array(value) for name, value in loss.breakaway_factors.items()},
     )
 
 
