@@ -21,6 +21,9 @@ from pitchpoint.status import locked_or_lost, told
 __all__ = ["RUNNING", "running_axes", "running_part"]
 
 SPEEDS = 9
+TEMPERATURES = 7
+WARM = 353.15
+"""Temperature up to which torques are shown that matter in the cold [K]."""
 CREEPING = 2.0 * np.pi / 60.0
 """Speed of a driver that begins to turn, at which laws of tooth friction are taken [rad/s]."""
 
@@ -93,10 +96,17 @@ def _unloaded(built: Built) -> list[str]:
 
 
 def running_axes(built: Built) -> tuple[np.ndarray, np.ndarray]:
-    """Speeds [rad/s] and temperatures [K]: those of the loss map, and the operating point's own."""
-    point = built.case.operation
+    """Speeds [rad/s] and temperatures [K] with those of the operating point.
+
+    Speeds go up to that of the loss map. Temperatures are those of the map where the case gives them,
+    else they go from the oil's lowest to a warm one.
+    """
+    point, asked = built.case.operation, built.case.loss_map
     speeds, degrees = map_axes(built)[1:]
     speeds = np.linspace(0.0, speeds[-1], SPEEDS + 1)[1:]
+    if asked is None or not asked.temperatures:
+        low, high = built.temperatures
+        degrees = np.linspace(low, max(min(high, WARM), point.temperature), TEMPERATURES)
     return _with(speeds, point.speed), _with(degrees, point.temperature)
 
 
