@@ -555,9 +555,22 @@ def bad_oils() -> Iterator[Bad]:
         ("one viscosity", {"viscosity_100": None}, ("viscosity_40 and viscosity_100",), ""),
         ("rising", {"viscosity_100": "300 mm2/s"}, ("above",), ".viscosity_40"),
         ("ends", {"temperature_min": "90 degC", "temperature_max": "80 degC"}, ("below",), ""),
+        (
+            "thin in the cold",
+            {"viscosity_minus_40": "20 mm2/s"},
+            ("must be above viscosity_40",),
+            ".viscosity_minus_40",
+        ),
     ]:
         oil = {k: v for k, v in {**by_value, **change}.items() if v is not None}
         yield Bad(f"oil {name}", ("lubricant",), oil, words, f"lubricant{key}")
+
+
+def bad_cold() -> Iterator[Bad]:
+    cold = ("operation", "temperature")
+    for base, allowed in [("cylindrical", "to 120 degC"), ("strain wave", "0 degC to 120 degC")]:
+        words = ("-41 degC is outside the range of", allowed)
+        yield Bad(f"cold {base}", cold, "-41 degC", words, "operation.temperature", base)
 
 
 def bad_surfaces() -> Iterator[Bad]:
@@ -766,6 +779,7 @@ LISTED = [
     *bad_sweeps(),
     *bad_parameters(),
     *bad_oils(),
+    *bad_cold(),
     *bad_loss_sets(),
     *bad_surfaces(),
     *bad_marks(),

@@ -558,6 +558,7 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
     values = {
         "nu_1": oil.viscosity_40,
         "nu_2": oil.viscosity_100,
+        "nu_0": oil.viscosity_minus_40,
         "density_15": oil.density,
         "density_slope": oil.density_slope,
         "lubricant_factor": oil.lubricant_factor,
@@ -571,6 +572,8 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
         for key, value in values.items()
         if value is not None
     }
+    if "nu_0" in given:
+        given = {**lubricants.known_cold(given["nu_0"]), **given}
     try:
         if oil.name is not None:
             found: dict[str, Any] = dict(given)
@@ -592,6 +595,7 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
 _OIL_KEYS = {
     "nu_1": "viscosity_40",
     "nu_2": "viscosity_100",
+    "nu_0": "viscosity_minus_40",
     "density_15": "density",
     "density_slope": "density_slope",
     "gold_s": "pressure_viscosity",

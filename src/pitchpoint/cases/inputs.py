@@ -48,6 +48,7 @@ _DIMENSIONS = (
 _SOLID = {"young": "pressure", "poisson": "dimensionless", "density": "density"}
 
 _OIL = {
+    "nu_0": "kinematic viscosity",
     "nu_1": "kinematic viscosity",
     "nu_2": "kinematic viscosity",
     "T_1": "temperature",
@@ -169,8 +170,11 @@ def _numbered(row: Row, number: int) -> Row:
 
 
 def _of_oil(built: Built) -> Iterator[Row]:
+    known = built.lubricant.data()
     for name, kind in _OIL.items():
-        datum = built.lubricant.data()[name]
+        datum = known.get(name)
+        if datum is None:
+            continue
         mark = Provenance(datum.status, datum.source, datum.note)
         yield _row(OIL, name, datum.value, kind, mark)
 

@@ -51,6 +51,7 @@ POISSON = Quantity("dimensionless", 0.0, 0.5)
 DENSITY = Quantity("density", 100.0, 30_000.0, "kg/m3")
 SLOPE = Quantity("density slope", 0.0, 5.0, "kg/m3/K")
 VISCOSITY = Quantity("kinematic viscosity", 2e-6, 0.1, "mm2/s")
+COLD_VISCOSITY = Quantity("kinematic viscosity", 2e-6, 10.0, "mm2/s")
 ALPHA = Quantity("pressure-viscosity coefficient", 1e-10, 1e-6, "1/GPa")
 FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
@@ -212,12 +213,14 @@ class Oil(Table):
     """An oil of the catalogue, by value, or a catalogue oil with some values of one's own.
 
     With a thickener or a consistency (NLGI number) it is a grease, and the values are those of its base oil.
+    With its viscosity at -40 degC it goes down to there.
     """
 
     name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
     base: Annotated[str, BeforeValidator(named(_bases, "class of base oil"))] | None = None
     viscosity_40: Annotated[float, VISCOSITY] | None = None
     viscosity_100: Annotated[float, VISCOSITY] | None = None
+    viscosity_minus_40: Annotated[float, COLD_VISCOSITY] | None = None
     density: Annotated[float, DENSITY] | None = None
     density_slope: Annotated[float, SLOPE] | None = None
     pressure_viscosity: Annotated[float, ALPHA] | None = None
