@@ -1,7 +1,8 @@
 """Torque that runs and starts a drive with losses beside its teeth, as a dataset of a case."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,10 +16,13 @@ from pitchpoint.cases.build import Built
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import engaged
-from pitchpoint.results.store import dataset
+from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["RUNNING", "running_axes", "running_part"]
+__all__ = ["RUNNING", "TORQUES", "running_axes", "running_part"]
+
+TORQUES = ("no_load_torque", "starting_torque", "back_driving_torque")
+"""Torques without load: running, and from rest either way."""
 
 SPEEDS = 9
 TEMPERATURES = 7
@@ -125,4 +129,24 @@ def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     return running_part(built)
 
 
-RUNNING = Analysis(name="running", title="running without load", lacks=_free, compute=_computed)
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Torques by law, over speed and temperature; none of a part that does not exist."""
+    data = parts.get("running")
+    if data is None:
+        return {}
+    axes = {name: data[name].values.tolist() for name in ("speed", "temperature")}
+    laws = enumerate(data["law"].values)
+    each = {
+        str(law): {n: without_nan(data[n].values[k].tolist()) for n in TORQUES} for k, law in laws
+    }
+    return {"running": {**axes, **each}}
+
+
+RUNNING = Analysis(
+    name="running",
+    title="running without load",
+    lacks=_free,
+    compute=_computed,
+    main=TORQUES,
+    figures=_figures,
+)

@@ -6,6 +6,7 @@ from functools import reduce
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.running import TORQUES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -36,7 +37,6 @@ __all__ = ["BESIDE", "drag_panel", "loss_split", "running_rows", "starting_answe
 
 _TEETH = Key("in the teeth", PALETTE[5], "")
 _BESIDE = Key("beside the teeth", "#9aa5ad", "")
-_TORQUES = ("no_load_torque", "starting_torque", "back_driving_torque")
 
 
 def drag_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
@@ -89,7 +89,7 @@ def running_rows(outcome: Outcome) -> list[dict[str, str]]:
     there = data.sel(speed=operating_point(outcome).speed, method="nearest")
     return [
         {"friction law": law, head("temperature"): shown("temperature", float(degree))}
-        | {head(n, data): _screened(data, n, float(there[n].values[k, place])) for n in _TORQUES}
+        | {head(n, data): _screened(data, n, float(there[n].values[k, place])) for n in TORQUES}
         for k, law in enumerate(laws(data))
         for place, degree in enumerate(data["temperature"].values)
     ]
