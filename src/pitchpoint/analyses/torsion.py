@@ -108,9 +108,8 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         solve=solve,
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
-    mesh = built.design.mesh
     whole["path"].attrs.update(built.way)
-    return whole.isel(pair=mesh.filled)
+    return whole
 
 
 def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
@@ -177,10 +176,25 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         "torsional_stiffness": found.stiffness @ weight,
         "loaded_pairs": found.loaded_pairs @ weight,
         **_zone_load(found.inner_load @ weight),
-        "path": path.mean(axis=1)[:, ::SHOWN].T,
-        "tooth_force": np.moveaxis(found.force.sum(axis=2), 1, 2)[:, ::SHOWN],
+        "edge_share": _parts(found.edge_load @ weight, found.force.sum(axis=(1, 2)) @ weight),
+        **_of_pairs(design.mesh, path, found.force),
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
+    }
+
+
+def _parts(some: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """Part of a whole; none of nothing."""
+    return np.asarray(some / np.where(whole != 0.0, whole, 1.0))
+
+
+def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
+    """Way of every pair that is held [phase, pair] and the force on it [torque, phase, pair]."""
+    held, each = mesh.filled_pairs, np.moveaxis(force.sum(axis=2), 1, 0)
+    loads = np.moveaxis(np.asarray(mesh.of_pairs(each))[held], 0, 2)
+    return {
+        "path": path.mean(axis=1)[mesh.first_places][held, ::SHOWN].T,
+        "tooth_force": loads[:, ::SHOWN],
     }
 
 

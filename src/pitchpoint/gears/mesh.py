@@ -8,7 +8,7 @@ from typing import ClassVar, Literal, Self
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
@@ -208,6 +208,32 @@ class Mesh(eqx.Module):
         Empty places let meshes of several tooth numbers share their programs.
         """
         return slice(None)
+
+    @property
+    def filled_pairs(self) -> np.ndarray | slice:
+        """Numbers of the pairs that are held, see `of_pairs`."""
+        return self.filled
+
+    @property
+    def first_places(self) -> np.ndarray | slice:
+        """Number of the first place of each pair."""
+        return slice(None)
+
+    def of_pairs(self, places: Float[Arrays, "place *#b"]) -> Float[Array, "pair *#b"]:
+        """Sums over the places at which each pair may touch: its only one, unless a family has more.
+
+        Args:
+            places: a value for each place.
+        """
+        return jnp.asarray(places)
+
+    def on_edge(self, contacts: Contacts) -> Bool[Array, "pair slice *b"]:
+        """True for contacts at an end of a flank or on the rounding of a tip, of families that watch for it.
+
+        Args:
+            contacts: of the mesh.
+        """
+        return jnp.zeros(contacts.active.shape, bool)
 
     @property
     def largest_radius(self) -> Float[Array, ""]:

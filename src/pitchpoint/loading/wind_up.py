@@ -31,6 +31,7 @@ class WindUp(eqx.Module):
         loaded_pairs: number of pairs that carry.
         force: normal force of each slice [N].
         share: part of the sum of all forces; without load the limit for a vanishing one.
+        edge_load: sum of the forces at ends of flanks and on roundings, see `Mesh.on_edge` [N].
         inner_load: on the bearing inside the drive in each zone, see `Mesh.inner_load` [N].
         slip_torque: sum of forces times their sliding arms: what a friction coefficient of one would
             hold at the driven coordinate [N m or N].
@@ -45,6 +46,7 @@ class WindUp(eqx.Module):
     loaded_pairs: Int[Array, "*b"]
     force: Float[Array, "pair slice *b"]
     share: Float[Array, "pair slice *b"]
+    edge_load: Each
     inner_load: Float[Array, "zone *b"]
     slip_torque: Each
     residual: Each
@@ -108,7 +110,8 @@ def wind_up(
         wind_up=moved - free,
         touch=free,
         stiffness=1.0 / slope,
-        loaded_pairs=jnp.sum(jnp.any(found.loaded, axis=1), axis=0),
+        loaded_pairs=jnp.sum(mesh.of_pairs(jnp.any(found.loaded, axis=1) * 1.0) > 0.0, axis=0),
+        edge_load=total(jnp.where(mesh.on_edge(contacts), found.force, 0.0)),
         force=found.force,
         share=found.share,
         inner_load=jnp.sum(mesh.inner_load(contacts) * found.force, axis=(1, 2)),

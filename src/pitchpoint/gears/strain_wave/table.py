@@ -33,6 +33,9 @@ FORCE_ANGLE = Quantity("angle", 0.0, 60 * pi / 180, "deg")
 AMPLITUDE = Quantity("dimensionless", -10.0, 10.0)
 BOTTOM = Quantity("dimensionless", 0.0, 2.0)
 ROUNDING = Quantity("dimensionless", 0.01, 0.5)
+LEAVING = Quantity("angle", 20 * pi / 180, 80 * pi / 180, "deg")
+RELIEF = Quantity("dimensionless", 0.0, 0.2)
+RELIEF_LENGTH = Quantity("dimensionless", 0.0, 1.0)
 PLAY = Quantity("length", 0.0, 1e-3, "um")
 THICKNESS = Quantity("length", 1e-5, 0.1, "mm")
 SUPPORT = Quantity("pressure", 1e6, 1e16, "N/mm2")
@@ -174,7 +177,9 @@ CircularSpline = Annotated[
 class StrainWaveGears(GearsTable):
     """A strain wave gear with two lobes: wave generator, flexspline and circular spline.
 
-    Clearance and rounding of the tips are in modules. Gear 1 is the flexspline, gear 2 the circular
+    Clearances, rounding and relief of the tips are in modules. The tips of a circular spline whose flanks
+    are swept end where the clearance or the leaving angle ends them, whatever is shorter. Edges sweep the
+    groove in any case; whether they carry says `edges`. Gear 1 is the flexspline, gear 2 the circular
     spline, in this table and in that of the materials.
     """
 
@@ -191,7 +196,12 @@ class StrainWaveGears(GearsTable):
     face_width: Annotated[float, WIDTH]
     fixed: Literal["wave generator", "flexspline", "circular spline"] = "circular spline"
     clearance: Annotated[float, BOTTOM] = 0.25
+    leaving_angle: Annotated[float, LEAVING] = 50 * pi / 180
     tip_rounding: Annotated[float, ROUNDING] = 0.1
+    tip_relief: Annotated[float, RELIEF] = 0.005
+    relief_length: Annotated[float, RELIEF_LENGTH] = 0.06
+    bottom_clearance: Annotated[float, BOTTOM] = 0.15
+    edges: Literal["clear", "carry"] = "clear"
     backlash: Annotated[float, PLAY] = 0.0
     tooth: Tooth = DoubleArcTooth(set="liu")
     wave_generator: WaveGenerator = WaveGenerator()
