@@ -26,6 +26,9 @@ from pitchpoint.status import locked_or_lost, told
 __all__ = ["TORSION", "rigid", "torsion_part"]
 
 TORQUES = 25
+MUCH = 0.03
+"""Part of the load on edges from which on a sentence says so."""
+
 SHOWN = 3
 """Every so many phases the load on every tooth is kept."""
 
@@ -103,7 +106,11 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         },
         title="torsion",
         travels=built.travels,
-        warnings=[*_lost(built, found["wind_up"], torques), *_loopless(built, friction)],
+        warnings=[
+            *_lost(built, found["wind_up"], torques),
+            *_on_edges(built, found["edge_share"], torques),
+            *_loopless(built, friction),
+        ],
         note=f"{yields} yield; {rigid} are not in it",
         solve=solve,
     )
@@ -123,6 +130,20 @@ def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     return [
         f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they are "
         "left out."
+    ]
+
+
+def _on_edges(built: Built, share: np.ndarray, torques: np.ndarray) -> list[str]:
+    """Torques at which edges carry more than a little."""
+    much = share > MUCH
+    if not much.any():
+        return []
+    most = int(np.nanargmax(share))
+    return [
+        f"Edges of the teeth (ends of flanks and roundings of tips) carry up to {100.0 * share[most]:.2g} % "
+        f"of the load, that part at {built.carried.show(torques[most])}: more than {100.0 * MUCH:g} % from "
+        f"{built.carried.show(torques[much][0])} on. Loss, stiffness and pressure then hang on how those "
+        "edges are made."
     ]
 
 
@@ -189,12 +210,11 @@ def _parts(some: np.ndarray, whole: np.ndarray) -> np.ndarray:
 
 
 def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
-    """Way of every pair that is held [phase, pair] and the force on it [torque, phase, pair]."""
-    held, each = mesh.filled_pairs, np.moveaxis(force.sum(axis=2), 1, 0)
-    loads = np.moveaxis(np.asarray(mesh.of_pairs(each))[held], 0, 2)
+    """Way of every pair [phase, pair] and the force on it [torque, phase, pair]."""
+    way, loads = mesh.in_pairs(path, 0, like_first=True), mesh.in_pairs(force, 1)
     return {
-        "path": path.mean(axis=1)[mesh.first_places][held, ::SHOWN].T,
-        "tooth_force": loads[:, ::SHOWN],
+        "path": way.mean(axis=1)[:, ::SHOWN].T,
+        "tooth_force": np.moveaxis(loads.sum(axis=2), 1, 2)[:, ::SHOWN],
     }
 
 

@@ -201,23 +201,18 @@ class Mesh(eqx.Module):
         """Sense in which the phase runs while the drive turns on: one, or minus one."""
         return jnp.ones(())
 
-    @property
-    def filled(self) -> np.ndarray | slice:
-        """Numbers of the places for pairs that hold one.
+    def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
+        """Values by pairs that the mesh holds, and the places at which each may touch.
 
-        Empty places let meshes of several tooth numbers share their programs.
+        Empty places let meshes of several tooth numbers share their programs, and a family may give a pair
+        a second one; the slices are then its places.
+
+        Args:
+            values: with places and slices on two neighbouring axes.
+            axis: of the places.
+            like_first: True if a place that a pair does not have gets the value of its first, else zero.
         """
-        return slice(None)
-
-    @property
-    def filled_pairs(self) -> np.ndarray | slice:
-        """Numbers of the pairs that are held, see `of_pairs`."""
-        return self.filled
-
-    @property
-    def first_places(self) -> np.ndarray | slice:
-        """Number of the first place of each pair."""
-        return slice(None)
+        return values
 
     def of_pairs(self, places: Float[Arrays, "place *#b"]) -> Float[Array, "pair *#b"]:
         """Sums over the places at which each pair may touch: its only one, unless a family has more.

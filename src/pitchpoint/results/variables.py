@@ -147,6 +147,7 @@ VARIABLES: dict[str, Variable] = {
     "torsional_stiffness": Variable(
         "torsional stiffness", "K", "N m/rad", "kN m/rad", "torsional stiffness"
     ),
+    "edge_share": percent("part of the load on edges of the teeth", "F_e/F"),
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
     "lost_motion": Variable(

@@ -109,7 +109,7 @@ def build_strain_wave(
     leaving_angle: float = radians(50.0),
     tip_rounding: float = 0.1,
     tip_relief: float = 0.005,
-    relief_length: float = 0.06,
+    relief_length: float = 0.1,
     bottom_clearance: float = 0.15,
     edges_carry: bool = False,
     backlash: float = 0.0,

@@ -269,20 +269,16 @@ class StrainWave(Mesh):
         """True where a tooth reaches into the circular spline's teeth."""
         return _overlaps(self.tooth_motion, self.groove, angle)
 
-    @property
-    def filled(self) -> np.ndarray:
-        """Numbers of the places at which a pair is held."""
-        return np.flatnonzero(np.asarray(self._number) < float(self.held))
-
-    @property
-    def filled_pairs(self) -> np.ndarray:
-        """Numbers of the pairs that are held."""
-        return np.flatnonzero(np.arange(2 * self.lanes) % self.lanes < float(self.held))
-
-    @property
-    def first_places(self) -> np.ndarray:
-        """Number of the first place of each pair."""
-        return np.flatnonzero(~self._second)
+    def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
+        """Values by pairs that are held, of two places the one nearer to the root first."""
+        number, zone = np.asarray(self._number).astype(int), self._zone
+        (first,) = np.nonzero(~self._second & (number < float(self.held)))
+        same = (zone == zone[first, None]) & (number == number[first, None]) & self._second
+        other = np.where(same.any(axis=1), same.argmax(axis=1), -1)
+        own, beside = np.take(values, first, axis), np.take(values, other, axis)
+        lone = (other < 0).reshape(-1, *(1 for _ in range(values.ndim - axis - 1)))
+        empty = own if like_first else np.zeros_like(own)
+        return np.concatenate([own, np.where(lone, empty, beside)], axis=axis + 1)
 
     @property
     def _zone(self) -> np.ndarray:
@@ -744,7 +740,9 @@ def _valley(
     top = play_at(ridge)
     rises = [jnp.where(two, top - play_at(station), 1.0) for station in (first, other)]
     part = jnp.where(two, rises[1] / (rises[0] + rises[1]), 0.0)
-    return jnp.where(second, other, first), jnp.where(second, part, 1.0 - part)
+    # The place nearer to the root is the first one.
+    later = jnp.where(two, jnp.where(first < other, second, ~jnp.asarray(second)), second)
+    return jnp.where(later, other, first), jnp.where(later, part, 1.0 - part)
 
 
 def _reversal(

@@ -199,7 +199,7 @@ class StrainWaveGears(GearsTable):
     leaving_angle: Annotated[float, LEAVING] = 50 * pi / 180
     tip_rounding: Annotated[float, ROUNDING] = 0.1
     tip_relief: Annotated[float, RELIEF] = 0.005
-    relief_length: Annotated[float, RELIEF_LENGTH] = 0.06
+    relief_length: Annotated[float, RELIEF_LENGTH] = 0.1
     bottom_clearance: Annotated[float, BOTTOM] = 0.15
     edges: Literal["clear", "carry"] = "clear"
     backlash: Annotated[float, PLAY] = 0.0
