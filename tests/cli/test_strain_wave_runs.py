@@ -107,8 +107,8 @@ def test_another_drive_compiles_nothing_new(other: tuple[int, Outcome]) -> None:
 
 
 def test_empty_places_for_pairs_are_not_told(drive: Outcome, other: tuple[int, Outcome]) -> None:
-    """Teeth within 40 degrees before and 50 behind the long axis, at both of its ends."""
-    for outcome, pairs in ((drive, 2 * 49), (other[1], 2 * 47)):
+    """Teeth within 30 degrees before and 50 behind the long axis, at both of its ends."""
+    for outcome, pairs in ((drive, 2 * 43), (other[1], 2 * 41)):
         assert outcome.parts["cycle"].sizes["pair"] == pairs
         assert outcome.parts["torsion"].sizes["pair"] == pairs
 

@@ -106,7 +106,7 @@ def build_strain_wave(
     cup_length: float | None = None,
     support_stiffness: float = inf,
     clearance: float = 0.25,
-    leaving_angle: float = radians(50.0),
+    disengagement: float = radians(50.0),
     tip_rounding: float = 0.1,
     tip_relief: float = 0.005,
     relief_length: float = 0.1,
@@ -134,7 +134,7 @@ def build_strain_wave(
         support_stiffness: of the wave generator's bearing, see `FlexibleRing` [N/m2].
         clearance: between the tip of the circular spline's teeth and the root of the flexspline on
             the long axis, in modules.
-        leaving_angle: from the long axis at which teeth leave their spaces, at the latest: the tips of the
+        disengagement: from the long axis at which teeth leave their spaces, at the latest: the tips of the
             circular spline end there if the clearance does not end them before [rad].
         tip_rounding: radius of the edges of all tips, in modules.
         tip_relief: by which the tips of both splines lie below the flank where their rounding begins, in
@@ -359,7 +359,7 @@ def _planned(
     cup_length: float | None,
     support_stiffness: float,
     clearance: float,
-    leaving_angle: float,
+    disengagement: float,
     tip_rounding: float,
     tip_relief: float,
     relief_length: float,
@@ -414,7 +414,7 @@ def _planned(
     travel, cutter = (ToothMotion(_prepared(one), line, lag) for one in (flank, flank.unrelieved))
     low = neutral + w0 + rim / 2.0 + clearance * module
     if groove is None:
-        low = max(low, float(_tip_height(cutter, array(leaving_angle))))
+        low = max(low, float(_tip_height(cutter, array(disengagement))))
     return _Plan(parts, travel, cutter, low, groove, (z1, z2), module, backlash)
 
 

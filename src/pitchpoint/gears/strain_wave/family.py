@@ -51,7 +51,7 @@ def _strain_wave(gears: StrainWaveGears, driver: str, slices: int) -> tuple[Mesh
             cup_length=cup.cup_length,
             support_stiffness=inf if cup.support_stiffness is None else cup.support_stiffness,
             clearance=gears.clearance,
-            leaving_angle=gears.leaving_angle,
+            disengagement=gears.disengagement,
             tip_rounding=gears.tip_rounding,
             tip_relief=gears.tip_relief,
             relief_length=gears.relief_length,

@@ -178,7 +178,7 @@ class StrainWaveGears(GearsTable):
     """A strain wave gear with two lobes: wave generator, flexspline and circular spline.
 
     Clearances, rounding and relief of the tips are in modules. The tips of a circular spline whose flanks
-    are swept end where the clearance or the leaving angle ends them, whatever is shorter. Edges sweep the
+    are swept end where the clearance or the angle of disengagement ends them, whatever is shorter. Edges sweep the
     groove in any case; whether they carry says `edges`. Gear 1 is the flexspline, gear 2 the circular
     spline, in this table and in that of the materials.
     """
@@ -196,7 +196,7 @@ class StrainWaveGears(GearsTable):
     face_width: Annotated[float, WIDTH]
     fixed: Literal["wave generator", "flexspline", "circular spline"] = "circular spline"
     clearance: Annotated[float, BOTTOM] = 0.25
-    leaving_angle: Annotated[float, LEAVING] = 50 * pi / 180
+    disengagement: Annotated[float, LEAVING] = 50 * pi / 180
     tip_rounding: Annotated[float, ROUNDING] = 0.1
     tip_relief: Annotated[float, RELIEF] = 0.005
     relief_length: Annotated[float, RELIEF_LENGTH] = 0.1
