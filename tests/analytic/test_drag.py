@@ -9,6 +9,7 @@ import pytest
 from pitchpoint import citations
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, palmgren_1959
+from pitchpoint.efficiency.breakaway import BREAKAWAY, dry_and_viscous
 from pitchpoint.efficiency.drag import Drag, at_rest
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
@@ -353,3 +354,58 @@ def test_back_driving_starts_against_the_breakaway_of_the_input():
     smooth = float(starting_torque(backwards, idle, local_models(0.0)))
     assert smooth == pytest.approx(0.4 * 2.0, rel=1e-9)
     assert float(starting_torque(backwards, idle, local_models())) > smooth
+
+
+# ------------------------------------------------------------------ breakaway
+
+HELD = BREAKAWAY["dry_and_viscous"]
+FACTORS = {"dry": 15.0, "viscous": 5.0, "preload": 1.0}
+
+
+def held(diameter=0.06, viscosity=100e-6, **factors):
+    return float(
+        dry_and_viscous(
+            mean_diameter=diameter, kinematic_viscosity=viscosity, **{**FACTORS, **factors}
+        )
+    )
+
+
+def test_breakaway_torque_by_hand():
+    assert held() == pytest.approx((15.0 + 5.0) * 0.06**2, rel=1e-14)
+    assert held(viscosity=800e-6) == pytest.approx((15.0 + 5.0 * 4.0) * 0.06**2, rel=1e-14)
+    assert held(preload=2.5) == pytest.approx((37.5 + 5.0) * 0.06**2, rel=1e-14)
+
+
+def test_breakaway_grows_with_the_square_of_the_size_and_a_power_of_the_viscosity():
+    assert held(0.12) == pytest.approx(4.0 * held(), rel=1e-14)
+    thin, thick = (held(viscosity=nu, dry=0.0) for nu in (20e-6, 3000e-6))
+    assert np.log(thick / thin) / np.log(150.0) == pytest.approx(2.0 / 3.0, abs=1e-12)
+    dry = {held(viscosity=nu, viscous=0.0) for nu in (20e-6, 3000e-6)}
+    assert dry == {held(viscous=0.0)}
+
+
+def test_a_model_of_breakaway_acts_at_rest_alone_and_as_its_torque_does():
+    more = held(viscosity=float(OIL.kinematic_viscosity(328.15)))
+    named = Drag([1.0, 0.0], mean_diameter=0.06, breakaway=HELD, breakaway_factors=FACTORS)
+    point = {"speed": 3.0, "load": 0.0, "kinematic_viscosity": OIL.kinematic_viscosity(328.15)}
+    assert float(named.torque(**point)) == 0.0
+    assert float(at_rest([named])[0].torque(**point)) == pytest.approx(more, rel=1e-14)
+    assert named.holds
+    assert not Drag([1.0, 0.0], seal_torque=0.1).holds
+
+
+def test_a_breakaway_model_asks_for_its_factors():
+    with pytest.raises(InputError, match="'dry_and_viscous' asks for dry, viscous, preload"):
+        Drag([1.0, 0.0], mean_diameter=0.06, breakaway=HELD, breakaway_factors={"dry": 1.0})
+
+
+def test_torque_without_load_grows_with_the_power_of_the_viscosity():
+    """Where the lubricant alone brakes, down to the oil's lowest temperature."""
+    degrees = jnp.linspace(float(OIL.T_min), 320.0, 9)
+    points = Operation(jnp.zeros(9), jnp.full(9, 157.0), degrees)
+    lubricant = {"f1": 0.0, "preload": 0.0}
+    drag = bearing(0, **lubricant), bearing(1, **lubricant)
+    torque = np.log(np.asarray(no_load_torque(design(*drag), points, local_models())))
+    viscosity = np.log(np.asarray(OIL.kinematic_viscosity(degrees)))
+    assert np.all(np.diff(torque) < 0.0)
+    np.testing.assert_allclose(np.diff(torque) / np.diff(viscosity), 2.0 / 3.0, atol=1e-6)

@@ -205,6 +205,31 @@ def test_grease_is_its_base_oil_in_a_computation():
     assert float(thinner.build().nu_2) == 7e-6
 
 
+@pytest.mark.parametrize("name", ["pao-4", "pao-6", "pao-8"])
+def test_an_oil_for_the_cold_goes_through_its_three_viscosities(name):
+    record = lubricants.find(name)
+    oil = record.build()
+    found = oil.kinematic_viscosity(jnp.array([233.15, 313.15, 373.15]))
+    known = [float(value) for value in (oil.nu_0, oil.nu_1, oil.nu_2)]
+    np.testing.assert_allclose(found, known, rtol=1e-12)
+    assert float(oil.T_min) == pytest.approx(233.15, rel=1e-14)
+    degrees = jnp.linspace(233.15, 393.15, 33)
+    assert np.all(np.diff(np.asarray(oil.kinematic_viscosity(degrees))) < 0.0)
+    beside = oil.kinematic_viscosity(jnp.array([313.15 - 1e-9, 313.15 + 1e-9]))
+    assert float(beside[0]) == pytest.approx(float(beside[1]), rel=1e-9)
+    alone = astm_d341(T=233.15, nu_1=oil.nu_1, T_1=313.15, nu_2=oil.nu_2, T_2=373.15)
+    assert 1.7 < float(alone) / known[0] < 2.3
+
+
+def test_a_grease_tells_its_consistency_and_what_is_left_out_in_the_cold():
+    grease = lubricants.find("pao-6").thickened(thickener="lithium soap", consistency="2")
+    assert grease.data() == lubricants.find("pao-6").data()
+    assert "nor does it stiffen the grease in the cold" in grease.note
+    assert "NLGI 2 (worked penetration 265 to 295 tenths of a millimetre)" in grease.note
+    own = lubricants.find("pao-6").thickened(consistency="1-2").note
+    assert own.endswith("NLGI 1-2 is recorded.")
+
+
 def test_range_of_temperature():
     oil = lubricants.find("fva-3").build()
     inside = oil.in_range(jnp.array([273.0, 273.15, 393.15, 393.3]))
@@ -257,6 +282,7 @@ def test_unknown_oil_and_material_name_the_nearest():
         ({"density_15": -1.0}, "fva-3.density_15: -1.0 is not a positive number"),
         ({"density_slope": 10.0}, "fva-3.density_slope: makes the density negative at T_max"),
         ({"T_1": 400.0}, "fva-3.T_1: must be below T_2"),
+        ({"nu_0": 50e-6}, "fva-3.nu_0: must be above nu_1, the viscosity at a higher temperature"),
         ({"colour": 1.0}, '"colour" is not a property of an oil'),
     ],
 )

@@ -555,9 +555,22 @@ def bad_oils() -> Iterator[Bad]:
         ("one viscosity", {"viscosity_100": None}, ("viscosity_40 and viscosity_100",), ""),
         ("rising", {"viscosity_100": "300 mm2/s"}, ("above",), ".viscosity_40"),
         ("ends", {"temperature_min": "90 degC", "temperature_max": "80 degC"}, ("below",), ""),
+        (
+            "thin in the cold",
+            {"viscosity_minus_40": "20 mm2/s"},
+            ("must be above viscosity_40",),
+            ".viscosity_minus_40",
+        ),
     ]:
         oil = {k: v for k, v in {**by_value, **change}.items() if v is not None}
         yield Bad(f"oil {name}", ("lubricant",), oil, words, f"lubricant{key}")
+
+
+def bad_cold() -> Iterator[Bad]:
+    cold = ("operation", "temperature")
+    for base, allowed in [("cylindrical", "to 120 degC"), ("strain wave", "0 degC to 120 degC")]:
+        words = ("-41 degC is outside the range of", allowed)
+        yield Bad(f"cold {base}", cold, "-41 degC", words, "operation.temperature", base)
 
 
 def bad_surfaces() -> Iterator[Bad]:
@@ -725,6 +738,39 @@ def bad_drives() -> Iterator[Bad]:
     bearing = {"between": ["gear 1", "housing"], "bearing": "palmgren_1959", "f1": 0.001}
     words = ("is missing", "mean_diameter, f0, f1")
     yield Bad("bearing", ("losses",), {"oil": bearing}, words, "losses.oil.mean_diameter")
+    held = {"between": ["gear 1", "housing"], "breakaway": "dry_and_viscous"}
+    words = ("is missing", "mean_diameter, breakaway_dry, breakaway_viscous")
+    yield Bad("breakaway", ("losses",), {"oil": held}, words, "losses.oil.mean_diameter")
+    seal = between | {"seal_torque": "1 N m", "breakaway_preload": 2}
+    words, key = ("none asks for no values",), "losses.oil.breakaway_preload"
+    yield Bad("breakaway_preload alone", ("losses",), {"oil": seal}, words, key)
+
+
+def bad_loss_sets() -> Iterator[Bad]:
+    for name, given, words in [
+        ("misspelt", "strain_wave_componet", ("did you mean strain_wave_component?",)),
+        ("a number", 3, ("3 is not the name of a set of losses", "strain_wave_component")),
+        ("a list", LIST, ("is not the name of a set of losses",)),
+    ]:
+        given = {"set": given}
+        yield Bad(f"set {name}", ("losses",), given, words, "losses.set", "strain wave")
+    named = {"set": "strain_wave_component"}
+    words = ("scales with pitch diameter", "which these gears do not have")
+    yield Bad("set of other gears", ("losses",), named, words, "losses.set: ")
+    yield Bad("set of a rack", ("losses",), named, words, "losses.set: ", "rack")
+    words = ("a set belongs to one mesh", "under the stage")
+    yield Bad("set of a drive", ("losses",), named, words, "losses.set: ", "drive")
+    key = "losses.wave_generator_bearing"
+    for name, given, end, words in [
+        ("negative", {"f0": -1}, ".f0", ("-1", "allowed is 0 to 100")),
+        ("negative size", {"mean_diameter": "-3 mm"}, ".mean_diameter", ("-3 mm", "allowed")),
+        ("negative part", {"breakaway_dry": "-1 N/m"}, ".breakaway_dry", ("allowed is 0",)),
+        ("unknown key", {"f2": 1}, ".f2", ("f0", "f1")),
+        ("no bearing", {"bearing": "none"}, ".f0", ("none asks for no values",)),
+        ("no table", 3, "", ("3 was given where a table belongs",)),
+    ]:
+        table = named | {"wave_generator_bearing": given}
+        yield Bad(f"set {name}", ("losses",), table, words, key + end, "strain wave")
 
 
 WALKED = [replace(bad, base=site.base) for site in SITES for bad in bads_at(site)]
@@ -733,6 +779,8 @@ LISTED = [
     *bad_sweeps(),
     *bad_parameters(),
     *bad_oils(),
+    *bad_cold(),
+    *bad_loss_sets(),
     *bad_surfaces(),
     *bad_marks(),
     *bad_targets(),

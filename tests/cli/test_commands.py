@@ -344,7 +344,7 @@ def test_a_mesh_that_friction_locks(pitchpoint: Callable[..., Told], tiny: Path)
 
 
 def published(tmp_path: Path, old: str = "", new: str = "") -> Path:
-    text = (resources.files("pitchpoint.cases") / "tian2024" / "case.toml").read_text("utf-8")
+    text = (resources.files("pitchpoint.published") / "tian2024" / "case.toml").read_text("utf-8")
     assert old in text
     path = tmp_path / "copy.toml"
     path.write_text(text.replace(old, new, 1), "utf-8")

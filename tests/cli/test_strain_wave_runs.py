@@ -11,7 +11,7 @@ import xarray as xr
 from sound import PAIR
 
 from pitchpoint import programs
-from pitchpoint.cases.build import TEETH_ALONE
+from pitchpoint.cases.build import ALONE, TEETH_ALONE
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs import run as running
@@ -20,7 +20,7 @@ from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_result
 from pitchpoint.views import show
 from pitchpoint.views.sections.answer import summary
-from pitchpoint.views.sections.beside import starting_answer
+from pitchpoint.views.sections.beside import running_rows, starting_answer
 from pitchpoint.views.sections.kinematic_error import error_rows, kinematic_error_answer
 from pitchpoint.views.sections.torsion import wind_up_rows
 
@@ -132,7 +132,8 @@ def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -
     alone = Variant({**tree, "losses": {}}, name, "default").built({})
     assert with_losses.covers == {}
     assert TEETH_ALONE not in with_losses.warnings
-    assert alone.covers == {"covers": "teeth alone"}
+    assert alone.covers == {"covers": ALONE}
+    assert ALONE.startswith("teeth alone: bearings, seals and grease")
     assert alone.warnings.count(TEETH_ALONE) == 1
 
 
@@ -227,6 +228,13 @@ def test_running_without_load(drive: Outcome) -> None:
     assert (data["starting_torque"].values > 0.015).all()
     assert (data["back_driving_torque"].values > 100.0 * 0.015).all()
     words = dict(starting_answer(drive, "constant"))
+    rows = running_rows(drive)
+    assert [row["θ [degC]"] for row in rows] == ["20", "40", "60"]
+    told, place = figures(drive)["running"], [row["θ [degC]"] for row in rows].index("40")
+    shown = float(rows[place]["T_start [N m]"])
+    assert shown == pytest.approx(told["constant"]["starting_torque"][place], rel=1e-4)
+    torques = [[float(row[key]) for row in rows] for key in ("T_0 [N m]", "T_back [N m]")]
+    assert all(np.all(np.diff(torque) <= 0.0) for torque in torques)
     there = data.sel(law="constant", temperature=313.15)
     told = float(there["starting_torque"])
     assert words["starting torque"] == show.quantity("starting_torque", told)

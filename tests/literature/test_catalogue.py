@@ -1,12 +1,14 @@
 """Strain-wave drives beside what the catalogues of their makers give.
 
 Efficiencies: CSD-25-100 (and CSD-20-100) at rated torque, read off the curves by the author of a
-public program; two constants of the shipped case `csd25` are fitted to all of them together.
+public program; two constants of the set of losses that the case `csd25` names are fitted to all of them
+together. Starting and back-driving torque: CSF-17-100 and CSF-25-50, to which a third one is fitted.
 Stiffness: HFUC-32-100 beside the case `hfuc32`, nothing fitted.
 """
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import equinox as eqx
 import numpy as np
@@ -17,8 +19,12 @@ from scipy.special import ellipe, ellipk
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import resolve
+from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.library import find
+from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
+from pitchpoint.efficiency.running_torque import starting_torque
+from pitchpoint.efficiency.summary import engaged
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
@@ -40,6 +46,7 @@ CATALOGUE = np.array(
 BAND = 2.0
 """Points of efficiency: what reading two curves to whole percents may come to."""
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "strain_wave.toml"
 RATED = 47.0
 K1, K2, K3 = 6.7e4, 1.1e5, 1.2e5
 """Stiffness of HFUC-32-100 below 29 N m, from there to 108 N m, and beyond [N m/rad]."""
@@ -86,8 +93,8 @@ def at_load(load=RATED):
 
 def test_all_44_efficiencies_of_the_catalogue():
     away = 100.0 * at_load() - CATALOGUE
-    assert np.abs(away).max() < BAND
-    assert np.abs(away).mean() < 0.6
+    assert np.abs(away).max() < 1.09
+    assert np.abs(away).mean() < 0.44
     assert np.abs(away.mean(axis=1)).max() < 0.6
     assert np.abs(away.mean(axis=0)).max() < 1.0
 
@@ -104,14 +111,22 @@ def test_pairs_that_carry_make_all_the_losses():
     np.testing.assert_allclose(fewer[0], found[0], rtol=1e-14)
 
 
-def test_two_constants_are_fitted_and_they_are_named():
+def test_constants_that_are_fitted_are_named():
+    """Two to the efficiencies; the third, to starting torques, enters none of them."""
     document = resolve(dict(find("csd25")[1]), name="csd25", variant="default")
-    fitted = {key for key, mark in document.provenance.items() if mark.status == "fitted"}
-    assert fitted == {f"losses.wave_generator_bearing.{name}" for name in ("f0", "f1")}
+    assert not [mark for mark in document.provenance.values() if mark.status == "fitted"]
+    rows = [row for row in resolved(case()[0], document) if row["status"] == "fitted"]
+    place = "wave_generator_bearing"
+    named = {f"{place}.{name}" for name in ("f0", "f1", "breakaway_dry")}
+    assert {row["key"] for row in rows} == named
+    assert not any(row["given"] for row in rows)
+    (given,) = (row for row in resolved(case()[0], document) if row["key"] == "set")
+    assert (given["value"], given["given"]) == ("strain_wave_component", True)
 
 
 def test_rows_of_the_case_are_those_of_the_catalogue():
-    rows = [row for row in find("csd25")[1]["targets"] if row["kind"] == "calibrated"]
+    rows = [row for row in find("csd25")[1]["targets"] if row["study"].startswith("rpm")]
+    assert {row["kind"] for row in rows} == {"calibrated"}
     listed = {}
     for row in rows:
         speed, degree = (part.split()[0] for part in row["quantity"].split(", ")[1:])
@@ -137,6 +152,63 @@ def test_each_of_the_two_constants_is_needed_and_at_its_best():
     assert least < 20.0
     for name in ("f0", "f1"):
         assert all(squares(**{name: by}) > 1.2 * least for by in (0.9, 1.1))
+
+
+def test_a_higher_ratio_loses_less_torque():
+    """Ratio 160, -10 and 40 degC, 2000 rpm: what grows with the deflection falls with the ratio."""
+    tree = find("csd25")[1]
+    changes = tree["studies"]["ratio_160"]["change"]
+    higher = load_case("csd25", settings=changes).design
+    found, printed = 100.0 * efficiency(design=higher)[0][2, [0, -1]], np.array([25.0, 70.0])
+    assert np.abs(found - printed).max() < BAND
+    design, drag = case()[0].design, higher.drag[0]
+    same = replace(higher, drag=(replace(drag, factors=design.drag[0].factors),))
+    constant = 100.0 * efficiency(design=same)[0][2, [0, -1]]
+    assert np.all(found - constant > 1.5)
+
+
+# ------------------------------------------------------------------ starting torques
+
+STARTING = {(17, 100): (0.034, 3.3), (25, 50): (0.15, 9.0)}
+"""Size and ratio; torque that starts the drive, and that back-drives it, by its maker [N m]."""
+
+
+def of_size(size, ratio):
+    """A drive that names the set, pitch diameter in tenths of an inch."""
+    shipped = find("csd25")[1]
+    tree = {key: shipped[key] for key in ("lubricant", "roughness", "models")}
+    tree["gears"] = {"family": "strain_wave", "teeth": [2 * ratio, 2 * ratio + 2]}
+    tree["gears"] |= {"module": SIValue(2.54e-3 * size / (2 * ratio))}
+    tree["gears"] |= {"face_width": SIValue(0.4e-3 * size)}
+    tree["operation"] = {"torque": "10 N m", "speed": "1 rpm", "temperature": "25 degC"}
+    return Variant({**tree, "losses": {"set": "strain_wave_component"}}, "", "default").built({})
+
+
+def from_rest(built):
+    idle, models = replace(built.operation, load=jnp.asarray(0.0)), built.models[0]
+    return float(starting_torque(built.design, idle, models, engaged(built.design, idle, models)))
+
+
+@pytest.mark.parametrize(("size", "ratio"), STARTING)
+def test_torques_that_start_a_drive_either_way(size, ratio):
+    """One set of constants for both sizes and ratios."""
+    built = of_size(size, ratio)
+    forth, back = from_rest(built), from_rest(built.backwards)
+    printed = STARTING[size, ratio]
+    assert forth == pytest.approx(printed[0], rel=0.4)
+    assert back == pytest.approx(printed[1], rel=0.4)
+    assert 0.9 < back / (ratio * forth) < 1.3
+
+
+def test_the_shipped_example_has_the_efficiency_of_real_drives():
+    built = load_case(str(EXAMPLE))
+    point = built.case.operation
+    values = (point.load, point.speed, point.temperature)
+    points = Operation(*(jnp.full(SPEEDS.shape + DEGREES.shape, value) for value in values))
+    known = engagement(built.design, built.operation.load, built.models[0], 8)
+    found = jax.device_get(_cycle(built.design, points, built.models[0], known))[0]
+    assert 0.64 < float(found[0, 0]) < 0.75
+    assert built.covers == {}
 
 
 def test_efficiency_rises_with_temperature_and_torque_and_falls_with_speed():

@@ -244,9 +244,10 @@ def test_running_without_load_is_told_at_the_operating_point() -> None:
     from pitchpoint.analyses.running import running_axes
 
     for settings, sizes in [
-        ({}, (9, 3)),  # the middle of the map's own axes
+        ({}, (9, 7)),  # speed and temperature are among the axes' own
+        ({"operation.temperature": "50 degC"}, (9, 8)),
         ({"loss_map.temperatures": ["20 degC", "60 degC"], "loss_map.speed": "2100 rpm"}, (10, 3)),
-        ({"loss_map.speed": "1000 rpm"}, (10, 3)),
+        ({"loss_map.speed": "1000 rpm"}, (10, 7)),
     ]:
         built = Variant(PAIR, "pair.toml", "default", settings).built({})
         point, axes = built.case.operation, running_axes(built)

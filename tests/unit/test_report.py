@@ -14,6 +14,7 @@ import pytest
 import xarray as xr
 from records import entries
 
+from pitchpoint.cases.build import ALONE
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.family import Family
@@ -284,7 +285,7 @@ def test_efficiency_and_the_spread_of_the_laws_stand_together(
     low, high = 100.0 * values.min(), 100.0 * values.max()
     text = Words(page).text
     for value in outcome.parts["operation"]["mean_efficiency"].values[:, 0]:
-        shown = f"{100.0 * value:.2f} % mean efficiency"
+        shown = f"{100.0 * value:.2f} % mean efficiency, {ALONE}"
         assert f"{shown} friction laws that apply {low:.2f} to {high:.2f} %" in text
 
 

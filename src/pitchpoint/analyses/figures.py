@@ -1,7 +1,7 @@
 """Main figures of the parts of a result as JSON has them."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ __all__ = [
     "bearing_loads",
     "by_law",
     "by_torque",
+    "covered",
     "covers",
     "error_ranges",
     "json_figures",
@@ -136,8 +137,14 @@ def of_operation(parts: Parts) -> dict[str, Any]:
 
 
 def covers(data: xr.Dataset) -> str:
-    """What the efficiency is of, where that is less than the whole drive."""
-    return str(data["mean_efficiency"].attrs.get("covers", ""))
+    """What the efficiency is of, where that is less than the whole drive; empty without efficiencies."""
+    return str(data["mean_efficiency"].attrs.get("covers", "")) if "mean_efficiency" in data else ""
+
+
+def covered(every: Iterable[Parts]) -> str:
+    """The same as sentences for some results, each once; empty where whole drives are meant."""
+    found = dict.fromkeys(covers(parts["operation"]) for parts in every if "operation" in parts)
+    return " ".join(f"Efficiencies are those of the {of}." for of in found if of)
 
 
 def out_of_range(laws: xr.Dataset) -> list[dict[str, Any]]:

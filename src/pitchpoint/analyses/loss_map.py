@@ -80,7 +80,7 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         for k, law in enumerate(built.laws)
         if where[k].any()
     ]
-    return dataset(
+    found = dataset(
         {name: (_DIMS, data[name].values) for name in _NAMES},
         {name: (name, data[name].values) for name in _DIMS},
         title="loss map",
@@ -89,6 +89,8 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         solve=told_of(locked_or_lost(locked, lost)),
         note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
     )
+    found["mean_efficiency"].attrs.update(built.covers)
+    return found
 
 
 def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:

@@ -1,7 +1,8 @@
 """Torque that runs and starts a drive with losses beside its teeth, as a dataset of a case."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,12 +16,18 @@ from pitchpoint.cases.build import Built
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import engaged
-from pitchpoint.results.store import dataset
+from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["RUNNING", "running_axes", "running_part"]
+__all__ = ["RUNNING", "TORQUES", "running_axes", "running_part"]
+
+TORQUES = ("no_load_torque", "starting_torque", "back_driving_torque")
+"""Torques without load: running, and from rest either way."""
 
 SPEEDS = 9
+TEMPERATURES = 7
+WARM = 353.15
+"""Temperature up to which torques are shown that matter in the cold [K]."""
 CREEPING = 2.0 * np.pi / 60.0
 """Speed of a driver that begins to turn, at which laws of tooth friction are taken [rad/s]."""
 
@@ -84,19 +91,26 @@ def _held(torques: np.ndarray) -> np.ndarray:
 def _unloaded(built: Built) -> list[str]:
     """Starting torques without what mostly makes them."""
     drags = built.design.drag
-    if any(float(drag.preload) or float(drag.breakaway_torque) for drag in drags):
+    if any(float(drag.preload) or drag.holds for drag in drags):
         return []
     return [
-        "No preload of a bearing and no breakaway_torque are given: measured drives take many times these "
-        "torques to start, either way."
+        "No preload of a bearing, no breakaway model and no breakaway_torque are given: measured drives take "
+        "many times these torques to start, either way."
     ]
 
 
 def running_axes(built: Built) -> tuple[np.ndarray, np.ndarray]:
-    """Speeds [rad/s] and temperatures [K]: those of the loss map, and the operating point's own."""
-    point = built.case.operation
+    """Speeds [rad/s] and temperatures [K] with those of the operating point.
+
+    Speeds go up to that of the loss map. Temperatures are those of the map where the case gives them,
+    else they go from the oil's lowest to a warm one.
+    """
+    point, asked = built.case.operation, built.case.loss_map
     speeds, degrees = map_axes(built)[1:]
     speeds = np.linspace(0.0, speeds[-1], SPEEDS + 1)[1:]
+    if asked is None or not asked.temperatures:
+        low, high = built.temperatures
+        degrees = np.linspace(low, max(min(high, WARM), point.temperature), TEMPERATURES)
     return _with(speeds, point.speed), _with(degrees, point.temperature)
 
 
@@ -115,4 +129,24 @@ def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     return running_part(built)
 
 
-RUNNING = Analysis(name="running", title="running without load", lacks=_free, compute=_computed)
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Torques by law, over speed and temperature; none of a part that does not exist."""
+    data = parts.get("running")
+    if data is None:
+        return {}
+    axes = {name: data[name].values.tolist() for name in ("speed", "temperature")}
+    laws = enumerate(data["law"].values)
+    each = {
+        str(law): {n: without_nan(data[n].values[k].tolist()) for n in TORQUES} for k, law in laws
+    }
+    return {"running": {**axes, **each}}
+
+
+RUNNING = Analysis(
+    name="running",
+    title="running without load",
+    lacks=_free,
+    compute=_computed,
+    main=TORQUES,
+    figures=_figures,
+)

@@ -33,6 +33,7 @@ from pitchpoint.cases.solids import (
 )
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.summary import engaged
@@ -58,7 +59,10 @@ from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
 from pitchpoint.status import Code, Status
 
-__all__ = ["TEETH_ALONE", "Built", "build", "drags", "operation_at"]
+__all__ = ["ALONE", "TEETH_ALONE", "Built", "build", "drags", "operation_at"]
+
+ALONE = "teeth alone: bearings, seals and grease are not in it"
+"""What an efficiency is of where a case has no losses beside the teeth."""
 
 TEETH_ALONE = (
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
@@ -240,9 +244,14 @@ class Built:
 
     @property
     def covers(self) -> dict[str, str]:
-        """What the efficiency holds, as an attribute, where it is less than one expects of such a drive."""
-        alone = self.design.mesh.inner_bearing and not self.case.losses
-        return {"covers": "teeth alone"} if alone else {}
+        """What the efficiency is of, as an attribute, where it is less than a whole drive."""
+        alone = self.case.gears.transmits and not self.case.losses
+        return {"covers": ALONE} if alone else {}
+
+    @property
+    def lacks_bearing(self) -> bool:
+        """True where teeth press on a bearing inside the drive, and no loss of the case stands for it."""
+        return bool(self.design.mesh.inner_bearing) and not self.case.losses
 
     @property
     def loaded(self) -> str:
@@ -319,7 +328,7 @@ def _left_out(built: Built) -> list[str]:
     """What a model leaves out, or changes nothing of."""
     heats = built.case.models.tooth_temperature != "isothermal"
     idle = heats and not any(used.plastic for used in built.solids)
-    return [TEETH_ALONE] * bool(built.covers) + [NO_PLASTIC] * idle
+    return [TEETH_ALONE] * built.lacks_bearing + [NO_PLASTIC] * idle
 
 
 def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
@@ -465,6 +474,8 @@ def _drag(
         churning_speed=array(loss.churning_speed or 1.0),
         churning_exponent=array(loss.churning_exponent),
         breakaway_torque=array(loss.breakaway_torque),
+        breakaway=BREAKAWAY[loss.breakaway],
+        breakaway_factors={name: array(value) for name, value in loss.breakaway_factors.items()},
     )
 
 
@@ -547,6 +558,7 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
     values = {
         "nu_1": oil.viscosity_40,
         "nu_2": oil.viscosity_100,
+        "nu_0": oil.viscosity_minus_40,
         "density_15": oil.density,
         "density_slope": oil.density_slope,
         "lubricant_factor": oil.lubricant_factor,
@@ -560,6 +572,8 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
         for key, value in values.items()
         if value is not None
     }
+    if "nu_0" in given:
+        given = {**lubricants.known_cold(given["nu_0"]), **given}
     try:
         if oil.name is not None:
             found: dict[str, Any] = dict(given)
@@ -581,6 +595,7 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
 _OIL_KEYS = {
     "nu_1": "viscosity_40",
     "nu_2": "viscosity_100",
+    "nu_0": "viscosity_minus_40",
     "density_15": "density",
     "density_slope": "density_slope",
     "gold_s": "pressure_viscosity",

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
+from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.results.variables import VARIABLES
@@ -47,6 +48,7 @@ _DIMENSIONS = (
 _SOLID = {"young": "pressure", "poisson": "dimensionless", "density": "density"}
 
 _OIL = {
+    "nu_0": "kinematic viscosity",
     "nu_1": "kinematic viscosity",
     "nu_2": "kinematic viscosity",
     "T_1": "temperature",
@@ -168,8 +170,11 @@ def _numbered(row: Row, number: int) -> Row:
 
 
 def _of_oil(built: Built) -> Iterator[Row]:
+    known = built.lubricant.data()
     for name, kind in _OIL.items():
-        datum = built.lubricant.data()[name]
+        datum = known.get(name)
+        if datum is None:
+            continue
         mark = Provenance(datum.status, datum.source, datum.note)
         yield _row(OIL, name, datum.value, kind, mark)
 
@@ -198,6 +203,7 @@ def _rows(
     """Rows of a table of the case file; `following` are values that the gears leave open."""
     asked = dict(leaves({table: document.tree[table]})) if table in document.tree else {}
     derived = (following or {}) if table == "gears" else {}
+    usual = marks_of(document.tree.get(table)) if table == "losses" else {}
     for key, left in _leaves(getattr(case, table)):
         path, value = f"{table}.{key}", derived.get(key) if left is None else left
         if value is None:
@@ -206,10 +212,13 @@ def _rows(
             mark = document.provenance.get(path, Provenance())
             yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
         else:
-            mark = Provenance("derived" if left is None else "default")
+            mark = usual.get(key, Provenance("derived" if left is None else "default"))
             yield _row(table, key, value, _kind(path, _plain(value)), mark)
-    for path in (one for one, value in asked.items() if value == {}):
-        yield _row(table, path[len(table) + 1 :], {}, "", Provenance(), given=True)
+    for path, value in asked.items():
+        key = path[len(table) + 1 :]
+        if value == {} or (usual and key == SET):
+            mark = document.provenance.get(path, Provenance())
+            yield _row(table, key, value, "", mark, given=True)
 
 
 def _leaves(table: Any) -> Iterator[tuple[str, Any]]:

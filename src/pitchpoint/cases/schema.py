@@ -1,6 +1,6 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import count
 from math import inf, pi
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
@@ -12,12 +12,14 @@ from pydantic import (
     ConfigDict,
     Field,
     ValidationError,
+    ValidationInfo,
     model_validator,
 )
 from pydantic.fields import FieldInfo
 
 from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
+from pitchpoint.cases.loss_sets import expanded, named_set
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, Deviation, GearsTable
@@ -49,6 +51,7 @@ POISSON = Quantity("dimensionless", 0.0, 0.5)
 DENSITY = Quantity("density", 100.0, 30_000.0, "kg/m3")
 SLOPE = Quantity("density slope", 0.0, 5.0, "kg/m3/K")
 VISCOSITY = Quantity("kinematic viscosity", 2e-6, 0.1, "mm2/s")
+COLD_VISCOSITY = Quantity("kinematic viscosity", 2e-6, 10.0, "mm2/s")
 ALPHA = Quantity("pressure-viscosity coefficient", 1e-10, 1e-6, "1/GPa")
 FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
@@ -65,6 +68,8 @@ FORCE = Quantity("force", 0.0, 1e7, "N")
 PRESSED = Quantity("force", 0.0, 1e7, "N", open_low=True)
 PLACE = Quantity("length", -10.0, 10.0, "mm")
 TURN = Quantity("angle", -2 * pi, 2 * pi, "deg")
+OVER_SQUARE = Quantity("line load", 0.0, 1e6, "N/m")
+PRELOAD_RATIO = Quantity("dimensionless", 0.0, 100.0)
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
 
@@ -147,6 +152,12 @@ def _bearing_losses() -> list[str]:
     return list(BEARING_LOSS)
 
 
+def _breakaways() -> list[str]:
+    from pitchpoint.efficiency.breakaway import BREAKAWAY
+
+    return list(BREAKAWAY)
+
+
 def _rollings() -> list[str]:
     from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
@@ -202,12 +213,14 @@ class Oil(Table):
     """An oil of the catalogue, by value, or a catalogue oil with some values of one's own.
 
     With a thickener or a consistency (NLGI number) it is a grease, and the values are those of its base oil.
+    With its viscosity at -40 degC it goes down to there.
     """
 
     name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
     base: Annotated[str, BeforeValidator(named(_bases, "class of base oil"))] | None = None
     viscosity_40: Annotated[float, VISCOSITY] | None = None
     viscosity_100: Annotated[float, VISCOSITY] | None = None
+    viscosity_minus_40: Annotated[float, COLD_VISCOSITY] | None = None
     density: Annotated[float, DENSITY] | None = None
     density_slope: Annotated[float, SLOPE] | None = None
     pressure_viscosity: Annotated[float, ALPHA] | None = None
@@ -392,6 +405,10 @@ class Loss(Table):
     churning_speed: Annotated[float, SPEED] | None = None
     churning_exponent: Annotated[float, EXPONENT] = 1.0
     breakaway_torque: Annotated[float, TORQUE] = 0.0
+    breakaway: Annotated[str, BeforeValidator(named(_breakaways, "breakaway model"))] = "none"
+    breakaway_dry: Annotated[float, OVER_SQUARE] | None = None
+    breakaway_viscous: Annotated[float, OVER_SQUARE] | None = None
+    breakaway_preload: Annotated[float, PRELOAD_RATIO] | None = None
 
     @property
     def factors(self) -> dict[str, float]:
@@ -399,18 +416,27 @@ class Loss(Table):
         given = {"f0": self.f0, "f1": self.f1}
         return {name: value for name, value in given.items() if value is not None}
 
+    @property
+    def breakaway_factors(self) -> dict[str, float]:
+        """Factors of the breakaway model by name."""
+        given = {"dry": self.breakaway_dry, "viscous": self.breakaway_viscous}
+        named = {name: value for name, value in given.items() if value is not None}
+        if self.breakaway == "none" and self.breakaway_preload is None:
+            return named
+        ratio = 1.0 if self.breakaway_preload is None else self.breakaway_preload
+        return {**named, "preload": ratio}
+
     @model_validator(mode="after")
     def _complete(self) -> "Loss":
         from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+        from pitchpoint.efficiency.breakaway import BREAKAWAY
 
-        wanted = BEARING_LOSS[self.bearing].factors
-        needed = ("mean_diameter", *wanted) if self.bearing != "none" else ()
-        given = {*self.factors, *(["mean_diameter"] if self.mean_diameter is not None else [])}
-        for name in (*needed, *sorted(given)):
-            if (name in needed) != (name in given):
-                told = "is missing; " if name in needed else "was given; "
-                has = ", ".join(needed) or "no values"
-                raise InputError(f"{told}{self.bearing} asks for {has}", key=name)
+        moving = self._asked(self.bearing, BEARING_LOSS[self.bearing].factors, self.factors)
+        holding = [f"breakaway_{name}" for name in self.breakaway_factors]
+        wanted = [f"breakaway_{name}" for name in BREAKAWAY[self.breakaway].factors]
+        held = self._asked(self.breakaway, wanted, holding)
+        if not (moving or held) and self.mean_diameter is not None:
+            raise InputError("was given; none asks for no values", key="mean_diameter")
         if self.churning_torque > 0.0 and self.churning_speed is None:
             raise InputError(
                 "is missing; churning_torque is that at this speed", key="churning_speed"
@@ -422,11 +448,23 @@ class Loss(Table):
         for name in (key for key in alone if _given(self, key)):
             raise InputError(f"was given without {alone[name]}, to which it belongs", key=name)
         beside = (self.seal_torque, self.churning_torque, self.breakaway_torque)
-        if not any((*self.factors.values(), *beside)):
+        parts = (self.breakaway_dry, self.breakaway_viscous)
+        if not any((*self.factors.values(), *beside, *parts)):
             raise InputError(
                 "all torques and factors are zero: nothing is lost; leave the table out"
             )
         return self
+
+    def _asked(self, model: str, wanted: Sequence[str], given: Collection[str]) -> Sequence[str]:
+        """What a model asks for; InputError if something of it is missing, or more was given."""
+        needed = () if model == "none" else ("mean_diameter", *wanted)
+        there = {*given, *(["mean_diameter"] if self.mean_diameter is not None else [])}
+        for name in (*needed, *sorted(given)):
+            if (name in needed) != (name in there):
+                told = "is missing; " if name in needed else "was given; "
+                has = ", ".join(needed) or "no values"
+                raise InputError(f"{told}{model} asks for {has}", key=name)
+        return needed
 
 
 class ProfileError(Deviation):
@@ -576,7 +614,22 @@ def _too_many(count: int, most: int) -> str:
     return f"{count} were given; allowed are at most {most}"
 
 
-Losses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20))]
+def _of_set(value: Any, info: ValidationInfo) -> Any:
+    """Losses of one mesh with those of the set that they name."""
+    return expanded(value, info.data.get("gears"))
+
+
+def _of_no_set(value: Any) -> Any:
+    """InputError if the losses of a drive of several meshes name a set."""
+    if named_set(value):
+        told = "a set belongs to one mesh; name it under the stage, losses = { set = ... }"
+        raise InputError(told, key="set")
+    return value
+
+
+Losses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_set)]
+"""Losses of one mesh, by value or by the name of a set."""
+DriveLosses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_no_set)]
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
 Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
@@ -705,7 +758,7 @@ class DriveCase(Table):
     operation: Operating
     models: Choices = Choices()
     housing: Housing = Housing()
-    losses: Losses = Field(default_factory=dict)
+    losses: DriveLosses = Field(default_factory=dict)
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
     targets: Targets = ()

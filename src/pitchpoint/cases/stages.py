@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from pitchpoint._jax import array
-from pitchpoint.cases.build import TEETH_ALONE, Built, build, drags, operation_at
+from pitchpoint.cases.build import ALONE, TEETH_ALONE, Built, build, drags, operation_at
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
@@ -178,9 +178,13 @@ class BuiltDrive:
 
     @property
     def covers(self) -> dict[str, str]:
-        """What the efficiency holds, see `Built.covers`."""
-        alone = not self.case.losses and any(one.covers for one in self.stages)
-        return {"covers": "teeth alone"} if alone else {}
+        """What the efficiency is of, see `Built.covers`."""
+        return {"covers": ALONE} if self.lacks_bearing or not self.places else {}
+
+    @property
+    def lacks_bearing(self) -> bool:
+        """True where no loss stands for a bearing inside one of the stages, see `Built.lacks_bearing`."""
+        return not self.case.losses and any(one.lacks_bearing for one in self.stages)
 
     @property
     def places(self) -> list[str]:
@@ -277,7 +281,7 @@ def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> Buil
         (*_few_meetings(built), *_adding_thrusts(built)),
     )
     _check_map(made)
-    return replace(made, told=(*made.told, *[TEETH_ALONE] * bool(made.covers)))
+    return replace(made, told=(*made.told, *[TEETH_ALONE] * made.lacks_bearing))
 
 
 def _check_map(made: BuiltDrive) -> None:

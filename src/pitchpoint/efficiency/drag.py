@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import equinox as eqx
 from jaxtyping import Array, Float
@@ -9,6 +10,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, BearingLoss
+from pitchpoint.efficiency.breakaway import BREAKAWAY, Breakaway
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh
@@ -24,6 +26,16 @@ ROUNDING = 1e-13
 """Relative rate, over the rates of the bodies, up to which two bodies turn together."""
 
 
+def _as_arrays(values: Mapping[str, Any]) -> dict[str, Float[Array, ""]]:
+    return {name: as_array(value) for name, value in values.items()}
+
+
+def _check_factors(model: BearingLoss | Breakaway, factors: Mapping[str, Any]) -> None:
+    if set(factors) != set(model.factors):
+        wanted = ", ".join(model.factors) or "no factors"
+        raise InputError(f"'{model.name}' asks for {wanted}, got {[*factors]}")
+
+
 class Drag(eqx.Module):
     """One place beside the teeth where a body is braked against another or against the housing.
 
@@ -33,7 +45,7 @@ class Drag(eqx.Module):
         between: difference of rotations over which it acts, as factors of the coordinates: (1, -1, 0)
             is body 0 against body 1, (1, 0, 0) body 0 against the housing.
         bearing: model of a rolling bearing there; static.
-        mean_diameter: of the bearing [m].
+        mean_diameter: of the bearing, or of the lip of a seal [m].
         factors: of the bearing model by name; for Palmgren's `f0` and `f1`.
         preload: load on the bearing without load on the teeth, as from a wave generator that keeps a
             ring deformed [N].
@@ -44,6 +56,8 @@ class Drag(eqx.Module):
         churning_exponent: of the speed in it, positive.
         breakaway_torque: that holds the bodies at rest, above what the others give there [N m]; acts
             in starting torques alone.
+        breakaway: model of such a torque, which adds to it; static.
+        breakaway_factors: of that model by name.
         resting: True if the bodies are about to move: bearing at speed zero, breakaway torque, no
             churning; static.
 
@@ -53,10 +67,7 @@ class Drag(eqx.Module):
     between: Float[Array, " dof"] = eqx.field(converter=as_array)
     bearing: BearingLoss = eqx.field(static=True, default=BEARING_LOSS["none"])
     mean_diameter: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
-    factors: Mapping[str, Float[Array, ""]] = eqx.field(
-        converter=lambda values: {name: as_array(value) for name, value in values.items()},
-        default_factory=dict,
-    )
+    factors: Mapping[str, Float[Array, ""]] = eqx.field(converter=_as_arrays, default_factory=dict)
     preload: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
     seat: Bearing | InnerBearing | None = None
     seal_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
@@ -64,13 +75,21 @@ class Drag(eqx.Module):
     churning_speed: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
     churning_exponent: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
     breakaway_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    breakaway: Breakaway = eqx.field(static=True, default=BREAKAWAY["none"])
+    breakaway_factors: Mapping[str, Float[Array, ""]] = eqx.field(
+        converter=_as_arrays, default_factory=dict
+    )
     resting: bool = eqx.field(static=True, default=False)
 
     def __check_init__(self) -> None:
-        """Refuse factors that the bearing model does not have, and demand those that it has."""
-        if set(self.factors) != set(self.bearing.factors):
-            wanted = ", ".join(self.bearing.factors) or "no factors"
-            raise InputError(f"'{self.bearing.name}' asks for {wanted}, got {[*self.factors]}")
+        """Refuse factors that a model does not have, and demand those that it has."""
+        _check_factors(self.bearing, self.factors)
+        _check_factors(self.breakaway, self.breakaway_factors)
+
+    @property
+    def holds(self) -> bool:
+        """True if more than friction in motion holds the bodies at rest."""
+        return bool(self.breakaway.factors) or float(self.breakaway_torque) > 0.0
 
     def torque(self, *, speed: Each, load: Each, kinematic_viscosity: Each) -> Each:
         """Torque between the bodies, in the common shape of the arguments [N m]; not negative.
@@ -87,9 +106,17 @@ class Drag(eqx.Module):
             mean_diameter=self.mean_diameter,
             **self.factors,
         )
-        other = self.breakaway_torque if self.resting else self._churning(speed)
+        other = self._held(kinematic_viscosity) if self.resting else self._churning(speed)
         every = map(jnp.shape, (speed, load, kinematic_viscosity))
         return jnp.broadcast_to(bearing + self.seal_torque + other, jnp.broadcast_shapes(*every))
+
+    def _held(self, viscosity: Each) -> Each:
+        more = self.breakaway.function(
+            mean_diameter=self.mean_diameter,
+            kinematic_viscosity=viscosity,
+            **self.breakaway_factors,
+        )
+        return self.breakaway_torque + more
 
     def _churning(self, speed: Each) -> Each:
         moves = speed > 0.0

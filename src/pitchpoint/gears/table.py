@@ -92,6 +92,11 @@ class GearsTable(Table):
         return self.members
 
     @property
+    def loss_scales(self) -> Mapping[str, float]:
+        """Lengths [m] and ratios of the gears by name, with which named sets of losses scale."""
+        return {}
+
+    @property
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography for what is given."""
         return ()

@@ -26,12 +26,15 @@ __all__ = [
     "catalogue",
     "constant_alpha",
     "find",
+    "known_cold",
     "of_base",
 ]
 
 ZERO_CELSIUS = 273.15
 DENSITY_TEMPERATURE = ZERO_CELSIUS + 15.0
 """Temperature at which the density of an oil is stated [K]."""
+COLD = ZERO_CELSIUS - 40.0
+"""Temperature at which the viscosity of an oil for the cold is stated [K]."""
 
 
 class Lubricant(eqx.Module):
@@ -51,6 +54,7 @@ class Lubricant(eqx.Module):
         lubricant_factor: lubricant factor X_L of mean friction laws, shape (...) [1].
         T_min: lowest temperature the values are meant for, shape (...) [K].
         T_max: highest temperature the values are meant for, shape (...) [K].
+        nu_0: kinematic viscosity at -40 degC, shape (...) [m2/s]; None for an oil of which it is not known.
     """
 
     nu_1: Float[Array, "..."]
@@ -64,6 +68,7 @@ class Lubricant(eqx.Module):
     lubricant_factor: Float[Array, "..."]
     T_min: Float[Array, "..."]
     T_max: Float[Array, "..."]
+    nu_0: Float[Array, "..."] | None
 
     def __init__(
         self,
@@ -79,6 +84,7 @@ class Lubricant(eqx.Module):
         lubricant_factor: ArrayLike,
         T_min: ArrayLike,
         T_max: ArrayLike,
+        nu_0: ArrayLike | None = None,
     ) -> None:
         self.nu_1, self.nu_2 = as_array(nu_1), as_array(nu_2)
         self.T_1, self.T_2 = as_array(T_1), as_array(T_2)
@@ -86,10 +92,18 @@ class Lubricant(eqx.Module):
         self.gold_s, self.gold_t = as_array(gold_s), as_array(gold_t)
         self.lubricant_factor = as_array(lubricant_factor)
         self.T_min, self.T_max = as_array(T_min), as_array(T_max)
+        self.nu_0 = None if nu_0 is None else as_array(nu_0)
 
     def kinematic_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
-        """Kinematic viscosity at T [K] by ASTM D341, shape (...) [m2/s]."""
-        return astm_d341(T=T, nu_1=self.nu_1, T_1=self.T_1, nu_2=self.nu_2, T_2=self.T_2)
+        """Kinematic viscosity at T [K] by ASTM D341, shape (...) [m2/s].
+
+        The line goes through nu_1 and nu_2; below T_1 through nu_1 and nu_0, where that is known.
+        """
+        usual = astm_d341(T=T, nu_1=self.nu_1, T_1=self.T_1, nu_2=self.nu_2, T_2=self.T_2)
+        if self.nu_0 is None:
+            return usual
+        cold = astm_d341(T=T, nu_1=self.nu_0, T_1=COLD, nu_2=self.nu_1, T_2=self.T_1)
+        return jnp.where(jnp.asarray(T) < self.T_1, cold, usual)
 
     def density(self, T: ArrayLike) -> Float[Array, "..."]:
         """Density at T [K], linear from the value at 15 degC, shape (...) [kg/m3]."""
@@ -151,6 +165,8 @@ class LubricantRecord:
         T_max: highest temperature the values are meant for [K], 120 degC unless given. The two
             defaults are a choice: D341 goes through two points 60 K apart and is taken 40 K
             below and 20 K above them.
+        nu_0: kinematic viscosity at -40 degC [m2/s], above nu_1, where it is known; extrapolated from nu_1
+            and nu_2 alone it comes out twice too high for thin polyalphaolefins.
 
     Raises:
         InputError: a value is out of its physical range.
@@ -176,6 +192,7 @@ class LubricantRecord:
     T_2: Datum = _T_100
     T_min: Datum = _T_LOWEST
     T_max: Datum = _T_HIGHEST
+    nu_0: Datum | None = None
 
     def __post_init__(self) -> None:
         free = {"density_slope", "gold_t"}  # these two may be zero or negative
@@ -202,7 +219,7 @@ class LubricantRecord:
         Raises:
             InputError: there is no value of that name.
         """
-        for key in values.keys() - self.data().keys():
+        for key in values.keys() - {*self.data(), "nu_0"}:
             raise InputError(f'"{key}" is not a property of an oil', allowed=self.data())
         given: dict[str, Any] = {key: Datum(value=value) for key, value in values.items()}
         return replace(self, **given)
@@ -224,6 +241,20 @@ class LubricantRecord:
         )
 
 
+PENETRATION = {
+    "000": (445, 475),
+    "00": (400, 430),
+    "0": (355, 385),
+    "1": (310, 340),
+    "2": (265, 295),
+    "3": (220, 250),
+    "4": (175, 205),
+    "5": (130, 160),
+    "6": (85, 115),
+}
+"""Worked penetration by NLGI number, in tenths of a millimetre (ASTM D217)."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class GreaseRecord(LubricantRecord):
     """A grease; its values are those of its base oil.
@@ -239,9 +270,17 @@ class GreaseRecord(LubricantRecord):
     @property
     def note(self) -> str:
         """What is assumed of a grease."""
+        known = PENETRATION.get(self.consistency)
+        worked = (
+            f" (worked penetration {known[0]} to {known[1]} tenths of a millimetre)"
+            if known
+            else ""
+        )
+        graded = f" NLGI {self.consistency}{worked} is recorded." if self.consistency else ""
         return (
             f"{self.name} is taken as its base oil: film, friction and bearing loss follow the "
-            "viscosity of that oil, contacts are fully supplied, and the thickener does nothing."
+            "viscosity of that oil, contacts are fully supplied, and the thickener does nothing, nor does "
+            f"it stiffen the grease in the cold.{graded}"
         )
 
 
@@ -253,6 +292,10 @@ def _check_order(record: LubricantRecord) -> None:
         "T_min": (record.T_min.value < record.T_max.value, "must be below T_max"),
         "gold_t": (math.isfinite(record.gold_t.value), "must be a finite number"),
         "density_slope": (_lightest(record) > 0.0, "makes the density negative at T_max"),
+        "nu_0": (
+            record.nu_0 is None or record.nu_0.value > record.nu_1.value,
+            "must be above nu_1, the viscosity at a higher temperature",
+        ),
     }
     for key, (passed, message) in checks.items():
         if not passed:
@@ -284,9 +327,21 @@ def _record(name: str, entry: dict[str, Any], bases: dict[str, Any]) -> Lubrican
     base = bases[entry["base"]]
     values = {key: read_datum(entry[column], scale=k) for key, (column, k) in _SCALES.items()}
     plain = {key: read_datum(entry.get(col, base[col])) for key, col in _PLAIN.items()}
+    if "nu_minus_40_mm2_s" in entry:
+        plain |= known_cold(read_datum(entry["nu_minus_40_mm2_s"], scale=1e-6))
     oil = LubricantRecord(name=name, title=entry["title"], base=entry["base"], **values, **plain)
     words = {key: str(entry[key]) for key in ("thickener", "consistency") if key in entry}
     return oil.thickened(**words) if words else oil
+
+
+def known_cold(viscosity: Datum) -> dict[str, Datum]:
+    """Values of an oil whose viscosity at -40 degC is known, down to which it then is meant.
+
+    Args:
+        viscosity: kinematic one at -40 degC [m2/s].
+    """
+    lowest = Datum(value=COLD, status="assumed", note="down to where its viscosity is known")
+    return {"nu_0": viscosity, "T_min": lowest}
 
 
 def of_base(name: str, base: str, *, nu_1: float, nu_2: float, title: str = "") -> LubricantRecord:

@@ -7,8 +7,10 @@ from typing import Any
 from pitchpoint import units
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION, limits_words
+from pitchpoint.cases.loss_sets import loss_sets
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -47,10 +49,12 @@ def entries() -> list[dict[str, str]]:
             ("tooth_contact", CONTACT_LAWS),
             ("tooth_temperature", TOOTH_TEMPERATURE),
             ("bearing", BEARING_LOSS),
+            ("breakaway", BREAKAWAY),
             ("wave_shape", WAVE_SHAPES),
         )
         for model in registry.values()
     ]
+    rows += [_entry("losses", one, "") for one in loss_sets().values()]
     rows += [_record("lubricant", oil, _oil_range(oil)) for oil in lubricants.catalogue().values()]
     return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]
 

@@ -19,9 +19,10 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.document import variants
+from pitchpoint.cases.document import STAGES, Document, variants
 from pitchpoint.cases.failures import worst_first
 from pitchpoint.cases.library import as_text, find, names
+from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.stages import Ready
@@ -29,6 +30,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.gears.mesh import PATHS
@@ -492,6 +494,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
     solids = [used for mesh in meshes for used in mesh.solids]
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
     keys += [key for mesh in meshes for key in mesh.case.gears.sources]
+    keys += [key for table in _loss_tables(document) for key in set_sources(table)]
     data = [mesh.lubricant.data() for mesh in meshes] + [used.record.data() for used in solids]
     keys += [one.source for values in data for one in values.values() if one.source]
     if case.source:
@@ -544,6 +547,12 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
     }
 
 
+def _loss_tables(document: Document) -> list[Any]:
+    """Tables of losses as the case file has them: its own and those of its stages."""
+    stages = document.tree.get(STAGES, {})
+    return [one.get("losses") for one in (document.tree, *stages.values())]
+
+
 def _lacking(built: Ready) -> dict[str, str]:
     """By analysis why its part does not exist, those left out that a case file does not ask for."""
     told = {name: analysis.why_not(built) for name, analysis in ANALYSES.items()}
@@ -568,12 +577,11 @@ def _everywhere(effect: str, law: Any, each: Sequence[Mapping[str, Any]]) -> boo
 
 
 def _bearings(losses: Mapping[str, Loss]) -> dict[str, Any]:
-    """Models of bearings by name of their place."""
-    return {
-        f"bearing {name}".replace("_", " "): BEARING_LOSS[loss.bearing]
-        for name, loss in losses.items()
-        if loss.bearing != "none"
-    }
+    """Models of bearings and of what holds them at rest, by name of their place."""
+    moving = {f"bearing {name}": BEARING_LOSS[loss.bearing] for name, loss in losses.items()}
+    held = {f"breakaway {name}": BREAKAWAY[loss.breakaway] for name, loss in losses.items()}
+    every: dict[str, Any] = {**moving, **held}
+    return {effect.replace("_", " "): one for effect, one in every.items() if one.name != "none"}
 
 
 def _of_mesh(built: Built) -> dict[str, Any]:

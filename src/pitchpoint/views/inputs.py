@@ -24,6 +24,7 @@ _APART = (STUDIES, "loss_map")
 _LABELS = {
     "young": "Young's modulus",
     "poisson": "Poisson's ratio",
+    "nu_0": "kinematic viscosity at -40 degC",
     "nu_1": "kinematic viscosity at the lower temperature",
     "nu_2": "kinematic viscosity at the upper temperature",
     "T_1": "lower temperature",

@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 
 from pitchpoint import units
+from pitchpoint.analyses.figures import covers
 from pitchpoint.views.show import described
 
-__all__ = ["cell", "head", "shown"]
+__all__ = ["cell", "efficiency_of", "head", "shown"]
 
 
 def head(name: str, of: Any = None) -> str:
@@ -20,6 +21,12 @@ def head(name: str, of: Any = None) -> str:
 def cell(data: Any, name: str, position: int) -> str:
     """Value of a variable under the friction law at a position, at the first point."""
     return shown(name, float(data[name].values[position, 0]), data)
+
+
+def efficiency_of(data: Any) -> dict[str, str]:
+    """Column on what an efficiency is of; none where it is of the whole drive."""
+    of = covers(data).partition(":")[0]
+    return {"η of": of} if of else {}
 
 
 def shown(name: str, value: float, of: Any = None) -> str:

@@ -221,6 +221,16 @@ class StrainWaveGears(GearsTable):
         return self.module
 
     @property
+    def loss_scales(self) -> dict[str, float]:
+        """Pitch diameter of the flexspline [m], and the deflection on the long axis over it."""
+        first, second = self.tooth_numbers
+        deflection = self.wave_generator.deflection * (second - first) / 2.0
+        return {
+            "pitch diameter": self.module * first,
+            "deflection over pitch diameter": deflection / first,
+        }
+
+    @property
     def drivers(self) -> tuple[str, ...]:
         """Members that may drive, the usual one first."""
         return tuple(name for name in self.members if name != self.fixed)

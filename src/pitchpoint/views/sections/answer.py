@@ -21,7 +21,7 @@ from pitchpoint.runs.run import MEETINGS, Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
-from pitchpoint.views.screen import cell, head, shown
+from pitchpoint.views.screen import cell, efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, Page, Printed, Section
 from pitchpoint.views.sections.back_driving import back_driving, jamming
 from pitchpoint.views.sections.beside import loss_split
@@ -125,7 +125,7 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
         else "torque ripple",
         "torque_range": _range(data, "input_torque", value),
         "ripple": show.quantity("torque_ripple", value("torque_ripple"), of=data),
-        "covers": str(data["mean_efficiency"].attrs.get("covers", "")),
+        "covers": covers(data),
         "locked": bool(data["locked"].values[position, 0]),
         "jamming": jamming(data, position),
         "back": back_driving(outcome, law),
@@ -244,7 +244,7 @@ def _of_power(outcome: Outcome, position: int) -> dict[str, str]:
         return {}
     locked = bool(back["locked"].values[position, 0])
     return {
-        "η of": covers(data),
+        **efficiency_of(data),
         _LOCKS: cell(data, "jamming_coefficient", position),
         "back-driving": "locked" if locked else cell(back, "mean_efficiency", position),
         f"back-driving {_LOCKS}": cell(back, "jamming_coefficient", position),

@@ -6,6 +6,7 @@ from functools import reduce
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.running import TORQUES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -29,9 +30,10 @@ from pitchpoint.views.figures import (
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
-from pitchpoint.views.section import Block, Page, Section, reason
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Page, Printed, Section, reason
 
-__all__ = ["BESIDE", "drag_panel", "loss_split", "starting_answer"]
+__all__ = ["BESIDE", "drag_panel", "loss_split", "running_rows", "starting_answer"]
 
 _TEETH = Key("in the teeth", PALETTE[5], "")
 _BESIDE = Key("beside the teeth", "#9aa5ad", "")
@@ -77,6 +79,24 @@ def _load(data: xr.Dataset, name: str) -> str:
 
 def _held(data: xr.Dataset, name: str, value: float) -> str:
     return show.quantity(name, value, of=data) if np.isfinite(value) else "friction holds the drive"
+
+
+def running_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Torque without load at the operating speed and torques from rest, by temperature and law."""
+    data = outcome.parts.get("running")
+    if data is None:
+        return []
+    there = data.sel(speed=operating_point(outcome).speed, method="nearest")
+    return [
+        {"friction law": law, head("temperature"): shown("temperature", float(degree))}
+        | {head(n, data): _screened(data, n, float(there[n].values[k, place])) for n in TORQUES}
+        for k, law in enumerate(laws(data))
+        for place, degree in enumerate(data["temperature"].values)
+    ]
+
+
+def _screened(data: xr.Dataset, name: str, value: float) -> str:
+    return shown(name, value, data) if np.isfinite(value) else "held"
 
 
 def loss_split(data: xr.Dataset, law: int) -> tuple[float, float] | None:
@@ -204,6 +224,11 @@ def _chosen(axes: list[np.ndarray]) -> list[float]:
     return [float(v) for v in every[np.linspace(0, every.size - 1, count).round().astype(int)]]
 
 
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    if rows := running_rows(outcome):
+        yield Printed("Without load: running, and from rest either way", rows)
+
+
 def _lacks(page: Page) -> str | None:
     there = drag_panel(page.outcomes, page.curves).figures
     return None if there else reason(page, "running")
@@ -221,4 +246,5 @@ BESIDE = Section(
     lacks=_lacks,
     blocks=_blocks,
     card=starting_answer,
+    screen=_screen,
 )

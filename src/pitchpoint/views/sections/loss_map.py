@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.figures import covered
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -210,6 +211,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         "speed no power is transmitted and the efficiency is undefined; those cells are blank. Every choice "
         "has its own colour scale."
     )
+    if alone := covered(one.parts for one in there.values()):
+        yield Paragraph(alone, "note")
     yield map_panel(there, page.curves)
     lines = efficiency_panel({n: one for n, one in there.items() if _lossy(one)}, page.curves)
     if lines.figures:

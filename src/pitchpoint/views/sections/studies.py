@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.analyses.figures import CONTACT, MAIN, of_contact
+from pitchpoint.analyses.figures import CONTACT, MAIN, covered, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.runs.run import Outcome
@@ -28,7 +28,7 @@ from pitchpoint.views.figures import (
     text,
 )
 from pitchpoint.views.lines import titled
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
 from pitchpoint.views.sections.design_chart import design_charts, is_design_chart
 
@@ -187,6 +187,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         ),
         "note",
     )
+    if alone := covered(one.parts for one in page.outcomes.values()):
+        yield Paragraph(alone, "note")
     told = _warnings(page)
     if told:
         yield Drawn("study_warnings.html.jinja", {"study_warnings": told})
@@ -242,7 +244,7 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
     cells = {
         head(n, data): shown(n, float(data[n].values[law, point]), data) for n in names if n in data
     }
-    return {**place, "friction law": str(data["law"].values[law]), **cells}
+    return {**place, "friction law": str(data["law"].values[law]), **cells, **efficiency_of(data)}
 
 
 def _place(value: float, key: str) -> str:

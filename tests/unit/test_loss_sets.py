@@ -1,0 +1,99 @@
+"""Losses by the name of a set: constants as data, scaled to the gears, told with their marks."""
+
+import pytest
+
+from pitchpoint.cases.document import resolve
+from pitchpoint.cases.loss_sets import loss_sets, marks_of
+from pitchpoint.cases.schema import validate
+from pitchpoint.errors import InputError
+
+NAME, PLACE = "strain_wave_component", "wave_generator_bearing"
+TREE = {
+    "gears": {
+        "family": "strain_wave",
+        "teeth": [200, 202],
+        "module": "0.3 mm",
+        "face_width": "10 mm",
+    },
+    "lubricant": {"name": "pao-vg-100"},
+    "roughness": {"ra": "0.4 um"},
+    "operation": {"torque": "67 N m", "speed": "2000 rpm", "temperature": "40 degC"},
+    "losses": {"set": NAME},
+}
+TERMS = loss_sets()[NAME].places[PLACE]
+
+
+def losses(tree=TREE, **settings):
+    document = resolve(tree, name="drive.toml", variant="default", settings=settings)
+    return validate(document).losses
+
+
+def constants(key):
+    return [term.value for term in TERMS[key]]
+
+
+def test_one_line_names_all_losses():
+    (place,) = losses()
+    found = losses()[place]
+    assert place == PLACE
+    assert found.mean_diameter == pytest.approx(constants("mean_diameter")[0] * 60e-3, rel=1e-14)
+    for key in ("f0", "f1"):
+        of_round, grown = constants(key)
+        assert getattr(found, key) == pytest.approx(of_round + grown / 200.0, rel=1e-14)
+    assert found.breakaway_dry == constants("breakaway_dry")[0]
+    assert found.breakaway_preload == pytest.approx(1.0)
+
+
+def test_constants_scale_with_size_and_deflection():
+    plain = losses()[PLACE]
+    large = losses(**{"gears.module": "0.6 mm"})[PLACE]
+    assert large.mean_diameter == pytest.approx(2.0 * plain.mean_diameter, rel=1e-14)
+    same = ("f0", "f1", "breakaway_dry", "breakaway_viscous", "breakaway_preload")
+    assert all(getattr(large, key) == getattr(plain, key) for key in same)
+    fewer = losses(**{"gears.teeth": [100, 102], "gears.module": "0.6 mm"})[PLACE]
+    assert fewer.mean_diameter == pytest.approx(plain.mean_diameter, rel=1e-14)
+    assert fewer.breakaway_preload == pytest.approx(2.0)
+    wider = losses(**{"gears.wave_generator": {"deflection": 2.0}})[PLACE]
+    for key in ("f0", "f1", "breakaway_preload"):
+        assert getattr(wider, key) == pytest.approx(getattr(fewer, key), rel=1e-14)
+
+
+def test_values_of_the_case_stand_before_those_of_the_set():
+    seal = {"between": ["wave generator", "housing"], "seal_torque": "10 mN m"}
+    own = {"set": NAME, PLACE: {"f0": 3.0}, "seal": seal}
+    found = losses({**TREE, "losses": own})
+    assert [*found] == [PLACE, "seal"]
+    assert found[PLACE].f0 == 3.0
+    assert found[PLACE].f1 == losses()[PLACE].f1
+
+
+def test_a_place_may_be_named_set():
+    seal = {"between": ["wave generator", "housing"], "seal_torque": "10 mN m"}
+    assert [*losses({**TREE, "losses": {"set": seal}})] == ["set"]
+
+
+def test_a_stage_names_a_set():
+    tree = {key: TREE[key] for key in ("lubricant", "roughness", "operation")}
+    gears = {"teeth": [23, 61], "module": "1 mm", "face_width": "9 mm"}
+    second = {"gears": TREE["gears"], "losses": {"set": NAME}}
+    document = resolve({**tree, "stages": [{"gears": gears}, second]}, name="", variant="default")
+    assert [*validate(document).stages["2"].losses] == [PLACE]
+
+
+def test_marks_say_how_each_constant_was_come_by():
+    marks = marks_of(TREE["losses"])
+    fitted = {key for key, mark in marks.items() if mark.status == "fitted"}
+    assert fitted == {f"{PLACE}.{key}" for key in ("f0", "f1", "breakaway_dry")}
+    assert loss_sets()[NAME].note.startswith("Three constants are fitted")
+    assert all(marks[f"{PLACE}.{key}"].status == "assumed" for key in ("mean_diameter",))
+    note = marks[f"{PLACE}.f1"].note
+    assert "0.0003, assumed" in note
+    assert "times the deflection over pitch diameter, fitted" in note
+    assert loss_sets()[NAME].sources == ("metzger_2015",)
+    assert marks_of({}) == marks_of(None) == {}
+
+
+def test_gears_without_a_wave_generator_have_no_such_losses():
+    gears = {"teeth": [23, 61], "module": "1 mm", "face_width": "9 mm"}
+    with pytest.raises(InputError, match="scales with pitch diameter and deflection over pitch"):
+        losses({**TREE, "gears": gears})
