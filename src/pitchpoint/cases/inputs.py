@@ -28,6 +28,7 @@ _TABLES = (
     "losses",
     "dynamics",
     "loss_map",
+    "torsion",
 )
 
 _DIMENSIONS = (

@@ -177,19 +177,24 @@ def wound_up(
     return wind_up(mesh, solids, terms, loads, loads, contacts, body)
 
 
-def hysteresis(found: WindUp, friction: float | Float[Array | np.ndarray, "*#b"]) -> Hysteresis:
+def hysteresis(
+    found: WindUp,
+    friction: float | Float[Array | np.ndarray, "*#b"],
+    at_rest: float | Float[Array | np.ndarray, "*#b"] = 0.0,
+) -> Hysteresis:
     """Loop of torque over wind-up by Coulomb friction on the teeth while the drive stands still.
 
     On loading, friction adds mu times the sum of forces times sliding arms to the torque that the
     same wind-up takes without it, and takes away as much on unloading. All flanks are taken to slide
     as soon as the sense turns, and forces to be those without friction, so the loop is right to
-    first order in mu and closes at no load: what remains of a measured loop there has other causes.
+    first order in mu. The teeth hold nothing without load; bearings and seals may.
 
     Args:
         found: wind-up over torques.
         friction: coefficient mu of the teeth, broadcast over the states.
+        at_rest: torque at the loaded member by which bearings and seals hold it [N m].
 
     From virtual work: friction slides by its arm while the loaded member turns by one.
     """
-    held = friction * found.slip_torque
+    held = friction * found.slip_torque + at_rest
     return Hysteresis(found.wind_up, found.load + held, found.load - held)

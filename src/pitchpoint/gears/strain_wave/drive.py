@@ -360,12 +360,19 @@ class StrainWave(Mesh):
 
     @property
     def yielding(self) -> tuple[str, str]:
-        """Teeth and the ring that carries them; the bearing inside unless it is rigid."""
-        if np.isinf(self.rim.support_stiffness):
-            return "teeth, ring and cup of the flexspline", "bearings, shafts, flange and joints"
+        """Teeth and the ring that carries them, and what the case lets yield behind them."""
+        behind = dict(zip(InSeries.parts, np.asarray(self.series.compliance) > 0.0, strict=True))
+        behind[InSeries.parts[0]] |= bool(self.series.bottom > 0.0)
+        behind[InSeries.parts[3]] |= self.series.ring is not None
+        held = self.bearing is not None or not np.isinf(self.rim.support_stiffness)
+        every = {"bearing of the wave generator": held, **behind}
+        inside = [name for name, yields in every.items() if yields]
+        outside = [name for name, yields in every.items() if not yields]
+        if self.bearing is None and held:
+            outside.append("clearance of the bearing")
         return (
-            "teeth, ring and cup of the flexspline and the bearing inside it",
-            "the clearance of that bearing, shafts, flange and joints",
+            ", ".join(["teeth, ring and cup wall of the flexspline", *inside]),
+            ", ".join([*outside, "housing and shafts outside"]),
         )
 
     def body_compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
