@@ -15,6 +15,7 @@ from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
 
@@ -240,9 +241,7 @@ class Mesh(eqx.Module):
         """What yields under load, and what is left out, in words."""
         return "teeth and the bodies under them", "shafts, bearings and housing"
 
-    def body_compliance(
-        self, contacts: Contacts, solids: tuple[Solid, Solid]
-    ) -> Float[Array, "lane lane *b"]:
+    def body_compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
         """How far a unit force on one lane moves another through the body under the teeth [m/N].
 
         Lanes are pairs and slices, flattened; both ends along their normals. It does not depend on the
@@ -253,6 +252,34 @@ class Mesh(eqx.Module):
             solids: material of each member.
         """
         raise self._without("body that couples its teeth")
+
+    def body_parts(
+        self,
+        contacts: Contacts,
+        solids: tuple[Solid, Solid],
+        force: Float[Array, "pair slice *b"],
+        balls: Float[Array, "ball *b"] | None,
+    ) -> dict[str, Float[Array, "*b"]]:
+        """Work of the contacts' forces on what bodies under the teeth yield, by name of the part [N m].
+
+        Args:
+            contacts: of the mesh.
+            solids: material of each member.
+            force: normal force of each slice [N].
+            balls: forces of balls that hold the body [N]; None without.
+        """
+        return {}
+
+    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
+        """What yields behind the teeth and carries the whole load, by name.
+
+        Args:
+            solids: material of each member.
+
+        Returns:
+            Movement of the loaded coordinate for a unit load on it [rad/(N m) or m/N].
+        """
+        return {}
 
     @property
     def other_flanks(self) -> Self:

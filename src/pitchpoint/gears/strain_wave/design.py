@@ -15,6 +15,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing
 from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, rates, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
@@ -27,6 +28,8 @@ from pitchpoint.gears.strain_wave.groove import (
     swept,
     tip_with_land,
 )
+from pitchpoint.gears.strain_wave.in_series import Behind, Cup, InSeries, in_series
+from pitchpoint.gears.strain_wave.proportions import rim_by_strain
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 from pitchpoint.programs import fast_program, program
@@ -103,8 +106,11 @@ def build_strain_wave(
     force_angle: float = radians(30.0),
     rim_thickness: float | None = None,
     wall_thickness: float | None = None,
+    walls: str = "two modules",
     cup_length: float | None = None,
     support_stiffness: float = inf,
+    bearing: Balls | None = None,
+    behind: Behind | None = None,
     clearance: float = 0.25,
     disengagement: float = radians(50.0),
     tip_rounding: float = 0.1,
@@ -128,10 +134,13 @@ def build_strain_wave(
             displacement, of which only their ratios count.
         deflection: w0 over module (z2 - z1)/2, the deflection with which the pitch circles touch.
         force_angle: between the long axis and the forces of the shape `four_forces` [rad].
-        rim_thickness: of the flexspline under its teeth [m]; two modules by default.
+        rim_thickness: of the flexspline under its teeth [m]; by `walls` if it is left out.
         wall_thickness: of the cup [m]; half the rim by default.
+        walls: "two modules" or "bending strain", see `rim_by_strain`.
         cup_length: from the teeth to the flange [m]; half the pitch diameter by default.
         support_stiffness: of the wave generator's bearing, see `FlexibleRing` [N/m2].
+        bearing: balls of the wave generator, which take the place of that support.
+        behind: what yields behind teeth, rim and wall; nothing by default.
         clearance: between the tip of the circular spline's teeth and the root of the flexspline on
             the long axis, in modules.
         disengagement: from the long axis at which teeth leave their spaces, at the latest: the tips of the
@@ -273,9 +282,12 @@ class _Built:
     overlap: float
 
     @property
-    def kind(self) -> tuple[str, bool, bool]:
+    def kind(self) -> tuple[str, bool, bool, bool, int]:
         """Static structure that drives of a group have in common."""
-        return type(self.parts["flank"]).__name__, self.parts["conjugate"], self.parts["odd"]
+        flank, rigid = type(self.parts["flank"]).__name__, self.parts["series"].ring is None
+        bearing = self.parts["bearing"]
+        balls = 0 if bearing is None else bearing.angle.shape[0]
+        return flank, self.parts["conjugate"], self.parts["odd"], rigid, balls
 
     def __call__(self, lanes: int) -> StrainWave:
         """The drive with so many places in each zone."""
@@ -356,8 +368,11 @@ def _planned(
     force_angle: float,
     rim_thickness: float | None,
     wall_thickness: float | None,
+    walls: str,
     cup_length: float | None,
     support_stiffness: float,
+    bearing: Balls | None,
+    behind: Behind | None,
     clearance: float,
     disengagement: float,
     tip_rounding: float,
@@ -373,7 +388,8 @@ def _planned(
     """What follows without the groove; arguments as in `build_strain_wave`."""
     z1, z2 = _checked_teeth(teeth)
     motion, drives, loaded = rates(np.array([z1, z2], dtype=float), *_roles(fixed, driver))
-    rim = 2.0 * module if rim_thickness is None else rim_thickness
+    w0 = deflection * module * (z2 - z1) / 2.0
+    rim = _rim(walls, module, z1, w0) if rim_thickness is None else rim_thickness
     sizes = (tip_rounding, tip_relief, relief_length, bottom_clearance, RIDGE)
     tips = Tips(*(array(size * module) for size in sizes))
     flank = _flank(form, z1, module, rim, tips)
@@ -381,12 +397,15 @@ def _planned(
         form.dedendum if isinstance(form, DoubleArcForm) else form.dedendum - form.profile_shift
     )
     neutral = module * (z1 / 2.0 - dedendum) - rim / 2.0
-    w0 = deflection * module * (z2 - z1) / 2.0
     _check_depth(form, deflection, clearance)
     if groove is not None:
         _check_free(form, deflection, clearance, z2 - z1)
     weights = _weights(shape, force_angle, w0 / neutral)
     line = NeutralLine(array(neutral), array(w0), array(weights))
+    wall = rim / 2.0 if wall_thickness is None else wall_thickness
+    bottom = bottom_clearance * module
+    root = neutral + rim / 2.0 + module * (form.addendum + form.dedendum) + w0 + bottom
+    cup = Cup(module * z1, neutral, rim, root, face_width)
     parts = {
         "teeth": array([z1, z2], float),
         "module": array(module),
@@ -397,10 +416,12 @@ def _planned(
             radius=array(neutral),
             thickness=array(rim),
             width=array(face_width),
-            wall_thickness=array(rim / 2.0 if wall_thickness is None else wall_thickness),
+            wall_thickness=array(wall),
             cup_length=array(module * z1 / 2.0 if cup_length is None else cup_length),
             support_stiffness=array(support_stiffness),
         ),
+        "bearing": None if bearing is None else ball_bearing(bearing, module * z1, face_width),
+        "series": InSeries.rigid() if behind is None else in_series(behind, cup),
         "tips": tips,
         "edges_carry": edges_carry,
         "backlash": array(backlash),
@@ -416,6 +437,11 @@ def _planned(
     if groove is None:
         low = max(low, float(_tip_height(cutter, array(disengagement))))
     return _Plan(parts, travel, cutter, low, groove, (z1, z2), module, backlash)
+
+
+def _rim(walls: str, module: float, teeth: int, deflection: float) -> float:
+    """Thickness of a rim by a rule [m]."""
+    return 2.0 * module if walls == "two modules" else rim_by_strain(module * teeth, deflection)
 
 
 def _built(plan: _Plan, programs: _Programs) -> _Built:

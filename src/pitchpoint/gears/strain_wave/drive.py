@@ -15,11 +15,14 @@ from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path
+from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.ball_bearing import BallBearing, on_balls, parts_on_balls
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept
-from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance
+from pitchpoint.gears.strain_wave.in_series import InSeries
+from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance, ring_parts
 from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
@@ -130,6 +133,8 @@ class StrainWave(Mesh):
         line: neutral line of the flexspline as the wave generator deforms it.
         groove: space of the circular spline.
         rim: rim, cup and support of the flexspline.
+        bearing: balls that take the place of that support; None without.
+        series: what yields behind them.
         tip_height: radius at which the circular spline's teeth end [m].
         tips: how the tips of both splines are made.
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
@@ -157,6 +162,8 @@ class StrainWave(Mesh):
     line: NeutralLine
     groove: Groove
     rim: FlexibleRing
+    bearing: BallBearing | None
+    series: InSeries
     tip_height: Float[Array, ""]
     tips: Tips
     backlash: Float[Array, ""]
@@ -390,21 +397,72 @@ class StrainWave(Mesh):
             height=jnp.real(self.flank.place(contacts.flank[0])),
         )
 
+    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
+        """Bottom of the cup, flange, shaft of the wave generator, circular spline given by value."""
+        z1, z2 = self.teeth
+        return self.series.by_part(solids[0], jnp.stack([z2 - z1, z1, -z2]), self.loaded)
+
     @property
     def yielding(self) -> tuple[str, str]:
-        """Teeth and the ring that carries them; the bearing inside unless it is rigid."""
-        if np.isinf(self.rim.support_stiffness):
-            return "teeth, ring and cup of the flexspline", "bearings, shafts, flange and joints"
+        """Teeth and the ring that carries them, and what the case lets yield behind them."""
+        behind = dict(zip(InSeries.parts, np.asarray(self.series.compliance) > 0.0, strict=True))
+        behind[InSeries.parts[0]] |= bool(self.series.bottom > 0.0)
+        behind[InSeries.parts[3]] |= self.series.ring is not None
+        held = self.bearing is not None or not np.isinf(self.rim.support_stiffness)
+        every = {"bearing of the wave generator": held, **behind}
+        inside = [name for name, yields in every.items() if yields]
+        outside = [name for name, yields in every.items() if not yields]
+        if self.bearing is None and held:
+            outside.append("clearance of the bearing")
         return (
-            "teeth, ring and cup of the flexspline and the bearing inside it",
-            "the clearance of that bearing, shafts, flange and joints",
+            ", ".join(["teeth, ring and cup wall of the flexspline", *inside]),
+            ", ".join([*outside, "housing and shafts outside"]),
         )
 
-    def body_compliance(
-        self, contacts: Contacts, solids: tuple[Solid, Solid]
-    ) -> Float[Array, "lane lane *b"]:
-        """The flexspline's rim couples all its teeth."""
-        return ring_compliance(self.rim, solids[0], self.ring_loads(contacts))
+    def body_compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
+        """The flexspline's rim couples all its teeth, and so does a circular spline that yields."""
+        loads, outer = self.ring_loads(contacts), self.series.ring
+        around: Float[Array, "lane lane *b"] | float = 0.0
+        if outer is not None:
+            around = ring_compliance(outer, solids[1], self._on_circular_spline(contacts, outer))
+        if self.bearing is None:
+            return ring_compliance(self.rim, solids[0], loads) + around
+        held = on_balls(self.bearing, self.rim, self.line, solids[0], loads)
+        return dataclasses.replace(held, lanes=held.lanes + around)
+
+    def body_parts(
+        self,
+        contacts: Contacts,
+        solids: tuple[Solid, Solid],
+        force: Lanes,
+        balls: Float[Array, "ball *b"] | None,
+    ) -> dict[str, Each]:
+        """Rim, wall of the cup and bearing of the wave generator; the circular spline where it yields."""
+        loads, outer, bearing = self.ring_loads(contacts), self.series.ring, self.bearing
+        if balls is None or bearing is None:
+            parts = ring_parts(self.rim, solids[0], loads, force)
+        else:
+            parts = parts_on_balls(bearing, self.rim, self.line, solids[0], loads, force, balls)
+        found = {
+            "rim of the flexspline": parts.rim,
+            "wall of the cup": parts.wall,
+            "bearing of the wave generator": parts.support,
+        }
+        if outer is None:
+            return found
+        around = self._on_circular_spline(contacts, outer)
+        wall, rim, _ = ring_parts(outer, solids[1], around, force)
+        return found | {InSeries.parts[3]: wall + rim}
+
+    def _on_circular_spline(self, contacts: Contacts, ring: FlexibleRing) -> RingLoads:
+        """How unit forces at the contacts act on the circular spline: against those on the flexspline."""
+        loads = self.ring_loads(contacts)
+        return RingLoads(
+            angle=loads.angle,
+            tangential=-loads.tangential,
+            radial=-loads.radial,
+            height=hypot(contacts.point[0], contacts.point[1]) - ring.radius,
+        )
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the teeth, which stand as they are while they touch.
