@@ -250,8 +250,8 @@ class StrainWaveGears(GearsTable):
 
     Clearances, rounding and relief of the tips are in modules. The tips of a circular spline whose flanks
     are swept end where the clearance or the angle of disengagement ends them, whatever is shorter. Edges
-    sweep the groove in any case; whether they carry says `edges`. Gear 1 is the flexspline, gear 2 the circular
-    spline, in this table and in that of the materials.
+    sweep the groove in any case; whether they carry says `edges`. Gear 1 is the flexspline, gear 2 the
+    circular spline, in this table and in that of the materials.
     """
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
