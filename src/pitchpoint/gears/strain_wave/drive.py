@@ -186,8 +186,8 @@ class StrainWave(Mesh):
         """
         drive = self
         if self.conjugate:
-            cutter = dataclasses.replace(self.tooth_motion, flank=self.flank.unrelieved.prepared())
-            drive = dataclasses.replace(self, groove=swept(cutter, self.tip_height, self.tips))
+            groove = swept(self.cutter_motion, self.tip_height, self.tips)
+            drive = dataclasses.replace(self, groove=groove)
         given = drive.backlash, drive.module, drive.tooth_angle, drive.edges_carry
         found = survey(drive.tooth_motion, drive.groove, *given)
         return dataclasses.replace(drive, surveyed=found)
@@ -205,8 +205,15 @@ class StrainWave(Mesh):
     @property
     def tooth_motion(self) -> ToothMotion:
         """How a flexspline tooth passes the space that it meets."""
-        lag = 1.0 - self.teeth[0] / self.teeth[1]
-        return ToothMotion(self.flank.prepared(), self.line, lag)
+        return self._motion_of(self.flank)
+
+    @property
+    def cutter_motion(self) -> ToothMotion:
+        """The same of a tooth without relief, which sweeps the groove."""
+        return self._motion_of(self.flank.unrelieved)
+
+    def _motion_of(self, flank: Flank) -> ToothMotion:
+        return ToothMotion(flank.prepared(), self.line, 1.0 - self.teeth[0] / self.teeth[1])
 
     @property
     def tooth_angle(self) -> Float[Array, ""]:
