@@ -7,8 +7,8 @@ The map is the loss map of the same case: torques by speeds by temperatures, loa
 of teeth and ring, friction constant, bearing loss by Palmgren's law. The rival is
 `rivals/strain_wave_numpy.py`, timed for a few of the torques; it says there what it is given.
 Efficiencies are compared twice: from the rival's own contacts, and from the package's. Near the long
-axis root and tip of a tooth are equally near to the groove within nanometres, and the places at which
-each looks first decide which of them counts; the first comparison shows what that is worth.
+axis a tooth may touch at its root and at its tip; the rival lets it touch at the nearer place alone, and
+the first comparison shows what that is worth.
 Compile time is told apart. Times are those of the processor, which others on it do not change; the
 parts of the package's time are those of one torque.
 """
@@ -66,7 +66,7 @@ def the_case(torques: int, speeds: int, temperatures: int) -> Built:
 
 def groove(built: Built, repeats: int) -> None:
     mesh = built.design.mesh
-    sweep = eqx.filter_jit(lambda: swept(mesh.tooth_motion, mesh.tip_height, mesh.tip_rounding))
+    sweep = eqx.filter_jit(lambda: swept(mesh.cutter_motion, mesh.tip_height, mesh.tips))
     first, _ = timed(sweep)
     print(f"groove of 200 teeth: first run with compilation {first:.2f} s, then", end=" ")
     print(f"{median(sweep, repeats):.3f} s (asked 1 s)")
@@ -75,7 +75,7 @@ def groove(built: Built, repeats: int) -> None:
 def given(built: Built) -> rival.Drive:
     """Arrays for the rival."""
     mesh, drag = built.design.mesh, built.design.drag[0]
-    along = np.linspace(0.0, float(mesh.flank.length), OUTLINE)
+    along = np.linspace(0.0, float(mesh.flank.plain), OUTLINE)
     return rival.Drive(
         teeth=tuple(int(z) for z in mesh.teeth),
         neutral=float(mesh.line.radius),
@@ -87,7 +87,6 @@ def given(built: Built) -> rival.Drive:
         heights=np.asarray(mesh.groove.heights),
         half_width=np.asarray(mesh.groove.half_width),
         slope=np.asarray(mesh.groove.slope),
-        preference=strain_wave._PREFERENCE,
         friction=built.case.models.friction[0].parameters["coefficient"],
         mean_diameter=float(drag.mean_diameter),
         f0=float(drag.factors["f0"]),
@@ -107,13 +106,13 @@ def _compliance(built_in: Any, contacts: Any, terms: Any, torque: Any) -> Any:
 
 def package_geometry(built: Built, known: Engagement) -> rival.Geometry:
     """The package's contacts in the rival's form, to compare what follows from them."""
-    contacts, held = known.contacts, built.design.mesh.filled
+    contacts = known.contacts
     return rival.Geometry(
-        active=np.asarray(contacts.active[held, 0]),
-        gap=np.asarray(contacts.gap[held, 0]),
-        normal=np.asarray(contacts.normal[:, held, 0]),
-        slip=np.asarray(contacts.slip_arm[:, held, 0]),
-        radial=np.asarray(built.design.mesh.inner_load(contacts)).sum(axis=0)[held, 0],
+        active=np.asarray(contacts.active[:, 0]),
+        gap=np.asarray(contacts.gap[:, 0]),
+        normal=np.asarray(contacts.normal[:, :, 0]),
+        slip=np.asarray(contacts.slip_arm[:, :, 0]),
+        radial=np.asarray(built.design.mesh.inner_load(contacts)).sum(axis=0)[:, 0],
     )
 
 
@@ -164,17 +163,17 @@ def theirs(
     weight = np.asarray(known.weight)
     once, found = timed(lambda: rival.geometry(drive, np.asarray(known.phase)))
     same = package_geometry(built, known)
-    held = built.design.mesh.filled
+    places = np.arange(known.contacts.active.shape[0])
+    (first,) = built.design.mesh.in_pairs(places[:, None], 0)[:, :1].T
     seconds, own, shared = [], [], []
     for torque in torques:
-        compliance = np.asarray(
-            _compliance(tree, known.contacts, built.terms, jnp.asarray(torque))
-        )[np.ix_(held, held)]
-        inputs = (drive, found, compliance, weight, float(torque), speeds[1:], nu)
+        every = np.asarray(_compliance(tree, known.contacts, built.terms, jnp.asarray(torque)))
+        conditions = weight, float(torque), speeds[1:], nu
+        inputs = drive, found, every[np.ix_(first, first)], *conditions
         took, figure = timed(lambda inputs=inputs: loop(*inputs))
         seconds.append(took)
         own.append(figure[0])
-        shared.append(rival.by_point(drive, same, *inputs[2:])[0])
+        shared.append(rival.by_point(drive, same, every, *conditions)[0])
     return once, statistics.mean(seconds), own, shared
 
 

@@ -51,8 +51,6 @@ class Drive(NamedTuple):
     """Of the groove there [m]."""
     slope: Array
     """Derivative of the half width [1]."""
-    preference: float
-    """Clearance that a place nearer to the tip must gain on the way there [1]."""
     friction: float
     mean_diameter: float
     """Of the wave generator's bearing [m]."""
@@ -124,7 +122,7 @@ def _at_phase(drive: Drive, angle: Array) -> tuple[Array, ...]:
     turned = np.exp(1j * axis)
     low = drive.heights[0]
     place = foot[:, None] + turned[:, None] * local
-    play = _groove(drive, place.real) - place.imag + drive.preference * station
+    play = _groove(drive, place.real) - place.imag
     best = station[np.argmin(np.where(place.real < low, np.inf, play), axis=1)]
     along = _refined(drive, foot, turned, best, 2.0 * station[1])
     local, lean = _at(drive, along)

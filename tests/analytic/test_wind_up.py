@@ -74,6 +74,7 @@ def springs(monkeypatch):
         spec=Mesh,
         contacts=lambda phase: at,
         inner_load=lambda contacts: zones * pressed,
+        in_series=lambda solids: {},
         loaded=LOADED,
     )
 

@@ -281,7 +281,6 @@ def size_32(variant="rigid_bearing"):
 @pytest.mark.parametrize(
     ("variant", "verdicts"),
     [
-        ("ball_bearing", ["miss", "pass", "pass", "pass"]),
         ("rigid_bearing", ["miss", "pass", "pass", "miss"]),
     ],
 )

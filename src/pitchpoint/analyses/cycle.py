@@ -29,25 +29,30 @@ __all__ = [
 def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     runs, names = profiles(built, built.models), built.law_names
     demand_motion(*_jammed(runs), [built], names)
+    mesh = built.design.mesh
     demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)
     lanes = ("law", "node", "pair", "slice")
     common = {
         "phase": (("node",), runs[0]["phase"]),
         "weight": (("node",), runs[0]["weight"]),
-        "path": (lanes[1:], runs[0]["path"]),
-        "active": (lanes[1:], runs[0]["active"]),
+        "path": (lanes[1:], mesh.in_pairs(runs[0]["path"], 1, like_first=True)),
+        "active": (lanes[1:], mesh.in_pairs(runs[0]["active"], 1)),
     }
-    each = {
-        name: (lanes if runs[0][name].ndim == 3 else lanes[:2], np.stack([r[name] for r in runs]))
+    stacked = {
+        name: np.stack([run[name] for run in runs])
         for name in runs[0]
         if name not in common and not name.startswith("outside")
+    }
+    each = {
+        name: (lanes, mesh.in_pairs(values, 2)) if values.ndim == 4 else (lanes[:2], values)
+        for name, values in stacked.items()
     }
     warnings = [
         text
         for law, run in zip(built.laws, runs, strict=True)
         for text in told_of_law(law, why_outside(built, law, run))
     ]
-    warnings += conformal_warning(built.design.mesh, runs[0])
+    warnings += conformal_warning(mesh, runs[0])
     warnings += pressure_warning(built, runs)
     warnings += face_warning(built, runs[0])
     data = dataset(
@@ -61,7 +66,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         events=built.nominal["events"].tolist(),
     )
     data["path"].attrs.update(built.way)
-    return data.isel(pair=built.design.mesh.filled)
+    return data
 
 
 def _jammed(

@@ -9,16 +9,18 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.analyses.figures import WIND_UP, by_torque
+from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
+from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
-from pitchpoint.efficiency.quasi_static import coupling, engagement
+from pitchpoint.efficiency.drag import at_rest, bearing_loads
+from pitchpoint.efficiency.quasi_static import Design, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.wind_up import hysteresis, wound_up
+from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
@@ -26,6 +28,9 @@ from pitchpoint.status import locked_or_lost, told
 __all__ = ["TORSION", "rigid", "torsion_part"]
 
 TORQUES = 25
+MUCH = 0.03
+"""Part of the load on edges from which on a sentence says so."""
+
 SHOWN = 3
 """Every so many phases the load on every tooth is kept."""
 
@@ -79,8 +84,13 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
 
 
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
-    friction = _mean_friction(built)
-    found = _torsion(built, torques, friction)
+    friction, rated = _mean_friction(built), built.case.operation.load
+    limits = built.case.torsion.limits if built.case.torsion else None
+    told_of = built.design.mesh.couples and rated > 0.0
+    more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
+    every = np.union1d(torques, more)
+    at = np.isin(every, torques)
+    found = _torsion(built, every, friction)
     dims = {
         "path": ("phase", "pair"),
         "lost_motion": (),
@@ -92,25 +102,34 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         "unloading_torque": ("law", "torque"),
     }
     phase, solve = found.pop("phase"), found.pop("solve")
+    parts = found.pop("parts")
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
+    if told_of:
+        held, play = found["loading_torque"] - every, float(found["lost_motion"])
+        data |= as_in_catalogues(every, found["wind_up"], held, play, rated, limits)
+        data["wind_up_part"] = (("part", "torque"), np.stack([*parts.values()]))
     yields, rigid = built.design.mesh.yielding
     whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
             "law": built.law_names,
-            "torque": ("torque", torques),
+            "torque": ("torque", every),
             "phase": ("phase", phase),
+            **({"slope": [*PARTS], "part": [*parts]} if told_of else {}),
         },
         title="torsion",
         travels=built.travels,
-        warnings=[*_lost(built, found["wind_up"], torques), *_loopless(built, friction)],
+        warnings=[
+            *_lost(built, found["wind_up"][at], torques),
+            *_on_edges(built, found["edge_share"][at], torques),
+            *_loopless(built, friction),
+        ],
         note=f"{yields} yield; {rigid} are not in it",
         solve=solve,
     )
     whole["torsional_stiffness"].attrs.update(covers=yields)
-    mesh = built.design.mesh
     whole["path"].attrs.update(built.way)
-    return whole.isel(pair=mesh.filled)
+    return whole.isel(torque=at)
 
 
 def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
@@ -124,6 +143,20 @@ def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     return [
         f"Wind-up: no equilibrium was found at {lost.size} of {torques.size} torques ({between}); they are "
         "left out."
+    ]
+
+
+def _on_edges(built: Built, share: np.ndarray, torques: np.ndarray) -> list[str]:
+    """Torques at which edges carry more than a little."""
+    much = share > MUCH
+    if not much.any():
+        return []
+    most = int(np.nanargmax(share))
+    return [
+        f"Edges of the teeth (ends of flanks and roundings of tips) carry up to {100.0 * share[most]:.2g} % "
+        f"of the load, that part at {built.carried.show(torques[most])}: more than {100.0 * MUCH:g} % from "
+        f"{built.carried.show(torques[much][0])} on. Loss, stiffness and pressure then hang on how those "
+        "edges are made."
     ]
 
 
@@ -162,7 +195,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         for torque in torques
     ]
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
-    loop: Any = hysteresis(found, friction[:, None, None])
+    loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
     approach, lost = found.wind_up + found.touch, np.isnan(found.wind_up)
     return {
@@ -177,11 +210,66 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         "torsional_stiffness": found.stiffness @ weight,
         "loaded_pairs": found.loaded_pairs @ weight,
         **_zone_load(found.inner_load @ weight),
-        "path": path.mean(axis=1)[:, ::SHOWN].T,
-        "tooth_force": np.moveaxis(found.force.sum(axis=2), 1, 2)[:, ::SHOWN],
+        "edge_share": _part_of(found.edge_load @ weight, found.force.sum(axis=(1, 2)) @ weight),
+        **_of_pairs(design.mesh, path, found.force),
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
+        "parts": _parts(design, known.contacts, each, weight),
     }
+
+
+def _part_of(some: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """Part of a whole; none of nothing."""
+    return np.asarray(some / np.where(whole != 0.0, whole, 1.0))
+
+
+def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
+    """Way of every pair [phase, pair] and the force on it [torque, phase, pair]."""
+    way, loads = mesh.in_pairs(path, 0, like_first=True), mesh.in_pairs(force, 1)
+    return {
+        "path": way.mean(axis=1)[:, ::SHOWN].T,
+        "tooth_force": np.moveaxis(loads.sum(axis=2), 1, 2)[:, ::SHOWN],
+    }
+
+
+def _parts(
+    design: Design, contacts: Contacts, each: list[Any], weight: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Parts of the wind-up over the torques, by name; those that yield [rad]."""
+    if not design.mesh.couples:
+        return {}
+    found = [
+        {"teeth": one.of_teeth, "gaps between the teeth": one.of_gaps}
+        | jax.device_get(body_parts(design.mesh, design.solids, contacts, one))
+        for one in each
+    ]
+    every = {name: np.stack([one[name] @ weight for one in found]) for name in found[0]}
+    return {name: values for name, values in every.items() if values.any()}
+
+
+def _at_rest(built: Built, contacts: Contacts, each: list[Any]) -> np.ndarray | float:
+    """Torque by which bearings and seals hold the loaded member while the others are held [N m]."""
+    design = built.design
+    if not design.drag:
+        return 0.0
+    viscosity = design.lubricant.kinematic_viscosity(built.operation.temperature)
+    torques = [_drag_at_rest(design, contacts, one.force, viscosity) for one in each]
+    return np.stack(jax.device_get(torques))
+
+
+@program
+def _drag_at_rest(
+    design: Design,
+    contacts: Contacts,
+    force: Float[Array, "pair slice node"],
+    viscosity: Float[Array, ""],
+) -> Float[Array, " node"]:
+    drags, loaded = at_rest(design.drag), design.mesh.loaded
+    total = jnp.zeros(force.shape[2:])
+    for drag, load in zip(drags, bearing_loads(drags, design.mesh, contacts, force), strict=True):
+        torque = drag.torque(speed=jnp.zeros(()), load=load, kinematic_viscosity=viscosity)
+        total += jnp.abs(drag.between @ loaded) * torque
+    return total
 
 
 def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
@@ -224,8 +312,24 @@ def _torsion_of(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Wind-up over torque, and the play of the loaded member between its flanks [rad]."""
     data = parts.get("torsion")
-    lost = None if data is None else float(data["lost_motion"])
-    return {"torsion": by_torque(data, WIND_UP), "lost_motion": lost}
+    if data is None:
+        return {"torsion": {}, "lost_motion": None}
+    of = {"stiffness_of": data["torsional_stiffness"].attrs.get("covers", "")}
+    return {
+        "torsion": by_torque(data, WIND_UP) | of | _slopes(data),
+        "lost_motion": float(data["lost_motion"]),
+    }
+
+
+def _slopes(data: xr.Dataset) -> dict[str, Any]:
+    """Stiffness, lost motion and hysteresis loss as in catalogues, and the parts of the wind-up."""
+    names = ("slope_torque", "slope_stiffness", "catalogue_lost_motion", "hysteresis_loss")
+    if names[0] not in data:
+        return {}
+    parts = zip(data["part"].values, data["wind_up_part"].values, strict=True)
+    return {name: numbers(data[name].values) for name in names} | {
+        "wind_up_part": {str(part): numbers(values) for part, values in parts}
+    }
 
 
 TORSION = Analysis(

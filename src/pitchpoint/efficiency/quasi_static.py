@@ -13,6 +13,7 @@ from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
@@ -49,7 +50,7 @@ __all__ = [
 
 Lanes = Float[Numbers, "pair slice *#b"]
 Each = Float[Arrays, "*#b"]
-Coupling = Float[Array, "lane lane *#b"]
+Coupling = Body
 
 FEWEST = 32
 """Pairs that are kept of many; more are twice as many, and so on."""
@@ -224,7 +225,7 @@ class Engagement(eqx.Module):
     weight: Float[Array, " node"]
     contacts: Contacts
     share: Float[Arrays, "pair slice node"]
-    body: Float[Array, "lane lane node"] | None
+    body: Body | None
     nodes: int = eqx.field(static=True)
 
     def loaded(self) -> "Engagement":

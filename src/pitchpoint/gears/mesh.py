@@ -8,13 +8,14 @@ from typing import ClassVar, Literal, Self
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
 
@@ -201,13 +202,34 @@ class Mesh(eqx.Module):
         """Sense in which the phase runs while the drive turns on: one, or minus one."""
         return jnp.ones(())
 
-    @property
-    def filled(self) -> np.ndarray | slice:
-        """Numbers of the places for pairs that hold one.
+    def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
+        """Values by pairs that the mesh holds, and the places at which each may touch.
 
-        Empty places let meshes of several tooth numbers share their programs.
+        Empty places let meshes of several tooth numbers share their programs, and a family may give a pair
+        a second one; the slices are then its places.
+
+        Args:
+            values: with places and slices on two neighbouring axes.
+            axis: of the places.
+            like_first: True if a place that a pair does not have gets the value of its first, else zero.
         """
-        return slice(None)
+        return values
+
+    def of_pairs(self, places: Float[Arrays, "place *#b"]) -> Float[Array, "pair *#b"]:
+        """Sums over the places at which each pair may touch: its only one, unless a family has more.
+
+        Args:
+            places: a value for each place.
+        """
+        return jnp.asarray(places)
+
+    def on_edge(self, contacts: Contacts) -> Bool[Array, "pair slice *b"]:
+        """True for contacts at an end of a flank or on the rounding of a tip, of families that watch for it.
+
+        Args:
+            contacts: of the mesh.
+        """
+        return jnp.zeros(contacts.active.shape, bool)
 
     @property
     def largest_radius(self) -> Float[Array, ""]:
@@ -219,9 +241,7 @@ class Mesh(eqx.Module):
         """What yields under load, and what is left out, in words."""
         return "teeth and the bodies under them", "shafts, bearings and housing"
 
-    def body_compliance(
-        self, contacts: Contacts, solids: tuple[Solid, Solid]
-    ) -> Float[Array, "lane lane *b"]:
+    def body_compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
         """How far a unit force on one lane moves another through the body under the teeth [m/N].
 
         Lanes are pairs and slices, flattened; both ends along their normals. It does not depend on the
@@ -232,6 +252,34 @@ class Mesh(eqx.Module):
             solids: material of each member.
         """
         raise self._without("body that couples its teeth")
+
+    def body_parts(
+        self,
+        contacts: Contacts,
+        solids: tuple[Solid, Solid],
+        force: Float[Array, "pair slice *b"],
+        balls: Float[Array, "ball *b"] | None,
+    ) -> dict[str, Float[Array, "*b"]]:
+        """Work of the contacts' forces on what bodies under the teeth yield, by name of the part [N m].
+
+        Args:
+            contacts: of the mesh.
+            solids: material of each member.
+            force: normal force of each slice [N].
+            balls: forces of balls that hold the body [N]; None without.
+        """
+        return {}
+
+    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
+        """What yields behind the teeth and carries the whole load, by name.
+
+        Args:
+            solids: material of each member.
+
+        Returns:
+            Movement of the loaded coordinate for a unit load on it [rad/(N m) or m/N].
+        """
+        return {}
 
     @property
     def other_flanks(self) -> Self:

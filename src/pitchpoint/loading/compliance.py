@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.on_balls import Body
 from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
 from pitchpoint.materials.solids import Solid
 
@@ -23,7 +24,7 @@ class Compliance(eqx.Module):
     """
 
     stiffness: Float[Array, "pair slice *#b"]
-    body: Float[Array, "lane lane *#b"] | None
+    body: Body | None
     load: Float[Array, "*#b"]
 
     def of_teeth(self, contacts: Contacts) -> Float[Array, "pair slice *b"]:
@@ -42,7 +43,7 @@ def compliance(
     solids: tuple[Solid, Solid],
     terms: Terms,
     load: Float[Array, "*#b"],
-    body: Float[Array, "lane lane *#b"] | None = None,
+    body: Body | None = None,
 ) -> Compliance:
     """How the contacts of a mesh yield under a load.
 

@@ -1,5 +1,6 @@
 """Equilibrium of contacts that only push: which of them carry a load, and how far the loaded body moves."""
 
+import dataclasses
 from typing import NamedTuple
 
 import equinox as eqx
@@ -7,6 +8,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.on_balls import Body, OnBalls, ball_force, ball_stiffness
 from pitchpoint.status import Code, Status
 
 __all__ = ["Equilibrium", "equilibrium", "touch"]
@@ -30,6 +32,12 @@ UNSOLVED = 1e-10
 FAR = 1e6
 """Approach, over elastic deflection and clearance, at which a body that nothing holds is looked at."""
 
+PASSES = 40
+"""Largest number of steps in which balls find their approach; usual are three to eight."""
+
+SETTLED = 1e-9
+"""Change of an approach, over the largest one, at which it counts as found; one more step squares that."""
+
 LIGHTEST = 1e-8
 """Least elastic deflection over the largest clearance: what lighter loads do is its limit."""
 
@@ -47,6 +55,7 @@ class Equilibrium(eqx.Module):
         loaded: True where a slice carries.
         residual: largest violation of the equilibrium, over the load or its deflection.
         iterations: active sets that were tried, common to the states that were solved together.
+        balls: forces of the balls under the body; None where none hold it [N].
     """
 
     force: Lanes
@@ -56,6 +65,7 @@ class Equilibrium(eqx.Module):
     loaded: Bool[Array, "pair slice *b"]
     residual: Each
     iterations: Int[Array, ""]
+    balls: Float[Array, "ball *b"] | None = None
 
     @property
     def status(self) -> Status:
@@ -103,7 +113,7 @@ class _Scale(NamedTuple):
 
 def equilibrium(
     teeth: Float[Arrays, "..."],
-    body: Float[Arrays, "lane lane *#b"] | None,
+    body: Body | Float[Arrays, "lane lane *#b"] | None,
     *,
     gap: Lanes,
     arm: Lanes,
@@ -122,7 +132,7 @@ def equilibrium(
     Args:
         teeth: displacement of each lane (pair and slice) along its normal for a unit force on it [m/N].
         body: what is added to that for a unit force on another lane, lanes flattened [m/N]; symmetric
-            positive semidefinite; None where nothing couples them.
+            positive semidefinite, held by balls or not; None where nothing couples them.
         gap: separation of the unloaded flanks; any sign, only differences over `arm` matter to the
             forces [m].
         arm: closing for a unit of approach, positive; lanes with none never carry [m or 1].
@@ -144,6 +154,8 @@ def equilibrium(
         >>> [round(float(force)) for force in found.force[:, 0]]
         [200, 100]
     """
+    if isinstance(body, OnBalls):
+        return _on_balls(teeth, body, gap, arm, active, load)
     problem, scale = _normalised(teeth, body, gap, arm, active, load)
     loaded, iterations = _loaded(jax.lax.stop_gradient(problem))
     found = _solve(problem, loaded)
@@ -164,6 +176,105 @@ def equilibrium(
         residual=residual,
         iterations=iterations,
     )
+
+
+class _Held(NamedTuple):
+    """A body whose balls are springs for small changes of their approach.
+
+    Attributes:
+        lanes: compliance of the lanes [m/N].
+        shift: displacement of the lanes by what the springs push without load on them [m].
+        across, free: how the balls move with the forces of the lanes, and without [m/N, m].
+    """
+
+    lanes: Float[Array, "*b lane lane"]
+    shift: Rows
+    across: Float[Array, "*b ball lane"]
+    free: Float[Array, "*b ball"]
+
+
+def _held(body: OnBalls, approach: Float[Array, "*b ball"]) -> _Held:
+    """The body on springs that are tangent to the balls at an approach."""
+    lanes, across = (jnp.moveaxis(x, (0, 1), (-2, -1)) for x in (body.lanes, body.across))
+    slope = ball_stiffness(body.stiffness, approach)
+    root = jnp.sqrt(jnp.where(slope > 0.0, slope, 1.0)) * (slope > 0.0)
+    pushed = ball_force(body.stiffness, approach) - ball_force(body.stiffness, body.approach)
+    pushed += slope * (body.approach - approach)
+    matrix = jnp.eye(root.shape[-1]) + root[..., :, None] * body.balls * root[..., None, :]
+    inverse = root[..., :, None] * jnp.linalg.inv(matrix) * root[..., None, :]
+    # Forces of the balls follow their approach: pushed - inverse (across^T f + balls pushed).
+    coupled = across @ inverse
+    bent = jnp.einsum("ij,...j->...i", body.balls, pushed)
+    resting = pushed - jnp.einsum("...ij,...j->...i", inverse, bent)
+    left = jnp.eye(root.shape[-1]) - body.balls @ inverse
+    return _Held(
+        lanes=lanes - coupled @ jnp.swapaxes(across, -1, -2),
+        shift=jnp.einsum("...ij,...j->...i", across, resting),
+        across=left @ jnp.swapaxes(across, -1, -2),
+        free=body.approach - jnp.einsum("ij,...j->...i", body.balls, resting),
+    )
+
+
+def _on_balls(
+    teeth: Float[Arrays, "..."],
+    body: OnBalls,
+    gap: Lanes,
+    arm: Lanes,
+    active: Bool[Arrays, "pair slice *#b"],
+    load: Each,
+) -> Equilibrium:
+    """Equilibrium with balls that only push: Newton's steps in their approach, each one an equilibrium."""
+    each = (teeth.shape[2:], body.lanes.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
+    batch = jnp.broadcast_shapes(*each)
+
+    def on_springs(body: OnBalls, approach: Array, *given: Array) -> tuple[Equilibrium, Array]:
+        own, gaps, arms, may, carried = given
+        held = _held(body, approach)
+        shift = jnp.moveaxis(held.shift, -1, 0).reshape(*gaps.shape[:2], *batch)
+        matrix = jnp.moveaxis(held.lanes, (-2, -1), (0, 1))
+        found = equilibrium(own, matrix, gap=gaps + shift, arm=arms, active=may, load=carried)
+        force = jnp.moveaxis(found.force.reshape(-1, *batch), 0, -1)
+        moved = held.free - jnp.einsum("...ij,...j->...i", held.across, force)
+        return found, moved
+
+    given = teeth, gap, arm, active, load
+    fixed = jax.lax.stop_gradient((body, *given))
+
+    def again(at: _Settling) -> _Settling:
+        found, approach = on_springs(fixed[0], at.approach, *fixed[1:])
+        change = jnp.max(jnp.abs(approach - at.approach), axis=-1)
+        size = jnp.max(jnp.abs(approach), axis=-1)
+        return _Settling(
+            approach, change > SETTLED * size, at.steps + 1, at.sets + found.iterations
+        )
+
+    start = jnp.broadcast_to(fixed[0].approach, (*batch, body.approach.shape[0]))
+    begin = _Settling(start, jnp.ones(batch, bool), jnp.asarray(0), jnp.asarray(0))
+    settled = jax.lax.while_loop(lambda at: (at.steps < PASSES) & jnp.any(at.open), again, begin)
+    found, approach = on_springs(body, jax.lax.stop_gradient(settled.approach), *given)
+    force = ball_force(body.stiffness, approach)
+    return dataclasses.replace(
+        found,
+        residual=jnp.where(settled.open, jnp.inf, found.residual),
+        force=_where(~settled.open, found.force),
+        iterations=settled.sets + found.iterations,
+        balls=jnp.moveaxis(force, -1, 0),
+    )
+
+
+class _Settling(NamedTuple):
+    """State of the search for the approach of the balls.
+
+    Attributes:
+        approach: of each ball [m].
+        open: True where it still changes.
+        steps, sets: that were taken, and active sets that were tried on the way.
+    """
+
+    approach: Float[Array, "*b ball"]
+    open: Bool[Array, "*b"]
+    steps: Int[Array, ""]
+    sets: Int[Array, ""]
 
 
 def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each:

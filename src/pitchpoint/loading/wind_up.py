@@ -8,13 +8,14 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.on_balls import Body
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 
-__all__ = ["Hysteresis", "WindUp", "hysteresis", "wind_up", "wound_up"]
+__all__ = ["Hysteresis", "WindUp", "body_parts", "hysteresis", "wind_up", "wound_up"]
 
 Each = Float[Arrays, "*#b"]
 
@@ -31,11 +32,15 @@ class WindUp(eqx.Module):
         loaded_pairs: number of pairs that carry.
         force: normal force of each slice [N].
         share: part of the sum of all forces; without load the limit for a vanishing one.
+        edge_load: sum of the forces at ends of flanks and on roundings, see `Mesh.on_edge` [N].
         inner_load: on the bearing inside the drive in each zone, see `Mesh.inner_load` [N].
         slip_torque: sum of forces times their sliding arms: what a friction coefficient of one would
             hold at the driven coordinate [N m or N].
         residual: of the equilibrium, see `Equilibrium`.
         iterations: common to all states.
+        of_teeth, of_gaps: parts of the wind-up by which the teeth yield, and by which gaps between them
+            close beyond the first touch [rad or m].
+        balls: forces of balls under the body of the teeth, see `OnBalls`; None where none hold it [N].
     """
 
     load: Each
@@ -45,10 +50,14 @@ class WindUp(eqx.Module):
     loaded_pairs: Int[Array, "*b"]
     force: Float[Array, "pair slice *b"]
     share: Float[Array, "pair slice *b"]
+    edge_load: Each
     inner_load: Float[Array, "zone *b"]
     slip_torque: Each
     residual: Each
     iterations: Int[Array, ""]
+    of_teeth: Each
+    of_gaps: Each
+    balls: Float[Array, "ball *b"] | None
 
 
 class Hysteresis(eqx.Module):
@@ -71,7 +80,7 @@ def wind_up(
     load: Each,
     phase: Each,
     contacts: Contacts | None = None,
-    body: Float[Array, "lane lane *#b"] | None = None,
+    body: Body | None = None,
 ) -> WindUp:
     """Movement of the driven coordinate at loads and phases, with the pairs that come to carry.
 
@@ -93,29 +102,65 @@ def wind_up(
     arm = jnp.abs(along(contacts.normal, mesh.loaded))
     load = jnp.broadcast_to(load, jnp.broadcast_shapes(jnp.shape(load), jnp.shape(phase)))
     given = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
+    behind = sum(mesh.in_series(solids).values(), jnp.zeros(()))
 
-    def approach(torque: Each) -> tuple[Each, Equilibrium]:
+    def approach(torque: Each) -> tuple[Each, tuple[Equilibrium, Arrays]]:
         yields = compliance(mesh, contacts, solids, terms, torque, body)
-        found = equilibrium(yields.of_teeth(contacts), yields.body, **given, load=torque)
-        return found.approach, found
+        own = yields.of_teeth(contacts)
+        found = equilibrium(own, yields.body, **given, load=torque)
+        return found.approach + behind * torque, (found, own)
 
     # The springs themselves depend on the load where the contact of the teeth does.
-    moved, slope, found = jax.jvp(approach, (load,), (jnp.ones_like(load),), has_aux=True)
+    moved, slope, (found, own) = jax.jvp(approach, (load,), (jnp.ones_like(load),), has_aux=True)
     free = jnp.broadcast_to(touch(**given), moved.shape)
+    closed = jnp.where(contacts.active, contacts.gap - arm * free, 0.0)
     slip = jnp.abs(along(contacts.slip_arm, mesh.loaded))
     return WindUp(
         load=load,
         wind_up=moved - free,
         touch=free,
         stiffness=1.0 / slope,
-        loaded_pairs=jnp.sum(jnp.any(found.loaded, axis=1), axis=0),
+        loaded_pairs=jnp.sum(mesh.of_pairs(jnp.any(found.loaded, axis=1) * 1.0) > 0.0, axis=0),
+        edge_load=total(jnp.where(mesh.on_edge(contacts), found.force, 0.0)),
         force=found.force,
         share=found.share,
         inner_load=jnp.sum(mesh.inner_load(contacts) * found.force, axis=(1, 2)),
         slip_torque=total(found.force * slip),
         residual=found.residual,
         iterations=found.iterations,
+        of_teeth=_over(total(found.force**2 * own), load),
+        of_gaps=_over(total(found.force * closed), load),
+        balls=found.balls,
     )
+
+
+def _over(work: Each, load: Each) -> Each:
+    """Movement that does this work under a load; none without it."""
+    carries = load > 0.0
+    return jnp.where(carries, work / jnp.where(carries, load, 1.0), 0.0)
+
+
+@program
+def body_parts(
+    mesh: Mesh, solids: tuple[Solid, Solid], contacts: Contacts, found: WindUp
+) -> dict[str, Float[Array, "*b"]]:
+    """Parts of the wind-up by what lies under and behind the teeth, by name [rad or m].
+
+    Args:
+        mesh: a family with teeth.
+        solids: material of each member.
+        contacts: of the mesh.
+        found: wind-up at one load at all phases of these contacts.
+
+    With those of the teeth and of their gaps they sum up to the wind-up: forces f move along C f, and the
+    load along all of it.
+    """
+    works = mesh.body_parts(contacts, solids, found.force, found.balls)
+    under = {part: _over(work, found.load) for part, work in works.items()}
+    behind = {part: each * found.load for part, each in mesh.in_series(solids).items()}
+    names = (*under, *(part for part in behind if part not in under))
+    none = jnp.zeros(found.load.shape)
+    return {part: under.get(part, none) + behind.get(part, none) for part in names}
 
 
 @program
@@ -125,7 +170,7 @@ def wound_up(
     terms: Terms,
     load: Float[Array, ""],
     contacts: Contacts,
-    body: Float[Array, "lane lane *#b"] | None,
+    body: Body | None,
 ) -> WindUp:
     """Wind-up at one torque at all phases of known contacts: one program for every torque and part of a run.
 
@@ -135,19 +180,24 @@ def wound_up(
     return wind_up(mesh, solids, terms, loads, loads, contacts, body)
 
 
-def hysteresis(found: WindUp, friction: float | Float[Array | np.ndarray, "*#b"]) -> Hysteresis:
+def hysteresis(
+    found: WindUp,
+    friction: float | Float[Array | np.ndarray, "*#b"],
+    at_rest: float | Float[Array | np.ndarray, "*#b"] = 0.0,
+) -> Hysteresis:
     """Loop of torque over wind-up by Coulomb friction on the teeth while the drive stands still.
 
     On loading, friction adds mu times the sum of forces times sliding arms to the torque that the
     same wind-up takes without it, and takes away as much on unloading. All flanks are taken to slide
     as soon as the sense turns, and forces to be those without friction, so the loop is right to
-    first order in mu and closes at no load: what remains of a measured loop there has other causes.
+    first order in mu. The teeth hold nothing without load; bearings and seals may.
 
     Args:
         found: wind-up over torques.
         friction: coefficient mu of the teeth, broadcast over the states.
+        at_rest: torque at the loaded member by which bearings and seals hold it [N m].
 
     From virtual work: friction slides by its arm while the loaded member turns by one.
     """
-    held = friction * found.slip_torque
+    held = friction * found.slip_torque + at_rest
     return Hysteresis(found.wind_up, found.load + held, found.load - held)

@@ -92,7 +92,7 @@ def _conjugate(mesh: StrainWave) -> dict[str, Any]:
 
     Clearances are those of the drive's own flank with its rounded tip, where it reaches its mate.
     """
-    sharp = replace(mesh, flank=replace(mesh.flank, tip_rounding=1e-6 * mesh.module))
+    sharp = replace(mesh, flank=replace(mesh.flank.unrelieved, tip_rounding=1e-6 * mesh.module))
     names = ("phase_rate", "angle", "radius", "entrainment")
     found = jax.device_get(_branches(sharp))
     own: dict[str, Any] = jax.device_get(_branches(mesh))

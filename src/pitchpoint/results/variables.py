@@ -147,6 +147,22 @@ VARIABLES: dict[str, Variable] = {
     "torsional_stiffness": Variable(
         "torsional stiffness", "K", "N m/rad", "kN m/rad", "torsional stiffness"
     ),
+    "edge_share": percent("part of the load on edges of the teeth", "F_e/F"),
+    "wind_up_part": Variable("part of the wind-up", "Δθ", "rad", "arcmin", "angle"),
+    "slope_stiffness": Variable(
+        "torsional stiffness of a part of the curve",
+        "K",
+        "N m/rad",
+        "kN m/rad",
+        "torsional stiffness",
+    ),
+    "slope_torque": torque("torque at which a part of the curve ends", "T"),
+    "catalogue_lost_motion": Variable(
+        "lost motion between plus and minus 4 % of the torque", "Δθ_4%", "rad", "arcmin", "angle"
+    ),
+    "hysteresis_loss": Variable(
+        "hysteresis loss, the width of the loop without torque", "Δθ_h", "rad", "arcmin", "angle"
+    ),
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
     "lost_motion": Variable(

@@ -15,6 +15,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing
 from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, rates, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
@@ -22,10 +23,13 @@ from pitchpoint.gears.strain_wave.groove import (
     NEWTON_STEPS,
     NODES,
     Groove,
+    Tips,
     given,
     swept,
     tip_with_land,
 )
+from pitchpoint.gears.strain_wave.in_series import Behind, Cup, InSeries, in_series
+from pitchpoint.gears.strain_wave.proportions import rim_by_strain
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
 from pitchpoint.programs import fast_program, program
@@ -44,6 +48,9 @@ __all__ = [
 
 LEAST_LAND = 0.3
 """Tip land that the circular spline's teeth keep, in modules: their tips are cut back as far as it takes."""
+
+RIDGE = 1.0
+"""Radius in modules of ridges between parts of a swept flank: no cutter leaves an edge."""
 
 INTERFERENCE = 1e-4
 """Overlap of rigid flanks that counts as interference, in modules."""
@@ -99,10 +106,18 @@ def build_strain_wave(
     force_angle: float = radians(30.0),
     rim_thickness: float | None = None,
     wall_thickness: float | None = None,
+    walls: str = "two modules",
     cup_length: float | None = None,
     support_stiffness: float = inf,
+    bearing: Balls | None = None,
+    behind: Behind | None = None,
     clearance: float = 0.25,
+    disengagement: float = radians(50.0),
     tip_rounding: float = 0.1,
+    tip_relief: float = 0.005,
+    relief_length: float = 0.1,
+    bottom_clearance: float = 0.15,
+    edges_carry: bool = False,
     backlash: float = 0.0,
     fixed: str = "circular spline",
     driver: str = "wave generator",
@@ -119,13 +134,24 @@ def build_strain_wave(
             displacement, of which only their ratios count.
         deflection: w0 over module (z2 - z1)/2, the deflection with which the pitch circles touch.
         force_angle: between the long axis and the forces of the shape `four_forces` [rad].
-        rim_thickness: of the flexspline under its teeth [m]; two modules by default.
+        rim_thickness: of the flexspline under its teeth [m]; by `walls` if it is left out.
         wall_thickness: of the cup [m]; half the rim by default.
+        walls: "two modules" or "bending strain", see `rim_by_strain`.
         cup_length: from the teeth to the flange [m]; half the pitch diameter by default.
         support_stiffness: of the wave generator's bearing, see `FlexibleRing` [N/m2].
+        bearing: balls of the wave generator, which take the place of that support.
+        behind: what yields behind teeth, rim and wall; nothing by default.
         clearance: between the tip of the circular spline's teeth and the root of the flexspline on
             the long axis, in modules.
+        disengagement: from the long axis at which teeth leave their spaces, at the latest: the tips of the
+            circular spline end there if the clearance does not end them before [rad].
         tip_rounding: radius of the edges of all tips, in modules.
+        tip_relief: by which the tips of both splines lie below the flank where their rounding begins, in
+            modules.
+        relief_length: along the flank up to there, in modules.
+        bottom_clearance: between the flexspline's tips and the bottom of the spaces on the long axis, in
+            modules.
+        edges_carry: True if the rounding of the flexspline's tips may carry; it sweeps in any case.
         backlash: play on the circumference beyond the groove that just lets the teeth through [m].
         fixed: member that does not turn.
         driver: member that drives; the third carries the load.
@@ -208,20 +234,32 @@ class _Plan:
     Attributes:
         parts: of the mesh, by name; those that are arrays.
         travel: how its teeth move.
+        cutter: the same of teeth without relief, which sweep the groove.
         low: height of the tips as meant [m].
         mate: form of the circular spline; None where its flanks are swept.
         splines: numbers of teeth.
-        module, edge, backlash: [m].
+        module, backlash: [m].
     """
 
     parts: dict[str, Any]
     travel: ToothMotion
+    cutter: ToothMotion
     low: float
     mate: InvoluteForm | None
     splines: tuple[int, int]
     module: float
-    edge: float
     backlash: float
+
+    @property
+    def tips(self) -> Tips:
+        """How tips are made."""
+        found: Tips = self.parts["tips"]
+        return found
+
+    @property
+    def edge(self) -> float:
+        """Radius of the edges [m]."""
+        return float(self.tips.rounding)
 
     @property
     def mate_angle(self) -> Array:
@@ -244,9 +282,12 @@ class _Built:
     overlap: float
 
     @property
-    def kind(self) -> tuple[str, bool, bool]:
+    def kind(self) -> tuple[str, bool, bool, bool, int]:
         """Static structure that drives of a group have in common."""
-        return type(self.parts["flank"]).__name__, self.parts["conjugate"], self.parts["odd"]
+        flank, rigid = type(self.parts["flank"]).__name__, self.parts["series"].ring is None
+        bearing = self.parts["bearing"]
+        balls = 0 if bearing is None else bearing.angle.shape[0]
+        return flank, self.parts["conjugate"], self.parts["odd"], rigid, balls
 
     def __call__(self, lanes: int) -> StrainWave:
         """The drive with so many places in each zone."""
@@ -275,15 +316,19 @@ def _touching(found: Survey, module: Float[Array, ""]) -> _Contact:
 
 
 def _swept(
-    travel: ToothMotion,
+    cutter: ToothMotion,
     low: Float[Array, ""],
-    edge: Float[Array, ""],
+    tips: Tips,
     mate_angle: Float[Array, ""],
     land: Float[Array, ""],
 ) -> tuple[Groove, Float[Array, ""], Float[Array, ""]]:
     """Groove, height at which the teeth between keep a tip land, and the land that they have [m]."""
-    groove = swept(travel, low, edge)
-    return groove, tip_with_land(groove, mate_angle, land, edge), groove.land(mate_angle)[0]
+    groove = swept(cutter, low, tips)
+    return (
+        groove,
+        tip_with_land(groove, mate_angle, land, tips.rounding),
+        groove.land(mate_angle)[0],
+    )
 
 
 def _surveyed(
@@ -292,9 +337,10 @@ def _surveyed(
     backlash: Float[Array, ""],
     module: Float[Array, ""],
     tooth_angle: Float[Array, ""],
+    edges_carry: bool,
 ) -> tuple[Survey, _Contact]:
     """Clearances along the wave, and where the least one is."""
-    found = survey(travel, groove, backlash, module, tooth_angle)
+    found = survey(travel, groove, backlash, module, tooth_angle, edges_carry)
     return found, _touching(found, module)
 
 
@@ -322,10 +368,18 @@ def _planned(
     force_angle: float,
     rim_thickness: float | None,
     wall_thickness: float | None,
+    walls: str,
     cup_length: float | None,
     support_stiffness: float,
+    bearing: Balls | None,
+    behind: Behind | None,
     clearance: float,
+    disengagement: float,
     tip_rounding: float,
+    tip_relief: float,
+    relief_length: float,
+    bottom_clearance: float,
+    edges_carry: bool,
     backlash: float,
     fixed: str,
     driver: str,
@@ -334,17 +388,24 @@ def _planned(
     """What follows without the groove; arguments as in `build_strain_wave`."""
     z1, z2 = _checked_teeth(teeth)
     motion, drives, loaded = rates(np.array([z1, z2], dtype=float), *_roles(fixed, driver))
-    rim = 2.0 * module if rim_thickness is None else rim_thickness
-    flank = _flank(form, z1, module, rim, tip_rounding)
+    w0 = deflection * module * (z2 - z1) / 2.0
+    rim = _rim(walls, module, z1, w0) if rim_thickness is None else rim_thickness
+    sizes = (tip_rounding, tip_relief, relief_length, bottom_clearance, RIDGE)
+    tips = Tips(*(array(size * module) for size in sizes))
+    flank = _flank(form, z1, module, rim, tips)
     dedendum = (
         form.dedendum if isinstance(form, DoubleArcForm) else form.dedendum - form.profile_shift
     )
     neutral = module * (z1 / 2.0 - dedendum) - rim / 2.0
-    w0 = deflection * module * (z2 - z1) / 2.0
-    _check_depth(form, deflection, clearance, module, z2 - z1)
+    _check_depth(form, deflection, clearance)
+    if groove is not None:
+        _check_free(form, deflection, clearance, z2 - z1)
     weights = _weights(shape, force_angle, w0 / neutral)
     line = NeutralLine(array(neutral), array(w0), array(weights))
-    edge = tip_rounding * module
+    wall = rim / 2.0 if wall_thickness is None else wall_thickness
+    bottom = bottom_clearance * module
+    root = neutral + rim / 2.0 + module * (form.addendum + form.dedendum) + w0 + bottom
+    cup = Cup(module * z1, neutral, rim, root, face_width)
     parts = {
         "teeth": array([z1, z2], float),
         "module": array(module),
@@ -355,11 +416,14 @@ def _planned(
             radius=array(neutral),
             thickness=array(rim),
             width=array(face_width),
-            wall_thickness=array(rim / 2.0 if wall_thickness is None else wall_thickness),
+            wall_thickness=array(wall),
             cup_length=array(module * z1 / 2.0 if cup_length is None else cup_length),
             support_stiffness=array(support_stiffness),
         ),
-        "tip_rounding": array(edge),
+        "bearing": None if bearing is None else ball_bearing(bearing, module * z1, face_width),
+        "series": InSeries.rigid() if behind is None else in_series(behind, cup),
+        "tips": tips,
+        "edges_carry": edges_carry,
         "backlash": array(backlash),
         "motion_of": array(motion),
         "driver_of": array(drives),
@@ -367,9 +431,17 @@ def _planned(
         "conjugate": groove is None,
         "odd": z1 % 2 == 1,
     }
-    travel = ToothMotion(_prepared(flank), line, array(1.0 - z1 / z2))
+    lag = array(1.0 - z1 / z2)
+    travel, cutter = (ToothMotion(_prepared(one), line, lag) for one in (flank, flank.unrelieved))
     low = neutral + w0 + rim / 2.0 + clearance * module
-    return _Plan(parts, travel, low, groove, (z1, z2), module, edge, backlash)
+    if groove is None:
+        low = max(low, float(_tip_height(cutter, array(disengagement))))
+    return _Plan(parts, travel, cutter, low, groove, (z1, z2), module, backlash)
+
+
+def _rim(walls: str, module: float, teeth: int, deflection: float) -> float:
+    """Thickness of a rim by a rule [m]."""
+    return 2.0 * module if walls == "two modules" else rim_by_strain(module * teeth, deflection)
 
 
 def _built(plan: _Plan, programs: _Programs) -> _Built:
@@ -384,7 +456,8 @@ def _built(plan: _Plan, programs: _Programs) -> _Built:
         low, groove, land = _given(plan, plan.mate)
     _check_play(plan, land)
     numbers = map(array, (plan.backlash, plan.module, 2.0 * pi / plan.splines[0]))
-    found, touching = programs.survey(plan.travel, groove, *numbers)
+    edges: bool = plan.parts["edges_carry"]
+    found, touching = programs.survey(plan.travel, groove, *numbers, edges)
     at = _plain(touching)
     for fails, refuse in _faults(at, plan.module, plan.backlash, conjugate=plan.mate is None):
         if fails:
@@ -472,7 +545,13 @@ def _extent(mesh: StrainWave) -> tuple[Array, Array]:
 
 
 def double_arc_flank(
-    form: DoubleArcForm, *, module: float, rim_thickness: float, tip_rounding: float = 0.1
+    form: DoubleArcForm,
+    *,
+    module: float,
+    rim_thickness: float,
+    tip_rounding: float = 0.1,
+    tip_relief: float = 0.0,
+    relief_length: float = 0.0,
 ) -> DoubleArcFlank:
     """Flank of a double-arc tooth.
 
@@ -480,16 +559,25 @@ def double_arc_flank(
         form: in modules.
         module: [m].
         rim_thickness: under the teeth [m].
-        tip_rounding: in modules.
+        tip_rounding, tip_relief, relief_length: in modules.
 
     Raises:
         InputError: arcs without a common tangent, or in the wrong order.
     """
+    made = (array(v * module) for v in (tip_rounding, tip_relief, relief_length, 0.0, RIDGE))
+    return _double_arc(form, module, rim_thickness, Tips(*made))
+
+
+def _double_arc(
+    form: DoubleArcForm, module: float, rim_thickness: float, tips: Tips
+) -> DoubleArcFlank:
     values = {field.name: jnp.asarray(module * getattr(form, field.name)) for field in fields(form)}
     flank = DoubleArcFlank(
         pitch=jnp.asarray(pi * module),
         pitch_height=jnp.asarray(rim_thickness / 2.0 + form.dedendum * module),
-        tip_rounding=jnp.asarray(tip_rounding * module),
+        tip_rounding=tips.rounding,
+        tip_relief=tips.relief,
+        relief_length=tips.relief_length,
         **values,
     )
     found = jax.device_get(_arcs(flank))
@@ -500,15 +588,15 @@ def double_arc_flank(
             f"{apart:.4g} modules apart, less than the sum of their radii, {radii:.4g}",
             key="form",
         )
-    names = ("concave arc", "tangent", "convex arc", "rounding of the tip")
+    names = ("concave arc", "tangent", "convex arc", "relief", "rounding of the tip")
     for name, length in zip(names, found["lengths"], strict=True):
-        if not length > 0.0:
+        if not (length > 0.0 or (name == "relief" and length == 0.0)):
             raise InputError(
                 f"the double-arc tooth leaves no room for its {name}; between root and tip concave arc, "
                 "tangent, convex arc and rounding must follow each other",
                 key="form",
             )
-    _check_land(float(found["land"]), module, tip_rounding)
+    _check_land(float(found["land"]), module, tips)
     return flank
 
 
@@ -523,12 +611,12 @@ def _arcs(flank: DoubleArcFlank) -> dict[str, jnp.ndarray]:
 
 
 def _flank(
-    form: DoubleArcForm | InvoluteForm, teeth: int, module: float, rim: float, rounding: float
+    form: DoubleArcForm | InvoluteForm, teeth: int, module: float, rim: float, tips: Tips
 ) -> Flank:
     if isinstance(form, DoubleArcForm):
-        return double_arc_flank(form, module=module, rim_thickness=rim, tip_rounding=rounding)
-    flank = _involute(form, teeth, module, rim, rounding)
-    _check_land(float(flank.tip_land), module, rounding)
+        return _double_arc(form, module, rim, tips)
+    flank = _involute(form, teeth, module, rim, tips)
+    _check_land(float(flank.tip_land), module, tips)
     base = float(flank.base_radius / flank.root_radius)
     if base >= 1.0:
         raise InputError(
@@ -540,8 +628,9 @@ def _flank(
 
 
 def _involute(
-    form: InvoluteForm, teeth: int, module: float, rim: float, rounding: float
+    form: InvoluteForm, teeth: int, module: float, rim: float, tips: Tips | None
 ) -> InvoluteFlank:
+    made = (tips.rounding, tips.relief, tips.relief_length) if tips else (0.0, 0.0, 0.0)
     root = module * (teeth / 2.0 + form.profile_shift - form.dedendum)
     return InvoluteFlank(
         *map(
@@ -554,13 +643,14 @@ def _involute(
                 form.addendum,
                 form.dedendum,
                 root - rim / 2.0,
-                rounding * module,
+                *made,
             ),
         )
     )
 
 
-def _check_land(land: float, module: float, rounding: float) -> None:
+def _check_land(land: float, module: float, tips: Tips) -> None:
+    rounding = float(tips.rounding) / module
     least = 2.0 * rounding * module
     if not land > least:
         raise InputError(
@@ -581,14 +671,8 @@ def _checked_teeth(teeth: tuple[int, int]) -> tuple[int, int]:
     return z1, z2
 
 
-def _check_depth(
-    form: DoubleArcForm | InvoluteForm,
-    deflection: float,
-    clearance: float,
-    module: float,
-    difference: int,
-) -> None:
-    """The teeth must come free at the short axis, and reach the mate on the long one."""
+def _check_depth(form: DoubleArcForm | InvoluteForm, deflection: float, clearance: float) -> None:
+    """The teeth must reach the mate on the long axis."""
     depth = form.addendum + form.dedendum
     if deflection >= depth:
         raise InputError(
@@ -601,15 +685,21 @@ def _check_depth(
             f"the clearance of {clearance:.3g} modules is not less than the depth of the teeth, {depth:.3g}",
             key="clearance",
         )
+
+
+def _check_free(
+    form: DoubleArcForm | InvoluteForm, deflection: float, clearance: float, difference: int
+) -> None:
+    """The teeth must come free of given ones at the short axis; tips of swept ones are cut for that."""
+    depth = form.addendum + form.dedendum
     least = depth - deflection * difference
     if clearance < least - _SLACK:
-        usual_frees = depth - clearance <= difference + _SLACK  # a deflection of one
         raise InputError(
-            "the teeth do not come free at the short axis: they reach "
-            f"{depth - clearance:.4g} modules into each other, and twice the deflection is "
+            f"with a clearance of {clearance:.4g} modules the teeth do not come free at the short axis: they "
+            f"reach {depth - clearance:.4g} modules into each other, and twice the deflection is "
             f"{deflection * difference:.4g} modules; a clearance of {least:.4g} or a larger deflection "
             "frees them",
-            key="deflection" if usual_frees else "clearance",
+            key="clearance",
         )
 
 
@@ -668,14 +758,20 @@ def _prepared(flank: Flank) -> Flank:
     return flank.prepared()
 
 
+@program
+def _tip_height(motion: ToothMotion, angle: Float[Array, ""]) -> Float[Array, ""]:
+    """Height of the tip of a tooth at an angle from the long axis [m]."""
+    return jnp.real(motion.place(motion.flank.length, angle))
+
+
 _given_groove = program(given)
 _lands = program(Groove.land)
 
 
 def _cut(plan: _Plan, programs: _Programs) -> tuple[float, Groove, float]:
     """Height of tips that keep a land, the groove whose teeth between keep it, and the land [m]."""
-    numbers = array(plan.edge), plan.mate_angle, array(LEAST_LAND * plan.module)
-    groove, raised, land = programs.sweep(plan.travel, array(plan.low), *numbers)
+    numbers = plan.tips, plan.mate_angle, array(LEAST_LAND * plan.module)
+    groove, raised, land = programs.sweep(plan.cutter, array(plan.low), *numbers)
     tips = float(raised)
     if tips == plan.low:
         return tips, groove, float(land)
@@ -685,14 +781,14 @@ def _cut(plan: _Plan, programs: _Programs) -> tuple[float, Groove, float]:
             "free too late",
             key="form",
         )
-    groove, _, land = programs.sweep(plan.travel, raised, *numbers)
+    groove, _, land = programs.sweep(plan.cutter, raised, *numbers)
     return tips, groove, float(land)
 
 
 def _given(plan: _Plan, form: InvoluteForm) -> tuple[float, Groove, float]:
     """Height of the tips, groove and land of an involute circular spline [m]."""
-    z2, module, travel = plan.splines[1], plan.module, plan.travel
-    flank = _involute(form, z2, module, 0.0, 0.0)
+    z2, module, travel = plan.splines[1], plan.module, plan.cutter
+    flank = _involute(form, z2, module, 0.0, None)
     high = jnp.real(travel.place(travel.flank.length, jnp.zeros(())))
     root = module * (z2 / 2.0 + form.profile_shift + form.dedendum)
     if float(high) > root:

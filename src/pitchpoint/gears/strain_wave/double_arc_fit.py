@@ -12,13 +12,14 @@ from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.strain_wave.design import (
     DOUBLE_ARCS,
     LEAST_LAND,
+    RIDGE,
     SWEPT_ACCURACY,
     DoubleArcForm,
     build_strain_wave,
 )
 from pitchpoint.gears.strain_wave.drive import StrainWave, nearest_points
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
-from pitchpoint.gears.strain_wave.groove import Groove, swept, tip_with_land
+from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept, tip_with_land
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
 from pitchpoint.programs import program
@@ -312,6 +313,8 @@ def _objectives(
         addendum=addendum,
         dedendum=dedendum,
         tip_rounding=rounding,
+        tip_relief=jnp.zeros(()),
+        relief_length=jnp.zeros(()),
         **form,
     )
     travel = deflection * (teeth[1] - teeth[0])
@@ -360,14 +363,17 @@ def _in_order(flank: DoubleArcFlank) -> Array:
     angle, lengths = flank.tangent_angle, jnp.stack(flank.lengths)
     allowed = (angle > TANGENT_ANGLES[0]) & (angle < TANGENT_ANGLES[1])
     allowed &= flank.tip_land > jnp.maximum(LEAST_LAND, 2.0 * flank.tip_rounding)
-    return allowed & jnp.all(lengths > 0.0)
+    relief = len(flank.lengths) - 2  # which these have not
+    return allowed & jnp.all(jnp.delete(lengths, relief) > 0.0)
 
 
 def _with_land(motion: ToothMotion, low: Array, edge: Array, pitch: Array) -> tuple[Groove, Array]:
     """Groove whose teeth between keep a tip land, and whether anything is left of them."""
+    none = jnp.zeros(())
+    tips = Tips(edge, none, none, none, jnp.asarray(RIDGE))
 
     def cut(low: Array, _: None) -> tuple[Array, tuple[Groove, Array]]:
-        groove = swept(motion, low, edge)
+        groove = swept(motion, low, tips)
         raised = tip_with_land(groove, pitch, LEAST_LAND, edge)
         left = jnp.isfinite(raised)
         return jnp.where(left, raised, low), (groove, left)

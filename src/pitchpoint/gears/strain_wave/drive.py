@@ -5,7 +5,7 @@ from typing import ClassVar, Self
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Bool, Float, Num
+from jaxtyping import Array, Bool, Float, Int, Shaped
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
@@ -15,11 +15,14 @@ from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.members import number_of
 from pitchpoint.gears.mesh import Mesh, Path
+from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.ball_bearing import BallBearing, on_balls, parts_on_balls
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
-from pitchpoint.gears.strain_wave.groove import Groove, swept
-from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance
+from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept
+from pitchpoint.gears.strain_wave.in_series import InSeries
+from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance, ring_parts
 from pitchpoint.gears.strain_wave.tooth_motion import Passing, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
@@ -38,27 +41,29 @@ __all__ = [
     "survey",
 ]
 
-WINDOW = (np.deg2rad(-40.0), np.deg2rad(50.0))
+WINDOW = (np.deg2rad(-30.0), np.deg2rad(50.0))
 """Angles from the long axis between which pairs are held; others are far from touching.
 
 Where teeth are as near as that beyond, as deep ones with little deflection are, they are held up to
 the short axis.
 """
 
-PLACES = (25, 50, 63)
-"""Places for pairs in a zone, so that drives of up to 103, 204 and 252 teeth share programs.
+PLACES = (25, 45, 56)
+"""Places for pairs in a zone, so that drives of up to 112, 202 and 252 teeth share programs.
 
-More come in multiples of the first. Both zones of 63 stay below 128 rows, from which on a factorisation
-may wait for other threads, see `_jax`.
+More come in multiples of the first. Both zones of 56, with their second places, stay below 128 rows, from
+which on a factorisation may wait for other threads, see `_jax`.
 """
 
 TRIES = (29, 14)
 """Places on a flank and on its rounding at which the clearance is looked at before its least is found."""
 
+_DEEP = np.deg2rad(4.5)
+"""Angle from the long axis up to which a pair may touch at two places."""
+
 _FLATTEST = (
     2000.0  # modules: with a larger radius a contact under load is wider than the flank high
 )
-_PREFERENCE = 1e-5  # clearance that a place nearer to the tip must gain on the way there
 _SLACK = 1e-9
 _AROUND = np.deg2rad(6.0)
 _BEYOND = np.linspace(WINDOW[1], np.pi / 2.0, 161)
@@ -79,6 +84,7 @@ class Touching(eqx.Module):
         clearance: along the normal [m].
         mate: curvature of the circular spline's flank there [1/m].
         held: True where the nearest point is an end of the flank and does not roll.
+        share: part of the face that counts here, one where a tooth touches at one place alone.
     """
 
     along: Each
@@ -86,6 +92,7 @@ class Touching(eqx.Module):
     clearance: Each
     mate: Each
     held: Bool[Array, "*b"]
+    share: Each
 
 
 class Survey(eqx.Module):
@@ -126,14 +133,17 @@ class StrainWave(Mesh):
         line: neutral line of the flexspline as the wave generator deforms it.
         groove: space of the circular spline.
         rim: rim, cup and support of the flexspline.
+        bearing: balls that take the place of that support; None without.
+        series: what yields behind them.
         tip_height: radius at which the circular spline's teeth end [m].
-        tip_rounding: of the edges of these teeth [m].
+        tips: how the tips of both splines are made.
         backlash: play between the flanks beyond the groove that just lets the teeth through, on
             the circumference [m]. It opens all gaps alike, so losses have one derivative by it on
             both sides, at no play too.
         motion_of, driver_of, loaded_of: see `motion`, `driver`, `loaded`.
         held: pairs in each of both zones.
         surveyed: rigid teeth along the wave, as they follow from all these.
+        edges_carry: True if the rounding of the flexspline's tips may carry; static.
         conjugate: True if the groove follows from the flexspline and its motion; static.
         odd: True if the flexspline has an odd number of teeth: zones are half a pitch apart; static.
         lanes: places for pairs in each of both zones, see `lanes_for`; those beyond `held` stay empty;
@@ -152,14 +162,17 @@ class StrainWave(Mesh):
     line: NeutralLine
     groove: Groove
     rim: FlexibleRing
+    bearing: BallBearing | None
+    series: InSeries
     tip_height: Float[Array, ""]
-    tip_rounding: Float[Array, ""]
+    tips: Tips
     backlash: Float[Array, ""]
     motion_of: Float[Array, "3"]
     driver_of: Float[Array, "3"]
     loaded_of: Float[Array, "3"]
     held: Float[Array, ""]
     surveyed: Survey
+    edges_carry: bool = eqx.field(static=True)
     conjugate: bool = eqx.field(static=True)
     odd: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
@@ -173,11 +186,10 @@ class StrainWave(Mesh):
         """
         drive = self
         if self.conjugate:
-            groove = swept(self.tooth_motion, self.tip_height, self.tip_rounding)
+            groove = swept(self.cutter_motion, self.tip_height, self.tips)
             drive = dataclasses.replace(self, groove=groove)
-        found = survey(
-            drive.tooth_motion, drive.groove, drive.backlash, drive.module, drive.tooth_angle
-        )
+        given = drive.backlash, drive.module, drive.tooth_angle, drive.edges_carry
+        found = survey(drive.tooth_motion, drive.groove, *given)
         return dataclasses.replace(drive, surveyed=found)
 
     @property
@@ -193,8 +205,15 @@ class StrainWave(Mesh):
     @property
     def tooth_motion(self) -> ToothMotion:
         """How a flexspline tooth passes the space that it meets."""
-        lag = 1.0 - self.teeth[0] / self.teeth[1]
-        return ToothMotion(self.flank.prepared(), self.line, lag)
+        return self._motion_of(self.flank)
+
+    @property
+    def cutter_motion(self) -> ToothMotion:
+        """The same of a tooth without relief, which sweeps the groove."""
+        return self._motion_of(self.flank.unrelieved)
+
+    def _motion_of(self, flank: Flank) -> ToothMotion:
+        return ToothMotion(flank.prepared(), self.line, 1.0 - self.teeth[0] / self.teeth[1])
 
     @property
     def tooth_angle(self) -> Float[Array, ""]:
@@ -264,28 +283,63 @@ class StrainWave(Mesh):
         """True where a tooth reaches into the circular spline's teeth."""
         return _overlaps(self.tooth_motion, self.groove, angle)
 
-    @property
-    def filled(self) -> np.ndarray:
-        """Arrays of the places for pairs that hold one."""
-        return np.flatnonzero(self._place[1] < float(self.held))
+    def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
+        """Values by pairs that are held, of two places the one nearer to the root first."""
+        number, zone = np.asarray(self._number).astype(int), self._zone
+        (first,) = np.nonzero(~self._second & (number < float(self.held)))
+        same = (zone == zone[first, None]) & (number == number[first, None]) & self._second
+        other = np.where(same.any(axis=1), same.argmax(axis=1), -1)
+        own, beside = np.take(values, first, axis), np.take(values, other, axis)
+        lone = (other < 0).reshape(-1, *(1 for _ in range(values.ndim - axis - 1)))
+        empty = own if like_first else np.zeros_like(own)
+        return np.concatenate([own, np.where(lone, empty, beside)], axis=axis + 1)
 
     @property
-    def _place(self) -> tuple[np.ndarray, np.ndarray]:
-        """Zone of each place for a pair, and its number in it."""
-        zone, number = np.divmod(np.arange(2 * self.lanes), self.lanes)
-        return zone, number
+    def _zone(self) -> np.ndarray:
+        """End of the long axis at which each place lies."""
+        return np.repeat([0, 1], self.lanes + seconds_for(self.lanes))
+
+    @property
+    def _second(self) -> np.ndarray:
+        """True for places that hold the second valley of a pair that has one."""
+        return np.tile(np.arange(self.lanes + seconds_for(self.lanes)) >= self.lanes, 2)
+
+    @property
+    def _number(self) -> Float[Array, " place"]:
+        """Number of the pair at each place, counted from the first one that is held in its zone."""
+        own, deep = jnp.arange(self.lanes), jnp.arange(seconds_for(self.lanes))
+        deep = deep + jnp.ceil(-_DEEP / self.tooth_angle) - self._start
+        return jnp.tile(jnp.concatenate([own, deep]), 2)
+
+    @property
+    def _start(self) -> Float[Array, ""]:
+        """Teeth from the long axis to the first pair that is held."""
+        return jnp.ceil(WINDOW[0] / self.tooth_angle)
+
+    def on_edge(self, contacts: Contacts) -> Bool[Array, "pair slice *b"]:
+        """True at the end of a flexspline flank, or on the rounding of either tip."""
+        groove, ends = self.groove, self.flank.plain * (1.0 - _SLACK)
+        rounded = groove.depth(self.tip_height + self.tips.rounding)
+        return (contacts.flank[0] >= ends) | (contacts.flank[1] > rounded)
+
+    def of_pairs(self, places: Float[Arrays, "place *#b"]) -> Float[Array, "pair *#b"]:
+        """Sums over both places at which a pair may touch."""
+        pair = (jnp.asarray(self._zone) * self.lanes + self._number).astype(int)
+        empty = jnp.zeros((2 * self.lanes, *places.shape[1:]))
+        return empty.at[pair].add(places, mode="drop")
 
     def nearest(self, angle: Float[Array, "*b"]) -> Touching:
         """Nearest points of the flank and its groove for teeth at angles from the long axis [rad]."""
-        return nearest_points(self.tooth_motion, self.groove, angle, self.backlash)
+        return nearest_points(
+            self.tooth_motion, self.groove, angle, self.backlash, edges_carry=self.edges_carry
+        )
 
     def angles(self, phase: Float[Array, "*b"]) -> Lanes:
         """Angle of each tooth from the end of the long axis that is nearest [rad]."""
         phase = jnp.asarray(phase)
-        zone, number = (_as_lanes(each, phase) for each in self._place)
+        zone, number = (_as_lanes(each, phase) for each in (self._zone, self._number))
         moved = jnp.mod(phase + zone * self.teeth[0] / 2.0, 1.0)
-        start = jnp.ceil(WINDOW[0] / self.tooth_angle)
-        return (start + number + moved) * self.tooth_angle
+        return (self._start + number + moved) * self.tooth_angle
 
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts of the pairs of both zones; one period is one pitch of the flexspline."""
@@ -301,11 +355,15 @@ class StrainWave(Mesh):
     def raw_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
         """Contacts with the arms of rigid teeth: before the elastic part is taken out of the normal arms."""
         given = self.angles(phase)
-        holds = _as_lanes(self._place[1], jnp.asarray(phase)) < self.held
+        holds = _as_lanes(self._number, jnp.asarray(phase)) < self.held
         active = self.overlaps(given) & holds
         angle = jnp.where(active, given, 0.0)
         motion = self.tooth_motion
-        found = nearest_points(motion, self.groove, angle)
+        second = _as_lanes(self._second, jnp.asarray(phase))
+        found = nearest_points(
+            motion, self.groove, angle, second=second, edges_carry=self.edges_carry
+        )
+        active &= found.share > 0.0
         at, none = found.at, jnp.zeros_like(angle)
         # Flanks that overlap do so by the error of the groove's table. The play comes on top of
         # that: cut off together, its derivative would be the sign of rounding where flanks touch.
@@ -318,13 +376,13 @@ class StrainWave(Mesh):
         first = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
         # The space that a tooth meets lies at its angle around the circular spline.
-        zone = _as_lanes(self._place[0], jnp.asarray(phase))
+        zone = _as_lanes(self._zone, jnp.asarray(phase))
         turned = unit(given * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
         return Contacts(
             active=active,
             path=given / (2.0 * jnp.pi),
             width=none,
-            weight=none + self.face_width,
+            weight=self.face_width * jnp.where(active, found.share, 1.0),
             curvature=jnp.stack([jnp.stack([at.curvature, none]), jnp.stack([mate, none])]),
             surface=jnp.stack([first, first - jnp.real(local)]),
             normal=jnp.imag(local),
@@ -346,21 +404,72 @@ class StrainWave(Mesh):
             height=jnp.real(self.flank.place(contacts.flank[0])),
         )
 
+    def in_series(self, solids: tuple[Solid, Solid]) -> dict[str, Float[Array, ""]]:
+        """Bottom of the cup, flange, shaft of the wave generator, circular spline given by value."""
+        z1, z2 = self.teeth
+        return self.series.by_part(solids[0], jnp.stack([z2 - z1, z1, -z2]), self.loaded)
+
     @property
     def yielding(self) -> tuple[str, str]:
-        """Teeth and the ring that carries them; the bearing inside unless it is rigid."""
-        if np.isinf(self.rim.support_stiffness):
-            return "teeth, ring and cup of the flexspline", "bearings, shafts, flange and joints"
+        """Teeth and the ring that carries them, and what the case lets yield behind them."""
+        behind = dict(zip(InSeries.parts, np.asarray(self.series.compliance) > 0.0, strict=True))
+        behind[InSeries.parts[0]] |= bool(self.series.bottom > 0.0)
+        behind[InSeries.parts[3]] |= self.series.ring is not None
+        held = self.bearing is not None or not np.isinf(self.rim.support_stiffness)
+        every = {"bearing of the wave generator": held, **behind}
+        inside = [name for name, yields in every.items() if yields]
+        outside = [name for name, yields in every.items() if not yields]
+        if self.bearing is None and held:
+            outside.append("clearance of the bearing")
         return (
-            "teeth, ring and cup of the flexspline and the bearing inside it",
-            "the clearance of that bearing, shafts, flange and joints",
+            ", ".join(["teeth, ring and cup wall of the flexspline", *inside]),
+            ", ".join([*outside, "housing and shafts outside"]),
         )
 
-    def body_compliance(
-        self, contacts: Contacts, solids: tuple[Solid, Solid]
-    ) -> Float[Array, "lane lane *b"]:
-        """The flexspline's rim couples all its teeth."""
-        return ring_compliance(self.rim, solids[0], self.ring_loads(contacts))
+    def body_compliance(self, contacts: Contacts, solids: tuple[Solid, Solid]) -> Body:
+        """The flexspline's rim couples all its teeth, and so does a circular spline that yields."""
+        loads, outer = self.ring_loads(contacts), self.series.ring
+        around: Float[Array, "lane lane *b"] | float = 0.0
+        if outer is not None:
+            around = ring_compliance(outer, solids[1], self._on_circular_spline(contacts, outer))
+        if self.bearing is None:
+            return ring_compliance(self.rim, solids[0], loads) + around
+        held = on_balls(self.bearing, self.rim, self.line, solids[0], loads)
+        return dataclasses.replace(held, lanes=held.lanes + around)
+
+    def body_parts(
+        self,
+        contacts: Contacts,
+        solids: tuple[Solid, Solid],
+        force: Lanes,
+        balls: Float[Array, "ball *b"] | None,
+    ) -> dict[str, Each]:
+        """Rim, wall of the cup and bearing of the wave generator; the circular spline where it yields."""
+        loads, outer, bearing = self.ring_loads(contacts), self.series.ring, self.bearing
+        if balls is None or bearing is None:
+            parts = ring_parts(self.rim, solids[0], loads, force)
+        else:
+            parts = parts_on_balls(bearing, self.rim, self.line, solids[0], loads, force, balls)
+        found = {
+            "rim of the flexspline": parts.rim,
+            "wall of the cup": parts.wall,
+            "bearing of the wave generator": parts.support,
+        }
+        if outer is None:
+            return found
+        around = self._on_circular_spline(contacts, outer)
+        wall, rim, _ = ring_parts(outer, solids[1], around, force)
+        return found | {InSeries.parts[3]: wall + rim}
+
+    def _on_circular_spline(self, contacts: Contacts, ring: FlexibleRing) -> RingLoads:
+        """How unit forces at the contacts act on the circular spline: against those on the flexspline."""
+        loads = self.ring_loads(contacts)
+        return RingLoads(
+            angle=loads.angle,
+            tangential=-loads.tangential,
+            radial=-loads.radial,
+            height=hypot(contacts.point[0], contacts.point[1]) - ring.radius,
+        )
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the teeth, which stand as they are while they touch.
@@ -420,7 +529,7 @@ class StrainWave(Mesh):
         deepest = groove.depth(groove.low)
         ends = jnp.stack([1e-6, 1.0]) * jnp.sqrt(deepest)
         depth, rate = _stations(ends)
-        heights = groove.heights
+        heights = groove.made
         known = groove.depth(heights)
         radius = jnp.interp(depth, known[::-1], heights[::-1])
         width, slope = groove.width_and_slope(radius)
@@ -449,7 +558,7 @@ class StrainWave(Mesh):
         angle = jnp.deg2rad(jnp.linspace(-90.0, 90.0, 37))
         foot, axis = self.tooth_motion.foot(angle)
         placed = foot[:, None] + unit(axis[:, None]) * tooth
-        width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.heights
+        width, heights = self.groove.half_width + self.backlash / 2.0, self.groove.made
         space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
         return {
             "teeth": self.teeth,
@@ -506,6 +615,11 @@ def rates(
     return motion, np.eye(3)[drives], np.eye(3)[loaded]
 
 
+def seconds_for(lanes: int) -> int:
+    """Places for pairs near the long axis that touch at two places, in a zone with so many pairs."""
+    return 1 + lanes // 9
+
+
 def lanes_for(held: int) -> int:
     """Places for so many pairs in a zone: one of a few sizes."""
     several = -(-held // PLACES[0]) * PLACES[0]
@@ -518,6 +632,7 @@ def survey(
     backlash: Float[Array, ""],
     module: Float[Array, ""],
     tooth_angle: Float[Array, ""],
+    edges_carry: bool = False,
 ) -> Survey:
     """Clearances along the wave, and what follows from them for the whole drive.
 
@@ -527,9 +642,10 @@ def survey(
         backlash: play on the circumference beyond the groove [m].
         module: [m].
         tooth_angle: of one pitch of the flexspline [rad].
+        edges_carry: True if the rounding of the flexspline's tips may carry, static.
     """
     angle = jnp.asarray(_ALONG)
-    found = nearest_points(motion, groove, angle, backlash)
+    found = nearest_points(motion, groove, angle, backlash, edges_carry=edges_carry)
     overlaps = _overlaps(motion, groove, angle)
     upright = jnp.abs(jnp.imag(unit(-found.at.direction) * found.at.whole))
     part = upright / jnp.abs(found.at.whole)
@@ -552,7 +668,7 @@ def _overlaps(motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"]) ->
     return jnp.asarray(jnp.real(tip) > groove.low)
 
 
-def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Num[Arrays, "pair 1 ..."]:
+def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Shaped[Arrays, "pair 1 ..."]:
     """Values of the pairs, broadcast over slices and phases."""
     return jnp.reshape(each, (-1, *(1 for _ in range(phase.ndim + 1))))
 
@@ -587,29 +703,29 @@ def nearest_points(
     groove: Groove,
     angle: Float[Array, "*b"],
     backlash: Float[Array, ""] | float = 0.0,
+    *,
+    second: Bool[Arrays, "*#b"] | bool = False,
+    edges_carry: bool = False,
 ) -> Touching:
     """Nearest points of flexspline flanks and their grooves.
 
     The play along the circumference is least there, so the flanks have a common normal unless an end
-    of the flank is nearest.
+    of the flank is nearest. Near the long axis the play has two valleys, one at the root and one at the tip
+    of a tooth, which both may carry.
 
     Args:
         motion: of the flexspline teeth.
         groove: of the circular spline.
         angle: of the teeth from the long axis [rad].
         backlash: play on the circumference beyond the groove [m].
+        second: True for the second one of two valleys.
+        edges_carry: True if the rounding of the tips counts as part of the flank, static.
     """
     flank, angle = motion.flank, jnp.asarray(angle)
-    frozen, space, where = jax.lax.stop_gradient((motion, groove, angle))
-    stations = flank.stations(*TRIES)
-    last = stations.shape[0] - 1
-    station = jax.lax.stop_gradient(stations)
-    height, across = frozen.passed(station, where)
-    width, _ = space.width_and_slope(height)
-    # Near the long axis root and tip of a tooth touch at once: the root, which is stiffer, then counts.
-    bias = (_PREFERENCE * station).reshape(-1, *(1 for _ in where.shape))
-    play = jnp.where(height < space.low, jnp.inf, width - across + bias)
-    nearest = jnp.argmin(play, axis=0)
+    stations = flank.stations(TRIES[0], TRIES[1] * edges_carry)
+    nearest, share = _valley(motion, groove, angle, stations, second)
+    last, end = stations.shape[0] - 1, jax.lax.stop_gradient(stations[-1])
+    stations = jax.lax.stop_gradient(stations) if edges_carry else stations
     # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
     turned = unit(axis)
@@ -649,8 +765,49 @@ def nearest_points(
         at=at,
         clearance=play * jnp.cos(at.direction),
         mate=groove.curvature_at(jnp.real(at.place)),
-        held=(found <= 0.0) | (found >= frozen.flank.length * (1.0 - 1e-12)),
+        held=(found <= 0.0) | (found >= end * (1.0 - 1e-12)),
+        share=share,
     )
+
+
+def _valley(
+    motion: ToothMotion,
+    groove: Groove,
+    angle: Float[Array, "*b"],
+    stations: Float[Array, " station"],
+    second: Bool[Arrays, "*#b"] | bool,
+) -> tuple[Int[Array, "*b"], Float[Array, "*b"]]:
+    """Station in the valley of the play that is asked for, and the part of the face that counts there.
+
+    Two contacts of a tooth bend it together, so they share its face: in the ratio of how far the play rises
+    from each to the ridge between them. One that appears, or goes over into the other, thus does so
+    without load.
+    """
+    frozen, space, where, along = jax.lax.stop_gradient((motion, groove, angle, stations))
+    height, across = frozen.passed(along, where)
+    width, _ = space.width_and_slope(height)
+    play = jnp.where(height < space.low, jnp.inf, width - across)
+    beside = jnp.pad(play, ((1, 1), *((0, 0) for _ in where.shape)), constant_values=jnp.inf)
+    low = jnp.isfinite(play) & (play < beside[:-2]) & (play <= beside[2:])
+    number = jnp.arange(along.shape[0]).reshape(-1, *(1 for _ in where.shape))
+    first = jnp.argmin(jnp.where(low, play, jnp.inf), axis=0)
+    others = low & (number != first)
+    other = jnp.argmin(jnp.where(others, play, jnp.inf), axis=0)
+    two = jnp.any(others, axis=0)
+    ends = jnp.minimum(first, other), jnp.maximum(first, other)
+    between = (number >= ends[0]) & (number <= ends[1])
+    ridge = jnp.argmax(jnp.where(between, play, -jnp.inf), axis=0)
+
+    def play_at(station: Int[Array, "*b"]) -> Float[Array, "*b"]:
+        place = motion.place(stations[station], angle)
+        return groove.width_and_slope(jnp.real(place))[0] - jnp.imag(place)
+
+    top = play_at(ridge)
+    rises = [jnp.where(two, top - play_at(station), 1.0) for station in (first, other)]
+    part = jnp.where(two, rises[1] / (rises[0] + rises[1]), 0.0)
+    # The place nearer to the root is the first one.
+    later = jnp.where(two, jnp.where(first < other, second, ~jnp.asarray(second)), second)
+    return jnp.where(later, other, first), jnp.where(later, part, 1.0 - part)
 
 
 def _reversal(

@@ -8,6 +8,7 @@ from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.family import Family, Turning, waves
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.strain_wave.ball_bearing import Balls
 from pitchpoint.gears.strain_wave.design import (
     DOUBLE_ARCS,
     DoubleArcForm,
@@ -16,11 +17,14 @@ from pitchpoint.gears.strain_wave.design import (
     check_strain_wave,
 )
 from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.in_series import Behind
 from pitchpoint.gears.strain_wave.table import (
+    BallBearing,
     DoubleArcTooth,
     InvoluteGroove,
     InvoluteTooth,
     StrainWaveGears,
+    Yielding,
 )
 
 __all__ = ["FAMILY"]
@@ -31,6 +35,8 @@ _KEYS = {
     "shape": "wave_generator.weights",
     "deflection": "wave_generator.deflection",
     "force_angle": "wave_generator.force_angle",
+    "flange_diameter": "yielding.flange_diameter",
+    "outside_diameter": "yielding.outside_diameter",
 }
 """Keys of the table by arguments of the builder that have other names."""
 
@@ -48,10 +54,18 @@ def _strain_wave(gears: StrainWaveGears, driver: str, slices: int) -> tuple[Mesh
             force_angle=wave.force_angle,
             rim_thickness=cup.rim_thickness,
             wall_thickness=cup.wall_thickness,
+            walls=cup.walls,
             cup_length=cup.cup_length,
             support_stiffness=inf if cup.support_stiffness is None else cup.support_stiffness,
+            bearing=None if wave.bearing is None else _balls(wave.bearing),
+            behind=None if gears.yielding is None else _behind(gears.yielding),
             clearance=gears.clearance,
+            disengagement=gears.disengagement,
             tip_rounding=gears.tip_rounding,
+            tip_relief=gears.tip_relief,
+            relief_length=gears.relief_length,
+            bottom_clearance=gears.bottom_clearance,
+            edges_carry=gears.edges == "carry",
             backlash=gears.backlash,
             fixed=gears.fixed,
             driver=driver,
@@ -61,6 +75,14 @@ def _strain_wave(gears: StrainWaveGears, driver: str, slices: int) -> tuple[Mesh
         key = error.key or ""
         raise error.at(key=_KEYS.get(key, key)) from None
     return drive, check_strain_wave(drive)
+
+
+def _balls(table: BallBearing) -> Balls:
+    return Balls(table.balls, table.ball_diameter, table.race_thickness, table.play)
+
+
+def _behind(table: Yielding) -> Behind:
+    return Behind(**{one.name: getattr(table, one.name) for one in fields(Behind)})
 
 
 def _form(tooth: DoubleArcTooth | InvoluteTooth) -> DoubleArcForm | InvoluteForm:

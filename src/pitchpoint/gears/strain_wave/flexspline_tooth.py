@@ -1,7 +1,10 @@
 """Flanks of flexspline teeth: double arc and involute, as curves by arc length from root to tip."""
 
 import abc
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
+from typing import Self
 
 import equinox as eqx
 from jaxtyping import Array, Complex, Float
@@ -38,6 +41,8 @@ class Flank(eqx.Module):
     """
 
     tip_rounding: eqx.AbstractVar[Float[Array, ""]]
+    tip_relief: eqx.AbstractVar[Float[Array, ""]]
+    relief_length: eqx.AbstractVar[Float[Array, ""]]
 
     @property
     @abc.abstractmethod
@@ -61,16 +66,33 @@ class Flank(eqx.Module):
         return self
 
     @property
+    def unrelieved(self) -> Self:
+        """The same flank without relief, which generates the groove of its mate."""
+        none = jnp.zeros_like(self.tip_relief)
+        return replace(self, tip_relief=none, relief_length=none)
+
+    @property
     def length(self) -> Float[Array, ""]:
         """Arc length from root to tip [m]."""
         return jnp.sum(jnp.stack(self.lengths))
 
+    @property
+    def plain(self) -> Float[Array, ""]:
+        """Arc length from the root to where the rounding of the tip begins [m]."""
+        return jnp.sum(jnp.stack(self.lengths[:-1]))
+
+    @property
+    def _bent(self) -> Float[Array, ""]:
+        """Curvature that the relief adds, so that it takes off its amount at its end [1/m]."""
+        reach = jnp.where(self.relief_length > 0.0, self.relief_length, 1.0)
+        return 2.0 * self.tip_relief / reach**2
+
     def stations(self, flank: int, rounding: int) -> Float[Array, " station"]:
         """Arc lengths of so many places on the flank and so many more on the rounding of its tip [m]."""
-        rounded = self.lengths[-1]
-        plain = self.length - rounded
+        rounded, plain = self.lengths[-1], self.plain
         before = jnp.arange(flank) / (flank - 1) * plain
-        return jnp.concatenate([before, plain + jnp.arange(1, rounding + 1) / rounding * rounded])
+        beyond = jnp.arange(1, rounding + 1) / max(rounding, 1) * rounded
+        return jnp.concatenate([before, plain + beyond])
 
     @property
     def root_height(self) -> Float[Array, ""]:
@@ -88,6 +110,7 @@ class ArcChain(Flank):
         curvatures: of the pieces, zero for a line [1/m].
         pieces: their arc lengths [m].
         tip_rounding: radius of the last one [m].
+        tip_relief, relief_length: of the one before it [m].
     """
 
     starts: Float[Array, " piece"]
@@ -96,6 +119,35 @@ class ArcChain(Flank):
     curvatures: Float[Array, " piece"]
     pieces: Float[Array, " piece"]
     tip_rounding: Float[Array, ""]
+    tip_relief: Float[Array, ""]
+    relief_length: Float[Array, ""]
+
+    @classmethod
+    def beyond(
+        cls,
+        place: Place,
+        angle: Along,
+        pieces: Sequence[Float[Array, ""]],
+        curvatures: Sequence[Float[Array, ""]],
+        like: Flank,
+    ) -> "ArcChain":
+        """Arcs that follow each other from a place and a flank angle on."""
+        lengths, bends = jnp.stack(pieces), jnp.stack(curvatures)
+        starts = jnp.concatenate([jnp.zeros(1), jnp.cumsum(lengths)[:-1]])
+        angles, places = [angle], [place]
+        for way, bend in zip(pieces[:-1], curvatures[:-1], strict=True):
+            places.append(places[-1] + _chord(angles[-1], bend, way))
+            angles.append(angles[-1] + bend * way)
+        return cls(
+            starts=starts,
+            places=jnp.stack(places),
+            angles=jnp.stack(angles),
+            curvatures=bends,
+            pieces=lengths,
+            tip_rounding=like.tip_rounding,
+            tip_relief=like.tip_relief,
+            relief_length=like.relief_length,
+        )
 
     @property
     def lengths(self) -> tuple[Float[Array, ""], ...]:
@@ -111,9 +163,7 @@ class ArcChain(Flank):
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
         piece, way = self._piece(along)
-        half = self.curvatures[piece] * way / 2.0
-        chord = way * jnp.sinc(half / jnp.pi)
-        return self.places[piece] + chord * unit(-(self.angles[piece] + half))
+        return self.places[piece] + _chord(self.angles[piece], self.curvatures[piece], way)
 
     def angle(self, along: Along) -> Along:
         """Flank angle [rad]."""
@@ -123,6 +173,12 @@ class ArcChain(Flank):
     def curvature(self, along: Along) -> Along:
         """Curvature, positive where the flank is convex [1/m]."""
         return self.curvatures[self._piece(along)[0]]
+
+
+def _chord(angle: Along, curvature: Along, way: Along) -> Place:
+    """From the beginning of an arc with a flank angle there to a point on it."""
+    half = curvature * way / 2.0
+    return way * jnp.sinc(half / jnp.pi) * unit(-(angle + half))
 
 
 class DoubleArcFlank(Flank):
@@ -139,6 +195,9 @@ class DoubleArcFlank(Flank):
         convex_radius, convex_offset, convex_shift: rho_a, l_a, e_a [m].
         concave_radius, concave_offset, concave_shift: rho_f, l_f, e_f [m].
         tip_rounding: radius of the rounded edge of the tip [m].
+        tip_relief: by which an arc of smaller radius lies below the convex one where the rounding
+            begins [m].
+        relief_length: of that arc [m].
 
     Source: Zhao et al. (2022), eqs. 1 to 4, with the centre of the convex arc on the far side of the
     axis and the angles of both ends of the tangent equal, which its eq. 4 needs to close.
@@ -155,6 +214,8 @@ class DoubleArcFlank(Flank):
     concave_offset: Float[Array, ""]
     concave_shift: Float[Array, ""]
     tip_rounding: Float[Array, ""]
+    tip_relief: Float[Array, ""]
+    relief_length: Float[Array, ""]
 
     @property
     def convex_centre(self) -> Place:
@@ -198,51 +259,30 @@ class DoubleArcFlank(Flank):
 
     @property
     def rounding_angle(self) -> Float[Array, ""]:
-        """Flank angle at which the convex arc goes over into the rounding of the tip [rad]."""
+        """Flank angle at which the convex arc would go over into the rounding without relief [rad]."""
         inner = self.convex_radius - self.tip_rounding
         return jnp.arcsin((self.addendum + self.convex_shift - self.tip_rounding) / inner)
 
     @property
     def lengths(self) -> tuple[Float[Array, ""], ...]:
-        """Arc lengths of concave arc, tangent, convex arc and rounding [m]."""
+        """Arc lengths of concave arc, tangent, convex arc, relief and rounding [m]."""
+        convex = self.convex_radius * (self.rounding_angle - self.tangent_angle)
+        steeper = self.rounding_angle + self._bent * self.relief_length
         return (
             self.concave_radius * (self.root_angle - self.tangent_angle),
             self.tangent_length,
-            self.convex_radius * (self.rounding_angle - self.tangent_angle),
-            self.tip_rounding * (STEEPEST - self.rounding_angle),
+            convex - self.relief_length,
+            self.relief_length,
+            self.tip_rounding * (STEEPEST - steeper),
         )
 
     def prepared(self) -> ArcChain:
         """The arcs and the tangent as a chain."""
-        lengths = jnp.stack(self.lengths)
-        starts = jnp.concatenate([jnp.zeros(1), jnp.cumsum(lengths)[:-1]])
-        tangent, edge = self.tangent_angle, self.rounding_angle
-
-        def on(centre: Place, radius: Along, angle: Along) -> Place:
-            return centre + radius * 1j * unit(-angle)
-
-        places = [
-            on(self.concave_centre, -self.concave_radius, self.root_angle),
-            on(self.concave_centre, -self.concave_radius, tangent),
-            on(self.convex_centre, self.convex_radius, tangent),
-            on(self.convex_centre, self.convex_radius, edge),
-        ]
-        none = jnp.zeros_like(self.convex_radius)
-        return ArcChain(
-            starts=starts,
-            places=jnp.stack(places),
-            angles=jnp.stack([self.root_angle, tangent, tangent, edge]),
-            curvatures=jnp.stack(
-                [
-                    -1.0 / self.concave_radius,
-                    none,
-                    1.0 / self.convex_radius,
-                    1.0 / self.tip_rounding,
-                ]
-            ),
-            pieces=lengths,
-            tip_rounding=self.tip_rounding,
-        )
+        root = self.concave_centre - self.concave_radius * 1j * unit(-self.root_angle)
+        convex = 1.0 / self.convex_radius
+        bends = [-1.0 / self.concave_radius, jnp.zeros_like(convex), convex, convex + self._bent]
+        bends.append(1.0 / self.tip_rounding)
+        return ArcChain.beyond(root, self.root_angle, self.lengths, bends, self)
 
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
@@ -268,6 +308,8 @@ class InvoluteFlank(Flank):
         addendum, dedendum: of the basic rack, in modules.
         neutral_radius: of the rim that carries the teeth [m].
         tip_rounding: radius of the rounded edge of the tip [m].
+        tip_relief: by which an arc lies below the involute where the rounding begins [m].
+        relief_length: of that arc [m].
     """
 
     teeth: Float[Array, ""]
@@ -278,6 +320,8 @@ class InvoluteFlank(Flank):
     dedendum: Float[Array, ""]
     neutral_radius: Float[Array, ""]
     tip_rounding: Float[Array, ""]
+    tip_relief: Float[Array, ""]
+    relief_length: Float[Array, ""]
 
     @property
     def base_radius(self) -> Float[Array, ""]:
@@ -325,32 +369,48 @@ class InvoluteFlank(Flank):
         return root, last
 
     @property
-    def lengths(self) -> tuple[Float[Array, ""], ...]:
-        """Arc lengths of involute and rounding [m]."""
+    def _rolled(self) -> Float[Array, ""]:
+        """Arc length of the involute [m]."""
         root, last = self._rolls
-        rolled = self.base_radius * (last**2 - root**2) / 2.0
-        return rolled, self.tip_rounding * (STEEPEST - (last - self._half_angle))
+        return self.base_radius * (last**2 - root**2) / 2.0 - self.relief_length
 
     def _roll(self, along: Along) -> Along:
+        """Roll angle at an arc length on the involute [rad]."""
         root, _ = self._rolls
-        return jnp.sqrt(root**2 + 2.0 * jnp.minimum(along, self.lengths[0]) / self.base_radius)
+        return jnp.sqrt(root**2 + 2.0 * jnp.minimum(along, self._rolled) / self.base_radius)
 
-    def angle(self, along: Along) -> Along:
-        """Flank angle [rad]."""
-        over = jnp.maximum(along - self.lengths[0], 0.0)
-        return self._roll(along) - self._half_angle + over / self.tip_rounding
+    def _on_involute(self, along: Along) -> tuple[Place, Along]:
+        """Place and flank angle at an arc length on the involute; beyond it those of its end."""
+        roll = self._roll(along)
+        turned = unit(self._half_angle - roll)
+        place = self.base_radius * turned * (1.0 + 1j * roll) - self.neutral_radius
+        return place, roll - self._half_angle
+
+    @property
+    def _beyond(self) -> ArcChain:
+        """Relief and rounding, which share the normal of the involute where it ends."""
+        place, angle = self._on_involute(self._rolled)
+        bend = 1.0 / (self.base_radius * self._roll(self._rolled)) + self._bent
+        rounded = self.tip_rounding * (STEEPEST - angle - bend * self.relief_length)
+        lengths = self.relief_length, rounded
+        return ArcChain.beyond(place, angle, lengths, [bend, 1.0 / self.tip_rounding], self)
+
+    @property
+    def lengths(self) -> tuple[Float[Array, ""], ...]:
+        """Arc lengths of involute, relief and rounding [m]."""
+        return self._rolled, *self._beyond.lengths
 
     def place(self, along: Along) -> Place:
         """Place at an arc length from the root [m]."""
-        roll, angle = self._roll(along), self.angle(along)
-        turned = unit(self._half_angle - roll)
-        foot = self.base_radius * turned
-        # The rounding shares the normal of the involute where it begins.
-        reach = jnp.where(along > self.lengths[0], self.tip_rounding, 0.0)
-        involute_part = foot + (self.base_radius * roll - reach) * 1j * turned
-        return involute_part + reach * 1j * unit(-angle) - self.neutral_radius
+        beyond = self._beyond.place(along - self._rolled)
+        return jnp.where(along > self._rolled, beyond, self._on_involute(along)[0])
+
+    def angle(self, along: Along) -> Along:
+        """Flank angle [rad]."""
+        beyond = self._beyond.angle(along - self._rolled)
+        return jnp.where(along > self._rolled, beyond, self._on_involute(along)[1])
 
     def curvature(self, along: Along) -> Along:
         """Curvature, positive where the flank is convex [1/m]."""
-        rolled = 1.0 / (self.base_radius * self._roll(along))
-        return jnp.where(along > self.lengths[0], 1.0 / self.tip_rounding, rolled)
+        beyond = self._beyond.curvature(along - self._rolled)
+        return jnp.where(along > self._rolled, beyond, 1.0 / (self.base_radius * self._roll(along)))

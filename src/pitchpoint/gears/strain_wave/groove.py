@@ -11,7 +11,7 @@ from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.roots import hypot
 
-__all__ = ["NEWTON_STEPS", "NODES", "Groove", "given", "swept", "tip_with_land"]
+__all__ = ["NEWTON_STEPS", "NODES", "Groove", "Tips", "given", "swept", "tip_with_land"]
 
 NODES = 640
 """Heights at which the flank is known; cubic between them."""
@@ -38,6 +38,24 @@ _FROM_TOP = np.stack([np.ones(NODES), np.linspace(1.0, 0.0, NODES) ** 2])
 Each = Float[Array, "*b"]
 
 
+class Tips(eqx.Module):
+    """How the tips of both splines are made, and the bottom of the spaces.
+
+    Attributes:
+        rounding: radius of all edges [m].
+        relief: by which a tip lies below the flank that sweeps, or is swept, where its rounding begins [m].
+        relief_length: along the flank up to there [m].
+        bottom: clearance between the flexspline's tips and the bottom of the spaces on the long axis [m].
+        ridge: radius of the ridges on a swept flank between parts that different phases sweep [m].
+    """
+
+    rounding: Float[Array, ""]
+    relief: Float[Array, ""]
+    relief_length: Float[Array, ""]
+    bottom: Float[Array, ""]
+    ridge: Float[Array, ""]
+
+
 class Groove(eqx.Module):
     """One flank of a space of the circular spline, the one that faces against positive rotation.
 
@@ -49,10 +67,10 @@ class Groove(eqx.Module):
         half_width: distance of the flank from the middle of the space at the nodes [m].
         slope: derivative of the half width with respect to height.
         curvature: of the flank, positive where it is convex [1/m].
-        edge: curvature of the edge between two nodes where parts of the flank that different phases
-            leave behind meet; zero elsewhere [1/m].
         unsolved: number of nodes at which the point that sweeps the flank was not found: they have
             the nearest one of a grid, and its curvature.
+        joint: height from which on the bottom lies deeper than the tips that sweep it [m].
+        bottom: by how much it does at the deepest node [m].
     """
 
     low: Float[Array, ""]
@@ -60,13 +78,29 @@ class Groove(eqx.Module):
     half_width: Float[Array, " node"]
     slope: Float[Array, " node"]
     curvature: Float[Array, " node"]
-    edge: Float[Array, " cell"]
     unsolved: Float[Array, ""]
+    joint: Float[Array, ""]
+    bottom: Float[Array, ""]
 
     @property
     def heights(self) -> Float[Array, " node"]:
-        """Heights of the nodes [m]."""
+        """Heights of the nodes as they are swept, without clearance at the bottom [m]."""
         return _heights(self.low, self.high)
+
+    @property
+    def made(self) -> Float[Array, " node"]:
+        """Heights of the nodes as they are made, with the clearance at the bottom [m]."""
+        into = jnp.maximum(self.heights - self.joint, 0.0) / (self.high - self.joint)
+        return self.heights + self.bottom * into**2
+
+    def _swept(self, height: Each) -> tuple[Each, Each]:
+        """Height at which the bottom was swept that is made at a height, and its derivative.
+
+        The clearance grows with the square of the way into the bottom, which has a closed inverse.
+        """
+        deep, beyond = self.high - self.joint, jnp.maximum(height - self.joint, 0.0)
+        into = 2.0 * beyond / (deep + jnp.sqrt(deep**2 + 4.0 * self.bottom * beyond))
+        return height - self.bottom * into**2, deep / (deep + 2.0 * self.bottom * into)
 
     def land(self, tooth_angle: Float[Array, ""]) -> Float[Array, " node"]:
         """Thickness of the teeth between such spaces at the nodes [m], for the angle of one pitch [rad]."""
@@ -84,6 +118,7 @@ class Groove(eqx.Module):
 
     def width_and_slope(self, height: Each) -> tuple[Each, Each]:
         """Half width [m] and slope at heights; beyond the ends along the tangent there."""
+        height, rate = self._swept(height)
         cell, step, t = self._cell(height)
         inside = jnp.clip(t, 0.0, 1.0)
         y0, y1 = self.half_width[cell], self.half_width[cell + 1]
@@ -92,7 +127,7 @@ class Groove(eqx.Module):
         bend, twist = 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise
         width = y0 + inside * (d0 + inside * (bend + inside * twist))
         slope = (d0 + inside * (2.0 * bend + 3.0 * inside * twist)) / step
-        return width + slope * step * (t - inside), slope
+        return width + slope * step * (t - inside), slope * rate
 
     def curvature_at(self, height: Each) -> Each:
         """Curvature at heights [1/m].
@@ -100,34 +135,24 @@ class Groove(eqx.Module):
         Where it jumps between two nodes, because the flank that left the groove behind has a joint
         there, the larger one: the other might belong to the other side of the joint.
         """
-        cell, _, t = self._cell(height)
+        cell, _, t = self._cell(self._swept(height)[0])
         inside = jnp.clip(t, 0.0, 1.0)
         low, high = self.curvature[cell], self.curvature[cell + 1]
         smooth = low * (1.0 - inside) + high * inside
         jumps = jnp.abs(high - low) > _JUMP * (jnp.abs(high) + jnp.abs(low))
-        smooth = jnp.where(jumps, jnp.maximum(low, high), smooth)
-        return jnp.where(self.edge[cell] > 0.0, self.edge[cell], smooth)
+        return jnp.where(jumps, jnp.maximum(low, high), smooth)
 
     def depth(self, height: Each) -> Each:
         """Arc length of the flank from its deepest point to heights [m]."""
-        above = jnp.concatenate([jnp.cumsum(self._arcs[::-1])[::-1], jnp.zeros(1)])
-        cell, _, t = self._cell(height)
+        above = jnp.concatenate([jnp.cumsum(self.arcs[::-1])[::-1], jnp.zeros(1)])
+        cell, _, t = self._cell(self._swept(height)[0])
         return above[cell] + t * (above[cell + 1] - above[cell])
 
     @property
-    def _arcs(self) -> Float[Array, " cell"]:
+    def arcs(self) -> Float[Array, " cell"]:
         """Arc lengths between the nodes [m]."""
         grown = hypot(1.0, self.slope)
         return (grown[1:] + grown[:-1]) / 2.0 * jnp.diff(self.heights)
-
-    def with_edges(self, radius: Float[Array, ""]) -> "Groove":
-        """The same with the edges at which its parts meet rounded by a radius [m].
-
-        What the rounding takes off is below a hundredth of the radius and is left on.
-        """
-        turned = jnp.diff(jnp.arctan(self.slope))
-        usual = (self.curvature[1:] + self.curvature[:-1]) / 2.0 * self._arcs
-        return replace(self, edge=jnp.where(turned - usual > _KINK, 1.0 / radius, 0.0))
 
 
 def _heights(low: Float[Array, ""], high: Float[Array, ""]) -> Float[Array, " node"]:
@@ -155,34 +180,69 @@ def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -
         half_width=heights * jnp.tan(angle),
         slope=-jnp.tan(pressure - angle),
         curvature=-1.0 / (flank.base_radius * jnp.tan(pressure)),
-        edge=jnp.zeros(NODES - 1),
         unsolved=jnp.zeros(()),
+        joint=low,
+        bottom=jnp.zeros(()),
     )
 
 
-def swept(motion: ToothMotion, low: Float[Array, ""], edge: Float[Array, ""]) -> Groove:
+def swept(motion: ToothMotion, low: Float[Array, ""], tips: Tips) -> Groove:
     """Flank that a tooth just clears at every phase: the outermost place that it reaches at each height.
 
     Conjugate profiles are part of it where they lie outermost; roots of the conjugate condition that
     lie inside do not touch.
 
     Args:
-        motion: of the flexspline teeth.
+        motion: of flexspline teeth without relief.
         low: height of the tip of the circular spline's teeth [m].
-        edge: radius with which that tip, and edges on the flank, are rounded [m].
+        tips: how that tip is made, and the ridges between parts of the flank that different phases sweep.
     """
+    edge = tips.rounding
     deepest = motion.place(motion.flank.length, jnp.zeros(()))
     heights = _heights(low, jnp.real(deepest))
     found = _generated(motion, heights, *_outermost(motion, heights))
     width, slope, curvature, lost = _farther(*found)
-    none, unsolved = jnp.zeros(NODES - 1), jnp.sum(lost * 1.0)
-    groove = Groove(low, heights[-1], width, slope, curvature, none, unsolved)
-    over = jnp.maximum(low + edge - heights, 0.0) / edge
+    joint = jnp.real(motion.place(motion.flank.plain, jnp.zeros(())))
+    bottom = joint, tips.bottom
+    groove = Groove(low, heights[-1], width, slope, curvature, jnp.sum(lost * 1.0), *bottom)
+    reach = jnp.where(tips.relief_length > 0.0, tips.relief_length, 1.0)
+    groove = _relieved(
+        _blended(groove, tips.ridge), low + edge, reach, 2.0 * tips.relief / reach**2
+    )
+    return _relieved(groove, low, edge, 1.0 / edge)
+
+
+def _blended(groove: Groove, radius: Float[Array, ""]) -> Groove:
+    """The same with the ridges at which its parts meet blended by parabolas of a radius [m]."""
+    heights, slope = groove.heights, groove.slope
+    middle, grown = (heights[1:] + heights[:-1]) / 2.0, hypot(1.0, slope)
+    across = (grown[1:] + grown[:-1]) / 2.0
+    turned = jnp.diff(jnp.arctan(slope))
+    turned -= (groove.curvature[1:] + groove.curvature[:-1]) / 2.0 * groove.arcs
+    turned = jnp.where(turned > _KINK, turned, 0.0)
+    reach = jnp.where(turned > 0.0, radius * turned / 2.0 / across, 1.0)
+    bend = turned * across**2 / (2.0 * reach)  # of the slope over the height
+    beside = heights[:, None] - middle
+    within = jnp.maximum(reach - jnp.abs(beside), 0.0)
+    bends = jnp.where(within > 0.0, bend, 0.0)
     return replace(
-        groove.with_edges(edge),
-        half_width=width + edge * over**2 / 2.0,
-        slope=slope - over,
-        curvature=curvature + jnp.where(over > 0.0, 1.0 / edge, 0.0),
+        groove,
+        half_width=groove.half_width + jnp.sum(bends * within**2, axis=1) / 2.0,
+        slope=slope - jnp.sum(bends * within * jnp.sign(beside), axis=1),
+        curvature=groove.curvature + jnp.sum(bends, axis=1) / grown**3,
+    )
+
+
+def _relieved(
+    groove: Groove, end: Float[Array, ""], length: Float[Array, ""], bent: Float[Array, ""]
+) -> Groove:
+    """The same with teeth that bend away by a curvature more over a length before a height [m], [1/m]."""
+    over = jnp.maximum(end + length - groove.heights, 0.0)
+    return replace(
+        groove,
+        half_width=groove.half_width + bent * over**2 / 2.0,
+        slope=groove.slope - bent * over,
+        curvature=groove.curvature + jnp.where(over > 0.0, bent, 0.0),
     )
 
 

@@ -1,5 +1,8 @@
 """Compliance of a thin ring under tooth forces, by Fourier series around it."""
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import equinox as eqx
 from jaxtyping import Array, Float
 
@@ -7,7 +10,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["WAVES", "ring_compliance"]
+__all__ = ["WAVES", "RingParts", "of_modes", "ring_compliance", "ring_modes", "ring_parts"]
 
 WAVES = 100
 """Largest number of waves around the ring. What is shorter than a tooth pitch belongs to the tooth's
@@ -63,24 +66,122 @@ def ring_compliance(
     Validity: thin ring, small displacements added to those by which the wave generator shaped it;
     the support is taken to hold in both directions; no warping of the cup and no bending along it.
     """
-    stiffness = _stiffness(ring, solid, waves)
-    modes = _modes(ring, loads, stiffness)
+    support = ring.support_stiffness
+    modes = _modes(ring, loads, _stiffness(ring, solid, waves, support, _cup(ring, solid)))
     return jnp.einsum("im...,jm...->ij...", modes, modes)
 
 
-def _stiffness(ring: FlexibleRing, solid: Solid, waves: int) -> _Stiffness:
+Race = Callable[[Float[Array, ""], int], Float[Array, " wave"]]
+
+
+def ring_modes(
+    ring: FlexibleRing, solid: Solid, loads: RingLoads, race: Race, waves: int = WAVES
+) -> Modes:
+    """Work of a unit force at each lane on each mode of a ring without support, over its root stiffness.
+
+    Products of two of them, summed over the modes, are displacements along one force for the other [m/N].
+    Two and more waves pass into the cup without stretching its wall: each generator stays straight, turns
+    about the bottom and shifts along the axis. Its bending and twist hold the ring against them, while its
+    shear holds against torsion and sideways motion, as in `ring_compliance`.
+
+    Args:
+        ring, solid, loads, waves: as in `ring_compliance`.
+        race: stiffness that a race under the ring adds against each number of waves, for one metre of
+            the circumference, from its radius and `waves` [N/m2].
+
+    Validity: the bottom lets the wall shift along the axis.
+
+    Source: Love (1927), section 321, for shells that do not stretch.
+    """
+    number = jnp.arange(waves + 1.0)
+    shear = jnp.where(number < 2.0, _cup(ring, solid), 0.0)
+    support = race(ring.radius, waves) + _wall(ring, solid, number)
+    return _modes(ring, loads, _stiffness(ring, solid, waves, support, shear))
+
+
+class RingParts(NamedTuple):
+    """Work of forces on their displacements by a ring, by what yields [N m].
+
+    Attributes:
+        wall: torsion of the cup.
+        rim: all else that the ring does, and the wall with it.
+        support: the bearing inside, while it is of one stiffness all around.
+    """
+
+    wall: Float[Array, "*b"]
+    rim: Float[Array, "*b"]
+    support: Float[Array, "*b"]
+
+
+def ring_parts(
+    ring: FlexibleRing,
+    solid: Solid,
+    loads: RingLoads,
+    force: Float[Array, "pair slice *b"],
+    waves: int = WAVES,
+) -> RingParts:
+    """How much of the compliance of a ring each of its parts brings.
+
+    Args:
+        ring, solid, loads, waves: as in `ring_compliance`.
+        force: normal force of each slice [N].
+
+    From the energies of a mode that yields by itself and by its support.
+    """
+    stiffness = _stiffness(ring, solid, waves, ring.support_stiffness, _cup(ring, solid))
+    modes = _modes(ring, loads, stiffness)
+    amplitude = jnp.einsum("im...,i...->m...", modes, force.reshape(-1, *force.shape[2:]))
+    wall, rim = of_modes(amplitude)
+    rigid = jnp.isinf(ring.support_stiffness)
+    held = jnp.where(rigid, 0.0, ring.support_stiffness) * stiffness.yielding
+    _, cosine, _, sine = amplitude.reshape(4, waves + 1, *amplitude.shape[1:]) ** 2
+    support = jnp.einsum("n,n...->...", held, cosine + sine)
+    return RingParts(wall, rim - support, support)
+
+
+def of_modes(amplitude: Float[Array, "mode *b"]) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:
+    """Work in the torsion of the wall, and in all other modes [N m].
+
+    Args:
+        amplitude: work of the forces on each mode over its root stiffness, see `ring_modes`.
+    """
+    each = amplitude**2
+    uniform = each.reshape(4, -1, *each.shape[1:])[2, 0]
+    return uniform, jnp.sum(each, axis=0) - uniform
+
+
+def _cup(ring: FlexibleRing, solid: Solid) -> Float[Array, ""]:
+    """Stiffness of the wall in shear, for one metre around [N/m2]."""
+    shear = solid.young / (2.0 + 2.0 * solid.poisson)
+    return shear * ring.wall_thickness / ring.cup_length
+
+
+def _wall(ring: FlexibleRing, solid: Solid, number: Float[Array, " wave"]) -> Float[Array, " wave"]:
+    """Stiffness of a wall that bends and twists without stretching, against w, for one metre [N/m2]."""
+    plate = solid.plane_strain_modulus * ring.wall_thickness**3 / 12.0
+    bends = ring.cup_length / 3.0 * (number**2 - 1.0) ** 2 / ring.radius**4
+    slope = number - 1.0 / jnp.maximum(number, 1.0)
+    twists = 2.0 * (1.0 - solid.poisson) * slope**2 / (ring.radius**2 * ring.cup_length)
+    return jnp.where(number < 2.0, 0.0, plate * (bends + twists))
+
+
+def _stiffness(
+    ring: FlexibleRing,
+    solid: Solid,
+    waves: int,
+    support: Float[Array, "#wave"] | Float[Array, ""],
+    cup: Float[Array, "#wave"] | Float[Array, ""],
+) -> _Stiffness:
     number = jnp.arange(waves + 1.0)
     square = number**2
     area = ring.width * ring.thickness
     stretch = solid.young * area / ring.radius**2
     bend = solid.plane_strain_modulus * area * ring.thickness**2 / 12.0 / ring.radius**4
-    shear = solid.young / (2.0 + 2.0 * solid.poisson)
-    cup = shear * ring.wall_thickness / ring.cup_length
     tangential = square * (stretch + bend) + cup
     # The determinant of the form over `tangential`, written so that nothing cancels.
     alone = stretch * bend * square * (square - 1.0) ** 2 + cup * (stretch + bend * square**2)
-    rigid = jnp.isinf(ring.support_stiffness)
-    support = jnp.where(rigid, 0.0, ring.support_stiffness)  # no infinite numbers in derivatives
+    rigid = jnp.isinf(support)
+    support = jnp.where(rigid, 0.0, support)  # no infinite numbers in derivatives
     return _Stiffness(
         tangential=tangential,
         yielding=jnp.where(rigid, 0.0, 1.0) / (alone / tangential + support),

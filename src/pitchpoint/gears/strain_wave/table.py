@@ -33,9 +33,16 @@ FORCE_ANGLE = Quantity("angle", 0.0, 60 * pi / 180, "deg")
 AMPLITUDE = Quantity("dimensionless", -10.0, 10.0)
 BOTTOM = Quantity("dimensionless", 0.0, 2.0)
 ROUNDING = Quantity("dimensionless", 0.01, 0.5)
+LEAVING = Quantity("angle", 20 * pi / 180, 80 * pi / 180, "deg")
+RELIEF = Quantity("dimensionless", 0.0, 0.2)
+RELIEF_LENGTH = Quantity("dimensionless", 0.0, 1.0)
 PLAY = Quantity("length", 0.0, 1e-3, "um")
+EITHER_PLAY = Quantity("length", -1e-4, 1e-3, "um")
+BALLS = Quantity("dimensionless", 6, 60, whole=True)
 THICKNESS = Quantity("length", 1e-5, 0.1, "mm")
 SUPPORT = Quantity("pressure", 1e6, 1e16, "N/mm2")
+TWIST = Quantity("torsional stiffness", 1e-3, 1e12, "kN m/rad")
+SEVERAL = Quantity("dimensionless", 3, 60, whole=True)
 
 
 def _double_arcs() -> list[str]:
@@ -114,6 +121,19 @@ class InvoluteGroove(Table):
     pressure_angle: Annotated[float, ANGLE] = pi / 9
 
 
+class BallBearing(Table):
+    """Balls of the wave generator under a thin outer race, which only push; both rings of steel.
+
+    What is not given is in proportion to the pitch diameter, see `proportions.PROPORTIONS`. The play is the
+    radial one between ball and races where the ring has its wave; a negative one presses.
+    """
+
+    balls: Annotated[float, BALLS] | None = None
+    ball_diameter: Annotated[float, BORE] | None = None
+    race_thickness: Annotated[float, THICKNESS] | None = None
+    play: Annotated[float, EITHER_PLAY] = 0.0
+
+
 class WaveGenerator(Table):
     """How the flexspline is deformed: a shape by name, or amplitudes of cos 2p, cos 4p, ...
 
@@ -125,6 +145,7 @@ class WaveGenerator(Table):
     weights: tuple[Annotated[float, AMPLITUDE], ...] = ()
     deflection: Annotated[float, DEFLECTION] = 1.0
     force_angle: Annotated[float, FORCE_ANGLE] = pi / 6
+    bearing: BallBearing | None = None
 
     @model_validator(mode="after")
     def _one(self) -> "WaveGenerator":
@@ -137,13 +158,66 @@ class Flexspline(Table):
     """Rim and cup of the flexspline, and the bearing that holds it round.
 
     By default the rim is two modules thick, the wall of the cup half of that, the cup half a pitch
-    diameter long, and the bearing rigid.
+    diameter long, and the bearing rigid. With walls by bending strain the rim is as thick as its bending
+    into the wave allows, see `proportions.rim_by_strain`.
     """
 
+    walls: Literal["two modules", "bending strain"] = "two modules"
     rim_thickness: Annotated[float, THICKNESS] | None = None
     wall_thickness: Annotated[float, THICKNESS] | None = None
     cup_length: Annotated[float, BORE] | None = None
     support_stiffness: Annotated[float, SUPPORT] | None = None
+
+
+class Yielding(Table):
+    """What yields behind teeth, rim and wall of the cup, each by a model, by value, or not at all.
+
+    Without this table all of it is rigid. Dimensions that are not given are in proportion to the pitch
+    diameter, see `proportions.PROPORTIONS`; the bottom of the cup is as thick as the rim.
+    """
+
+    cup_bottom: Literal["disc", "rigid"] = "disc"
+    cup_bottom_stiffness: Annotated[float, TWIST] | None = None
+    bottom_thickness: Annotated[float, THICKNESS] | None = None
+    flange_diameter: Annotated[float, BORE] | None = None
+    flange: Literal["bolts", "rigid"] = "bolts"
+    flange_stiffness: Annotated[float, TWIST] | None = None
+    bolts: Annotated[float, SEVERAL] | None = None
+    bolt_diameter: Annotated[float, BORE] | None = None
+    bolt_circle: Annotated[float, BORE] | None = None
+    wave_generator: Literal["shaft", "rigid"] = "shaft"
+    wave_generator_stiffness: Annotated[float, TWIST] | None = None
+    shaft_diameter: Annotated[float, BORE] | None = None
+    shaft_length: Annotated[float, BORE] | None = None
+    circular_spline: Literal["ring", "rigid"] = "ring"
+    circular_spline_stiffness: Annotated[float, TWIST] | None = None
+    outside_diameter: Annotated[float, BORE] | None = None
+
+    @model_validator(mode="after")
+    def _one_each(self) -> "Yielding":
+        """A part has one model, and no dimension that its model does not ask for."""
+        for part, dimensions in _DIMENSIONS.items():
+            value = f"{part}_stiffness"
+            if getattr(self, value) is not None and part in self.model_fields_set:
+                raise InputError(f"{part} and {value} were both given; give one", key=value)
+            modelled = getattr(self, value) is None and getattr(self, part) != "rigid"
+            for key in dimensions:
+                if getattr(self, key) is not None and not modelled:
+                    other = part if getattr(self, value) is None else value
+                    raise InputError(
+                        f"{key} was given, but {other} leaves out what it is a dimension of",
+                        key=key,
+                    )
+        return self
+
+
+_DIMENSIONS = {
+    "cup_bottom": ("bottom_thickness", "flange_diameter"),
+    "flange": ("bolts", "bolt_diameter", "bolt_circle"),
+    "wave_generator": ("shaft_diameter", "shaft_length"),
+    "circular_spline": ("outside_diameter",),
+}
+"""Dimensions that the model of each part asks for."""
 
 
 class SplineDeviations(Table):
@@ -174,8 +248,10 @@ CircularSpline = Annotated[
 class StrainWaveGears(GearsTable):
     """A strain wave gear with two lobes: wave generator, flexspline and circular spline.
 
-    Clearance and rounding of the tips are in modules. Gear 1 is the flexspline, gear 2 the circular
-    spline, in this table and in that of the materials.
+    Clearances, rounding and relief of the tips are in modules. The tips of a circular spline whose flanks
+    are swept end where the clearance or the angle of disengagement ends them, whatever is shorter. Edges
+    sweep the groove in any case; whether they carry says `edges`. Gear 1 is the flexspline, gear 2 the
+    circular spline, in this table and in that of the materials.
     """
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
@@ -191,11 +267,17 @@ class StrainWaveGears(GearsTable):
     face_width: Annotated[float, WIDTH]
     fixed: Literal["wave generator", "flexspline", "circular spline"] = "circular spline"
     clearance: Annotated[float, BOTTOM] = 0.25
+    disengagement: Annotated[float, LEAVING] = 50 * pi / 180
     tip_rounding: Annotated[float, ROUNDING] = 0.1
+    tip_relief: Annotated[float, RELIEF] = 0.005
+    relief_length: Annotated[float, RELIEF_LENGTH] = 0.1
+    bottom_clearance: Annotated[float, BOTTOM] = 0.15
+    edges: Literal["clear", "carry"] = "clear"
     backlash: Annotated[float, PLAY] = 0.0
     tooth: Tooth = DoubleArcTooth(set="liu")
     wave_generator: WaveGenerator = WaveGenerator()
     flexspline: Flexspline = Flexspline()
+    yielding: Yielding | None = None
     circular_spline: CircularSpline = ConjugateGroove()
     deviations: SplineDeviations = SplineDeviations()
 
@@ -234,4 +316,17 @@ class StrainWaveGears(GearsTable):
     def _small_and_few(self) -> "StrainWaveGears":
         for (key, waves), teeth in zip(self.deviations.each.items(), self.teeth, strict=True):
             check_waves(waves, key, teeth, self.module)
+        if self.wave_generator.bearing and self.flexspline.support_stiffness is not None:
+            raise InputError(
+                "support_stiffness and a bearing of the wave generator were both given; give one",
+                key="flexspline.support_stiffness",
+            )
+        if (
+            self.flexspline.rim_thickness is not None
+            and "walls" in self.flexspline.model_fields_set
+        ):
+            raise InputError(
+                "walls says how thick the rim is, and rim_thickness was given too; give one",
+                key="flexspline.walls",
+            )
         return self

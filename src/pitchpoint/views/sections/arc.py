@@ -32,9 +32,9 @@ from pitchpoint.views.where_lost import where_lost
 __all__ = ["ARC", "arc_panel", "wave_losses", "wave_sentence"]
 
 _ARC = {
-    "load": "It leaps where the contact passes from the root of a tooth to its tip.",
-    "pressure": "By Hertz, for the load on the tooth and the radius of its contact; elastic steel, high on "
-    "the roundings of root and tip, which wear.",
+    "load": "Where it touches at two places, at its root and at its tip, their sum.",
+    "pressure": "By Hertz, for the load and the radius of each contact; elastic steel, high on edges, which "
+    "wear. Dashed: the contact nearer to the tip of a tooth that touches at two places.",
     "radius": "Where an edge touches it is small, where flanks fit into each other it is large.",
     "entrainment": "Mean speed of both flanks against their contact; it draws the oil in.",
     "sliding_velocity": "",
@@ -44,6 +44,7 @@ _ARC = {
     "loss": "Loss of the one tooth that is at this place.",
 }
 _POSITIVE = ("pressure", "radius", "entrainment", "film_thickness", "lambda_ratio")
+_SUMS = ("load", "loss")
 _WIDE = 30.0
 """Ratio of the largest to the smallest value above which an axis is logarithmic."""
 
@@ -135,30 +136,51 @@ def _seen(
                 yield known[variant, law], data, position
 
 
-def _along(data: xr.Dataset, name: str, law: int) -> tuple[np.ndarray, np.ndarray]:
+def _along(
+    data: xr.Dataset, name: str, law: int, place: int | None
+) -> tuple[np.ndarray, np.ndarray]:
     """Place and SI value of a pair in one zone; NaN where it does not carry.
 
     Every node of every pair is one place of the same way; all zones are alike.
+
+    Args:
+        data: mesh cycle.
+        name: of the variable.
+        law: its position.
+        place: of the pair's contact among several; None for the sum of all.
     """
     half = data.sizes["pair"] // int(data["path"].attrs["zones"])
-    angle = place_of(data)[:, :half].ravel()
+
+    def of_pair(values: np.ndarray) -> np.ndarray:
+        zone = values[:, :half]
+        return (zone.sum(axis=2) if place is None else zone[..., place]).ravel()
+
+    angle = place_of(data)[:, :half, 0].ravel()
     order = np.argsort(angle, kind="stable")
-    load = data["load"].values[law][:, :half].ravel()[order]
-    values = values_of(data, name)[law][:, :half].ravel()[order]
+    load = of_pair(data["load"].values[law])[order]
+    values = of_pair(values_of(data, name)[law])[order]
     near = beside(load > 0.0)
     if not near.any():
         return angle[:0], load[:0]
-    values = np.where(load > 0.0, values, 0.0 if name in ("load", "loss") else np.nan)
+    values = np.where(load > 0.0, values, 0.0 if name in _SUMS else np.nan)
     return continued(angle[order][near], values[near], most=400)
 
 
-def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
+def _traces(seen: list[tuple[Curve, xr.Dataset, int]], name: str) -> Iterator[Trace]:
+    """A line for each contact of a pair, the later ones dashed; one for what they have in sum."""
     unit = show.unit(VARIABLES[name].display)
-    traces = []
     for curve, data, law in seen:
-        x, y = _along(data, name, law)
-        traces.append(line(curve, x, display(name, y), unit))
-    shown, same = merged(traces)
+        for place in [None] if name in _SUMS else range(data.sizes["slice"]):
+            x, y = _along(data, name, law, place)
+            trace = line(curve, x, display(name, y), unit)
+            if place:
+                trace["line"] = trace["line"] | {"dash": "dash", "width": 1.5}
+            if x.size or not place:
+                yield trace
+
+
+def _arc_figure(name: str, seen: list[tuple[Curve, xr.Dataset, int]]) -> Figure:
+    shown, same = merged(list(_traces(seen, name)))
     title = "Loss of a pair" if name == "loss" else titled(name)
     look = layout(
         seen[0][1]["path"].attrs["axis"],

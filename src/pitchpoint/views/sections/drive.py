@@ -148,8 +148,9 @@ def _mm(teeth: xr.Dataset) -> float:
 
 
 def _depth(teeth: xr.Dataset) -> float:
-    """From the tip of the circular spline's teeth to the deepest point of their spaces [mm]."""
-    return 1e3 * float(np.ptp(teeth["space"].values[:, 1]))
+    """From the tip of the circular spline's teeth to that of a flexspline tooth on the long axis [mm]."""
+    deepest, tip = teeth["passing"].values[..., 1].max(), teeth["space"].values[:, 1].min()
+    return 1e3 * float(deepest - tip)
 
 
 def _told_arcs(outcome: Outcome) -> str:

@@ -29,10 +29,10 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import folded
 from pitchpoint.views.point import Period, operating_point, period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section, Table
 from pitchpoint.views.way import beside, place_of
 
-__all__ = ["TORSION", "torsion_answer", "torsion_panels", "wind_up_rows"]
+__all__ = ["TORSION", "part_rows", "slope_rows", "torsion_answer", "torsion_panels", "wind_up_rows"]
 
 _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 """Colours from small to large torque, which differ in lightness alone."""
@@ -256,8 +256,9 @@ def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
             xaxis={"rangemode": "tozero"},
             yaxis={"rangemode": "tozero"},
         ),
-        f"Upper branch: the {words.load} grows; lower branch: it shrinks. The loop is that of tooth friction "
-        f"alone, for one sense of {words.load} from first touch of the flanks.",
+        f"Upper branch: the {words.load} grows; lower branch: it shrinks, for one sense of {words.load} "
+        "from first touch of the flanks. The loop is that of friction on the teeth, and in bearings and "
+        "seals that the case gives.",
         (*keys, _ELASTIC),
     )
 
@@ -319,9 +320,66 @@ def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
             for name in WIND_UP
             if name in data
         }
-        | {"K is that of": str(data["torsional_stiffness"].attrs.get("covers", ""))}
         for k in range(torques.size // 4, torques.size, torques.size // 4)
     ]
+
+
+_NO_LOOP = (
+    "Not in the loop: friction in the joints and of the ring on its race, damping of the material, teeth "
+    "that are pressed on both flanks."
+)
+
+
+def part_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Parts of the wind-up at the operating point, the largest first; none where nothing is known of them."""
+    data = outcome.parts["torsion"]
+    if "wind_up_part" not in data:
+        return []
+    at = operating_point(outcome).torque
+    each = [float(np.interp(at, data["torque"], values)) for values in data["wind_up_part"].values]
+    order = sorted(range(len(each)), key=lambda k: -each[k])
+    return [
+        {
+            "part of the wind-up": str(data["part"].values[k]),
+            head("wind_up_part"): shown("wind_up_part", each[k]),
+            "share [%]": f"{100.0 * each[k] / sum(each):.1f}",
+        }
+        for k in order
+    ]
+
+
+def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Stiffness in three slopes, with lost motion and hysteresis loss under each law."""
+    data = outcome.parts["torsion"]
+    if "slope_stiffness" not in data:
+        return []
+    slopes = {
+        f"{name} up to {level('slope_torque', float(end))}": level("slope_stiffness", float(value))
+        for name, end, value in zip(
+            data["slope"].values,
+            data["slope_torque"].values,
+            data["slope_stiffness"].values,
+            strict=True,
+        )
+    }
+    return [
+        {"friction law": str(law)}
+        | slopes
+        | {
+            words: shown(name, float(data[name].values[k]))
+            for words, name in (
+                ("lost motion at ±4 % [arcmin]", "catalogue_lost_motion"),
+                ("hysteresis loss [arcmin]", "hysteresis_loss"),
+            )
+        }
+        for k, law in enumerate(data["law"].values)
+    ]
+
+
+def _table(rows: list[dict[str, str]]) -> Iterator[Block]:
+    """Rows as a table of the report; nothing without any."""
+    if rows:
+        yield Table([*rows[0]], [[*row.values()] for row in rows])
 
 
 def _blocks(page: Page) -> Iterator[Block]:
@@ -338,12 +396,22 @@ def _blocks(page: Page) -> Iterator[Block]:
             "each the mean over its mesh cycle"
         )
         yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
+        yield from _table(slope_rows(outcome))
+        yield from _table(part_rows(outcome))
+        if "hysteresis_loss" in data:
+            yield Paragraph(_NO_LOOP, "note")
         yield it
 
 
 def _answer(outcome: Outcome) -> list[tuple[str, str]]:
     told = torsion_answer(outcome)
     return [(_words(outcome.parts["torsion"]).stiffness, told)] if told else []
+
+
+def _screen(outcome: Outcome) -> list[Printed]:
+    slopes, note = slope_rows(outcome), str(outcome.parts["torsion"].attrs.get("note", ""))
+    rows = [Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else "")]
+    return [*rows, *(Printed(rows=found) for found in (slopes, part_rows(outcome)) if found)]
 
 
 TORSION = Section(
@@ -354,5 +422,5 @@ TORSION = Section(
     parts=("torsion",),
     blocks=_blocks,
     answer=_answer,
-    screen=lambda one: [Printed(rows=wind_up_rows(one))] if "torsion" in one.parts else [],
+    screen=lambda one: _screen(one) if "torsion" in one.parts else [],
 )

@@ -1,0 +1,179 @@
+"""The bearing of a wave generator: balls between a rigid inner race and a thin outer one."""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import NamedTuple
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.gears.on_balls import OnBalls, ball_force, seated
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
+from pitchpoint.gears.strain_wave.ring_compliance import RingParts, of_modes, ring_modes
+from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
+from pitchpoint.materials.solids import Solid
+
+__all__ = ["BallBearing", "Balls", "ball_bearing", "on_balls", "palmgren_1959", "parts_on_balls"]
+
+STEEL = {"young": 206e9, "poisson": 0.3}
+"""Of the races, whatever the flexspline is made of."""
+
+
+@dataclass(frozen=True)
+class Balls:
+    """Bearing of a wave generator as a designer gives it; see the table `bearing`.
+
+    Values that are None follow from `PROPORTIONS`.
+
+    Attributes:
+        number: of balls.
+        diameter: of one ball [m].
+        race_thickness: of the outer race [m].
+        play: radial one between ball and races where the ring has its wave; negative of balls that push
+            the ring beyond it [m].
+    """
+
+    number: float | None = None
+    diameter: float | None = None
+    race_thickness: float | None = None
+    play: float = 0.0
+
+
+class BallBearing(eqx.Module):
+    """Balls under a thin ring.
+
+    Attributes:
+        angle: of each ball from the long axis [rad].
+        stiffness: of a ball between both races [N/m1.5].
+        play: see `Balls` [m].
+        bending, stretching: of the outer race, E/(1 - nu^2) I and E A [N m2, N].
+    """
+
+    angle: Float[Array, " ball"]
+    stiffness: Float[Array, ""]
+    play: Float[Array, ""]
+    bending: Float[Array, ""]
+    stretching: Float[Array, ""]
+
+    def race(self, radius: Float[Array, ""], waves: int) -> Float[Array, " wave"]:
+        """Stiffness of the outer race against each number of waves, for one metre around [N/m2].
+
+        It lies on the ring and slides in it, so that it bends with it and stretches by itself.
+
+        From the energy of a free ring whose tangential displacement makes it least.
+        """
+        square = jnp.arange(waves + 1.0) ** 2
+        stretch, bend = self.stretching / radius**2, self.bending / radius**4
+        of_waves = stretch * bend * (square - 1.0) ** 2 / (stretch + bend)
+        return jnp.where(square == 0.0, stretch, of_waves)
+
+
+def palmgren_1959(diameter: float) -> float:
+    """Stiffness of a steel ball between two grooved steel races, force over approach^1.5 [N/m1.5].
+
+    Args:
+        diameter: of the ball [m].
+
+    Source: Palmgren (1959): the races approach by 4.36e-4 mm (Q/N)^(2/3) (D/mm)^(-1/3).
+
+    Example:
+        >>> stiffness = palmgren_1959(6.35e-3)
+        >>> round(1e6 * (65.0 / stiffness) ** (2 / 3), 2)
+        3.81
+    """
+    return sqrt(diameter / 4.36e-8**3)
+
+
+def ball_bearing(balls: Balls, diameter: float, width: float) -> BallBearing:
+    """The bearing of a drive.
+
+    Args:
+        balls: what is given of it.
+        diameter: pitch diameter of the flexspline [m].
+        width: of its toothed ring, and of the race under it [m].
+    """
+    number = PROPORTIONS.balls if balls.number is None else int(balls.number)
+    ball = PROPORTIONS.ball * diameter if balls.diameter is None else balls.diameter
+    race = PROPORTIONS.race * diameter if balls.race_thickness is None else balls.race_thickness
+    young, poisson = STEEL["young"], STEEL["poisson"]
+    return BallBearing(
+        angle=2.0 * pi * jnp.arange(number) / number,
+        stiffness=array(palmgren_1959(ball)),
+        play=array(balls.play),
+        bending=array(young / (1.0 - poisson**2) * width * race**3 / 12.0),
+        stretching=array(young * width * race),
+    )
+
+
+class _Modes(NamedTuple):
+    """Work of unit forces on the modes of the free ring, see `ring_modes`: of lanes, and of balls."""
+
+    lanes: Float[Array, "lane mode *b"]
+    balls: Float[Array, "ball mode"]
+
+
+def _modes(bearing: BallBearing, ring: FlexibleRing, solid: Solid, loads: RingLoads) -> _Modes:
+    nothing, outward = jnp.zeros_like(bearing.angle), jnp.ones_like(bearing.angle)
+    pushes = RingLoads(*(x[:, None] for x in (bearing.angle, nothing, outward, nothing)))
+    return _Modes(
+        ring_modes(ring, solid, loads, bearing.race), ring_modes(ring, solid, pushes, bearing.race)
+    )
+
+
+def on_balls(
+    bearing: BallBearing, ring: FlexibleRing, line: NeutralLine, solid: Solid, loads: RingLoads
+) -> OnBalls:
+    """How teeth and balls move each other through the ring and the outer race.
+
+    Args:
+        bearing: of the wave generator.
+        ring: toothed rim and cup; what is said of its support does not count.
+        line: the wave into which the wave generator pushes it.
+        solid: material of the ring.
+        loads: where and how a unit force at each contact acts.
+
+    The balls stand where they would hold the ring in its wave if they and the play did not give way;
+    where the ring would have to be pulled, they let it go.
+    """
+    modes = _modes(bearing, ring, solid, loads)
+    balls = modes.balls @ modes.balls.T
+    push = line.radial(bearing.angle) - bearing.play
+    return OnBalls(
+        lanes=jnp.einsum("im...,jm...->ij...", modes.lanes, modes.lanes),
+        across=jnp.einsum("im...,jm->ij...", modes.lanes, modes.balls),
+        balls=balls,
+        stiffness=bearing.stiffness,
+        approach=seated(balls, bearing.stiffness, push),
+    )
+
+
+def parts_on_balls(
+    bearing: BallBearing,
+    ring: FlexibleRing,
+    line: NeutralLine,
+    solid: Solid,
+    loads: RingLoads,
+    force: Float[Array, "pair slice *b"],
+    balls: Float[Array, "ball *b"],
+) -> RingParts:
+    """How much of the compliance of the ring on its balls each part brings.
+
+    Args:
+        bearing, ring, line, solid, loads: as in `on_balls`.
+        force: normal force of each slice [N].
+        balls: force of each ball at this load [N].
+
+    From the work of what the balls bear beyond the state without load.
+    """
+    modes = _modes(bearing, ring, solid, loads)
+    coupled = modes.balls @ modes.balls.T
+    push = line.radial(bearing.angle) - bearing.play
+    before = ball_force(bearing.stiffness, seated(coupled, bearing.stiffness, push))
+    more = balls - before.reshape(-1, *(1 for _ in balls.shape[1:]))
+    of_balls = jnp.einsum("im,i...->m...", modes.balls, more)
+    flat = force.reshape(-1, *force.shape[2:])
+    amplitude = jnp.einsum("im...,i...->m...", modes.lanes, flat) + of_balls
+    wall, rim = of_modes(amplitude)
+    return RingParts(wall, rim, -jnp.sum(amplitude * of_balls, axis=0))

@@ -1,0 +1,246 @@
+"""What yields behind the teeth of a strain wave gear, one part after the other: cup bottom, joint, shaft."""
+
+from dataclasses import dataclass
+from math import pi
+from typing import ClassVar
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.errors import InputError
+from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
+from pitchpoint.materials.solids import Solid
+
+__all__ = [
+    "Behind",
+    "Cup",
+    "InSeries",
+    "bolts_in_shear",
+    "disc_in_torsion",
+    "in_series",
+    "shaft_in_torsion",
+]
+
+STEEL_SHEAR_MODULUS = 79.3e9
+"""Of bolts and shafts, whatever the splines are made of [Pa]."""
+
+
+def disc_in_torsion(thickness: float, inner: float, outer: float) -> float:
+    """Twist of an annular disc between its edges, times the shear modulus, for a unit torque [1/m3].
+
+    Args:
+        thickness, inner, outer: of the disc, and its radii [m].
+
+    From the shear stress T/(2 pi r^2 t) in the plane of the disc, integrated over the radius.
+
+    Example:
+        >>> round(disc_in_torsion(1e-3, 0.01, 0.02) * 1e-4, 4)
+        59.6831
+    """
+    return (inner**-2 - outer**-2) / (4.0 * pi * thickness)
+
+
+def bolts_in_shear(number: float, diameter: float, circle: float) -> float:
+    """Torsional stiffness of a joint whose bolts yield in shear [N m/rad].
+
+    Args:
+        number: of bolts.
+        diameter: of one bolt, and its length in shear [m].
+        circle: diameter on which they stand [m].
+
+    From the shear G A/l of each bolt at half the diameter of the circle. The friction that keeps faces
+    together makes a joint stiffer, its own faces make it softer: an estimate.
+
+    Example:
+        >>> round(bolts_in_shear(8, 5e-3, 0.03) / 1e3)
+        561
+    """
+    each = STEEL_SHEAR_MODULUS * pi * diameter / 4.0
+    return number * each * (circle / 2.0) ** 2
+
+
+def shaft_in_torsion(diameter: float, length: float) -> float:
+    """Torsional stiffness of a solid steel shaft [N m/rad].
+
+    Args:
+        diameter, length: [m].
+
+    Example:
+        >>> round(shaft_in_torsion(0.01, 0.02))
+        3893
+    """
+    return STEEL_SHEAR_MODULUS * pi * diameter**4 / 32.0 / length
+
+
+class InSeries(eqx.Module):
+    """Parts that carry the whole torque of their member, one behind the other.
+
+    Attributes:
+        bottom: twist of the cup's bottom times its shear modulus, see `disc_in_torsion` [1/m3].
+        compliance: of the parts whose stiffness was given or does not follow from the flexspline's
+            material, in the order of `parts` [rad/(N m)]; zero of rigid ones.
+        parts: their names; static.
+        ring: of the circular spline, which the teeth bend and stretch; None where it is rigid.
+    """
+
+    bottom: Float[Array, ""]
+    compliance: Float[Array, " part"]
+    ring: FlexibleRing | None
+
+    parts: ClassVar = (
+        "bottom of the cup",
+        "flange joint",
+        "wave generator's shaft",
+        "circular spline",
+    )
+    members: ClassVar = (1, 1, 0, 2)
+
+    @classmethod
+    def rigid(cls) -> "InSeries":
+        """Nothing yields behind the teeth, rim and wall."""
+        return cls(array(0.0), array([0.0] * len(cls.parts)), None)
+
+    def by_part(
+        self, flexspline: Solid, law: Float[Array, "3"], loaded: Float[Array, "3"]
+    ) -> dict[str, Float[Array, ""]]:
+        """Rotation of the loaded member for a unit torque on it, by part [rad/(N m)]; none of rigid ones.
+
+        Args:
+            flexspline: its material.
+            law: factors to which the torques of the members are in proportion.
+            loaded: one for the loaded member.
+
+        By virtual work a part of another member counts with the square of that member's torque: the shaft
+        of a wave generator that is held divides by the square of the ratio.
+        """
+        shear = flexspline.young / (2.0 + 2.0 * flexspline.poisson)
+        each = self.compliance.at[0].add(self.bottom / shear)
+        torque = law[jnp.array(self.members)] / (law @ loaded)
+        return dict(zip(self.parts, each * torque**2, strict=True))
+
+
+@dataclass(frozen=True)
+class Behind:
+    """What yields behind teeth, rim and wall, as a designer gives it; see the table `yielding`.
+
+    Lengths in m, stiffness in N m/rad. Values that are None follow from `PROPORTIONS`; the bottom, which
+    carries the torque of the wall on half the radius, is as thick as the rim. A stiffness takes the place
+    of a model.
+    """
+
+    cup_bottom: str = "disc"
+    cup_bottom_stiffness: float | None = None
+    bottom_thickness: float | None = None
+    flange_diameter: float | None = None
+    flange: str = "bolts"
+    flange_stiffness: float | None = None
+    bolts: float | None = None
+    bolt_diameter: float | None = None
+    bolt_circle: float | None = None
+    wave_generator: str = "shaft"
+    wave_generator_stiffness: float | None = None
+    shaft_diameter: float | None = None
+    shaft_length: float | None = None
+    circular_spline: str = "ring"
+    circular_spline_stiffness: float | None = None
+    outside_diameter: float | None = None
+
+
+@dataclass(frozen=True)
+class Cup:
+    """Dimensions of a drive on which those of the parts behind the teeth depend [m].
+
+    Attributes:
+        diameter: pitch diameter of the flexspline.
+        radius: of its neutral line, at which the bottom ends.
+        rim: thickness of the rim.
+        root: radius of the circular spline's root circle.
+        width: of the circular spline.
+    """
+
+    diameter: float
+    radius: float
+    rim: float
+    root: float
+    width: float
+
+
+def in_series(behind: Behind, cup: Cup) -> InSeries:
+    """The parts behind the teeth.
+
+    Args:
+        behind: what is given of them.
+        cup: of the drive.
+
+    Raises:
+        InputError: a flange as wide as the cup, a circular spline without a body; the key is the name.
+    """
+    given = {part: getattr(behind, f"{part}_stiffness") for part in _MODELS}
+    modelled = {part: given[part] is None and getattr(behind, part) != "rigid" for part in _MODELS}
+    values = [0.0 if stiffness is None else 1.0 / stiffness for stiffness in given.values()]
+    if modelled["flange"]:
+        values[1] = 1.0 / _joint(behind, cup)
+    if modelled["wave_generator"]:
+        values[2] = 1.0 / _shaft(behind, cup)
+    return InSeries(
+        bottom=array(_bottom(behind, cup) if modelled["cup_bottom"] else 0.0),
+        compliance=array(values),
+        ring=_ring(behind, cup) if modelled["circular_spline"] else None,
+    )
+
+
+_MODELS = ("cup_bottom", "flange", "wave_generator", "circular_spline")
+
+
+def _or(given: float | None, part: float, cup: Cup) -> float:
+    """A dimension as given, or as this part of the pitch diameter."""
+    return part * cup.diameter if given is None else given
+
+
+def _bottom(behind: Behind, cup: Cup) -> float:
+    thickness = cup.rim if behind.bottom_thickness is None else behind.bottom_thickness
+    flange = _or(behind.flange_diameter, PROPORTIONS.flange, cup)
+    if flange >= 2.0 * cup.radius:
+        raise InputError(
+            f"the flange has a diameter of {1e3 * flange:.5g} mm and leaves no bottom of the cup, which has "
+            f"one of {2e3 * cup.radius:.5g} mm",
+            key="flange_diameter",
+        )
+    return disc_in_torsion(thickness, flange / 2.0, cup.radius)
+
+
+def _joint(behind: Behind, cup: Cup) -> float:
+    number = PROPORTIONS.bolts if behind.bolts is None else behind.bolts
+    diameter = _or(behind.bolt_diameter, PROPORTIONS.bolt, cup)
+    return bolts_in_shear(number, diameter, _or(behind.bolt_circle, PROPORTIONS.bolt_circle, cup))
+
+
+def _shaft(behind: Behind, cup: Cup) -> float:
+    diameter = _or(behind.shaft_diameter, PROPORTIONS.shaft, cup)
+    return shaft_in_torsion(diameter, _or(behind.shaft_length, PROPORTIONS.shaft_length, cup))
+
+
+def _ring(behind: Behind, cup: Cup) -> FlexibleRing:
+    """The circular spline from its roots outwards, free to bend, held against turning at its outside.
+
+    The shear of its face between both radii, as of a disc, stands for the wall of a cup.
+    """
+    outside = _or(behind.outside_diameter, PROPORTIONS.outside, cup) / 2.0
+    if outside <= cup.root:
+        raise InputError(
+            f"the circular spline has an outside diameter of {2e3 * outside:.5g} mm, and its roots lie on "
+            f"one of {2e3 * cup.root:.5g} mm",
+            key="outside_diameter",
+        )
+    middle = (outside + cup.root) / 2.0
+    twist = disc_in_torsion(cup.width, cup.root, outside)
+    return FlexibleRing(
+        radius=array(middle),
+        thickness=array(outside - cup.root),
+        width=array(cup.width),
+        wall_thickness=array(1.0),
+        cup_length=array(2.0 * pi * middle**3 * twist),
+        support_stiffness=array(0.0),
+    )

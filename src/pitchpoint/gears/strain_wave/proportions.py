@@ -1,0 +1,59 @@
+"""Usual dimensions of strain wave gears over their pitch diameter."""
+
+from dataclasses import dataclass
+
+__all__ = ["PROPORTIONS", "Proportions", "rim_by_strain"]
+
+
+@dataclass(frozen=True)
+class Proportions:
+    """Dimensions over the pitch diameter of the flexspline, so that stiffness goes with the cube of the size.
+
+    All are assumed: read off drawings of catalogues, or usual for such parts. Makers publish none of what
+    lies inside. They are the one place at which an assumed dimension of these parts is set.
+
+    Attributes:
+        flange: diameter of the flange, at which the bottom of the cup begins.
+        bolts: number of bolts of the flange.
+        bolt_circle, bolt: diameters of the circle and of one bolt.
+        shaft, shaft_length: diameter of the wave generator's shaft, and its length up to the input.
+        outside: outer diameter of the circular spline.
+        ball, balls: diameter of the balls of the wave generator's bearing, and their number.
+        race: thickness of the outer race that bends with the ring.
+        rim: largest thickness of the flexspline's rim.
+        strain: largest one by which the wave bends that rim; chosen so that drives of 50 and 30 are softer
+            than those of 100 about as catalogues say.
+    """
+
+    flange: float = 0.5
+    bolts: int = 8
+    bolt_circle: float = 0.4
+    bolt: float = 0.06
+    shaft: float = 0.17
+    shaft_length: float = 0.4
+    outside: float = 1.35
+    ball: float = 0.078
+    balls: int = 23
+    race: float = 0.0125
+    rim: float = 0.01
+    strain: float = 3.75e-4
+
+
+PROPORTIONS = Proportions()
+
+
+def rim_by_strain(diameter: float, deflection: float) -> float:
+    """Thickness of a rim that its wave bends no further than usual [m].
+
+    Args:
+        diameter: pitch diameter of the flexspline [m].
+        deflection: of the ring on the long axis [m].
+
+    From the curvature 3 w0/r^2 by which a wave of two lobes bends a ring that keeps its length: the strain
+    at its faces is 6 w0 t/d^2. A derived rule; what makers take is not published.
+
+    Example:
+        >>> [round(1e3 * rim_by_strain(0.06, 0.06 / (2 * ratio)), 3) for ratio in (30, 50, 100)]
+        [0.225, 0.375, 0.6]
+    """
+    return min(PROPORTIONS.rim * diameter, PROPORTIONS.strain * diameter**2 / (6.0 * deflection))
