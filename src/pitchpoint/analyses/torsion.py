@@ -82,7 +82,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
 
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     friction, rated = _mean_friction(built), built.case.operation.load
-    limits = built.case.torsion.limits if built.case.torsion else None
+    limits = getattr(built.case.gears, "slopes", None)
     told_of = built.design.mesh.couples and rated > 0.0
     more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
     every = np.union1d(torques, more)

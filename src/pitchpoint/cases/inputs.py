@@ -28,7 +28,6 @@ _TABLES = (
     "losses",
     "dynamics",
     "loss_map",
-    "torsion",
 )
 
 _DIMENSIONS = (

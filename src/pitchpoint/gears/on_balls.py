@@ -1,7 +1,7 @@
 """A body under teeth that lies on balls, which only push."""
 
 import equinox as eqx
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 
@@ -86,7 +86,7 @@ def seated(
     frozen = jax.lax.stop_gradient((balls, stiffness, push))
     start = jnp.maximum(frozen[2], 0.0)
 
-    def settle(_: int, approach: Float[Array, " ball"]) -> Float[Array, " ball"]:
+    def settle(_: Int[Array, ""], approach: Float[Array, " ball"]) -> Float[Array, " ball"]:
         return jax.lax.stop_gradient(step(approach))
 
     return step(jax.lax.fori_loop(0, SEATING_STEPS, settle, start))

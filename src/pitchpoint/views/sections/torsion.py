@@ -257,8 +257,8 @@ def _loop(name: str, variant: str, data: xr.Dataset, known: Curves) -> Figure:
             yaxis={"rangemode": "tozero"},
         ),
         f"Upper branch: the {words.load} grows; lower branch: it shrinks, for one sense of {words.load} "
-        "from first touch of the flanks. The loop is that of friction on the teeth, and in bearings and seals "
-        "that the case gives.",
+        "from first touch of the flanks. The loop is that of friction on the teeth, and in bearings and "
+        "seals that the case gives.",
         (*keys, _ELASTIC),
     )
 
