@@ -144,6 +144,22 @@ def test_the_slope_is_that_of_balls_that_stiffen():
     assert float(slope) == pytest.approx((ends[0] - ends[1]) / (2.0 * step), rel=1e-6)
 
 
+def test_derivatives_go_through_the_balls_and_their_seat():
+    """By the stiffness of the balls, which moves the state without load too."""
+
+    @jax.jit
+    def approach(stiffness):
+        lanes, across, balls = (body().lanes, body().across, body().balls)
+        held = OnBalls(lanes, across, balls, stiffness, seated(balls, stiffness, jnp.asarray(PUSH)))
+        return _solved(held, jnp.asarray(150.0), jnp.asarray(OWN))[0]
+
+    slope = float(jax.grad(approach)(jnp.asarray(POINT)))
+    step = 1e-4 * POINT
+    ends = [float(approach(jnp.asarray(POINT + sign * step))) for sign in (1.0, -1.0)]
+    assert slope == pytest.approx((ends[0] - ends[1]) / (2.0 * step), rel=1e-5)
+    assert slope < 0.0
+
+
 def test_without_load_nothing_moves():
     moved, _, found = solved(0.0)
     assert float(moved) == pytest.approx(np.min(GAP / ARM), abs=1e-18)
