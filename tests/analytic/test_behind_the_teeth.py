@@ -127,7 +127,8 @@ def test_parts_in_series_turn_with_the_driver():
 def test_parts_sum_up_to_the_wind_up(given):
     drive = build(**given)
     found, contacts = at(drive, 40.0)
-    parts = body_parts(drive, SOLIDS, contacts, found)
+    several = jax.tree.map(lambda x: jnp.asarray(x)[None], found)
+    parts = {k: v[0] for k, v in body_parts(drive, SOLIDS, contacts, several).items()}
     every = [found.of_teeth, found.of_gaps, *parts.values()]
     np.testing.assert_allclose(sum(every), found.wind_up, rtol=1e-9)
     assert min(float(np.min(part)) for part in every) >= 0.0

@@ -23,6 +23,7 @@ class OnBalls(eqx.Module):
         balls: of balls for forces of balls [m/N].
         stiffness: force of a ball over its approach to the power 1.5 [N/m1.5].
         approach: of the balls without load; negative where one has play [m].
+        start: approach from which that under load is looked for, as one that is known for another load [m].
     """
 
     lanes: Float[Array, "lane lane *#b"]
@@ -30,6 +31,7 @@ class OnBalls(eqx.Module):
     balls: Float[Array, "ball ball"]
     stiffness: Float[Array, ""]
     approach: Float[Array, " ball"]
+    start: Float[Array, "ball *#b"]
 
 
 Body = Float[Array, "lane lane *#b"] | OnBalls

@@ -55,7 +55,7 @@ class Equilibrium(eqx.Module):
         loaded: True where a slice carries.
         residual: largest violation of the equilibrium, over the load or its deflection.
         iterations: active sets that were tried, common to the states that were solved together.
-        balls: forces of the balls under the body; None where none hold it [N].
+        balls: approach of the balls under the body; None where none hold it [m].
     """
 
     force: Lanes
@@ -252,19 +252,18 @@ def _on_balls(
         moves, sets = change > SETTLED * size, at.sets + found.iterations
         return _Settling(approach, found.loaded, moves, at.steps + 1, sets)
 
-    start = jnp.broadcast_to(fixed[0].approach, (*batch, body.approach.shape[0]))
+    start = jnp.broadcast_to(jnp.moveaxis(fixed[0].start, 0, -1), (*batch, body.start.shape[0]))
     none = jnp.zeros((*gap.shape[:2], *batch), bool)
     begin = _Settling(start, none, jnp.ones(batch, bool), jnp.asarray(0), jnp.asarray(0))
     settled = jax.lax.while_loop(lambda at: (at.steps < PASSES) & jnp.any(at.open), again, begin)
     frozen = jax.lax.stop_gradient(settled.approach)
     found, approach = on_springs(body, frozen, settled.loaded, *given)
-    force = ball_force(body.stiffness, approach)
     return dataclasses.replace(
         found,
         residual=jnp.where(settled.open, jnp.inf, found.residual),
         force=_where(~settled.open, found.force),
         iterations=settled.sets + found.iterations,
-        balls=jnp.moveaxis(force, -1, 0),
+        balls=jnp.moveaxis(approach, -1, 0),
     )
 
 
