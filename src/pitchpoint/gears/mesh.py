@@ -83,8 +83,8 @@ PATHS: Mapping[Path, Way] = {
         "teeth come from positive angles",
         title="Along the wave",
         told="One tooth on its way through the zone of mesh, over its angle from the end of the long axis "
-        "that is nearest; the dotted line is the long axis. Values stand where the tooth carries; both ends "
-        "of the long axis are alike.",
+        "that is nearest; the dotted line is the long axis. Values stand where the tooth carries, at one "
+        "end of that axis.",
         origin="the long axis",
         sliding="{} over {}; teeth slide most far from the long axis.",
         zones=2,

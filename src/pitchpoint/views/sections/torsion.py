@@ -41,8 +41,8 @@ _ELASTIC = Key("without friction", INK, "dash")
 _PAIRS = Key("pairs that carry, mean over the mesh cycle", PALETTE[2])
 
 
-_PLAY = 1e-6
-"""Play over the largest wind-up below which it is rounding of dimensions."""
+_PLAY = 1e-5
+"""Play over the largest wind-up below which it is what dimensions are known to."""
 
 
 def torsion_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
