@@ -135,6 +135,7 @@ teeth = [200, 202]
 module = "0.3 mm"
 face_width = "10 mm"
 fixed = "circular spline"
+slopes = ["10 N m", "35 N m"]
 
 [gears.tooth]
 form = "double arc"
@@ -143,8 +144,14 @@ set = "liu"
 [gears.wave_generator]
 weights = [1.0, -0.02]
 
+[gears.wave_generator.bearing]
+balls = 23
+
 [gears.flexspline]
 rim_thickness = "0.6 mm"
+
+[gears.yielding]
+bolts = 8
 
 [gears.circular_spline]
 form = "conjugate"
@@ -705,11 +712,28 @@ def bad_drives() -> Iterator[Bad]:
         ("body", ("losses", "bearing", "between", 0), "wave", ("wave generator", "housing")),
         ("bodies", ("losses", "bearing", "between", 0), "flexspline", ("given twice", "housing")),
         ("factor", ("losses", "bearing", "bearing"), "none", ("asks for no values",)),
+        ("slopes", ("gears", "slopes"), ["9 N m", "9 N m"], ("larger last",)),
+        ("walls", ("gears", "flexspline", "walls"), "bending strain", ("rim_thickness was given",)),
+        (
+            "support",
+            ("gears", "flexspline", "support_stiffness"),
+            "2e9 Pa",
+            ("a bearing", "give one"),
+        ),
         ("helix", ("gears", "helix_angle"), "10 deg", ("known are family, teeth", "backlash")),
     ]:
         key = ".".join(part for part in path if isinstance(part, str)).removesuffix(".shape")
         key = key.replace("bearing.bearing", "bearing")
         yield Bad(f"drive {name}", path, value, words, key, "strain wave")
+    for given, key, told in [
+        ({"flange": "bolts", "flange_stiffness": "1 kN m/rad"}, "flange_stiffness", "both given"),
+        ({"flange": "rigid", "bolts": 8}, "bolts", "flange leaves out"),
+        ({"flange_stiffness": "1 kN m/rad", "bolts": 8}, "bolts", "flange_stiffness leaves out"),
+        ({"flange_diameter": "59 mm"}, "flange_diameter", "leaves no bottom"),
+        ({"outside_diameter": "60.5 mm"}, "outside_diameter", "roots lie on"),
+    ]:
+        where = f"gears.yielding.{key}"
+        yield Bad(f"yielding {told}", ("gears", "yielding"), given, (told,), where, "strain wave")
     words = ("come free at the short axis", "a clearance of 0.35")
     yield Bad("free", ("gears", "clearance"), 0.1, words, "gears.clearance: ", "involute")
     for driver in ("wave generator", "gear 3", "Gear 1"):

@@ -25,7 +25,9 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.efficiency.summary import engaged
+from pitchpoint.gears.strain_wave.ball_bearing import Balls
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.in_series import Behind
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wind_up
@@ -278,26 +280,63 @@ def size_32(variant="rigid_bearing"):
     return wound_up(drive(variant).design)
 
 
-@pytest.mark.parametrize(
-    ("variant", "verdicts"),
-    [
-        ("rigid_bearing", ["miss", "pass", "pass", "miss"]),
-    ],
-)
-def test_stiffness_beside_the_catalogue(variant, verdicts):
-    """Nothing is fitted; what yields beside teeth, rim, cup and balls is not in the model."""
+def beside_the_catalogue(variant):
     wind_up = size_32(variant).wind_up.mean(axis=1)
     part = dataset({"wind_up": (("torque",), wind_up)}, {"torque": LOADS})
-    rows = compare(drive(variant).case.targets, {"torsion": part})
-    ratio = [row.computed / row.printed for row in rows]
-    assert [row.verdict for row in rows] == verdicts
-    assert [row.bound for row in rows] == 3 * ["< 2 x "] + ["> 0.5 x "]
+    return compare(drive(variant).case.targets, {"torsion": part})
+
+
+def test_stiffness_as_built_beside_the_catalogue():
+    """Nothing is fitted: half of K1, 30 % of the others are allowed."""
+    rows = beside_the_catalogue("as_built")
+    assert [row.verdict for row in rows] == ["pass"] * 4
+    allowed = [0.5, 0.3, 0.3, 0.3]
+    for row, part in zip(rows, allowed, strict=True):
+        assert row.tolerance == pytest.approx(part * row.printed)
     assert [row.printed for row in rows[:3]] == [1e-3 * k for k in (K1, K2, K3)]
+
+
+def test_stiffness_of_teeth_rim_and_wall_beside_the_catalogue():
+    """What yields behind them, and the balls, is not in it."""
+    rows = beside_the_catalogue("rigid_bearing")
+    ratio = [row.computed / row.printed for row in rows]
+    assert [row.verdict for row in rows] == ["miss", "pass", "pass", "miss"]
+    assert [row.bound for row in rows] == 3 * ["< 2 x "] + ["> 0.5 x "]
     for row, found in zip(rows[:3], ratio, strict=False):
         assert float(row.reason.split(" times")[0]) == pytest.approx(found, rel=0.03)
-        assert found > 1.0
         assert "K1" in row.reason or "missing: joints of the cup" in row.reason
-    assert ratio[3] == pytest.approx(0.51 if variant == "ball_bearing" else 0.39, abs=0.01)
+    assert ratio[3] == pytest.approx(0.39, abs=0.01)
+
+
+SOFTER = {50: (0.81, 0.71), 30: (0.36, 0.27)}
+"""K1 and K2 of the size 32 by ratio, over those at 80 and more: CSF, tables 41 and 42, in a public copy."""
+
+
+@pytest.mark.parametrize("ratio", SOFTER)
+def test_low_ratios_with_usual_walls_are_softer_as_in_the_catalogue(ratio):
+    """Asked is the trend: within two tenths of the stiffness at 100."""
+    found = np.array(built(ratio)) / np.array(built(100))
+    np.testing.assert_allclose(found[:2], SOFTER[ratio], atol=0.2)
+    assert found[2] < 0.85
+    assert np.all(np.array(built(80)) > 0.9 * np.array(built(100)))
+
+
+@cache
+def built(ratio, diameter=81.3e-3):
+    """Stiffness K1, K2, K3 of a drive in usual proportions."""
+    teeth = 2 * ratio
+    mesh = build_strain_wave(
+        teeth=(teeth, teeth + 2),
+        module=diameter / teeth,
+        face_width=0.16 * diameter,
+        walls="bending strain",
+        bearing=Balls(),
+        behind=Behind(),
+    )
+    design = replace(drive().design, mesh=mesh)
+    ends = np.array([0.0, 29.0, 108.0, 137.0])
+    wind_up = np.interp(ends, LOADS, wound_up(design).wind_up.mean(axis=1))
+    return np.diff(ends) / np.diff(wind_up)
 
 
 def test_example_of_the_manual():
@@ -305,13 +344,12 @@ def test_example_of_the_manual():
     assert np.degrees(printed) * 60.0 == pytest.approx(2.5, abs=0.05)
 
 
-def test_support_of_the_case_is_that_of_the_balls():
-    """23 balls of 6.35 mm on a circle of 69.5 mm, at the load of one zone in the middle of K1."""
-    load, ball = size_32().inner_load[:, list(LOADS).index(29.0 / 2.0)].mean(), 6.35
-    yields = 4.36e-4 * load ** (2.0 / 3.0) / ball ** (1.0 / 3.0) * 1e-3
-    slope = 1.5 * load / yields / (np.pi * 69.5e-3 / 23)
-    support = float(drive("ball_bearing").design.mesh.rim.support_stiffness)
-    assert slope == pytest.approx(support, rel=0.01)
+def test_balls_of_the_case_are_those_of_palmgren():
+    bearing = drive("as_built").design.mesh.bearing
+    assert bearing.angle.size == 23
+    force, ball = 65.0, 6.34
+    yields = 4.36e-7 * force ** (2.0 / 3.0) / ball ** (1.0 / 3.0)
+    assert force / yields**1.5 == pytest.approx(float(bearing.stiffness), rel=1e-9)
     assert np.isinf(drive().design.mesh.rim.support_stiffness)
 
 

@@ -1,6 +1,7 @@
 """Wind-up of a drive under load, as a dataset of a case."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.on_balls import OnBalls
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
@@ -85,7 +87,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
 
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     friction, rated = _mean_friction(built), built.case.operation.load
-    limits = built.case.torsion.limits if built.case.torsion else None
+    limits = getattr(built.case.gears, "slopes", None)
     told_of = built.design.mesh.couples and rated > 0.0
     more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
     every = np.union1d(torques, more)
@@ -190,10 +192,14 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         known = engagement(design, built.operation.load, built.models[0])
     body = coupling(design, known.contacts) if known.body is None else known.body
     given = design.mesh, design.solids, built.terms
-    each = [
-        jax.device_get(wound_up(*given, jnp.asarray(torque), known.contacts, body))
-        for torque in torques
-    ]
+    each: list[Any] = []
+    for torque in torques:
+        if each and isinstance(
+            body, OnBalls
+        ):  # balls stand near where they stood for the torque before
+            body = replace(body, start=jnp.asarray(each[-1].balls))
+        at = wound_up(*given, jnp.asarray(torque), known.contacts, body)
+        each.append(jax.device_get(at))
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
     loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
@@ -214,7 +220,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         **_of_pairs(design.mesh, path, found.force),
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
-        "parts": _parts(design, known.contacts, each, weight),
+        "parts": _parts(design, known.contacts, found, weight),
     }
 
 
@@ -233,17 +239,14 @@ def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.n
 
 
 def _parts(
-    design: Design, contacts: Contacts, each: list[Any], weight: np.ndarray
+    design: Design, contacts: Contacts, found: Any, weight: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Parts of the wind-up over the torques, by name; those that yield [rad]."""
     if not design.mesh.couples:
         return {}
-    found = [
-        {"teeth": one.of_teeth, "gaps between the teeth": one.of_gaps}
-        | jax.device_get(body_parts(design.mesh, design.solids, contacts, one))
-        for one in each
-    ]
-    every = {name: np.stack([one[name] @ weight for one in found]) for name in found[0]}
+    under = jax.device_get(body_parts(design.mesh, design.solids, contacts, found))
+    teeth = {"teeth": found.of_teeth, "gaps between the teeth": found.of_gaps}
+    every = {name: values @ weight for name, values in (teeth | under).items()}
     return {name: values for name, values in every.items() if values.any()}
 
 

@@ -29,7 +29,6 @@ _TABLES = (
     "losses",
     "dynamics",
     "loss_map",
-    "torsion",
 )
 
 _DIMENSIONS = (

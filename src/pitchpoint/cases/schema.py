@@ -547,23 +547,6 @@ class LossMap(Table):
     speed_count: Annotated[float, MAP_COUNT] | None = None
 
 
-class Torsion(Table):
-    """Torques T1 and T2 between which the slopes of the wind-up are told, as makers give them."""
-
-    limits: tuple[Annotated[float, LOADED], Annotated[float, LOADED]]
-
-    @model_validator(mode="after")
-    def _rising(self) -> "Torsion":
-        first, second = self.limits
-        if not 0.0 < first < second:
-            raise InputError(
-                f"the slopes end at {LOADED.show(first)} and {LOADED.show(second)}; write T1 and T2, the "
-                "larger last",
-                key="limits",
-            )
-        return self
-
-
 class Target(Table):
     """A printed number and how it is computed from a study, or from another part of the result.
 
@@ -670,7 +653,6 @@ class Case(Table):
     dynamics: Dynamics | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
-    torsion: Torsion | None = None
     targets: Targets = ()
     issues: Issues = ()
 

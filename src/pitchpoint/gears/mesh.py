@@ -266,7 +266,7 @@ class Mesh(eqx.Module):
             contacts: of the mesh.
             solids: material of each member.
             force: normal force of each slice [N].
-            balls: forces of balls that hold the body [N]; None without.
+            balls: approach of balls that hold the body [m]; None without.
         """
         return {}
 

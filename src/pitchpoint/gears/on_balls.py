@@ -1,7 +1,7 @@
 """A body under teeth that lies on balls, which only push."""
 
 import equinox as eqx
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 
@@ -23,6 +23,7 @@ class OnBalls(eqx.Module):
         balls: of balls for forces of balls [m/N].
         stiffness: force of a ball over its approach to the power 1.5 [N/m1.5].
         approach: of the balls without load; negative where one has play [m].
+        start: approach from which that under load is looked for, as one that is known for another load [m].
     """
 
     lanes: Float[Array, "lane lane *#b"]
@@ -30,6 +31,7 @@ class OnBalls(eqx.Module):
     balls: Float[Array, "ball ball"]
     stiffness: Float[Array, ""]
     approach: Float[Array, " ball"]
+    start: Float[Array, "ball *#b"]
 
 
 Body = Float[Array, "lane lane *#b"] | OnBalls
@@ -86,7 +88,7 @@ def seated(
     frozen = jax.lax.stop_gradient((balls, stiffness, push))
     start = jnp.maximum(frozen[2], 0.0)
 
-    def settle(_: int, approach: Float[Array, " ball"]) -> Float[Array, " ball"]:
+    def settle(_: Int[Array, ""], approach: Float[Array, " ball"]) -> Float[Array, " ball"]:
         return jax.lax.stop_gradient(step(approach))
 
     return step(jax.lax.fori_loop(0, SEATING_STEPS, settle, start))

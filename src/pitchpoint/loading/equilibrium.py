@@ -55,7 +55,7 @@ class Equilibrium(eqx.Module):
         loaded: True where a slice carries.
         residual: largest violation of the equilibrium, over the load or its deflection.
         iterations: active sets that were tried, common to the states that were solved together.
-        balls: forces of the balls under the body; None where none hold it [N].
+        balls: approach of the balls under the body; None where none hold it [m].
     """
 
     force: Lanes
@@ -119,6 +119,7 @@ def equilibrium(
     arm: Lanes,
     active: Bool[Arrays, "pair slice *#b"],
     load: Each,
+    start: Bool[Array, "pair slice *b"] | None = None,
 ) -> Equilibrium:
     """Forces of the contacts of any mesh that share a load.
 
@@ -138,6 +139,7 @@ def equilibrium(
         arm: closing for a unit of approach, positive; lanes with none never carry [m or 1].
         active: lanes that may carry.
         load: not negative [N m or N].
+        start: lanes that may be those that carry, to be tried first; not with balls.
 
     Returns:
         Forces and approach, broadcast over all batch axes; NaN where no equilibrium was found. A
@@ -157,7 +159,7 @@ def equilibrium(
     if isinstance(body, OnBalls):
         return _on_balls(teeth, body, gap, arm, active, load)
     problem, scale = _normalised(teeth, body, gap, arm, active, load)
-    loaded, iterations = _loaded(jax.lax.stop_gradient(problem))
+    loaded, iterations = _loaded(jax.lax.stop_gradient(problem), start)
     found = _solve(problem, loaded)
     residual = jax.lax.stop_gradient(_residual(problem, loaded, found))
     solved = (residual <= UNSOLVED) & (load >= 0.0)
@@ -227,12 +229,15 @@ def _on_balls(
     each = (teeth.shape[2:], body.lanes.shape[2:], gap.shape[2:], arm.shape[2:], load.shape)
     batch = jnp.broadcast_shapes(*each)
 
-    def on_springs(body: OnBalls, approach: Array, *given: Array) -> tuple[Equilibrium, Array]:
+    def on_springs(
+        body: OnBalls, approach: Array, loaded: Array, *given: Array
+    ) -> tuple[Equilibrium, Array]:
         own, gaps, arms, may, carried = given
         held = _held(body, approach)
         shift = jnp.moveaxis(held.shift, -1, 0).reshape(*gaps.shape[:2], *batch)
         matrix = jnp.moveaxis(held.lanes, (-2, -1), (0, 1))
-        found = equilibrium(own, matrix, gap=gaps + shift, arm=arms, active=may, load=carried)
+        lanes = {"gap": gaps + shift, "arm": arms, "active": may}
+        found = equilibrium(own, matrix, **lanes, load=carried, start=loaded)
         force = jnp.moveaxis(found.force.reshape(-1, *batch), 0, -1)
         moved = held.free - jnp.einsum("...ij,...j->...i", held.across, force)
         return found, moved
@@ -241,24 +246,24 @@ def _on_balls(
     fixed = jax.lax.stop_gradient((body, *given))
 
     def again(at: _Settling) -> _Settling:
-        found, approach = on_springs(fixed[0], at.approach, *fixed[1:])
+        found, approach = on_springs(fixed[0], at.approach, at.loaded, *fixed[1:])
         change = jnp.max(jnp.abs(approach - at.approach), axis=-1)
         size = jnp.max(jnp.abs(approach), axis=-1)
-        return _Settling(
-            approach, change > SETTLED * size, at.steps + 1, at.sets + found.iterations
-        )
+        moves, sets = change > SETTLED * size, at.sets + found.iterations
+        return _Settling(approach, found.loaded, moves, at.steps + 1, sets)
 
-    start = jnp.broadcast_to(fixed[0].approach, (*batch, body.approach.shape[0]))
-    begin = _Settling(start, jnp.ones(batch, bool), jnp.asarray(0), jnp.asarray(0))
+    start = jnp.broadcast_to(jnp.moveaxis(fixed[0].start, 0, -1), (*batch, body.start.shape[0]))
+    none = jnp.zeros((*gap.shape[:2], *batch), bool)
+    begin = _Settling(start, none, jnp.ones(batch, bool), jnp.asarray(0), jnp.asarray(0))
     settled = jax.lax.while_loop(lambda at: (at.steps < PASSES) & jnp.any(at.open), again, begin)
-    found, approach = on_springs(body, jax.lax.stop_gradient(settled.approach), *given)
-    force = ball_force(body.stiffness, approach)
+    frozen = jax.lax.stop_gradient(settled.approach)
+    found, approach = on_springs(body, frozen, settled.loaded, *given)
     return dataclasses.replace(
         found,
         residual=jnp.where(settled.open, jnp.inf, found.residual),
         force=_where(~settled.open, found.force),
         iterations=settled.sets + found.iterations,
-        balls=jnp.moveaxis(force, -1, 0),
+        balls=jnp.moveaxis(approach, -1, 0),
     )
 
 
@@ -267,11 +272,13 @@ class _Settling(NamedTuple):
 
     Attributes:
         approach: of each ball [m].
+        loaded: lanes that carried in the last step.
         open: True where it still changes.
         steps, sets: that were taken, and active sets that were tried on the way.
     """
 
     approach: Float[Array, "*b ball"]
+    loaded: Bool[Array, "pair slice *b"]
     open: Bool[Array, "*b"]
     steps: Int[Array, ""]
     sets: Int[Array, ""]
@@ -383,9 +390,14 @@ class _Search(NamedTuple):
     steps: Int[Array, ""]
 
 
-def _loaded(problem: _Problem) -> tuple[Bool[Array, "*b lane"], Int[Array, ""]]:
+def _loaded(
+    problem: _Problem, first: Bool[Array, "pair slice *b"] | None
+) -> tuple[Bool[Array, "*b lane"], Int[Array, ""]]:
     """Lanes that carry, and the number of sets that were tried."""
     start = _as_if_alone(problem)
+    if first is not None:
+        flat = jnp.moveaxis(first.reshape(-1, *first.shape[2:]), 0, -1)
+        start = jnp.where(jnp.any(flat, axis=-1, keepdims=True), flat & problem.active, start)
     if problem.matrix is None:
         return start, jnp.asarray(1)
     batch, lanes = start.shape[:-1], start.shape[-1]

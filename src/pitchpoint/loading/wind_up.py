@@ -40,7 +40,7 @@ class WindUp(eqx.Module):
         iterations: common to all states.
         of_teeth, of_gaps: parts of the wind-up by which the teeth yield, and by which gaps between them
             close beyond the first touch [rad or m].
-        balls: forces of balls under the body of the teeth, see `OnBalls`; None where none hold it [N].
+        balls: approach of balls under the body of the teeth, see `OnBalls`; None where none hold it [m].
     """
 
     load: Each
@@ -143,20 +143,23 @@ def _over(work: Each, load: Each) -> Each:
 @program
 def body_parts(
     mesh: Mesh, solids: tuple[Solid, Solid], contacts: Contacts, found: WindUp
-) -> dict[str, Float[Array, "*b"]]:
+) -> dict[str, Float[Array, "load *b"]]:
     """Parts of the wind-up by what lies under and behind the teeth, by name [rad or m].
 
     Args:
         mesh: a family with teeth.
         solids: material of each member.
         contacts: of the mesh.
-        found: wind-up at one load at all phases of these contacts.
+        found: wind-up at several loads, an axis in front, at all phases of these contacts.
 
     With those of the teeth and of their gaps they sum up to the wind-up: forces f move along C f, and the
     load along all of it.
     """
-    works = mesh.body_parts(contacts, solids, found.force, found.balls)
-    under = {part: _over(work, found.load) for part, work in works.items()}
+
+    def works(one: WindUp) -> dict[str, Each]:
+        return mesh.body_parts(contacts, solids, one.force, one.balls)
+
+    under = {part: _over(work, found.load) for part, work in jax.vmap(works)(found).items()}
     behind = {part: each * found.load for part, each in mesh.in_series(solids).items()}
     names = (*under, *(part for part in behind if part not in under))
     none = jnp.zeros(found.load.shape)

@@ -138,15 +138,28 @@ def on_balls(
     where the ring would have to be pulled, they let it go.
     """
     modes = _modes(bearing, ring, solid, loads)
-    balls = modes.balls @ modes.balls.T
-    push = line.radial(bearing.angle) - bearing.play
+    balls, free = modes.balls @ modes.balls.T, modes.lanes.shape[2:]
+    approach = _seated(bearing, balls, line)
     return OnBalls(
         lanes=jnp.einsum("im...,jm...->ij...", modes.lanes, modes.lanes),
         across=jnp.einsum("im...,jm->ij...", modes.lanes, modes.balls),
         balls=balls,
         stiffness=bearing.stiffness,
-        approach=seated(balls, bearing.stiffness, push),
+        approach=approach,
+        start=jnp.broadcast_to(_like(approach, free), (*approach.shape, *free)),
     )
+
+
+def _seated(
+    bearing: BallBearing, balls: Float[Array, "ball ball"], line: NeutralLine
+) -> Float[Array, " ball"]:
+    """Approach of the balls without load on the teeth [m]."""
+    return seated(balls, bearing.stiffness, line.radial(bearing.angle) - bearing.play)
+
+
+def _like(balls: Float[Array, " ball"], batch: tuple[int, ...]) -> Float[Array, "ball *#b"]:
+    """Values of the balls with axes for a batch."""
+    return balls.reshape(-1, *(1 for _ in batch))
 
 
 def parts_on_balls(
@@ -163,15 +176,14 @@ def parts_on_balls(
     Args:
         bearing, ring, line, solid, loads: as in `on_balls`.
         force: normal force of each slice [N].
-        balls: force of each ball at this load [N].
+        balls: approach of each ball at this load [m].
 
     From the work of what the balls bear beyond the state without load.
     """
     modes = _modes(bearing, ring, solid, loads)
     coupled = modes.balls @ modes.balls.T
-    push = line.radial(bearing.angle) - bearing.play
-    before = ball_force(bearing.stiffness, seated(coupled, bearing.stiffness, push))
-    more = balls - before.reshape(-1, *(1 for _ in balls.shape[1:]))
+    before = ball_force(bearing.stiffness, _seated(bearing, coupled, line))
+    more = ball_force(bearing.stiffness, balls) - _like(before, balls.shape[1:])
     of_balls = jnp.einsum("im,i...->m...", modes.balls, more)
     flat = force.reshape(-1, *force.shape[2:])
     amplitude = jnp.einsum("im...,i...->m...", modes.lanes, flat) + of_balls

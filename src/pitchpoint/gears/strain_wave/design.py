@@ -58,6 +58,9 @@ INTERFERENCE = 1e-4
 SWEPT_ACCURACY = 1e-3
 """Overlap in a groove that the flexspline itself sweeps, which is an error of the table, in modules."""
 
+FAR_FROM_USUAL = 4.0
+"""Thickness of the rim over the usual one, or the other way round, from which on a sentence says so."""
+
 _FARTHEST = 0.1  # clearance in modules beyond which no load closes a gap
 _NEAR = 1e-2  # clearance in modules that a moderate load closes
 _FEWEST = 30
@@ -528,6 +531,12 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
         told.append(
             f"The circular spline's flank could not be found at {lost} of {NODES} heights: curvature, "
             "pressure and film there say nothing."
+        )
+    usual = rim_by_strain(float(mesh.module * mesh.teeth[0]), float(mesh.line.deflection))
+    if not 1.0 / FAR_FROM_USUAL < float(mesh.rim.thickness) / usual < FAR_FROM_USUAL:
+        told.append(
+            f"The rim of the flexspline is {1e3 * float(mesh.rim.thickness):.3g} mm thick; usual for its "
+            f'size and its wave are {1e3 * usual:.3g} mm, which walls = "bending strain" takes.'
         )
     if widest > 0.1 * float(mesh.line.radius):
         told.append(

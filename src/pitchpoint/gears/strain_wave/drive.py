@@ -280,8 +280,8 @@ class StrainWave(Mesh):
         return self.pairs
 
     def overlaps(self, angle: Float[Array, "*b"]) -> Bool[Array, "*b"]:
-        """True where a tooth reaches into the circular spline's teeth."""
-        return _overlaps(self.tooth_motion, self.groove, angle)
+        """True where what may carry of a tooth reaches into the circular spline's teeth."""
+        return _overlaps(self.tooth_motion, self.groove, angle, self.edges_carry)
 
     def in_pairs(self, values: np.ndarray, axis: int, *, like_first: bool = False) -> np.ndarray:
         """Values by pairs that are held, of two places the one nearer to the root first."""
@@ -535,7 +535,7 @@ class StrainWave(Mesh):
         width, slope = groove.width_and_slope(radius)
         half = jnp.pi / self.teeth[1] * radius - width - self.backlash / 2.0
         return _section(
-            half, groove.high - radius, rate / hypot(1.0, slope), -jnp.arctan(slope), ends
+            half, heights[-1] - radius, rate / hypot(1.0, slope), -jnp.arctan(slope), ends
         )
 
     def dimensions(self) -> dict[str, Float[Array, "..."]]:
@@ -646,7 +646,7 @@ def survey(
     """
     angle = jnp.asarray(_ALONG)
     found = nearest_points(motion, groove, angle, backlash, edges_carry=edges_carry)
-    overlaps = _overlaps(motion, groove, angle)
+    overlaps = _overlaps(motion, groove, angle, edges_carry)
     upright = jnp.abs(jnp.imag(unit(-found.at.direction) * found.at.whole))
     part = upright / jnp.abs(found.at.whole)
     reaches = overlaps & (part > 0.0)
@@ -662,10 +662,13 @@ def survey(
     )
 
 
-def _overlaps(motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"]) -> Bool[Array, "*b"]:
-    """True where a tooth reaches into the circular spline's teeth."""
-    tip = motion.place(motion.flank.length, angle)
-    return jnp.asarray(jnp.real(tip) > groove.low)
+def _overlaps(
+    motion: ToothMotion, groove: Groove, angle: Float[Array, "*b"], edges_carry: bool
+) -> Bool[Array, "*b"]:
+    """True where what may carry of a flank reaches into the circular spline's teeth."""
+    flank = motion.flank
+    end = motion.place(flank.length if edges_carry else flank.plain, angle)
+    return jnp.asarray(jnp.real(end) > groove.low)
 
 
 def _as_lanes(each: Array | np.ndarray, phase: Float[Array, "*b"]) -> Shaped[Arrays, "pair 1 ..."]:
@@ -746,7 +749,7 @@ def nearest_points(
     # At an end of the flank the play may still fall: then the end is nearest. Where the tip of the mate is
     # nearest it grows from there on, and teeth apart have no nearest point: none waits for those.
     grows = growth(jnp.zeros_like(most)) > 0.0
-    apart = ~_overlaps(motion, groove, angle)
+    apart = ~_overlaps(motion, groove, angle, edges_carry)
     ends = jnp.where((nearest == 0) | grows, 0.0, most)
     inwards = jnp.where(nearest == 0, -1.0, 1.0) * growth(ends)
     bounded = (((nearest == 0) | (nearest == last)) & (inwards < 0.0)) | grows | apart

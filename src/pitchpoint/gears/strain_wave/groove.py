@@ -151,8 +151,9 @@ class Groove(eqx.Module):
     @property
     def arcs(self) -> Float[Array, " cell"]:
         """Arc lengths between the nodes [m]."""
-        grown = hypot(1.0, self.slope)
-        return (grown[1:] + grown[:-1]) / 2.0 * jnp.diff(self.heights)
+        made = self.made
+        grown = hypot(1.0, self.slope * self._swept(made)[1])
+        return (grown[1:] + grown[:-1]) / 2.0 * jnp.diff(made)
 
 
 def _heights(low: Float[Array, ""], high: Float[Array, ""]) -> Float[Array, " node"]:
@@ -214,23 +215,44 @@ def swept(motion: ToothMotion, low: Float[Array, ""], tips: Tips) -> Groove:
 
 def _blended(groove: Groove, radius: Float[Array, ""]) -> Groove:
     """The same with the ridges at which its parts meet blended by parabolas of a radius [m]."""
-    heights, slope = groove.heights, groove.slope
-    middle, grown = (heights[1:] + heights[:-1]) / 2.0, hypot(1.0, slope)
+    heights, grown = groove.heights, hypot(1.0, groove.slope)
     across = (grown[1:] + grown[:-1]) / 2.0
-    turned = jnp.diff(jnp.arctan(slope))
-    turned -= (groove.curvature[1:] + groove.curvature[:-1]) / 2.0 * groove.arcs
-    turned = jnp.where(turned > _KINK, turned, 0.0)
+    way, turned = _ridges(groove)
     reach = jnp.where(turned > 0.0, radius * turned / 2.0 / across, 1.0)
     bend = turned * across**2 / (2.0 * reach)  # of the slope over the height
-    beside = heights[:, None] - middle
+    beside = heights[:, None] - heights[:-1] - way
     within = jnp.maximum(reach - jnp.abs(beside), 0.0)
     bends = jnp.where(within > 0.0, bend, 0.0)
     return replace(
         groove,
         half_width=groove.half_width + jnp.sum(bends * within**2, axis=1) / 2.0,
-        slope=slope - jnp.sum(bends * within * jnp.sign(beside), axis=1),
+        slope=groove.slope - jnp.sum(bends * within * jnp.sign(beside), axis=1),
         curvature=groove.curvature + jnp.sum(bends, axis=1) / grown**3,
     )
+
+
+def _ridges(groove: Groove) -> tuple[Float[Array, " cell"], Float[Array, " cell"]]:
+    """Way from the node before it to a ridge [m], and by how much the flank turns there; zero without one.
+
+    On both sides the flank goes on as a parabola.
+    """
+    slope, step = groove.slope, jnp.diff(groove.heights)
+    bend, rise = groove.curvature * hypot(1.0, slope) ** 3, jnp.diff(groove.half_width)
+
+    def sides(way: Each) -> tuple[Each, Each, Each]:
+        """Slopes of both parts, and how far the second lies beyond the first [m]."""
+        back = step - way
+        first, second = bend[:-1] * way, bend[1:] * back
+        apart = rise - (slope[:-1] + first / 2.0) * way - (slope[1:] - second / 2.0) * back
+        return slope[:-1] + first, slope[1:] - second, apart
+
+    way = step / 2.0
+    before, after, apart = sides(way)
+    ridge = jnp.arctan(after) - jnp.arctan(before) > _KINK
+    for _ in range(2):
+        way = jnp.clip(way + apart / jnp.where(ridge, before - after, jnp.inf), 0.0, step)
+        before, after, apart = sides(way)
+    return way, jnp.where(ridge, jnp.arctan(after) - jnp.arctan(before), 0.0)
 
 
 def _relieved(

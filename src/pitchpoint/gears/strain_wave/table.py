@@ -42,6 +42,7 @@ BALLS = Quantity("dimensionless", 6, 60, whole=True)
 THICKNESS = Quantity("length", 1e-5, 0.1, "mm")
 SUPPORT = Quantity("pressure", 1e6, 1e16, "N/mm2")
 TWIST = Quantity("torsional stiffness", 1e-3, 1e12, "kN m/rad")
+SLOPE = Quantity("torque", 0.0, 1e8, "N m", open_low=True)
 SEVERAL = Quantity("dimensionless", 3, 60, whole=True)
 
 
@@ -250,8 +251,9 @@ class StrainWaveGears(GearsTable):
 
     Clearances, rounding and relief of the tips are in modules. The tips of a circular spline whose flanks
     are swept end where the clearance or the angle of disengagement ends them, whatever is shorter. Edges
-    sweep the groove in any case; whether they carry says `edges`. Gear 1 is the flexspline, gear 2 the
-    circular spline, in this table and in that of the materials.
+    sweep the groove in any case; whether they carry says `edges`. `slopes` are the torques T1 and T2 at
+    which the first two slopes of the wind-up end, as makers give them. Gear 1 is the flexspline, gear 2
+    the circular spline, in this table and in that of the materials.
     """
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
@@ -278,6 +280,7 @@ class StrainWaveGears(GearsTable):
     wave_generator: WaveGenerator = WaveGenerator()
     flexspline: Flexspline = Flexspline()
     yielding: Yielding | None = None
+    slopes: tuple[Annotated[float, SLOPE], Annotated[float, SLOPE]] | None = None
     circular_spline: CircularSpline = ConjugateGroove()
     deviations: SplineDeviations = SplineDeviations()
 
@@ -316,6 +319,12 @@ class StrainWaveGears(GearsTable):
     def _small_and_few(self) -> "StrainWaveGears":
         for (key, waves), teeth in zip(self.deviations.each.items(), self.teeth, strict=True):
             check_waves(waves, key, teeth, self.module)
+        if self.slopes and not self.slopes[0] < self.slopes[1]:
+            raise InputError(
+                f"the slopes end at {' and '.join(map(SLOPE.show, self.slopes))}; write T1 and T2, the "
+                "larger last",
+                key="slopes",
+            )
         if self.wave_generator.bearing and self.flexspline.support_stiffness is not None:
             raise InputError(
                 "support_stiffness and a bearing of the wave generator were both given; give one",

@@ -1,0 +1,157 @@
+"""What yields behind teeth, rim and wall: closed forms, integrals of their own, the cube of the size."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.gears.strain_wave.ball_bearing import Balls
+from pitchpoint.gears.strain_wave.design import build_strain_wave
+from pitchpoint.gears.strain_wave.in_series import (
+    STEEL_SHEAR_MODULUS,
+    Behind,
+    bolts_in_shear,
+    disc_in_torsion,
+    shaft_in_torsion,
+)
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.wind_up import body_parts, wound_up
+from pitchpoint.materials.solids import Solid
+
+STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
+SOLIDS = STEEL, STEEL
+TERMS = TOOTH_COMPLIANCE["beam_foundation_hertz"].terms
+PHASES = np.array([0.0, 0.4, 0.7])
+RIGID = {"cup_bottom": "rigid", "flange": "rigid", "wave_generator": "rigid"}
+RIGID |= {"circular_spline": "rigid"}
+PARTS = ("bottom of the cup", "flange joint", "wave generator's shaft", "circular spline")
+
+
+def build(diameter=60e-3, teeth=100, **given):
+    sizes = {"module": diameter / teeth, "face_width": diameter / 6.0}
+    return build_strain_wave(teeth=(teeth, teeth + 2), **(sizes | given))
+
+
+def at(drive, torque):
+    """Wind-up at a torque, and its contacts."""
+    contacts = _contacts(drive)
+    body = _coupled(drive, contacts)
+    return wound_up(drive, SOLIDS, TERMS, jnp.asarray(torque), contacts, body), contacts
+
+
+_contacts = jax.jit(lambda drive: drive.contacts(jnp.asarray(PHASES)))
+_coupled = jax.jit(lambda drive, contacts: drive.body_compliance(contacts, SOLIDS))
+
+
+def in_series(drive):
+    return {name: float(each) for name, each in drive.in_series(SOLIDS).items()}
+
+
+# ------------------------------------------------------------------ closed forms
+
+
+@pytest.mark.parametrize(("inner", "outer"), [(10e-3, 30e-3), (25e-3, 26e-3)])
+def test_a_disc_twists_by_the_integral_of_its_shear(inner, outer):
+    """Shear stress T/(2 pi r^2 t) turns a ring of the disc by stress/(G r) for each length of radius."""
+    whole, _ = quad(lambda r: 1.0 / (2.0 * np.pi * r**3 * 0.5e-3), inner, outer)
+    assert disc_in_torsion(0.5e-3, inner, outer) == pytest.approx(whole, rel=1e-12)
+
+
+def test_a_thin_disc_is_a_tube_of_that_height():
+    radius, thin = 20e-3, 1e-7
+    tube = thin / (2.0 * np.pi * radius**3 * 1e-3)
+    assert disc_in_torsion(1e-3, radius, radius + thin) == pytest.approx(tube, rel=1e-4)
+
+
+def test_bolts_turn_by_their_shear():
+    """A torque of 1 N m on 6 bolts of 4 mm on a circle of 30 mm."""
+    each = 1.0 / 6 / 15e-3  # force of a bolt
+    slip = each * 4e-3 / (STEEL_SHEAR_MODULUS * np.pi * 2e-3**2)
+    assert bolts_in_shear(6, 4e-3, 30e-3) == pytest.approx(15e-3 / slip, rel=1e-12)
+
+
+def test_a_shaft_turns_by_its_polar_moment():
+    polar, _ = quad(lambda r: 2.0 * np.pi * r**3, 0.0, 5e-3)
+    expected = STEEL_SHEAR_MODULUS * polar / 0.03
+    assert shaft_in_torsion(10e-3, 0.03) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_rim_by_strain_bends_by_that_strain():
+    """Curvature of the outline r + w0 cos 2p at its crest by differences; faces lie t/2 beside it."""
+    diameter, deflection = 60e-3, 1e-3
+    thickness = rim_by_strain(diameter, deflection)
+    radius, small = diameter / 2.0, 1e-3  # the curvature is linear in a small deflection
+    angle = 1e-3 * np.arange(-1, 2)
+    outline = (radius + small * deflection * np.cos(2.0 * angle)) * np.exp(1j * angle)
+    speed = (outline[2] - outline[0]) / 2e-3
+    turn = (outline[2] - 2.0 * outline[1] + outline[0]) / 1e-6
+    curvature = (np.conj(speed) * turn).imag / abs(speed) ** 3
+    strain = (curvature - 1.0 / radius) / small * thickness / 2.0
+    assert strain == pytest.approx(PROPORTIONS.strain, rel=0.02)
+    assert rim_by_strain(diameter, 1e-5) == PROPORTIONS.rim * diameter
+
+
+# ------------------------------------------------------------------ parts of a drive
+
+
+def test_nothing_yields_behind_the_teeth_unless_asked():
+    assert set(in_series(build()).values()) == {0.0}
+    assert set(in_series(build(behind=Behind(**RIGID))).values()) == {0.0}
+
+
+@pytest.mark.parametrize(("key", "part"), [*zip(RIGID, PARTS, strict=True)])
+def test_a_stiffness_by_value_adds_its_wind_up(key, part):
+    """By the square of the torque of its member: 1/50^2 of the wave generator, (102/100)^2 of the spline."""
+    given = {k: v for k, v in RIGID.items() if k != key} | {f"{key}_stiffness": 2e4}
+    found = in_series(build(behind=Behind(**given)))
+    factor = {"wave_generator": (2 / 100) ** 2, "circular_spline": (102 / 100) ** 2}.get(key, 1.0)
+    expected = {name: factor / 2e4 if name == part else 0.0 for name in PARTS}
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_parts_in_series_turn_with_the_driver():
+    """Of a drive that is driven backwards the wave generator winds up by its own torque."""
+    back = build(behind=Behind()).driven_by("flexspline")
+    shaft = shaft_in_torsion(PROPORTIONS.shaft * 60e-3, PROPORTIONS.shaft_length * 60e-3)
+    assert in_series(back)["wave generator's shaft"] == pytest.approx(1.0 / shaft, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"support_stiffness": 2e9},
+        {"behind": Behind(), "bearing": Balls()},
+    ],
+)
+def test_parts_sum_up_to_the_wind_up(given):
+    drive = build(**given)
+    found, contacts = at(drive, 40.0)
+    several = jax.tree.map(lambda x: jnp.asarray(x)[None], found)
+    parts = {k: v[0] for k, v in body_parts(drive, SOLIDS, contacts, several).items()}
+    every = [found.of_teeth, found.of_gaps, *parts.values()]
+    np.testing.assert_allclose(sum(every), found.wind_up, rtol=1e-9)
+    assert min(float(np.min(part)) for part in every) >= 0.0
+    assert float(parts["bearing of the wave generator"].mean()) > 0.0
+
+
+def test_the_whole_drive_goes_with_the_cube_of_its_size():
+    """Sizes 17, 25 and 32 in proportion: contacts and balls of points included."""
+    turned = {}
+    for diameter in (43.2e-3, 63.5e-3, 81.3e-3):
+        drive = build(diameter, bearing=Balls(), behind=Behind())
+        found, _ = at(drive, 8.5e5 * diameter**3 * 0.3)
+        turned[diameter] = np.asarray(found.wind_up)
+        ratio = np.asarray(found.stiffness) / diameter**3
+        np.testing.assert_allclose(turned[diameter], turned[43.2e-3], rtol=1e-7)
+        turned.setdefault("stiffness", ratio)
+        np.testing.assert_allclose(ratio, turned["stiffness"], rtol=1e-7)
+
+
+def test_a_thicker_circular_spline_is_stiffer():
+    gone = [
+        float(np.mean(at(build(behind=Behind(outside_diameter=d)), 40.0)[0].wind_up))
+        for d in (70e-3, 90e-3)
+    ]
+    stiff = float(np.mean(at(build(behind=Behind(circular_spline="rigid")), 40.0)[0].wind_up))
+    assert stiff < gone[1] < gone[0]
