@@ -11,7 +11,7 @@ import xarray as xr
 from sound import PAIR
 
 from pitchpoint import programs
-from pitchpoint.cases.build import ALONE, TEETH_ALONE
+from pitchpoint.cases.build import ALONE, BEARING_FREE, TEETH_ALONE
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs import run as running
@@ -135,6 +135,11 @@ def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -
     assert alone.covers == {"covers": ALONE}
     assert ALONE.startswith("teeth alone: bearings, seals and grease")
     assert alone.warnings.count(TEETH_ALONE) == 1
+    seal = {"seal": tree["losses"]["seal"]}
+    some = Variant({**tree, "losses": seal}, name, "default").built({})
+    assert some.covers == {"covers": "teeth, seal: the bearing inside the drive is not in it"}
+    assert some.warnings.count(BEARING_FREE) == 1
+    assert TEETH_ALONE not in some.warnings
 
 
 def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:

@@ -59,7 +59,17 @@ from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
 from pitchpoint.status import Code, Status
 
-__all__ = ["ALONE", "TEETH_ALONE", "Built", "build", "drags", "operation_at"]
+__all__ = [
+    "ALONE",
+    "BEARING_FREE",
+    "TEETH_ALONE",
+    "Built",
+    "build",
+    "covered",
+    "drags",
+    "operation_at",
+    "without_bearing",
+]
 
 ALONE = "teeth alone: bearings, seals and grease are not in it"
 """What an efficiency is of where a case has no losses beside the teeth."""
@@ -67,6 +77,10 @@ ALONE = "teeth alone: bearings, seals and grease are not in it"
 TEETH_ALONE = (
     "The efficiency is that of the teeth alone: the case has no [losses], by which bearings, seals and "
     "churning take their part."
+)
+BEARING_FREE = (
+    "The efficiency leaves out the bearing on which the teeth press inside the drive: no place of [losses] "
+    "is between its two bodies."
 )
 UNSETTLED = (
     "Heat, modulus and friction of the teeth found no balance: their temperatures are those of the last "
@@ -245,13 +259,16 @@ class Built:
     @property
     def covers(self) -> dict[str, str]:
         """What the efficiency is of, as an attribute, where it is less than a whole drive."""
-        alone = self.case.gears.transmits and not self.case.losses
-        return {"covers": ALONE} if alone else {}
+        if not self.case.gears.transmits:
+            return {}
+        return covered(self.places, lacks_bearing=self.lacks_bearing)
 
     @property
     def lacks_bearing(self) -> bool:
         """True where teeth press on a bearing inside the drive, and no loss of the case stands for it."""
-        return bool(self.design.mesh.inner_bearing) and not self.case.losses
+        inner = self.design.mesh.inner_bearing
+        given = (frozenset(loss.between) for loss in self.case.losses.values())
+        return bool(inner) and inner not in given
 
     @property
     def loaded(self) -> str:
@@ -328,7 +345,27 @@ def _left_out(built: Built) -> list[str]:
     """What a model leaves out, or changes nothing of."""
     heats = built.case.models.tooth_temperature != "isothermal"
     idle = heats and not any(used.plastic for used in built.solids)
-    return [TEETH_ALONE] * built.lacks_bearing + [NO_PLASTIC] * idle
+    return [*without_bearing(built), *[NO_PLASTIC] * idle]
+
+
+def covered(places: Sequence[str], *, lacks_bearing: bool) -> dict[str, str]:
+    """Attribute on what an efficiency is of; none where it is of a whole drive.
+
+    Args:
+        places: beside the teeth where power is lost, by name.
+        lacks_bearing: True if the bearing inside a drive is none of them.
+    """
+    if not places:
+        return {"covers": ALONE}
+    some = f"teeth, {', '.join(places)}: the bearing inside the drive is not in it".replace(
+        "_", " "
+    )
+    return {"covers": some} if lacks_bearing else {}
+
+
+def without_bearing(built: Any) -> list[str]:
+    """Sentence on a drive, of one mesh or several, whose inner bearing loses nothing."""
+    return [BEARING_FREE if built.places else TEETH_ALONE] * built.lacks_bearing
 
 
 def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:

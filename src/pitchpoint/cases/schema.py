@@ -390,6 +390,7 @@ class Loss(Table):
     part where two are given with their positions along the axis, counted from the middle of the face
     towards the end that a contact line reaches last. The one that is locating takes the axial force. A
     bearing between wave generator and flexspline bears the radial load of the teeth in both zones.
+    A breakaway model and its torque by value hold the bodies at rest, beside the bearing and the seal.
     """
 
     between: tuple[Text, Text]

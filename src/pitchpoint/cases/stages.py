@@ -11,7 +11,16 @@ from typing import Any
 import numpy as np
 
 from pitchpoint._jax import array
-from pitchpoint.cases.build import ALONE, TEETH_ALONE, Built, build, drags, operation_at
+from pitchpoint.cases.build import (
+    BEARING_FREE,
+    TEETH_ALONE,
+    Built,
+    build,
+    covered,
+    drags,
+    operation_at,
+    without_bearing,
+)
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
@@ -73,7 +82,8 @@ class BuiltDrive:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences about the drive, about all stages, and about one of them."""
-        each = [[text for text in one.warnings if text != TEETH_ALONE] for one in self.stages]
+        whole = (TEETH_ALONE, BEARING_FREE)
+        each = [[text for text in one.warnings if text not in whole] for one in self.stages]
         common = [text for text in each[0] if all(text in other for other in each[1:])]
         apart = [
             in_stage(number, text)
@@ -179,12 +189,13 @@ class BuiltDrive:
     @property
     def covers(self) -> dict[str, str]:
         """What the efficiency is of, see `Built.covers`."""
-        return {"covers": ALONE} if self.lacks_bearing or not self.places else {}
+        return covered(self.places, lacks_bearing=self.lacks_bearing)
 
     @property
     def lacks_bearing(self) -> bool:
         """True where no loss stands for a bearing inside one of the stages, see `Built.lacks_bearing`."""
-        return not self.case.losses and any(one.lacks_bearing for one in self.stages)
+        between_shafts = any("housing" not in loss.between for loss in self.case.losses.values())
+        return not between_shafts and any(one.lacks_bearing for one in self.stages)
 
     @property
     def places(self) -> list[str]:
@@ -281,7 +292,7 @@ def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> Buil
         (*_few_meetings(built), *_adding_thrusts(built)),
     )
     _check_map(made)
-    return replace(made, told=(*made.told, *[TEETH_ALONE] * made.lacks_bearing))
+    return replace(made, told=(*made.told, *without_bearing(made)))
 
 
 def _check_map(made: BuiltDrive) -> None:
