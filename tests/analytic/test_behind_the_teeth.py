@@ -45,7 +45,10 @@ _coupled = jax.jit(lambda drive, contacts: drive.body_compliance(contacts, SOLID
 
 
 def in_series(drive):
-    return {name: float(each) for name, each in drive.in_series(SOLIDS).items()}
+    return {name: float(each) for name, each in _in_series(drive).items()}
+
+
+_in_series = jax.jit(lambda drive: drive.in_series(SOLIDS))
 
 
 # ------------------------------------------------------------------ closed forms
@@ -127,7 +130,7 @@ def test_parts_in_series_turn_with_the_driver():
 def test_parts_sum_up_to_the_wind_up(given):
     drive = build(**given)
     found, contacts = at(drive, 40.0)
-    several = jax.tree.map(lambda x: jnp.asarray(x)[None], found)
+    several = jax.tree.map(lambda x: np.asarray(x)[None], found)
     parts = {k: v[0] for k, v in body_parts(drive, SOLIDS, contacts, several).items()}
     every = [found.of_teeth, found.of_gaps, *parts.values()]
     np.testing.assert_allclose(sum(every), found.wind_up, rtol=1e-9)
