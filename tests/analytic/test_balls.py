@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import equinox as eqx
 import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize
@@ -26,20 +27,15 @@ GAP = 1e-6 * np.array([0.0, 0.3, 1.0, 2.0, 4.0])
 ARM = np.array([1.0, 0.9, 1.1, 0.8, 1.0])
 PUSH = 1e-6 * np.array([4.0, -2.0, 1.0, 0.5])
 
-_seated = jax.jit(seated)
+_seated, _force, _stiffness = map(jax.jit, (seated, ball_force, ball_stiffness))
 
 
 def body():
     lanes, across, balls = BODY[:LANES, :LANES], BODY[:LANES, LANES:], BODY[LANES:, LANES:]
     settled = _seated(jnp.asarray(balls), jnp.asarray(POINT), jnp.asarray(PUSH))
-    return OnBalls(
-        jnp.asarray(lanes)[..., None],
-        jnp.asarray(across)[..., None],
-        jnp.asarray(balls),
-        jnp.asarray(POINT),
-        settled,
-        settled[:, None],
-    )
+    start = jnp.asarray(np.asarray(settled)[:, None])
+    parts = (lanes[..., None], across[..., None], balls, np.asarray(POINT))
+    return OnBalls(*map(jnp.asarray, parts), settled, start)
 
 
 @jax.jit
@@ -87,13 +83,13 @@ def by_energy(load):
 
 def test_a_ball_pushes_by_hertz_and_never_pulls():
     approach = np.array([-1e-6, 0.0, 1e-6, 4e-6])
-    force = np.asarray(ball_force(jnp.asarray(POINT), jnp.asarray(approach)))
+    force = np.asarray(_force(jnp.asarray(POINT), jnp.asarray(approach)))
     assert force[0] == force[1] == 0.0
     assert force[3] == pytest.approx(8.0 * force[2], rel=1e-12)
-    slope = np.asarray(ball_stiffness(jnp.asarray(POINT), jnp.asarray(approach)))
+    slope = np.asarray(_stiffness(jnp.asarray(POINT), jnp.asarray(approach)))
     np.testing.assert_allclose(slope[2:], 1.5 * force[2:] / approach[2:], rtol=1e-12)
     assert slope[0] == slope[1] == 0.0
-    gradient = jax.grad(lambda x: ball_force(jnp.asarray(POINT), x))(0.0)
+    gradient = jax.jit(jax.grad(ball_force, argnums=1))(jnp.asarray(POINT), jnp.zeros(()))
     assert float(gradient) == 0.0
 
 
@@ -106,7 +102,7 @@ def test_a_ball_against_one_spring_is_a_root():
 
 def test_balls_stay_off_where_a_body_would_have_to_be_pulled():
     held = body()
-    force = np.asarray(ball_force(held.stiffness, held.approach))
+    force = np.asarray(_force(held.stiffness, held.approach))
     balance = PUSH - BODY[LANES:, LANES:] @ force
     np.testing.assert_allclose(held.approach, balance, atol=1e-15)
     assert (force == 0.0).any()
@@ -150,16 +146,17 @@ def test_the_slope_is_that_of_balls_that_stiffen():
 def test_derivatives_go_through_the_balls_and_their_seat():
     """By the stiffness of the balls, which moves the state without load too."""
 
-    @jax.jit
-    def approach(stiffness):
-        held = body()
-        seat = seated(held.balls, stiffness, jnp.asarray(PUSH))
-        held = replace(held, stiffness=stiffness, approach=seat)
-        return _solved(held, jnp.asarray(150.0), jnp.asarray(OWN))[0]
+    held, load, own = body(), jnp.asarray(150.0), jnp.asarray(OWN)
 
-    slope = float(jax.grad(approach)(jnp.asarray(POINT)))
+    @jax.jit
+    @jax.value_and_grad
+    def approach(stiffness):
+        seat = seated(held.balls, stiffness, jnp.asarray(PUSH))
+        return _solved(replace(held, stiffness=stiffness, approach=seat), load, own)[0]
+
+    slope = float(approach(jnp.asarray(POINT))[1])
     step = 1e-4 * POINT
-    ends = [float(approach(jnp.asarray(POINT + sign * step))) for sign in (1.0, -1.0)]
+    ends = [float(approach(jnp.asarray(POINT + sign * step))[0]) for sign in (1.0, -1.0)]
     assert slope == pytest.approx((ends[0] - ends[1]) / (2.0 * step), rel=1e-5)
     assert slope < 0.0
 
@@ -193,8 +190,15 @@ def radial(angle):
     return RingLoads(*(jnp.asarray(lane)[:, None] for lane in lanes))
 
 
-def moves(of_ring, loads, race=lambda radius, waves: jnp.zeros(waves + 1), waves=100):
-    modes = np.asarray(ring_modes(of_ring, STEEL, loads, race, waves))
+def no_race(radius, waves):
+    return jnp.zeros(waves + 1)
+
+
+_modes = eqx.filter_jit(ring_modes)
+
+
+def moves(of_ring, loads, race=no_race, waves=100):
+    modes = np.asarray(_modes(of_ring, STEEL, loads, race, waves))
     return modes @ modes.T
 
 

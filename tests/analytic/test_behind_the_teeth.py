@@ -1,5 +1,7 @@
 """What yields behind teeth, rim and wall: closed forms, integrals of their own, the cube of the size."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -16,7 +18,7 @@ from pitchpoint.gears.strain_wave.in_series import (
 )
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.loading.wind_up import body_parts, wound_up
+from pitchpoint.loading.wind_up import body_parts, wind_up, wound_up
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
@@ -45,7 +47,10 @@ _coupled = jax.jit(lambda drive, contacts: drive.body_compliance(contacts, SOLID
 
 
 def in_series(drive):
-    return {name: float(each) for name, each in drive.in_series(SOLIDS).items()}
+    return {name: float(each) for name, each in _in_series(drive).items()}
+
+
+_in_series = jax.jit(lambda drive: drive.in_series(SOLIDS))
 
 
 # ------------------------------------------------------------------ closed forms
@@ -127,7 +132,7 @@ def test_parts_in_series_turn_with_the_driver():
 def test_parts_sum_up_to_the_wind_up(given):
     drive = build(**given)
     found, contacts = at(drive, 40.0)
-    several = jax.tree.map(lambda x: jnp.asarray(x)[None], found)
+    several = jax.tree.map(lambda x: np.asarray(x)[None], found)
     parts = {k: v[0] for k, v in body_parts(drive, SOLIDS, contacts, several).items()}
     every = [found.of_teeth, found.of_gaps, *parts.values()]
     np.testing.assert_allclose(sum(every), found.wind_up, rtol=1e-9)
@@ -146,6 +151,31 @@ def test_the_whole_drive_goes_with_the_cube_of_its_size():
         np.testing.assert_allclose(turned[diameter], turned[43.2e-3], rtol=1e-7)
         turned.setdefault("stiffness", ratio)
         np.testing.assert_allclose(ratio, turned["stiffness"], rtol=1e-7)
+
+
+def test_derivatives_go_through_all_that_yields():
+    """By thickness of the rim, bending of the race, stiffness of the balls, and the bottom of the cup."""
+    drive = build(bearing=Balls(), behind=Behind())
+    contacts = _contacts(drive)
+
+    @jax.jit
+    @jax.value_and_grad
+    def turned(by):
+        rim = replace(drive.rim, thickness=by[0] * drive.rim.thickness)
+        balls = drive.bearing
+        stiffness, bending = by[1] * balls.stiffness, by[2] * balls.bending
+        balls = replace(balls, stiffness=stiffness, bending=bending)
+        series = replace(drive.series, bottom=by[3] * drive.series.bottom)
+        other = replace(drive, rim=rim, bearing=balls, series=series)
+        found = wind_up(other, SOLIDS, TERMS, jnp.full(3, 40.0), jnp.asarray(PHASES), contacts)
+        return jnp.mean(found.wind_up)
+
+    value, slopes = turned(jnp.ones(4))
+    for k, slope in enumerate(slopes):
+        step = 1e-4 * np.eye(4)[k]
+        ends = [turned(jnp.asarray(1.0 + sign * step))[0] for sign in (1.0, -1.0)]
+        assert float(slope) == pytest.approx(float(ends[0] - ends[1]) / 2e-4, rel=1e-5)
+        assert abs(float(slope)) > 1e-3 * float(value)
 
 
 def test_a_thicker_circular_spline_is_stiffer():

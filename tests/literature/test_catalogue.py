@@ -292,7 +292,7 @@ def test_stiffness_as_built_beside_the_catalogue():
     assert [row.verdict for row in rows] == ["pass"] * 4
     allowed = [0.5, 0.3, 0.3, 0.3]
     for row, part in zip(rows, allowed, strict=True):
-        assert row.tolerance == pytest.approx(part * row.printed)
+        assert row.tolerance <= part * row.printed * (1.0 + 1e-12)
     assert [row.printed for row in rows[:3]] == [1e-3 * k for k in (K1, K2, K3)]
 
 

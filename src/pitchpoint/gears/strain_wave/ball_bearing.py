@@ -5,6 +5,7 @@ from math import pi, sqrt
 from typing import NamedTuple
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
@@ -99,7 +100,7 @@ def ball_bearing(balls: Balls, diameter: float, width: float) -> BallBearing:
     race = PROPORTIONS.race * diameter if balls.race_thickness is None else balls.race_thickness
     young, poisson = STEEL["young"], STEEL["poisson"]
     return BallBearing(
-        angle=2.0 * pi * jnp.arange(number) / number,
+        angle=array(2.0 * pi * np.arange(number) / number),
         stiffness=array(palmgren_1959(ball)),
         play=array(balls.play),
         bending=array(young / (1.0 - poisson**2) * width * race**3 / 12.0),

@@ -413,7 +413,7 @@ class StrainWave(Mesh):
     def yielding(self) -> tuple[str, str]:
         """Teeth and the ring that carries them, and what the case lets yield behind them."""
         behind = dict(zip(InSeries.parts, np.asarray(self.series.compliance) > 0.0, strict=True))
-        behind[InSeries.parts[0]] |= bool(self.series.bottom > 0.0)
+        behind[InSeries.parts[0]] |= float(self.series.bottom) > 0.0
         behind[InSeries.parts[3]] |= self.series.ring is not None
         held = self.bearing is not None or not np.isinf(self.rim.support_stiffness)
         every = {"bearing of the wave generator": held, **behind}

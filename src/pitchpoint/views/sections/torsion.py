@@ -411,7 +411,9 @@ def _answer(outcome: Outcome) -> list[tuple[str, str]]:
 def _screen(outcome: Outcome) -> list[Printed]:
     slopes, note = slope_rows(outcome), str(outcome.parts["torsion"].attrs.get("note", ""))
     rows = [Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else "")]
-    return [*rows, *(Printed(rows=found) for found in (slopes, part_rows(outcome)) if found)]
+    if not slopes:
+        return rows
+    return [*rows, Printed(rows=slopes, line=_NO_LOOP), Printed(rows=part_rows(outcome))]
 
 
 TORSION = Section(
