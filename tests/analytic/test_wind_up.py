@@ -92,7 +92,9 @@ def test_springs_that_come_to_carry_one_after_the_other(springs):
     np.testing.assert_array_equal(found.loaded_pairs, carry)
     np.testing.assert_allclose(found.stiffness, carry * SPRING * ARM**2, rtol=1e-10)
     inward = force[:, 0] * np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])[:, None]
-    np.testing.assert_allclose(found.edge_load, force[[2, 5]].sum(axis=(0, 1)), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        found.edge_load, force[[2, 5]].sum(axis=(0, 1)), rtol=1e-9, atol=1e-9
+    )
     expected = [inward[:3].sum(axis=0), inward[3:].sum(axis=0)]
     np.testing.assert_allclose(found.inner_load, expected, rtol=1e-9, atol=1e-9)
     loop = hysteresis(found, 0.1)
