@@ -371,7 +371,9 @@ class Space:
         """Swept by the cutter of the drive, with tips at a height."""
         self.cutter, self.made, self.low = drive.cutter, drive.made, low
         outline = self.cutter.outline
-        self.high, self.joint = self.cutter.place(np.array([outline.length, outline.plain]), 0.0).real
+        self.high, self.joint = self.cutter.place(
+            np.array([outline.length, outline.plain]), 0.0
+        ).real
         # Close together at the deep end, where the groove runs across.
         heights = self.high - (self.high - low) * np.linspace(1.0, 0.0, count) ** 2
         widths, phases = self.cutter.outermost(heights)

@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import quad
 from strain_wave_positions import bend, drive, slope
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave.design import (
@@ -58,6 +58,11 @@ def passing(motion, along_flank, angle):
     derived = ("closing", "sliding", "rolling", "relative_curvature", "change", "approach")
     given = ("place", "direction", "curvature", "velocity", "turning", "acceleration")
     return {name: getattr(at, name) for name in (*derived, *given, "shift", "whole")}
+
+
+@eqx.filter_jit
+def of_groove(groove, height):
+    return groove.width_and_slope(height), groove.made
 
 
 def seen(drive, along_flank, angle):
@@ -363,9 +368,10 @@ def pair(request, drives):
 def test_groove_is_the_outermost_place_of_the_tooth(pair):
     """With ridges blended, tips relieved and rounded, and room at the bottom."""
     groove, space = pair.mesh.groove, pair.space
-    nodes = np.asarray(groove.made)
+    (known, _), nodes = jax.tree.map(np.asarray, of_groove(groove, jnp.asarray(space.heights)))
+    between = np.abs(np.asarray(known) - space.widths)
     inside = nodes[nodes < nodes[-1] - 1e-7][::7]
-    found, slopes = map(np.asarray, groove.width_and_slope(jnp.asarray(inside)))
+    found, slopes = map(np.asarray, of_groove(groove, jnp.asarray(inside))[0])
     error = np.abs(found - space.width(inside))
     ridge = space.on_ridge(inside)
     assert ridge.any() == (pair.name == "flat")
@@ -377,8 +383,6 @@ def test_groove_is_the_outermost_place_of_the_tooth(pair):
     turned = np.abs(slopes[smooth] - rate) / (1.0 + rate**2)
     assert np.max(turned[~ridge[smooth]]) < 1e-6
     assert np.max(turned) < 1e-5
-    known = np.asarray(groove.width_and_slope(jnp.asarray(space.heights))[0])
-    between = np.abs(known - space.widths)
     # The table goes smoothly round edges, which a cell of it wide.
     assert between.max() < (1e-7 if pair.name == "involute" else 5e-9)
     assert np.median(between) < 1e-12

@@ -223,11 +223,9 @@ def _blended(groove: Groove, radius: Float[Array, ""]) -> Groove:
     beside = heights[:, None] - heights[:-1] - way
     within = jnp.maximum(reach - jnp.abs(beside), 0.0)
     bends = jnp.where(within > 0.0, bend, 0.0)
-    return replace(
-        groove,
-        half_width=groove.half_width + jnp.sum(bends * within**2, axis=1) / 2.0,
-        slope=groove.slope - jnp.sum(bends * within * jnp.sign(beside), axis=1),
-        curvature=groove.curvature + jnp.sum(bends, axis=1) / grown**3,
+    width = jnp.sum(bends * within**2, axis=1) / 2.0
+    return _bent(
+        groove, width, -jnp.sum(bends * within * jnp.sign(beside), axis=1), jnp.sum(bends, axis=1)
     )
 
 
@@ -258,13 +256,20 @@ def _ridges(groove: Groove) -> tuple[Float[Array, " cell"], Float[Array, " cell"
 def _relieved(
     groove: Groove, end: Float[Array, ""], length: Float[Array, ""], bent: Float[Array, ""]
 ) -> Groove:
-    """The same with teeth that bend away by a curvature more over a length before a height [m], [1/m]."""
+    """The same with teeth that bend away over a length before a height [m], by a parabola of a curvature [1/m]."""
     over = jnp.maximum(end + length - groove.heights, 0.0)
+    return _bent(groove, bent * over**2 / 2.0, -bent * over, jnp.where(over > 0.0, bent, 0.0))
+
+
+def _bent(groove: Groove, width: Array, slope: Array, bend: Array) -> Groove:
+    """The same with so much more half width [m], slope, and second derivative of the width [1/m]."""
+    steeper = groove.slope + slope
+    bends = groove.curvature * hypot(1.0, groove.slope) ** 3 + bend
     return replace(
         groove,
-        half_width=groove.half_width + bent * over**2 / 2.0,
-        slope=groove.slope - bent * over,
-        curvature=groove.curvature + jnp.where(over > 0.0, bent, 0.0),
+        half_width=groove.half_width + width,
+        slope=steeper,
+        curvature=bends / hypot(1.0, steeper) ** 3,
     )
 
 
