@@ -9,8 +9,9 @@ __all__ = ["PROPORTIONS", "Proportions", "rim_by_strain"]
 class Proportions:
     """Dimensions over the pitch diameter of the flexspline, so that stiffness goes with the cube of the size.
 
-    All are assumed: read off drawings of catalogues, or usual for such parts. Makers publish none of what
-    lies inside. They are the one place at which an assumed dimension of these parts is set.
+    All are assumed and none is confirmed: the outside as recalled from catalogues, the others as usual for
+    such parts, whose makers publish nothing of what lies inside. They are the one place at which an assumed
+    dimension of these parts is set.
 
     Attributes:
         flange: diameter of the flange, at which the bottom of the cup begins.
