@@ -1,4 +1,4 @@
-"""Loaded teeth of the shipped strain wave gears: no edge carries, nothing jumps, torque hardly ripples.
+"""Loaded teeth of the shipped strain wave gears: no edge carries, nothing jumps, little ripple.
 
 Clearances are those of positions alone, see `strain_wave_positions`.
 """

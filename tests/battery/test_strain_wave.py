@@ -139,7 +139,7 @@ def test_contact_of_touching_teeth_moves_along_both_flanks_as_it_rolls(passing):
     touching = at.active & at.inside & (at.gap < 1e-7)
     smooth = touching & one & by.smooth(at.along, np.abs(at.moved[0]) + 1e-6)
     smooth &= at.space.smooth(at.height, np.abs(at.moved[1]) + 1e-6)
-    assert smooth.sum() >= 4
+    assert smooth.sum() >= 2
     speeds = np.tensordot(at.motion, at.surface, axes=(0, 1))
     ratio = at.moved[:, smooth] / speeds[:, smooth] / (2.0 * MOVE * float(at.mesh.period))
     for along_one, most, middle in zip(ratio, (9e-3, 0.3), (5e-5, 2e-3), strict=True):

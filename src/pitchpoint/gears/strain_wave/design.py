@@ -341,10 +341,17 @@ def _surveyed(
     module: Float[Array, ""],
     tooth_angle: Float[Array, ""],
     edges_carry: bool,
+    conjugate: bool,
 ) -> tuple[Survey, _Contact]:
-    """Clearances along the wave, and where the least one is."""
-    found = survey(travel, groove, backlash, module, tooth_angle, edges_carry)
-    return found, _touching(found, module)
+    """Clearances along the wave, and where the least one is.
+
+    Edges count there on given flanks, since they may not reach into each other either; swept ones let
+    them through.
+    """
+    given = travel, groove, backlash, module, tooth_angle
+    found = survey(*given, edges_carry)
+    plain = edges_carry or conjugate
+    return found, _touching(found if plain else survey(*given, True), module)
 
 
 @dataclass(frozen=True)
@@ -460,7 +467,7 @@ def _built(plan: _Plan, programs: _Programs) -> _Built:
     _check_play(plan, land)
     numbers = map(array, (plan.backlash, plan.module, 2.0 * pi / plan.splines[0]))
     edges: bool = plan.parts["edges_carry"]
-    found, touching = programs.survey(plan.travel, groove, *numbers, edges)
+    found, touching = programs.survey(plan.travel, groove, *numbers, edges, plan.mate is None)
     at = _plain(touching)
     for fails, refuse in _faults(at, plan.module, plan.backlash, conjugate=plan.mate is None):
         if fails:

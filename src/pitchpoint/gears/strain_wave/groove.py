@@ -256,7 +256,7 @@ def _ridges(groove: Groove) -> tuple[Float[Array, " cell"], Float[Array, " cell"
 def _relieved(
     groove: Groove, end: Float[Array, ""], length: Float[Array, ""], bent: Float[Array, ""]
 ) -> Groove:
-    """The same with teeth that bend away by a parabola [1/m] over a length before a height [m]."""
+    """The same with teeth that bend away before a height, over a length [m], by a parabola of a curvature."""
     over = jnp.maximum(end + length - groove.heights, 0.0)
     return _bent(groove, bent * over**2 / 2.0, -bent * over, jnp.where(over > 0.0, bent, 0.0))
 
