@@ -164,7 +164,7 @@ class Made:
 
     rounding: float = 0.1
     relief: float = 0.005
-    relief_length: float = 0.06
+    relief_length: float = 0.1
     bottom: float = 0.15
     ridge: float = 1.0
 

@@ -442,15 +442,18 @@ def engaged(mesh, phase, load):
 
 @pytest.fixture(scope="module")
 def loaded(pair):
-    """At each place the clearance of its valley by positions: of the first, or of the one beyond a ridge."""
+    """At each place the clearance of its valley by positions: of two the first is nearer to the root."""
     mesh, by = pair.mesh, pair.by
     phase = jnp.asarray([0.0, 0.21, 0.43, 0.64, 0.86])
     found = engaged(mesh, phase, jnp.full(phase.shape, 16.0))
     found = SimpleNamespace(**{name: np.asarray(value) for name, value in found.items()})
     at, clear, rise = by.valleys(found.angle, pair.space)
-    found.first = np.isin(np.arange(found.angle.shape[0]), mesh.first_places)[:, None]
-    found.clearance = np.where(found.first, clear[0], clear[1])
-    found.along = np.where(found.first, at[0], at[1])
+    places = np.arange(found.angle.shape[0])
+    found.first = np.isin(places, mesh.in_pairs(places[:, None], 0)[:, 0])[:, None]
+    turned = np.isfinite(clear[1]) & (at[1] < at[0]) & (rise > LOW_RIDGE)
+    own = found.first != turned
+    found.clearance = np.where(own, clear[0], clear[1])
+    found.along = np.where(own, at[0], at[1])
     found.rise = rise
     found.name = pair.name
     reach = by.place(by.outline.plain, found.angle).real
@@ -469,9 +472,9 @@ def test_gaps_are_those_of_the_positions(loaded):
 
 
 def test_pairs_that_count_as_touching_touch_and_none_lies_inside(loaded):
-    """Where the relieved tips of an involute would touch there are a few nanometres between all pairs."""
+    """Where relieved tips would touch there may be a few nanometres between all pairs."""
     nearest = np.where(loaded.active, loaded.gap, np.inf).min(axis=0)
-    assert np.max(nearest) < (1e-8 if loaded.name == "involute" else 1e-12)
+    assert np.max(nearest) < (1e-12 if loaded.name == "flat" else 1e-8)
     touching = loaded.active & (loaded.gap < 1e-12)
     assert np.all((touching.sum(axis=0) >= 2) | (nearest > 1e-12))
     assert np.max(np.abs(loaded.clearance[touching])) < 1e-9
@@ -494,7 +497,7 @@ def test_tips_of_the_circular_spline_end_where_teeth_leave(name):
     """Or where the clearance ends them."""
     cutter, root = BY[name].cutter, BY[name].place(0.0, 0.0).real
     for clearance, angle in ((0.1, 50.0), (0.1, 40.0), (1.0, 50.0)):
-        mesh = build(form=FORMS[name], clearance=clearance, leaving_angle=np.deg2rad(angle))
+        mesh = build(form=FORMS[name], clearance=clearance, disengagement=np.deg2rad(angle))
         leaves = cutter.place(cutter.outline.length, np.deg2rad(angle)).real
         clear = root + clearance * MODULE
         assert float(mesh.tip_height) == pytest.approx(max(leaves, clear), abs=1e-12)
@@ -568,7 +571,7 @@ BAD = {
     "interference": (
         {"form": INVOLUTE, "groove": InvoluteForm(3.0)},
         "groove",
-        "interfere: 122 um of overlap 79 degrees from the long axis",
+        "interfere: 127 um of overlap 79 degrees from the long axis",
     ),
     "zero engaged teeth": (
         {"form": INVOLUTE, "groove": InvoluteForm(5.0)},

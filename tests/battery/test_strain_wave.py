@@ -136,7 +136,7 @@ def test_ridges_of_the_mate_are_as_round_as_they_are_made(passing):
 def test_contact_of_touching_teeth_moves_along_both_flanks_as_it_rolls(passing):
     at, by = passing, passing.by
     one = at.curvatures[2]
-    touching = at.active & at.inside & (at.gap < 1e-7)
+    touching = at.active & at.inside & (at.gap < 1e-8)
     smooth = touching & one & by.smooth(at.along, np.abs(at.moved[0]) + 1e-6)
     smooth &= at.space.smooth(at.height, np.abs(at.moved[1]) + 1e-6)
     assert smooth.sum() >= 2
@@ -172,12 +172,15 @@ def test_teeth_that_touch_close_by_themselves_and_the_others_after_projection(pa
 
 def test_places_beyond_the_pairs_stay_empty(passing):
     mesh, active = passing.mesh, passing.found.active
-    empty = np.setdiff1d(np.arange(active.shape[0]), mesh.filled)
-    pairs = np.intersect1d(mesh.filled, mesh.first_places)
-    assert pairs.size == mesh.filled_pairs.size == 2 * int(mesh.held) < 2 * mesh.lanes
-    assert mesh.first_places.size == 2 * mesh.lanes < active.shape[0]
+    places = np.arange(active.shape[0])
+    held = mesh.in_pairs(places[:, None] + 1, 0)
+    assert held.shape == (2 * int(mesh.held), 2)
+    assert 2 * int(mesh.held) < 2 * mesh.lanes < active.shape[0]
+    empty = np.setdiff1d(places, held[held > 0] - 1)
     assert not active[empty].any()
-    assert active[mesh.filled].any()
+    assert active[held[:, 0] - 1].any()
+    alike = mesh.in_pairs(passing.found.path, 0, like_first=True)
+    np.testing.assert_array_equal(alike[:, 0], alike[:, 1])
 
 
 @pytest.mark.parametrize("play", [1e-13, 1e-6])

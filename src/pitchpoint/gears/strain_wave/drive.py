@@ -737,14 +737,20 @@ def nearest_points(
     below, above = (jnp.real(foot + turned * flank.place(along)) for along in (before, after))
     out = (groove.low - below) / jnp.where(above > below, above - below, jnp.inf)
     first = before + jnp.clip(out, 0.0, 1.0) * (after - before)
+
+    def slope_at(along: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        """Growth of the play along the flank."""
+        _, slope = groove.width_and_slope(jnp.real(foot + turned * flank.place(along)))
+        direction = axis - flank.angle(along)
+        return slope * jnp.cos(direction) - jnp.sin(direction)
+
+    # Where the play grows from the station before, a ridge lies on the way, and the valley beyond the next.
+    ridge = (slope_at(first) > 0.0) & (out <= 0.0) & (nearest > 0) & (nearest < last)
+    first = jnp.where(ridge, after, first)
     most = stations[jnp.minimum(nearest + 1, last)] - first
 
     def growth(beyond: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        """Growth of the play along the flank."""
-        place = foot + turned * flank.place(first + beyond)
-        _, slope = groove.width_and_slope(jnp.real(place))
-        direction = axis - flank.angle(first + beyond)
-        return slope * jnp.cos(direction) - jnp.sin(direction)
+        return slope_at(first + beyond)
 
     # At an end of the flank the play may still fall: then the end is nearest. Where the tip of the mate is
     # nearest it grows from there on, and teeth apart have no nearest point: none waits for those.
