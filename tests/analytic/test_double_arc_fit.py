@@ -5,7 +5,7 @@ from math import asin, atan, atan2, cos, degrees, hypot, pi, sqrt
 
 import numpy as np
 import pytest
-from strain_wave_positions import DoubleArc, Drive
+from strain_wave_positions import DoubleArc, Drive, Made
 
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.strain_wave import double_arc_fit
@@ -69,12 +69,14 @@ def test_the_tooth_found_makes_a_drive_without_interference(found):
     drive = build_strain_wave(
         teeth=TEETH, module=module, face_width=0.01, form=found.form, deflection=found.deflection
     )
-    flank = DoubleArc(found.form, module, float(drive.rim.thickness))
-    passing = Drive(flank, TEETH, float(drive.line.radius), found.deflection * module)
+    made = Made() * module
+    flank = DoubleArc(found.form, module, float(drive.rim.thickness), made)
+    neutral, wave = float(drive.line.radius), found.deflection * module
+    passing = Drive(flank, TEETH, neutral, wave, (1.0,), made)
     stations = np.linspace(0.0, 1.0, 400)[:, None] * flank.length
     angle = np.deg2rad(np.linspace(-40.0, 89.0, 200))
     places = passing.place(stations, angle)
-    height, width = np.asarray(drive.groove.heights), np.asarray(drive.groove.half_width)
+    height, width = np.asarray(drive.groove.made), np.asarray(drive.groove.half_width)
     inside = places.real > height[0]
     play = np.interp(places.real, height, width) - places.imag
     assert np.min(play[inside]) > -1e-3 * module

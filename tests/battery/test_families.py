@@ -593,6 +593,8 @@ def test_batch_equals_loop(family):
     # Places across the face are counted from its middle and rounded like its half; places in the frame
     # of the mesh, of which one component vanishes at the pitch point, like the whole radius.
     rounded = {name: 2e-15 * np.abs(getattr(family.at, name)).max() for name in ("width", "point")}
+    # Two places of a pair share its face in the ratio of small differences of its clearance.
+    rounded["weight"] = 0.0 if family.mesh.touching else 1e-10 * family.at.weight.max()
     for name, values in leaves_of(family.at).items():
         near = close | {"atol": max(close["atol"], rounded.get(name, 0.0)), "err_msg": name}
         for other in (alone, mapped):
@@ -630,7 +632,9 @@ def test_rigid_flanks_touch_where_they_are_active(family):
     if not family.mesh.touching:
         # Only some of the pairs that reach into each other touch, to the table of the groove.
         least = np.where(family.at.active, family.at.gap, np.inf).min(axis=(0, 1))
-        assert np.all(least < 1e-10)
+        # Where relieved tips would touch there may be some nanometres between all pairs.
+        assert np.all(least < 1e-8)
+        assert np.median(least) < 1e-10
         assert touching.max() > 1e-6
     else:
         assert np.all(touching == 0.0)

@@ -63,7 +63,10 @@ def as_in_catalogues(
     """
     ends = _ends(rated, limits)
     known = np.isfinite(wind_up)
-    at = np.interp(ends, torque[known], wind_up[known])
+    if np.count_nonzero(known) < 2:
+        known = np.array([True, True] + [False] * (known.size - 2))  # NaN throughout
+    # Beyond what was found there is no figure.
+    at = np.interp(ends, torque[known], wind_up[known], right=np.nan)
     stiffness = np.diff(ends, prepend=0.0) / np.diff(at, prepend=0.0)
     loops = [_loop(torque[known], wind_up[known], one[known], play, rated) for one in held]
     lost, loss = np.transpose(loops)
@@ -83,7 +86,8 @@ def _loop(
         return np.nan, np.nan
     load = np.concatenate([-torque[::-1], torque])
     place = np.concatenate([-wind_up[::-1] - play / 2.0, wind_up + play / 2.0])
-    friction = np.concatenate([held[::-1], held])
+    # At no load the flanks may be anywhere in their play, which both branches then cross.
+    friction = np.concatenate([held[::-1], held]) + np.finfo(float).tiny
 
     def branch(sense: float, at: float) -> float:
         """Rotation while the torque grows (1) or shrinks (-1) through a value."""

@@ -61,6 +61,8 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
 
     stiffness = np.stack([found["torsional_stiffness"] for found in each], -1) / steps**2
     turned = at_output("wind_up")
+    told_parts = (one.design.mesh.yielding for one in built.stages)
+    yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
     data = dataset(
         {
             "wind_up": (("torque",), turned.sum(axis=-1)),
@@ -77,10 +79,9 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
         title="torsion",
         travels=built.travels,
         warnings=_lost(built, turned.sum(axis=-1), torques),
-        note="teeth and what is under them yield; shafts, bearings and housing are not in it",
+        note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
-    yields = dict.fromkeys(one.design.mesh.yielding[0] for one in built.stages)
     data["torsional_stiffness"].attrs.update(covers="; ".join(yields))
     return data
 
@@ -88,7 +89,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     friction, rated = _mean_friction(built), built.case.operation.load
     limits = getattr(built.case.gears, "slopes", None)
-    told_of = built.design.mesh.couples and rated > 0.0
+    told_of = built.design.mesh.couples and rated > 0.0 and _reduces(built)
     more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
     every = np.union1d(torques, more)
     at = np.isin(every, torques)
@@ -132,6 +133,14 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     whole["torsional_stiffness"].attrs.update(covers=yields)
     whole["path"].attrs.update(built.way)
     return whole.isel(torque=at)
+
+
+def _reduces(built: Built) -> bool:
+    """True if the loaded member is the slower one, of which catalogues tell slopes and lost motion."""
+    driver, loaded = (
+        abs(built.nominal[end] @ built.nominal["motion"]) for end in ("driver", "loaded")
+    )
+    return bool(driver > loaded)
 
 
 def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:

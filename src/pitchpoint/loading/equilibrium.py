@@ -1,6 +1,5 @@
 """Equilibrium of contacts that only push: which of them carry a load, and how far the loaded body moves."""
 
-import dataclasses
 from typing import NamedTuple
 
 import equinox as eqx
@@ -252,19 +251,33 @@ def _on_balls(
         moves, sets = change > SETTLED * size, at.sets + found.iterations
         return _Settling(approach, found.loaded, moves, at.steps + 1, sets)
 
-    start = jnp.broadcast_to(jnp.moveaxis(fixed[0].start, 0, -1), (*batch, body.start.shape[0]))
+    start = jnp.where(jnp.isfinite(body.start), body.start, _lanes_like(body.approach, body.start))
+    start = jax.lax.stop_gradient(jnp.moveaxis(start, 0, -1))
+    start = jnp.broadcast_to(start, (*batch, body.start.shape[0]))
     none = jnp.zeros((*gap.shape[:2], *batch), bool)
     begin = _Settling(start, none, jnp.ones(batch, bool), jnp.asarray(0), jnp.asarray(0))
     settled = jax.lax.while_loop(lambda at: (at.steps < PASSES) & jnp.any(at.open), again, begin)
     frozen = jax.lax.stop_gradient(settled.approach)
     found, approach = on_springs(body, frozen, settled.loaded, *given)
-    return dataclasses.replace(
-        found,
-        residual=jnp.where(settled.open, jnp.inf, found.residual),
-        force=_where(~settled.open, found.force),
+    done = ~settled.open
+    # Balls that went on moving are no equilibrium: one, the whole of their approach, is far from solved.
+    return Equilibrium(
+        force=_where(done, found.force),
+        share=_where(done, found.share),
+        approach=_where(done, found.approach),
+        stiffness=_where(done, found.stiffness),
+        loaded=found.loaded,
+        residual=jnp.where(done, found.residual, 1.0),
         iterations=settled.sets + found.iterations,
-        balls=jnp.moveaxis(approach, -1, 0),
+        balls=_where(done, jnp.moveaxis(approach, -1, 0)),
     )
+
+
+def _lanes_like(
+    values: Float[Array, " ball"], like: Float[Array, "ball *b"]
+) -> Float[Array, "ball *#b"]:
+    """Values of balls, with as many axes behind them as another array has."""
+    return values.reshape(-1, *(1 for _ in like.shape[1:]))
 
 
 class _Settling(NamedTuple):

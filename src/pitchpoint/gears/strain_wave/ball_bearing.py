@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
+from pitchpoint.errors import InputError
 from pitchpoint.gears.on_balls import OnBalls, ball_force, seated
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
@@ -98,6 +99,13 @@ def ball_bearing(balls: Balls, diameter: float, width: float) -> BallBearing:
     number = PROPORTIONS.balls if balls.number is None else int(balls.number)
     ball = PROPORTIONS.ball * diameter if balls.diameter is None else balls.diameter
     race = PROPORTIONS.race * diameter if balls.race_thickness is None else balls.race_thickness
+    circle = diameter - ball - 2.0 * race
+    if not (circle > 0.0 and number * ball < pi * circle):
+        raise InputError(
+            f"{number} balls of {1e3 * ball:.4g} mm under a race of {1e3 * race:.4g} mm do not fit into a "
+            f"flexspline of {1e3 * diameter:.5g} mm; fewer or smaller ones do",
+            key="balls" if balls.number is not None else "ball_diameter",
+        )
     young, poisson = STEEL["young"], STEEL["poisson"]
     return BallBearing(
         angle=array(2.0 * pi * np.arange(number) / number),

@@ -410,6 +410,12 @@ def _planned(
     _check_depth(form, deflection, clearance)
     if groove is not None:
         _check_free(form, deflection, clearance, z2 - z1)
+    if bearing is not None and bearing.play >= w0:
+        raise InputError(
+            f"a play of {1e3 * bearing.play:.4g} mm of the wave generator's balls leaves nothing of the "
+            f"deflection of {1e3 * w0:.4g} mm; allowed is less",
+            key="play",
+        )
     weights = _weights(shape, force_angle, w0 / neutral)
     line = NeutralLine(array(neutral), array(w0), array(weights))
     wall = rim / 2.0 if wall_thickness is None else wall_thickness
@@ -520,9 +526,9 @@ def _one_of(value: Any) -> Any:
 def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
     """Sentences on what is unusual about a drive that can run."""
     told = []
-    intended, widest = map(float, jax.device_get(_extent(mesh)))
+    intended, widest, land = map(float, jax.device_get(_extent(mesh)))
     cut = (float(mesh.tip_height) - intended) / float(mesh.module)
-    if mesh.conjugate and cut > 0.6:
+    if mesh.conjugate and cut > 0.6 and land < 1.1 * LEAST_LAND * float(mesh.module):
         told.append(
             f"The tips of the circular spline are cut back to {cut:.2g} modules above the flexspline's root "
             "on the long axis: the flexspline's tips pass there and would leave less than "
@@ -553,11 +559,15 @@ def check_strain_wave(mesh: StrainWave) -> tuple[str, ...]:
 
 
 @program
-def _extent(mesh: StrainWave) -> tuple[Array, Array]:
-    """Height of the flexspline's root on the long axis, and displacement on the short one [m]."""
+def _extent(mesh: StrainWave) -> tuple[Array, Array, Array]:
+    """Height of the flexspline's root on the long axis, displacement on the short one, land of the mate [m].
+
+    The land is that without the relief of its edges.
+    """
     line = mesh.line
     root = line.radius + line.deflection + mesh.flank.root_height
-    return root, jnp.abs(line.radial(jnp.asarray(pi / 2)))
+    land = mesh.groove.land(2.0 * jnp.pi / mesh.teeth[1])[0] + 2.0 * mesh.tips.rounding
+    return root, jnp.abs(line.radial(jnp.asarray(pi / 2))), land
 
 
 def double_arc_flank(
@@ -605,6 +615,8 @@ def _double_arc(
             key="form",
         )
     names = ("concave arc", "tangent", "convex arc", "relief", "rounding of the tip")
+    convex, _, rounded = (float(length) / module for length in found["lengths"][2:])
+    _check_relief(convex, rounded, tips, module)
     for name, length in zip(names, found["lengths"], strict=True):
         if not (length > 0.0 or (name == "relief" and length == 0.0)):
             raise InputError(
@@ -614,6 +626,28 @@ def _double_arc(
             )
     _check_land(float(found["land"]), module, tips)
     return flank
+
+
+def _check_relief(flank: float, rounding: float, tips: Tips, module: float) -> None:
+    """InputError if the relief of a tip takes more of its flank or its rounding than there is, in modules."""
+    amount, length = float(tips.relief) / module, float(tips.relief_length) / module
+    if amount > 0.0 and length == 0.0:
+        raise InputError(
+            f"a tip relief of {amount:.4g} modules needs a length along the flank; 0 was given",
+            key="relief_length",
+        )
+    if length > 0.0 and not flank > 0.0:
+        raise InputError(
+            f"a relief of {length:.4g} modules is longer than the flank at the tip of the flexspline's "
+            f"teeth, {flank + length:.4g} modules",
+            key="relief_length",
+        )
+    if amount > 0.0 and not rounding > 0.0:
+        raise InputError(
+            f"a tip relief of {amount:.4g} modules over {length:.4g} turns the flexspline's flank so far "
+            "that nothing of the rounding is left; less of it, or a longer one, leaves room",
+            key="tip_relief",
+        )
 
 
 @program
@@ -632,6 +666,8 @@ def _flank(
     if isinstance(form, DoubleArcForm):
         return _double_arc(form, module, rim, tips)
     flank = _involute(form, teeth, module, rim, tips)
+    rolled, _, rounded = map(float, flank.lengths)
+    _check_relief(rolled / module, rounded / module, tips, module)
     _check_land(float(flank.tip_land), module, tips)
     base = float(flank.base_radius / flank.root_radius)
     if base >= 1.0:

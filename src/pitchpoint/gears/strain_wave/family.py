@@ -36,6 +36,11 @@ _KEYS = {
     "deflection": "wave_generator.deflection",
     "force_angle": "wave_generator.force_angle",
     "flange_diameter": "yielding.flange_diameter",
+    "bolt_circle": "yielding.bolt_circle",
+    "shaft_diameter": "yielding.shaft_diameter",
+    "balls": "wave_generator.bearing.balls",
+    "ball_diameter": "wave_generator.bearing.ball_diameter",
+    "play": "wave_generator.bearing.play",
     "outside_diameter": "yielding.outside_diameter",
 }
 """Keys of the table by arguments of the builder that have other names."""

@@ -207,9 +207,8 @@ def swept(motion: ToothMotion, low: Float[Array, ""], tips: Tips) -> Groove:
     bottom = joint, tips.bottom
     groove = Groove(low, heights[-1], width, slope, curvature, jnp.sum(lost * 1.0), *bottom)
     reach = jnp.where(tips.relief_length > 0.0, tips.relief_length, 1.0)
-    groove = _relieved(
-        _blended(groove, tips.ridge), low + edge, reach, 2.0 * tips.relief / reach**2
-    )
+    relief = jnp.where(tips.relief_length > 0.0, tips.relief, 0.0)
+    groove = _relieved(_blended(groove, tips.ridge), low + edge, reach, 2.0 * relief / reach**2)
     return _relieved(groove, low, edge, 1.0 / edge)
 
 

@@ -214,12 +214,24 @@ def _bottom(behind: Behind, cup: Cup) -> float:
 def _joint(behind: Behind, cup: Cup) -> float:
     number = PROPORTIONS.bolts if behind.bolts is None else behind.bolts
     diameter = _or(behind.bolt_diameter, PROPORTIONS.bolt, cup)
-    return bolts_in_shear(number, diameter, _or(behind.bolt_circle, PROPORTIONS.bolt_circle, cup))
+    circle = _or(behind.bolt_circle, PROPORTIONS.bolt_circle, cup)
+    _demand_inside("bolt_circle", "bolts stand on a circle", circle, cup)
+    return bolts_in_shear(number, diameter, circle)
 
 
 def _shaft(behind: Behind, cup: Cup) -> float:
     diameter = _or(behind.shaft_diameter, PROPORTIONS.shaft, cup)
+    _demand_inside("shaft_diameter", "the wave generator's shaft has a diameter", diameter, cup)
     return shaft_in_torsion(diameter, _or(behind.shaft_length, PROPORTIONS.shaft_length, cup))
+
+
+def _demand_inside(key: str, what: str, diameter: float, cup: Cup) -> None:
+    """InputError if a part of the cup is wider than the cup."""
+    if diameter >= 2.0 * cup.radius:
+        raise InputError(
+            f"{what} of {1e3 * diameter:.5g} mm, and the cup has one of {2e3 * cup.radius:.5g} mm",
+            key=key,
+        )
 
 
 def _ring(behind: Behind, cup: Cup) -> FlexibleRing:
