@@ -12,8 +12,10 @@ from pitchpoint.gears.on_balls import OnBalls, ball_force, ball_stiffness, seate
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing, palmgren_1959
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.ring_compliance import ring_modes
+from pitchpoint.loading import equilibrium as loading
 from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.materials.solids import Solid
+from pitchpoint.status import Code
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 POINT = palmgren_1959(5e-3)
@@ -134,6 +136,17 @@ def test_every_gap_that_carries_is_closed_and_no_other_overlaps():
     np.testing.assert_allclose(approach, settled - both[LANES:], atol=1e-15)
     assert float(ARM @ force) == pytest.approx(200.0, rel=1e-12)
     assert float(found.residual[0]) < 1e-12
+
+
+def test_balls_that_go_on_moving_give_no_figures(monkeypatch):
+    monkeypatch.setattr(loading, "PASSES", 1)
+    given = {"gap": GAP, "arm": ARM, "active": np.ones(LANES, bool)}
+    lanes = {name: jnp.asarray(values)[:, None, None] for name, values in given.items()}
+    own = jnp.asarray(OWN)[:, None, None]
+    found = equilibrium(own, body(), **lanes, load=jnp.asarray([300.0]))
+    for values in (found.force, found.share, found.approach, found.stiffness, found.balls):
+        assert np.all(np.isnan(values))
+    assert int(found.status.code[0]) == Code.NOT_CONVERGED
 
 
 def test_the_slope_is_that_of_balls_that_stiffen():

@@ -721,6 +721,11 @@ def bad_drives() -> Iterator[Bad]:
             ("a bearing", "give one"),
         ),
         ("helix", ("gears", "helix_angle"), "10 deg", ("known are family, teeth", "backlash")),
+        ("no length", ("gears", "relief_length"), 0.0, ("0.005 modules needs a length",)),
+        ("long relief", ("gears", "relief_length"), 1.0, ("longer than the flank at the tip",)),
+        ("deep relief", ("gears", "tip_relief"), 0.2, ("nothing of the rounding is left",)),
+        ("late", ("gears", "disengagement"), "85 deg", ("allowed is 20 deg to 80 deg",)),
+        ("edges", ("gears", "edges"), "maybe", ("clear", "carry")),
     ]:
         key = ".".join(part for part in path if isinstance(part, str)).removesuffix(".shape")
         key = key.replace("bearing.bearing", "bearing")
@@ -730,6 +735,8 @@ def bad_drives() -> Iterator[Bad]:
         ({"flange": "rigid", "bolts": 8}, "bolts", "flange leaves out"),
         ({"flange_stiffness": "1 kN m/rad", "bolts": 8}, "bolts", "flange_stiffness leaves out"),
         ({"flange_diameter": "59 mm"}, "flange_diameter", "leaves no bottom"),
+        ({"bolt_circle": "500 mm"}, "bolt_circle", "the cup has one of"),
+        ({"shaft_diameter": "500 mm"}, "shaft_diameter", "the cup has one of"),
         ({"outside_diameter": "60.5 mm"}, "outside_diameter", "roots lie on"),
     ]:
         where = f"gears.yielding.{key}"

@@ -75,3 +75,24 @@ def test_a_drive_that_friction_locks_has_no_loop():
     assert np.isnan(found["hysteresis_loss"])
     assert np.isnan(found["catalogue_lost_motion"])
     np.testing.assert_allclose(found["slope_stiffness"], [SOFT, STIFF, STIFFEST], rtol=1e-12)
+
+
+def test_play_counts_whether_or_not_something_holds_at_rest():
+    torque, limits = np.linspace(0.0, 100.0, 101), (10.0, 35.0)
+    loss = [
+        as_in_catalogues(torque, torque / 1e5, held * np.ones((1, 101)), 1e-4, 50.0, limits)[
+            "hysteresis_loss"
+        ][1][0]
+        for held in (0.0, 1e-9)
+    ]
+    np.testing.assert_allclose(loss, 1e-4, rtol=1e-6)
+
+
+def test_beyond_what_was_found_there_is_no_slope():
+    torque = np.linspace(0.0, 100.0, 101)
+    for last, known in ((30.0, 1), (-1.0, 0)):
+        lost = np.where(torque <= last, torque / 1e5, np.nan)
+        found = as_in_catalogues(torque, lost, np.zeros((1, 101)), 0.0, 50.0, (10.0, 35.0))
+        slopes = found["slope_stiffness"][1]
+        np.testing.assert_allclose(slopes[:known], 1e5, rtol=1e-12)
+        assert np.all(np.isnan(slopes[known:]))

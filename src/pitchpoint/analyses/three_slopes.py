@@ -87,7 +87,7 @@ def _loop(
     load = np.concatenate([-torque[::-1], torque])
     place = np.concatenate([-wind_up[::-1] - play / 2.0, wind_up + play / 2.0])
     # At no load the flanks may be anywhere in their play, which both branches then cross.
-    friction = np.concatenate([held[::-1], held]) + np.finfo(float).tiny
+    friction = np.concatenate([held[::-1], held]) + (play > 0.0) * np.finfo(float).tiny
 
     def branch(sense: float, at: float) -> float:
         """Rotation while the torque grows (1) or shrinks (-1) through a value."""
