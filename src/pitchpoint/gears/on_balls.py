@@ -5,7 +5,7 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["Body", "OnBalls", "ball_force", "ball_stiffness", "seated"]
+__all__ = ["Body", "OnBalls", "ball_force", "ball_stiffness", "over_batch", "seated"]
 
 SEATING_STEPS = 60
 """Newton steps of the balls that seat a body without load; usual are ten."""
@@ -36,6 +36,11 @@ class OnBalls(eqx.Module):
 
 Body = Float[Array, "lane lane *#b"] | OnBalls
 """How a body couples lanes: by a matrix of its own, or held by balls."""
+
+
+def over_batch(balls: Float[Array, " ball"], rank: int) -> Float[Array, "ball *#b"]:
+    """Values of the balls with so many axes for a batch behind them."""
+    return balls.reshape(-1, *(1 for _ in range(rank)))
 
 
 def ball_force(stiffness: Float[Array, ""], approach: Float[Array, "*b"]) -> Float[Array, "*b"]:

@@ -7,7 +7,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.on_balls import Body, OnBalls, ball_force, ball_stiffness
+from pitchpoint.gears.on_balls import Body, OnBalls, ball_force, ball_stiffness, over_batch
 from pitchpoint.status import Code, Status
 
 __all__ = ["Equilibrium", "equilibrium", "touch"]
@@ -251,7 +251,9 @@ def _on_balls(
         moves, sets = change > SETTLED * size, at.sets + found.iterations
         return _Settling(approach, found.loaded, moves, at.steps + 1, sets)
 
-    start = jnp.where(jnp.isfinite(body.start), body.start, _lanes_like(body.approach, body.start))
+    start = jnp.where(
+        jnp.isfinite(body.start), body.start, over_batch(body.approach, body.start.ndim - 1)
+    )
     start = jax.lax.stop_gradient(jnp.moveaxis(start, 0, -1))
     start = jnp.broadcast_to(start, (*batch, body.start.shape[0]))
     none = jnp.zeros((*gap.shape[:2], *batch), bool)
@@ -271,13 +273,6 @@ def _on_balls(
         iterations=settled.sets + found.iterations,
         balls=_where(done, jnp.moveaxis(approach, -1, 0)),
     )
-
-
-def _lanes_like(
-    values: Float[Array, " ball"], like: Float[Array, "ball *b"]
-) -> Float[Array, "ball *#b"]:
-    """Values of balls, with as many axes behind them as another array has."""
-    return values.reshape(-1, *(1 for _ in like.shape[1:]))
 
 
 class _Settling(NamedTuple):

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.gears.on_balls import OnBalls, ball_force, seated
+from pitchpoint.gears.on_balls import OnBalls, ball_force, over_batch, seated
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.gears.strain_wave.ring_compliance import RingParts, of_modes, ring_modes
@@ -155,7 +155,7 @@ def on_balls(
         balls=balls,
         stiffness=bearing.stiffness,
         approach=approach,
-        start=jnp.broadcast_to(_like(approach, free), (*approach.shape, *free)),
+        start=jnp.broadcast_to(over_batch(approach, len(free)), (*approach.shape, *free)),
     )
 
 
@@ -164,11 +164,6 @@ def _seated(
 ) -> Float[Array, " ball"]:
     """Approach of the balls without load on the teeth [m]."""
     return seated(balls, bearing.stiffness, line.radial(bearing.angle) - bearing.play)
-
-
-def _like(balls: Float[Array, " ball"], batch: tuple[int, ...]) -> Float[Array, "ball *#b"]:
-    """Values of the balls with axes for a batch."""
-    return balls.reshape(-1, *(1 for _ in batch))
 
 
 def parts_on_balls(
@@ -192,7 +187,7 @@ def parts_on_balls(
     modes = _modes(bearing, ring, solid, loads)
     coupled = modes.balls @ modes.balls.T
     before = ball_force(bearing.stiffness, _seated(bearing, coupled, line))
-    more = ball_force(bearing.stiffness, balls) - _like(before, balls.shape[1:])
+    more = ball_force(bearing.stiffness, balls) - over_batch(before, balls.ndim - 1)
     of_balls = jnp.einsum("im,i...->m...", modes.balls, more)
     flat = force.reshape(-1, *force.shape[2:])
     amplitude = jnp.einsum("im...,i...->m...", modes.lanes, flat) + of_balls

@@ -728,7 +728,6 @@ def nearest_points(
     stations = flank.stations(TRIES[0], TRIES[1] * edges_carry)
     nearest, share = _valley(motion, groove, angle, stations, second)
     last, end = stations.shape[0] - 1, jax.lax.stop_gradient(stations[-1])
-    stations = jax.lax.stop_gradient(stations) if edges_carry else stations
     # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
     turned = unit(axis)
