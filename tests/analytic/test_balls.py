@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq, minimize
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.gears import on_balls as on_balls_of_gears
 from pitchpoint.gears.on_balls import OnBalls, ball_force, ball_stiffness, seated
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing, palmgren_1959
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
@@ -172,6 +173,16 @@ def test_derivatives_go_through_the_balls_and_their_seat():
     ends = [float(approach(jnp.asarray(POINT + sign * step))[0]) for sign in (1.0, -1.0)]
     assert slope == pytest.approx((ends[0] - ends[1]) / (2.0 * step), rel=1e-5)
     assert slope < 0.0
+
+
+def test_balls_that_are_not_seated_give_no_figures(monkeypatch):
+    monkeypatch.setattr(on_balls_of_gears, "SEATING_STEPS", 0)
+    held = body()
+    seat = seated(held.balls, jnp.asarray(POINT), jnp.asarray(PUSH))
+    assert np.all(np.isnan(seat))
+    _, _, found = _solved(replace(held, approach=seat), jnp.asarray(150.0), jnp.asarray(OWN))
+    assert int(found.status.code[0]) == Code.NOT_CONVERGED
+    assert np.all(np.isnan(found.force))
 
 
 def test_without_load_nothing_moves():

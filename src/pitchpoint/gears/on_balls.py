@@ -10,6 +10,9 @@ __all__ = ["Body", "OnBalls", "ball_force", "ball_stiffness", "over_batch", "sea
 SEATING_STEPS = 60
 """Newton steps of the balls that seat a body without load; usual are ten."""
 
+SEATED = 1e-9
+"""Largest violation of their balance, over the largest push, at which balls are seated."""
+
 
 class OnBalls(eqx.Module):
     """Compliance of a free body, and the balls that hold it.
@@ -77,6 +80,9 @@ def seated(
         stiffness: of the balls [N/m1.5].
         push: by which each ball stands beyond the body without forces; negative with play [m].
 
+    Returns:
+        NaN for all balls that would go on moving: whatever is computed with them has not converged either.
+
     From the balance approach = push - C force by Newton's steps; the last one carries derivatives.
     """
 
@@ -96,4 +102,7 @@ def seated(
     def settle(_: Int[Array, ""], approach: Float[Array, " ball"]) -> Float[Array, " ball"]:
         return jax.lax.stop_gradient(step(approach))
 
-    return step(jax.lax.fori_loop(0, SEATING_STEPS, settle, start))
+    found = step(jax.lax.fori_loop(0, SEATING_STEPS, settle, start))
+    known = jax.lax.stop_gradient(found)
+    left = jnp.max(jnp.abs(frozen[2] - frozen[0] @ ball_force(frozen[1], known) - known))
+    return jnp.where(left <= SEATED * jnp.max(jnp.abs(frozen[2])), found, jnp.nan)
