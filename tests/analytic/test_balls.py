@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq, minimize
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.gears import on_balls
 from pitchpoint.gears.on_balls import OnBalls, ball_force, ball_stiffness, seated
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing, palmgren_1959
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
@@ -37,7 +38,7 @@ def body():
     settled = _seated(jnp.asarray(balls), jnp.asarray(POINT), jnp.asarray(PUSH))
     start = jnp.asarray(np.asarray(settled)[:, None])
     parts = (lanes[..., None], across[..., None], balls, np.asarray(POINT))
-    return OnBalls(*map(jnp.asarray, parts), settled, start)
+    return OnBalls(*map(jnp.asarray, parts), settled, jnp.zeros((LANES, 1)), start)
 
 
 @jax.jit
@@ -109,6 +110,12 @@ def test_balls_stay_off_where_a_body_would_have_to_be_pulled():
     np.testing.assert_allclose(held.approach, balance, atol=1e-15)
     assert (force == 0.0).any()
     assert (force > 0.0).any()
+
+
+def test_balls_that_do_not_come_to_rest_have_no_seat(monkeypatch):
+    monkeypatch.setattr(on_balls, "SEATING_STEPS", 1)
+    given = BODY[LANES:, LANES:], POINT, PUSH
+    assert np.isnan(seated(*map(jnp.asarray, given))).all()
 
 
 # ------------------------------------------------------------------ with lanes that share a load

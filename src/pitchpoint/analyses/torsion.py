@@ -19,7 +19,7 @@ from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.on_balls import OnBalls
+from pitchpoint.gears.on_balls import Body, OnBalls, opened
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
@@ -216,7 +216,8 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     return {
         "phase": phase[::SHOWN],
         "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
-        "lost_motion": np.asarray(_lost_motion(design.mesh, known.contacts, known.phase)) @ weight,
+        "lost_motion": np.asarray(_lost_motion(design.mesh, known.contacts, known.phase, body))
+        @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
         "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
@@ -290,12 +291,17 @@ def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @program
-def _lost_motion(mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"]) -> Array:
+def _lost_motion(
+    mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
+) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
     other = mesh.other_flanks
     both = (mesh, contacts), (other, contacts if other is mesh else other.contacts(phase))
     return sum(
-        (touch(at.gap, jnp.abs(along(at.normal, one.loaded)), at.active) for one, at in both),
+        (
+            touch(opened(at.gap, body), jnp.abs(along(at.normal, one.loaded)), at.active)
+            for one, at in both
+        ),
         jnp.zeros(()),
     )
 

@@ -33,8 +33,8 @@ class Balls:
         number: of balls.
         diameter: of one ball [m].
         race_thickness: of the outer race [m].
-        play: radial one between ball and races where the ring has its wave; negative of balls that push
-            the ring beyond it [m].
+        play: radial one between ball and races; negative of balls that push the ring beyond its wave,
+            which is its shape on balls without play [m].
     """
 
     number: float | None = None
@@ -144,26 +144,33 @@ def on_balls(
         loads: where and how a unit force at each contact acts.
 
     The balls stand where they would hold the ring in its wave if they and the play did not give way;
-    where the ring would have to be pulled, they let it go.
+    where the ring would have to be pulled, they let it go. The gaps of the teeth are counted from the ring
+    on balls without play: what those with play bear less lets the ring, and so the teeth, sit back.
     """
     modes = _modes(bearing, ring, solid, loads)
     balls, free = modes.balls @ modes.balls.T, modes.lanes.shape[2:]
-    approach = _seated(bearing, balls, line)
+    across = jnp.einsum("im...,jm->ij...", modes.lanes, modes.balls)
+    approach, nominal = (_seated(bearing, balls, line, x) for x in (bearing.play, jnp.zeros(())))
+    more = ball_force(bearing.stiffness, approach) - ball_force(bearing.stiffness, nominal)
     return OnBalls(
         lanes=jnp.einsum("im...,jm...->ij...", modes.lanes, modes.lanes),
-        across=jnp.einsum("im...,jm->ij...", modes.lanes, modes.balls),
+        across=across,
         balls=balls,
         stiffness=bearing.stiffness,
         approach=approach,
+        shift=jnp.einsum("ij...,j->i...", across, more),
         start=jnp.broadcast_to(over_batch(approach, len(free)), (*approach.shape, *free)),
     )
 
 
 def _seated(
-    bearing: BallBearing, balls: Float[Array, "ball ball"], line: NeutralLine
+    bearing: BallBearing,
+    balls: Float[Array, "ball ball"],
+    line: NeutralLine,
+    play: Float[Array, ""],
 ) -> Float[Array, " ball"]:
-    """Approach of the balls without load on the teeth [m]."""
-    return seated(balls, bearing.stiffness, line.radial(bearing.angle) - bearing.play)
+    """Approach of balls with a play without load on the teeth [m]."""
+    return seated(balls, bearing.stiffness, line.radial(bearing.angle) - play)
 
 
 def parts_on_balls(
@@ -186,7 +193,7 @@ def parts_on_balls(
     """
     modes = _modes(bearing, ring, solid, loads)
     coupled = modes.balls @ modes.balls.T
-    before = ball_force(bearing.stiffness, _seated(bearing, coupled, line))
+    before = ball_force(bearing.stiffness, _seated(bearing, coupled, line, bearing.play))
     more = ball_force(bearing.stiffness, balls) - over_batch(before, balls.ndim - 1)
     of_balls = jnp.einsum("im,i...->m...", modes.balls, more)
     flat = force.reshape(-1, *force.shape[2:])
