@@ -313,3 +313,21 @@ def test_balls_with_much_play_hold_the_ring_near_the_long_axis_only():
 def test_the_first_slope_falls_with_the_play():
     slopes = [float(np.mean(at(held(play)[0], 1.0)[0].stiffness)) for play in (0.0, 5e-6, 15e-6)]
     assert slopes[0] > 1.2 * slopes[1] > 1.44 * slopes[2]
+
+
+@pytest.mark.parametrize("number", [23, 24])
+def test_balls_stand_elsewhere_as_far_from_here_as_they_come(number):
+    """Ends change places by half a pitch of an odd number, and an even one stands alike after a whole."""
+    drive = build(bearing=Balls(number=number))
+    pitch = 2.0 * np.pi / number
+    same = pitch / 2.0 if number % 2 else pitch
+    there = drive.balls_elsewhere
+    turned = np.asarray(there.bearing.angle - drive.bearing.angle)
+    np.testing.assert_allclose(turned, same / 2.0, rtol=1e-12)
+    back = replace(there, bearing=there.bearing.elsewhere)
+    here, away, again = (at(one, 20.0)[0] for one in (drive, there, back))
+    np.testing.assert_allclose(again.wind_up, here.wind_up, rtol=1e-9)
+    order = [1, 0] if number % 2 else [0, 1]
+    np.testing.assert_allclose(again.inner_load, here.inner_load[np.array(order)], rtol=1e-6)
+    assert np.abs(away.wind_up / here.wind_up - 1.0).max() > 1e-4
+    assert build().balls_elsewhere is None

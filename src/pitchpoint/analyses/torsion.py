@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.caveats import proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
@@ -63,6 +64,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     turned = at_output("wind_up")
     told_parts = (one.design.mesh.yielding for one in built.stages)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
+    assumed = proportions_words(built.stages)
     data = dataset(
         {
             "wind_up": (("torque",), turned.sum(axis=-1)),
@@ -79,10 +81,10 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
         title="torsion",
         travels=built.travels,
         warnings=_lost(built, turned.sum(axis=-1), torques),
-        note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it",
+        note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
-    data["torsional_stiffness"].attrs.update(covers="; ".join(yields))
+    data["torsional_stiffness"].attrs.update(covers="; ".join(yields) + assumed)
     return data
 
 
@@ -97,6 +99,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     dims = {
         "path": ("phase", "pair"),
         "lost_motion": (),
+        "wind_up_by_balls": (),
         "angular_transmission_error": ("torque", "phase"),
         "mesh_torsional_stiffness": ("torque", "phase"),
         "tooth_force": ("torque", "phase", "pair"),
@@ -112,6 +115,8 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         data |= as_in_catalogues(every, found["wind_up"], held, play, rated, limits)
         data["wind_up_part"] = (("part", "torque"), np.stack([*parts.values()]))
     yields, rigid = built.design.mesh.yielding
+    assumed = proportions_words([built])
+    at_rated = float(np.interp(rated, every, found["wind_up"]))
     whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
@@ -126,11 +131,12 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
             *_lost(built, found["wind_up"][at], torques),
             *_on_edges(built, found["edge_share"][at], torques),
             *_loopless(built, friction),
+            *_pressed(found["lost_motion"]),
         ],
-        note=f"{yields} yield; {rigid} are not in it",
+        note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
         solve=solve,
     )
-    whole["torsional_stiffness"].attrs.update(covers=yields)
+    whole["torsional_stiffness"].attrs.update(covers=yields + assumed)
     whole["path"].attrs.update(built.way)
     return whole.isel(torque=at)
 
@@ -169,6 +175,27 @@ def _on_edges(built: Built, share: np.ndarray, torques: np.ndarray) -> list[str]
         f"{built.carried.show(torques[much][0])} on. Loss, stiffness and pressure then hang on how those "
         "edges are made."
     ]
+
+
+def _pressed(lost_motion: float) -> list[str]:
+    """Teeth that balls without load push into both flanks of their spaces."""
+    if not lost_motion < 0.0:
+        return []
+    return [
+        "Without load the balls of the wave generator press the teeth onto both flanks of their spaces, by "
+        f"{60.0 * np.degrees(-lost_motion):.2g} arcmin at the loaded member: the wind-up counts one flank."
+    ]
+
+
+def _of_balls(found: Mapping[str, Any], wind_up: float) -> str:
+    """How much the places of the balls change the wind-up at the operating point, in words."""
+    if "wind_up_by_balls" not in found or not wind_up > 0.0:
+        return ""
+    part = 100.0 * float(found["wind_up_by_balls"]) / wind_up
+    return (
+        "; a ball stands on the long axis, and with the balls half way to the next such place the "
+        f"wind-up at the operating point is {abs(part):.2g} % {'larger' if part > 0.0 else 'smaller'}"
+    )
 
 
 def _loopless(built: Built, friction: np.ndarray) -> list[str]:
@@ -213,6 +240,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
     approach, lost = found.wind_up + found.touch, np.isnan(found.wind_up)
+    turned = found.wind_up @ weight
     return {
         "phase": phase[::SHOWN],
         "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
@@ -221,7 +249,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
         "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
-        "wind_up": found.wind_up @ weight,
+        "wind_up": turned,
         "wind_up_range": np.ptp(found.wind_up, axis=-1),
         "torsional_stiffness": found.stiffness @ weight,
         "loaded_pairs": found.loaded_pairs @ weight,
@@ -231,7 +259,23 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
         "parts": _parts(design, known.contacts, found, weight),
+        **_by_balls(
+            built, known.contacts, weight, np.interp(built.case.operation.load, torques, turned)
+        ),
     }
+
+
+def _by_balls(
+    built: Built, contacts: Contacts, weight: np.ndarray, as_they_stand: float
+) -> dict[str, np.ndarray]:
+    """Wind-up at the operating point with the balls elsewhere less that as they stand; none without balls."""
+    other = built.design.mesh.balls_elsewhere
+    if other is None:
+        return {}
+    design = replace(built.design, mesh=other)
+    given = other, design.solids, built.terms, jnp.asarray(built.case.operation.load)
+    found = wound_up(*given, contacts, coupling(design, contacts))
+    return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
 
 
 def _part_of(some: np.ndarray, whole: np.ndarray) -> np.ndarray:

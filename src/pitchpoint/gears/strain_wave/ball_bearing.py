@@ -1,6 +1,6 @@
 """The bearing of a wave generator: balls between a rigid inner race and a thin outer one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, sqrt
 from typing import NamedTuple
 
@@ -42,6 +42,18 @@ class Balls:
     race_thickness: float | None = None
     play: float = 0.0
 
+    def sizes(self, pitch_diameter: float) -> dict[str, float]:
+        """Dimensions as given or usual, by their keys in the table [m]; of balls their number.
+
+        Args:
+            pitch_diameter: of the flexspline [m].
+        """
+        given = (self.number, self.diameter, self.race_thickness)
+        usual = PROPORTIONS.bearing(pitch_diameter).items()
+        return {
+            key: part if own is None else own for (key, part), own in zip(usual, given, strict=True)
+        }
+
 
 class BallBearing(eqx.Module):
     """Balls under a thin ring.
@@ -58,6 +70,17 @@ class BallBearing(eqx.Module):
     play: Float[Array, ""]
     bending: Float[Array, ""]
     stretching: Float[Array, ""]
+
+    @property
+    def elsewhere(self) -> "BallBearing":
+        """The same with the balls as far from where they stand as they come.
+
+        Every half of their pitch the ends of the long axis change places if their number is odd, so that a
+        quarter is farthest then; else it is half of it.
+        """
+        number = self.angle.shape[0]
+        turned = (0.5 if number % 2 else 1.0) * pi / number
+        return replace(self, angle=self.angle + turned)
 
     def race(self, radius: Float[Array, ""], waves: int) -> Float[Array, " wave"]:
         """Stiffness of the outer race against each number of waves, for one metre around [N/m2].
@@ -96,9 +119,8 @@ def ball_bearing(balls: Balls, diameter: float, width: float) -> BallBearing:
         diameter: pitch diameter of the flexspline [m].
         width: of its toothed ring, and of the race under it [m].
     """
-    number = PROPORTIONS.balls if balls.number is None else int(balls.number)
-    ball = PROPORTIONS.ball * diameter if balls.diameter is None else balls.diameter
-    race = PROPORTIONS.race * diameter if balls.race_thickness is None else balls.race_thickness
+    sizes = balls.sizes(diameter)
+    number, ball, race = int(sizes["balls"]), sizes["ball_diameter"], sizes["race_thickness"]
     circle = diameter - ball - 2.0 * race
     if not (circle > 0.0 and number * ball < pi * circle):
         raise InputError(
