@@ -232,7 +232,7 @@ def test_two_opposite_forces_bend_a_ring_of_thin_wall_as_in_a_handbook():
 
 def test_a_race_bends_beside_the_ring():
     """With the section of the rim it halves what two opposite forces bend."""
-    bearing = ball_bearing(Balls(race_thickness=RIM), 2.0 * RADIUS, WIDTH)
+    bearing = ball_bearing(Balls(race_thickness=RIM), 2.0 * RADIUS, 2.0 * RADIUS - RIM, WIDTH)
     loads = radial(np.array([0.0, np.pi]))
     alone, both = (moves(ring(1e-7), loads, *race).sum() for race in ((), (bearing.race,)))
     assert both == pytest.approx(alone / 2.0, rel=1e-3)

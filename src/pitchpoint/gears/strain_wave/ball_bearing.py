@@ -17,7 +17,15 @@ from pitchpoint.gears.strain_wave.ring_compliance import RingParts, of_modes, ri
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["BallBearing", "Balls", "ball_bearing", "on_balls", "palmgren_1959", "parts_on_balls"]
+__all__ = [
+    "BallBearing",
+    "Balls",
+    "ball_bearing",
+    "ball_circle",
+    "on_balls",
+    "palmgren_1959",
+    "parts_on_balls",
+]
 
 STEEL = {"young": 206e9, "poisson": 0.3}
 """Of the races, whatever the flexspline is made of."""
@@ -111,21 +119,36 @@ def palmgren_1959(diameter: float) -> float:
     return sqrt(diameter / 4.36e-8**3)
 
 
-def ball_bearing(balls: Balls, diameter: float, width: float) -> BallBearing:
+def ball_circle(balls: Balls, diameter: float, bore: float) -> float:
+    """Diameter of the circle on which the balls stand before the wave bends it [m].
+
+    Args:
+        balls: what is given of the bearing.
+        diameter: pitch diameter of the flexspline [m].
+        bore: of its rim, in which the outer race lies [m].
+
+    Example:
+        >>> round(ball_circle(Balls(), 60e-3, 58.35e-3) / 60e-3, 3)
+        0.87
+    """
+    sizes = balls.sizes(diameter)
+    return bore - 2.0 * sizes["race_thickness"] - sizes["ball_diameter"]
+
+
+def ball_bearing(balls: Balls, diameter: float, bore: float, width: float) -> BallBearing:
     """The bearing of a drive.
 
     Args:
-        balls: what is given of it.
-        diameter: pitch diameter of the flexspline [m].
+        balls, diameter, bore: as in `ball_circle`.
         width: of its toothed ring, and of the race under it [m].
     """
     sizes = balls.sizes(diameter)
     number, ball, race = int(sizes["balls"]), sizes["ball_diameter"], sizes["race_thickness"]
-    circle = diameter - ball - 2.0 * race
+    circle = ball_circle(balls, diameter, bore)
     if not (circle > 0.0 and number * ball < pi * circle):
         raise InputError(
             f"{number} balls of {1e3 * ball:.4g} mm under a race of {1e3 * race:.4g} mm do not fit into a "
-            f"flexspline of {1e3 * diameter:.5g} mm; fewer or smaller ones do",
+            f"flexspline with a bore of {1e3 * bore:.5g} mm; fewer or smaller ones do",
             key="balls" if balls.number is not None else "ball_diameter",
         )
     young, poisson = STEEL["young"], STEEL["poisson"]
