@@ -84,8 +84,13 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
-    data["torsional_stiffness"].attrs.update(covers="; ".join(yields) + assumed)
+    data["torsional_stiffness"].attrs.update(_covered("; ".join(yields), assumed))
     return data
+
+
+def _covered(yields: str, assumed: str) -> dict[str, str]:
+    """Attributes on what a stiffness is of: what yields, and what of it is assumed if anything is."""
+    return {"covers": yields} | ({"assumed": assumed} if assumed else {})
 
 
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
@@ -136,7 +141,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
         solve=solve,
     )
-    whole["torsional_stiffness"].attrs.update(covers=yields + assumed)
+    whole["torsional_stiffness"].attrs.update(_covered(yields, assumed))
     whole["path"].attrs.update(built.way)
     return whole.isel(torque=at)
 
@@ -376,7 +381,8 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("torsion")
     if data is None:
         return {"torsion": {}, "lost_motion": None}
-    of = {"stiffness_of": data["torsional_stiffness"].attrs.get("covers", "")}
+    told = data["torsional_stiffness"].attrs
+    of = {"stiffness_of": told.get("covers", "") + told.get("assumed", "")}
     return {
         "torsion": by_torque(data, WIND_UP) | of | _slopes(data),
         "lost_motion": float(data["lost_motion"]),
