@@ -156,6 +156,15 @@ def test_balls_that_go_on_moving_give_no_figures(monkeypatch):
     assert int(found.status.code[0]) == Code.NOT_CONVERGED
 
 
+def test_a_body_without_a_seat_finds_no_equilibrium():
+    held = body()
+    lost = replace(held, approach=held.approach * np.nan, shift=held.shift * np.nan)
+    _, _, found = _solved(lost, jnp.asarray(200.0), jnp.asarray(OWN))
+    for values in (found.force, found.approach, found.stiffness, found.balls):
+        assert np.all(np.isnan(values))
+    assert int(found.status.code[0]) == Code.NOT_CONVERGED
+
+
 def test_the_slope_is_that_of_balls_that_stiffen():
     step, load = 1e-3, 150.0
     ends = [float(solved(load + sign * step)[0]) for sign in (1.0, -1.0)]
