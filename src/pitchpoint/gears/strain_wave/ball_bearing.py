@@ -128,6 +128,7 @@ def ball_circle(balls: Balls, diameter: float, bore: float) -> float:
         bore: of its rim, in which the outer race lies [m].
 
     Example:
+        >>> from pitchpoint.gears.strain_wave.ball_bearing import Balls
         >>> round(ball_circle(Balls(), 60e-3, 58.4e-3) / 60e-3, 3)
         0.87
     """
