@@ -238,13 +238,13 @@ def test_running_without_load(drive: Outcome) -> None:
     told, place = figures(drive)["running"], [row["θ [degC]"] for row in rows].index("40")
     shown = float(rows[place]["T_start [N m]"])
     assert shown == pytest.approx(told["constant"]["starting_torque"][place], rel=1e-4)
-    torques = [[float(row[key]) for row in rows] for key in ("T_0 [N m]", "T_back [N m]")]
+    torques = [[float(row[key]) for row in rows] for key in ("T_0 at 2000 rpm [N m]", "T_back [N m]")]
     assert all(np.all(np.diff(torque) <= 0.0) for torque in torques)
     there = data.sel(law="constant", temperature=313.15)
     told = float(there["starting_torque"])
     assert words["starting torque"] == show.quantity("starting_torque", told)
     told = float(there["no_load_torque"].sel(speed=2000.0 * np.pi / 30.0, method="nearest"))
-    assert words["torque without load"] == show.quantity("no_load_torque", told)
+    assert words["torque without load at 2000\u00a0rpm"] == show.quantity("no_load_torque", told)
 
 
 def test_the_map_agrees_with_the_operating_point(drive: Outcome) -> None:

@@ -162,7 +162,7 @@ def torsion() -> xr.Dataset:
             "loaded_pairs": (("torque",), 1.0 + torque / 4.0),
             "zone_load": (("torque", "zone"), np.stack([torque, torque], axis=-1)),
             "path": (("phase", "pair"), angle / (2.0 * np.pi)),
-            "lost_motion": ((), 3e-4),
+            "kinematic_play": ((), 3e-4),
             "angular_transmission_error": (("torque", "phase"), np.outer(wind_up, [1.0, 1.01])),
             "angular_transmission_error_range": (("torque",), 0.01 * wind_up),
             "tooth_force": (("torque", "phase", "pair"), force),
@@ -365,7 +365,7 @@ def test_an_efficiency_of_the_teeth_alone_says_so(whole: Outcome, page: str) -> 
 
 def test_the_torsional_stiffness_says_what_yields(whole: Outcome, page: str) -> None:
     assert (
-        "pairs carry in the mean; without load it is free to turn by 1.031 arcmin between its flanks"
+        "pairs carry in the mean; without load its flanks let it turn freely by a kinematic play of 1.031 arcmin"
         in words(page)
     )
     assert torsion_answer(whole).endswith("; teeth and ring yield")
@@ -551,7 +551,7 @@ def test_the_transmission_error_is_drawn_around_its_mean(whole: Outcome) -> None
 
 def test_play_that_rounding_leaves_is_none(whole: Outcome) -> None:
     data = whole.parts["torsion"].copy()
-    data["lost_motion"] = 1e-17
+    data["kinematic_play"] = 1e-17
     one = replace(whole, parts={**whole.parts, "torsion": data})
     assert "without load" not in torsion_answer(one)
 

@@ -86,10 +86,10 @@ def _carrying(pairs: str) -> str:
 
 def _free(data: xr.Dataset) -> str:
     """Play between the flanks in words; empty without any."""
-    if not data["lost_motion"] > _PLAY * data["wind_up"].max():
+    if not data["kinematic_play"] > _PLAY * data["wind_up"].max():
         return ""
-    free = level("lost_motion", float(data["lost_motion"]), data)
-    return f"; without load it is free to {_words(data).moves} by {free} between its flanks"
+    free = level("kinematic_play", float(data["kinematic_play"]), data)
+    return f"; without load its flanks let it {_words(data).moves} freely by a kinematic play of {free}"
 
 
 def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
@@ -369,7 +369,7 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
         | {
             words: shown(name, float(data[name].values[k]))
             for words, name in (
-                ("lost motion at ±4 % [arcmin]", "catalogue_lost_motion"),
+                ("lost motion at ±4 % of the torque [arcmin]", "catalogue_lost_motion"),
                 ("hysteresis loss [arcmin]", "hysteresis_loss"),
             )
         }
@@ -397,6 +397,8 @@ def _blocks(page: Page) -> Iterator[Block]:
             "each the mean over its mesh cycle"
         )
         yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
+        if left_out := str(data.attrs.get("left_out", "")):
+            yield Paragraph(left_out, "note")
         yield from _table(slope_rows(outcome))
         yield from _table(part_rows(outcome))
         if "hysteresis_loss" in data:
@@ -410,11 +412,13 @@ def _answer(outcome: Outcome) -> list[tuple[str, str]]:
 
 
 def _screen(outcome: Outcome) -> list[Printed]:
-    slopes, note = slope_rows(outcome), str(outcome.parts["torsion"].attrs.get("note", ""))
-    rows = [Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else "")]
-    if not slopes:
-        return rows
-    return [*rows, Printed(rows=slopes, line=_NO_LOOP), Printed(rows=part_rows(outcome))]
+    slopes, attrs = slope_rows(outcome), outcome.parts["torsion"].attrs
+    note, left_out = (str(attrs.get(name, "")) for name in ("note", "left_out"))
+    return [
+        Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else ""),
+        Printed(rows=slopes, line=_NO_LOOP if slopes else left_out),
+        Printed(rows=part_rows(outcome)),
+    ]
 
 
 TORSION = Section(
