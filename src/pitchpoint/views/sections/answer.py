@@ -28,7 +28,7 @@ from pitchpoint.views.sections.back_driving import back_driving, jamming, locks_
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
 
-__all__ = ["ANSWER", "bearing_rows", "summary"]
+__all__ = ["ANSWER", "bearing_rows", "summary", "teeth_rows"]
 
 AVERAGES = {
     "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
@@ -215,7 +215,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     yield Printed(line=_oil(outcome))
     if "operation" in outcome.parts:
         yield summary(outcome)
-        yield Printed(rows=_at_teeth(outcome))
+        yield Printed(rows=teeth_rows(outcome))
         yield Printed(rows=bearing_rows(outcome))
 
 
@@ -260,7 +260,7 @@ def _locks(data: xr.Dataset, position: int) -> str:
     return locks_from(limit, told) if np.isfinite(limit) else told
 
 
-def _at_teeth(outcome: Outcome) -> list[dict[str, str]]:
+def teeth_rows(outcome: Outcome) -> list[dict[str, str]]:
     """What flanks bear at the operating point by law; none where nothing is known of it."""
     rows = [
         {"friction law": law} | {words: told for words, told in _borne(outcome, k)}
