@@ -177,7 +177,7 @@ def _bearings(outcome: Outcome, law: int) -> list[tuple[str, str]]:
     if "bearing_load" in data:
         loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
         found += [
-            (f"load on {place}", show.quantity("bearing_load", load))
+            (f"load on {place}".replace("_", " "), show.quantity("bearing_load", load))
             for place, load in loads
             if load > 0.0
         ]

@@ -245,7 +245,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     yield drag_panel(page.outcomes, page.curves)
     attributes = (one.parts["running"].attrs for one in page.having("running").values())
     for told in dict.fromkeys(str(one.get("fitted", "")) for one in attributes):
-        yield from [Paragraph(told, "note")] if told else []
+        yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
 BESIDE = Section(

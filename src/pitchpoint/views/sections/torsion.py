@@ -339,10 +339,11 @@ def part_rows(outcome: Outcome) -> list[dict[str, str]]:
     at = operating_point(outcome).torque
     each = [float(np.interp(at, data["torque"], values)) for values in data["wind_up_part"].values]
     order = sorted(range(len(each)), key=lambda k: -each[k])
+    words = f"at {level('torque', at, data)} [{show.unit_of('wind_up_part')}]"
     return [
         {
             "part of the wind-up": str(data["part"].values[k]),
-            head("wind_up_part"): shown("wind_up_part", each[k]),
+            words: shown("wind_up_part", each[k]),
             "share [%]": f"{100.0 * each[k] / sum(each):.1f}",
         }
         for k in order
@@ -388,7 +389,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     for it, outcome in zip(panels, page.having("torsion").values(), strict=True):
         if it.title:
             yield Heading(it.title)
-        note = f"In it: {it.note}." if it.note else ""
+        note = f"{it.note[0].upper()}{it.note[1:]}." if it.note else ""
         data = outcome.parts["torsion"]
         held = (
             "with the other members held, mean over the mesh cycle"
