@@ -384,6 +384,12 @@ def _table(rows: list[dict[str, str]]) -> Iterator[Block]:
         yield Table([*rows[0]], [[*row.values()] for row in rows])
 
 
+def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:
+    """Columns as rows, so that a narrow page holds them: a column for each name in the first one."""
+    names = [*rows[0]] if rows else []
+    return [{names[0]: name} | {row[names[0]]: row[name] for row in rows} for name in names[1:]]
+
+
 def _blocks(page: Page) -> Iterator[Block]:
     panels = torsion_panels(page.outcomes, page.curves)
     for it, outcome in zip(panels, page.having("torsion").values(), strict=True):
@@ -400,7 +406,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
         if left_out := str(data.attrs.get("left_out", "")):
             yield Paragraph(left_out, "note")
-        yield from _table(slope_rows(outcome))
+        yield from _table(_down(slope_rows(outcome)))
         yield from _table(part_rows(outcome))
         if "hysteresis_loss" in data:
             yield Paragraph(_NO_LOOP, "note")
