@@ -8,7 +8,7 @@ from pitchpoint.gears.strain_wave.groove import Groove
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.roots import root
 
-__all__ = ["FLATTENED", "LEVELS", "curvatures_in_contact"]
+__all__ = ["FLATTENED", "LEVELS", "curvature_in_contact"]
 
 FLATTENED = 1e-4
 """Growth of the gap up to the edge of a contact, in modules: 4 w/(pi E') of steel teeth of 0.3 mm under
@@ -23,22 +23,21 @@ Each = Float[Array, "*b"]
 Sides = Float[Array, "side level *b"]
 
 
-def curvatures_in_contact(
+def curvature_in_contact(
     motion: ToothMotion,
     groove: Groove,
     along: Each,
     angle: Each,
     module: Float[Array, ""],
     largest: Float[Array, ""],
-) -> tuple[Each, Each]:
-    """Curvatures of flexspline and circular spline over the width of their contacts [1/m].
+) -> Each:
+    """Relative curvature of flexspline and circular spline over the width of their contacts [1/m].
 
     Up to the edge of a contact by Hertz, at its half-width b, the gap of the unloaded flanks grows by
     4 w/(pi E') = b^2/(2 R). The reach of such a growth to both sides of the nearest point gives b, hence
-    the relative curvature, and by how much the flank turns on the way gives its own. Where nothing jumps
-    these are the curvatures at the point; where the flank or the groove has a joint they go over into each
-    other. Against elastic half-planes with a joint of curvatures 1 to 50 the approach is within 3 %, and by
-    the curvature at the point up to 37 % too large.
+    the relative curvature. Where nothing jumps it is that at the point; where the flank or the groove has a
+    joint it goes over from one to the other. Against elastic half-planes with a joint of curvatures 1 to 50
+    the approach is within 3 %, and by the curvature at the point up to 37 % too large.
 
     Args:
         motion: of the flexspline teeth.
@@ -53,11 +52,8 @@ def curvatures_in_contact(
     levels = jnp.asarray(LEVELS).reshape(-1, *(1,) * along.ndim)
     grown = FLATTENED * module * levels
     reach = _reach(motion, groove, along, angle, grown, jnp.sqrt(2.0 * grown * largest))
-    widths = reach[0] + reach[1]
-    turn = motion.flank.angle(along + reach[1]) - motion.flank.angle(along - reach[0])
-    half_width = jnp.mean(widths / jnp.sqrt(levels), axis=0) / 2.0
-    own = jnp.mean(turn / widths, axis=0)
-    return own, 2.0 * FLATTENED * module / half_width**2 - own
+    half_width = jnp.mean((reach[0] + reach[1]) / jnp.sqrt(levels), axis=0) / 2.0
+    return 2.0 * FLATTENED * module / half_width**2
 
 
 def _reach(

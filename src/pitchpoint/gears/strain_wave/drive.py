@@ -18,7 +18,7 @@ from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.ball_bearing import BallBearing, on_balls, parts_on_balls
-from pitchpoint.gears.strain_wave.contact_width import curvatures_in_contact
+from pitchpoint.gears.strain_wave.contact_width import curvature_in_contact
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept
@@ -369,13 +369,14 @@ class StrainWave(Mesh):
         # Flanks that overlap do so by the error of the groove's table. The play comes on top of
         # that: cut off together, its derivative would be the sign of rounding where flanks touch.
         play = self.backlash / 2.0 * jnp.cos(at.direction)
-        flat = self.module, self.largest_radius
-        own, mate = curvatures_in_contact(motion, self.groove, found.along, angle, *flat)
-        roll = (at.turning - mate * at.sliding) / (own + mate)
+        sum_curvature = jnp.maximum(at.curvature + found.mate, 1.0 / self.largest_radius)
+        roll = (at.turning - found.mate * at.sliding) / sum_curvature
         roll = jnp.where(found.held, 0.0, roll)
         velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])
         local = unit(-at.direction) * velocity
         first = jnp.stack([roll, -roll, none])
+        mate = sum_curvature - at.curvature
+        flat = self.module, self.largest_radius
         # The space that a tooth meets lies at its angle around the circular spline.
         zone = _as_lanes(self._zone, jnp.asarray(phase))
         turned = unit(given * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
@@ -384,7 +385,7 @@ class StrainWave(Mesh):
             path=given / (2.0 * jnp.pi),
             width=none,
             weight=self.face_width * jnp.where(active, found.share, 1.0),
-            curvature=jnp.stack([jnp.stack([own, none]), jnp.stack([mate, none])]),
+            curvature=jnp.stack([jnp.stack([at.curvature, none]), jnp.stack([mate, none])]),
             surface=jnp.stack([first, first - jnp.real(local)]),
             normal=jnp.imag(local),
             gap=jnp.maximum(found.clearance, 0.0) + play,
@@ -392,6 +393,7 @@ class StrainWave(Mesh):
             point=_vector(turned * at.place),
             direction=_vector(1j * turned * unit(at.direction)),
             tangent=_vector(turned * unit(at.direction)),
+            felt=curvature_in_contact(motion, self.groove, found.along, angle, *flat),
             shape="line",
         )
 
