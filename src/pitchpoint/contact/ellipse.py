@@ -14,6 +14,7 @@ from pitchpoint.roots import root
 
 __all__ = [
     "ELLIPTIC_CONTACT",
+    "USUAL_ELLIPSE",
     "Ellipse",
     "EllipticContact",
     "hamrock_brewe_1983",
@@ -231,10 +232,16 @@ class EllipticContact:
     note: str = ""
 
 
+USUAL_ELLIPSE = "hertz_1881"
+"""Name of what is taken where nothing else is said."""
+
 ELLIPTIC_CONTACT = Registry(
     "elliptic contact",
     EllipticContact(
-        "hertz_1881", "elliptic integrals, as Hertz has them", hertz_1881, ("johnson_1985",)
+        USUAL_ELLIPSE,
+        "elliptic integrals, as Hertz has them",
+        hertz_1881,
+        ("johnson_1985", "carlson_1995"),
     ),
     EllipticContact(
         "hamrock_brewe_1983",

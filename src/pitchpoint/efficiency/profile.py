@@ -111,6 +111,9 @@ def _profile(
         "rolling_loss": state.rolling_loss,
         "radius": contacts.radius,
     }
+    if contacts.shape == "ellipse":
+        each |= {"semi_axis_along": at.semi_axis_along, "semi_axis_across": at.semi_axis_across}
+        mesh["contact_room"] = design.mesh.contact_room
     if design.drag:
         mesh["drag_loss"] = state.drag_loss
     mesh = {name: jnp.broadcast_to(v, result.phase.shape) for name, v in mesh.items()}

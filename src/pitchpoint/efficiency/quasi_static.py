@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, EllipticContact
+from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
@@ -77,7 +77,7 @@ class Design(eqx.Module):
     lubricant: Lubricant
     roughness: Roughness
     drag: tuple[Drag, ...] = ()
-    elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT["hertz_1881"])
+    elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
 
     @property
     def modulus(self) -> Float[Array, ""]:

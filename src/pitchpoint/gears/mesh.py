@@ -282,6 +282,11 @@ class Mesh(eqx.Module):
         return {}
 
     @property
+    def contact_room(self) -> Float[Array, ""]:
+        """From elliptic contacts to the nearest end of a face [m]; infinite where no face ends."""
+        return jnp.asarray(inf)
+
+    @property
     def other_flanks(self) -> Self:
         """The same mesh where its other flanks carry; gaps are counted from the same position."""
         return self

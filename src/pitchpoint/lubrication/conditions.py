@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import Contacts, Shape
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, Ellipse, EllipticContact
+from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, Ellipse, EllipticContact
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference
@@ -63,7 +63,7 @@ class Conditions(eqx.Module):
     roughness_ra: Float[Array, ""]
     roughness_rq: Float[Array, ""]
     reference: Reference | None
-    elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT["hertz_1881"])
+    elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
 
     @property
     def shape(self) -> Shape:

@@ -294,7 +294,12 @@ class InvolutePair(Mesh):
 
     @property
     def backlash(self) -> Float[Array, ""]:
-        """Circumferential backlash on the pitch circles j_wt [m]: the pitch less both tooth thicknesses."""
+        """Circumferential backlash on the pitch circles j_wt [m]."""
+        return self.section_backlash
+
+    @property
+    def section_backlash(self) -> Float[Array, ""]:
+        """That of one transverse section [m]: the pitch less both tooth thicknesses."""
         radii = jnp.abs(self.working_radii)
         halves = [gear.half_thickness_angle(r) for gear, r in zip(self.gears, radii, strict=True)]
         return 2.0 * jnp.sum(radii * (jnp.pi / jnp.abs(self.teeth) / 2.0 - jnp.stack(halves)))

@@ -11,6 +11,9 @@ __all__ = ["TorusFace", "least"]
 _STEPS = 8
 """Newton's steps to the lowest point of a separation that is a parabola but for a percent."""
 
+_FARTHEST = 0.9
+"""Part of the smaller radius beyond which no place is looked for: no face is that wide."""
+
 Place = Float[Arrays, "..."]
 
 
@@ -84,9 +87,10 @@ def least(
     def slope(place: Float[Array, ""]) -> Float[Array, ""]:
         return first.slope(place) + second.slope(place - axial_offset) + inclination
 
+    farthest = _FARTHEST * jnp.minimum(jnp.abs(first.radius), jnp.abs(second.radius))
     at = jnp.zeros(())
     for _ in range(_STEPS):
-        at = jax.lax.stop_gradient(at)
+        at = jnp.clip(jax.lax.stop_gradient(at), -farthest, farthest)
         bend = first.curvature(at) + second.curvature(at - axial_offset)
         at = at - slope(at) / jax.lax.stop_gradient(bend)
     apart = first.missing(at) + second.missing(at - axial_offset) + inclination * at

@@ -55,15 +55,15 @@ class TorusPair(InvolutePair):
     @property
     def place(self) -> Float[Array, ""]:
         """Where across the face the flanks touch, from the middle plane of gear 1 [m]."""
-        return self._least[0]
+        return self._least(self.inclination)[0]
 
     @property
     def misalignment_approach(self) -> Float[Array, ""]:
         """How far the flanks come towards each other by misalignment, along the line of action [m]."""
-        return -self._least[1]
+        return -self._least(self.inclination)[1]
 
     @property
-    def room(self) -> Float[Array, ""]:
+    def contact_room(self) -> Float[Array, ""]:
         """From the contact to the nearest end of a face [m]; negative where it has left one."""
         ends = self.widths / 2.0
         own = jnp.abs(jnp.stack([self.place, self.place - self.axial_offset]))
@@ -76,6 +76,22 @@ class TorusPair(InvolutePair):
         Source: sum of the curvatures of both flanks; 1/R_y = sin(alpha) (1/R_1 - 1/R_2) in the middle.
         """
         return 1.0 / jnp.sum(self._bends)
+
+    @property
+    def backlash(self) -> Float[Array, ""]:
+        """Circumferential backlash on the pitch circles [m]: that in the middle less what misalignment takes.
+
+        Both flanks come nearer to each other by misalignment, each where it touches; below zero both press.
+        """
+        middle = dataclasses.replace(self, profile_shift=self.middle_shift).section_backlash
+        apart = self._least(self.inclination)[1] + self._least(-self.inclination)[1]
+        return middle + apart / jnp.cos(self.working_pressure_angle)
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same gears on their other flanks, which lean the other way and lie back by the backlash."""
+        other = dataclasses.replace(super().other_flanks, inclination=-self.inclination)
+        return other.completed()
 
     @property
     def sections(self) -> tuple[ToothSection, ToothSection]:
@@ -108,7 +124,7 @@ class TorusPair(InvolutePair):
             **super().dimensions(),
             "transverse_radius": self.transverse_radius,
             "contact_place": self.place,
-            "contact_room": self.room,
+            "contact_room": self.contact_room,
             "misalignment_approach": self.misalignment_approach,
         }
 
@@ -118,6 +134,5 @@ class TorusPair(InvolutePair):
         own = (self.place, self.place - self.axial_offset)
         return jnp.stack([face.curvature(at) for face, at in zip(self.faces, own, strict=True)])
 
-    @property
-    def _least(self) -> tuple[Float[Array, ""], Float[Array, ""]]:
-        return least(*self.faces, axial_offset=self.axial_offset, inclination=self.inclination)
+    def _least(self, inclination: Float[Array, ""]) -> tuple[Float[Array, ""], Float[Array, ""]]:
+        return least(*self.faces, axial_offset=self.axial_offset, inclination=inclination)

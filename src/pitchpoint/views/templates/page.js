@@ -85,7 +85,7 @@
     // Parts of the face between which the line of a pair touches.
     function ends(entered) {
       if (entered > zone.alpha + zone.beta + 1e-9) return null;
-      if (!zone.beta) return [0, 1];
+      if (!zone.beta) return zone.ends;
       return [Math.max((entered - zone.alpha) / zone.beta, 0), Math.min(entered / zone.beta, 1)];
     }
 
@@ -118,7 +118,8 @@
         names[lane].setAttribute("y", y);
         names[lane].setAttribute("dy", ".35em");
       });
-      mesh.querySelector(".now").textContent = length.toPrecision(4) + " mm now;";
+      const now = mesh.querySelector(".now");
+      if (now) now.textContent = length.toPrecision(4) + " mm now;";
       return count;
     }
 
