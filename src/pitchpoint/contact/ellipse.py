@@ -67,7 +67,7 @@ def hertz_1881(*, load: Each, radius: Each, transverse_radius: Each, modulus: Ea
 
         >>> ball = hertz_1881(load=30.0, radius=9.5e-3, transverse_radius=9.5e-3, modulus=226.4e9)
         >>> round(float(ball.pressure) / 1e6), round(float(ball.approach) * 1e6, 2)
-        (938, 2.07)
+        (938, 1.61)
     """
     ratio = _ratio_of_axes(jnp.asarray(transverse_radius / radius))
     whole, cosine, sine = complete(ratio**-2)
@@ -156,6 +156,7 @@ def largest_shear(contact: Ellipse, poisson: Each) -> tuple[Float[Array, "*b"], 
 
     Example: a ball.
 
+        >>> from pitchpoint.contact.ellipse import hertz_1881
         >>> ball = hertz_1881(load=30.0, radius=9.5e-3, transverse_radius=9.5e-3, modulus=226.4e9)
         >>> stress, depth = largest_shear(ball, 0.3)
         >>> round(float(stress / ball.pressure), 3), round(float(depth / ball.across), 2)

@@ -114,6 +114,11 @@ class TorusPair(InvolutePair):
             across=self._bends,
         )
 
+    @property
+    def standardised(self) -> bool:
+        """The standards are for contact along lines."""
+        return False
+
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
         """Moments of inertia of discs as wide as the face of each gear [kg m2]."""
         return super().inertia(density) * self.widths / self.face_width
