@@ -147,6 +147,8 @@ def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:
     assert covers.startswith("teeth, ring and cup wall of the flexspline")
     assert "flange joint" in drive.parts["torsion"].attrs["note"]
     assert covers in TORSION.screen(drive)[0].line
+    assert "assumed proportions: rim thickness, wall" in TORSION.screen(drive)[0].line
+    assert "assumed proportions: rim thickness" in figures(drive)["torsion"]["stiffness_of"]
 
 
 def test_the_tables_on_screen(drive: Outcome) -> None:

@@ -6,6 +6,8 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.loss_sets import loss_sets, marks_of
 from pitchpoint.cases.schema import validate
 from pitchpoint.errors import InputError
+from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle
+from pitchpoint.gears.strain_wave.design import build_strain_wave
 
 NAME, PLACE = "strain_wave_component", "wave_generator_bearing"
 TREE = {
@@ -97,3 +99,17 @@ def test_gears_without_a_wave_generator_have_no_such_losses():
     gears = {"teeth": [23, 61], "module": "1 mm", "face_width": "9 mm"}
     with pytest.raises(InputError, match="scales with pitch diameter and deflection over pitch"):
         losses({**TREE, "gears": gears})
+
+
+@pytest.mark.parametrize(("ratio", "part"), [(50, 0.84), (100, 0.87), (160, 0.88)])
+def test_the_bearing_of_the_losses_is_that_of_the_stiffness(ratio, part):
+    """Its diameter is the circle of the balls in usual proportions: exact at 100, and as noted elsewhere."""
+    teeth, diameter = 2 * ratio, 60e-3
+    drive = build_strain_wave(
+        teeth=(teeth, teeth + 2), module=diameter / teeth, face_width=1e-2, bearing=Balls()
+    )
+    bore = 2.0 * float(drive.rim.radius) - float(drive.rim.thickness)
+    circle = ball_circle(Balls(), diameter, bore)
+    (value,) = constants("mean_diameter")
+    assert circle / diameter == pytest.approx(part, abs=0.006)
+    assert circle / diameter == pytest.approx(value, rel=0.035 if ratio != 100 else 0.002)

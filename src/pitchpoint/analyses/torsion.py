@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.caveats import proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
@@ -19,7 +20,7 @@ from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.on_balls import OnBalls
+from pitchpoint.gears.on_balls import Body, OnBalls, opened
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
@@ -63,6 +64,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     turned = at_output("wind_up")
     told_parts = (one.design.mesh.yielding for one in built.stages)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
+    assumed = proportions_words(built.stages)
     data = dataset(
         {
             "wind_up": (("torque",), turned.sum(axis=-1)),
@@ -79,11 +81,16 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
         title="torsion",
         travels=built.travels,
         warnings=_lost(built, turned.sum(axis=-1), torques),
-        note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it",
+        note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
-    data["torsional_stiffness"].attrs.update(covers="; ".join(yields))
+    data["torsional_stiffness"].attrs.update(_covered("; ".join(yields), assumed))
     return data
+
+
+def _covered(yields: str, assumed: str) -> dict[str, str]:
+    """Attributes on what a stiffness is of: what yields, and what of it is assumed if anything is."""
+    return {"covers": yields} | ({"assumed": assumed} if assumed else {})
 
 
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
@@ -97,6 +104,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     dims = {
         "path": ("phase", "pair"),
         "lost_motion": (),
+        "wind_up_by_balls": (),
         "angular_transmission_error": ("torque", "phase"),
         "mesh_torsional_stiffness": ("torque", "phase"),
         "tooth_force": ("torque", "phase", "pair"),
@@ -112,6 +120,8 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         data |= as_in_catalogues(every, found["wind_up"], held, play, rated, limits)
         data["wind_up_part"] = (("part", "torque"), np.stack([*parts.values()]))
     yields, rigid = built.design.mesh.yielding
+    assumed = proportions_words([built])
+    at_rated = float(np.interp(rated, every, found["wind_up"]))
     whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
@@ -126,11 +136,12 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
             *_lost(built, found["wind_up"][at], torques),
             *_on_edges(built, found["edge_share"][at], torques),
             *_loopless(built, friction),
+            *_pressed(found["lost_motion"]),
         ],
-        note=f"{yields} yield; {rigid} are not in it",
+        note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
         solve=solve,
     )
-    whole["torsional_stiffness"].attrs.update(covers=yields)
+    whole["torsional_stiffness"].attrs.update(_covered(yields, assumed))
     whole["path"].attrs.update(built.way)
     return whole.isel(torque=at)
 
@@ -169,6 +180,27 @@ def _on_edges(built: Built, share: np.ndarray, torques: np.ndarray) -> list[str]
         f"{built.carried.show(torques[much][0])} on. Loss, stiffness and pressure then hang on how those "
         "edges are made."
     ]
+
+
+def _pressed(lost_motion: float) -> list[str]:
+    """Teeth that balls without load push into both flanks of their spaces."""
+    if not lost_motion < 0.0:
+        return []
+    return [
+        "Without load the balls of the wave generator press the teeth onto both flanks of their spaces, by "
+        f"{60.0 * np.degrees(-lost_motion):.2g} arcmin at the loaded member: the wind-up counts one flank."
+    ]
+
+
+def _of_balls(found: Mapping[str, Any], wind_up: float) -> str:
+    """How much the places of the balls change the wind-up at the operating point, in words."""
+    if "wind_up_by_balls" not in found or not wind_up > 0.0:
+        return ""
+    part = 100.0 * float(found["wind_up_by_balls"]) / wind_up
+    return (
+        "; a ball stands on the long axis, and with the balls half way to the next such place the "
+        f"wind-up at the operating point is {abs(part):.2g} % {'larger' if part > 0.0 else 'smaller'}"
+    )
 
 
 def _loopless(built: Built, friction: np.ndarray) -> list[str]:
@@ -213,14 +245,16 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
     approach, lost = found.wind_up + found.touch, np.isnan(found.wind_up)
+    turned = found.wind_up @ weight
     return {
         "phase": phase[::SHOWN],
         "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
-        "lost_motion": np.asarray(_lost_motion(design.mesh, known.contacts, known.phase)) @ weight,
+        "lost_motion": np.asarray(_lost_motion(design.mesh, known.contacts, known.phase, body))
+        @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
         "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
-        "wind_up": found.wind_up @ weight,
+        "wind_up": turned,
         "wind_up_range": np.ptp(found.wind_up, axis=-1),
         "torsional_stiffness": found.stiffness @ weight,
         "loaded_pairs": found.loaded_pairs @ weight,
@@ -230,7 +264,23 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
         "parts": _parts(design, known.contacts, found, weight),
+        **_by_balls(
+            built, known.contacts, weight, np.interp(built.case.operation.load, torques, turned)
+        ),
     }
+
+
+def _by_balls(
+    built: Built, contacts: Contacts, weight: np.ndarray, as_they_stand: float
+) -> dict[str, np.ndarray]:
+    """Wind-up at the operating point with the balls elsewhere less that as they stand; none without balls."""
+    other = built.design.mesh.balls_elsewhere
+    if other is None:
+        return {}
+    design = replace(built.design, mesh=other)
+    given = other, design.solids, built.terms, jnp.asarray(built.case.operation.load)
+    found = wound_up(*given, contacts, coupling(design, contacts))
+    return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
 
 
 def _part_of(some: np.ndarray, whole: np.ndarray) -> np.ndarray:
@@ -290,12 +340,17 @@ def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @program
-def _lost_motion(mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"]) -> Array:
+def _lost_motion(
+    mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
+) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
     other = mesh.other_flanks
     both = (mesh, contacts), (other, contacts if other is mesh else other.contacts(phase))
     return sum(
-        (touch(at.gap, jnp.abs(along(at.normal, one.loaded)), at.active) for one, at in both),
+        (
+            touch(opened(at.gap, body), jnp.abs(along(at.normal, one.loaded)), at.active)
+            for one, at in both
+        ),
         jnp.zeros(()),
     )
 
@@ -326,7 +381,8 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("torsion")
     if data is None:
         return {"torsion": {}, "lost_motion": None}
-    of = {"stiffness_of": data["torsional_stiffness"].attrs.get("covers", "")}
+    told = data["torsional_stiffness"].attrs
+    of = {"stiffness_of": told.get("covers", "") + told.get("assumed", "")}
     return {
         "torsion": by_torque(data, WIND_UP) | of | _slopes(data),
         "lost_motion": float(data["lost_motion"]),

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from typing import Any
 
 import equinox as eqx
@@ -42,7 +42,7 @@ from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import built_gears, family_of
-from pitchpoint.gears.family import Family
+from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.input.quantities import Quantity
@@ -215,6 +215,20 @@ class Built:
     def following(self) -> dict[str, Any]:
         """Values that the table of the gears leaves open, by key inside it."""
         return self.family.following(self.case.gears, self.design.mesh)
+
+    @property
+    def assumed(self) -> dict[str, Followed]:
+        """Those of them that rest on assumed proportions."""
+        found = self.following.items()
+        return {
+            key: one
+            for key, one in found
+            if isinstance(one, Followed) and one.status == "assumed" and self._open(key)
+        }
+
+    def _open(self, key: str) -> bool:
+        """True if the table of the gears leaves a value open."""
+        return reduce(getattr, key.split("."), self.case.gears) is None
 
     @cached_property
     def deviations(self) -> Surfaces:

@@ -291,6 +291,11 @@ class Mesh(eqx.Module):
         """The same mesh where its other flanks carry; gaps are counted from the same position."""
         return self
 
+    @property
+    def balls_elsewhere(self) -> "Mesh | None":
+        """The same mesh while the balls under its teeth stand elsewhere; None without balls."""
+        return None
+
     @abc.abstractmethod
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Where contacts lie on both members.

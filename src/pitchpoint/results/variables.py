@@ -180,6 +180,13 @@ VARIABLES: dict[str, Variable] = {
         "arcmin",
         "angle",
     ),
+    "wind_up_by_balls": Variable(
+        "wind-up at the operating point with the balls elsewhere less that as they stand",
+        "Δθ_b",
+        "rad",
+        "arcmin",
+        "angle",
+    ),
     "angular_transmission_error": Variable(
         "rotation of the loaded member under load", "θ_e", "rad", "arcmin", "angle"
     ),

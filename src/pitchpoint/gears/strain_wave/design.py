@@ -421,7 +421,7 @@ def _planned(
     wall = rim / 2.0 if wall_thickness is None else wall_thickness
     bottom = bottom_clearance * module
     root = neutral + rim / 2.0 + module * (form.addendum + form.dedendum) + w0 + bottom
-    cup = Cup(module * z1, neutral, rim, root, face_width)
+    cup, bore = Cup(module * z1, neutral, rim, root, face_width), 2.0 * neutral - rim
     parts = {
         "teeth": array([z1, z2], float),
         "module": array(module),
@@ -436,7 +436,9 @@ def _planned(
             cup_length=array(module * z1 / 2.0 if cup_length is None else cup_length),
             support_stiffness=array(support_stiffness),
         ),
-        "bearing": None if bearing is None else ball_bearing(bearing, module * z1, face_width),
+        "bearing": None
+        if bearing is None
+        else ball_bearing(bearing, module * z1, bore, face_width),
         "series": InSeries.rigid() if behind is None else in_series(behind, cup),
         "tips": tips,
         "edges_carry": edges_carry,

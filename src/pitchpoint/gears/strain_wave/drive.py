@@ -437,6 +437,13 @@ class StrainWave(Mesh):
         held = on_balls(self.bearing, self.rim, self.line, solids[0], loads)
         return dataclasses.replace(held, lanes=held.lanes + around)
 
+    @property
+    def balls_elsewhere(self) -> Mesh | None:
+        """The same drive with the balls of its wave generator as far from where they stand as they come."""
+        if self.bearing is None:
+            return None
+        return dataclasses.replace(self, bearing=self.bearing.elsewhere)
+
     def body_parts(
         self,
         contacts: Contacts,
