@@ -124,6 +124,13 @@ VARIABLES: dict[str, Variable] = {
         "place of the contacts across the face, from the middle of gear 1", "z"
     ),
     "contact_room": length("from the contacts to the nearest end of a face", "b_e"),
+    "largest_inclination": Variable(
+        "inclination of the axes at which the contact reaches an end of a face",
+        "γ",
+        "rad",
+        "mrad",
+        "angle",
+    ),
     "misalignment_approach": deviation("approach of the flanks by misalignment", "δ_m"),
     "tip_alteration_1": Variable("tip alteration coefficient of gear 1", "k1", "1"),
     "tip_alteration_2": Variable("tip alteration coefficient of gear 2", "k2", "1"),

@@ -69,6 +69,20 @@ class TorusPair(InvolutePair):
         own = jnp.abs(jnp.stack([self.place, self.place - self.axial_offset]))
         return jnp.min(ends - own)
 
+    def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Inclination, of whichever sense, at which a contact reaches an end of a face [rad].
+
+        Args:
+            semi_axis: of the contact across the rolling direction [m].
+
+        From the place at which flanks touch, where their slopes across the face and the inclination cancel.
+        """
+        low = jnp.maximum(-self.widths[0] / 2.0, self.axial_offset - self.widths[1] / 2.0)
+        high = jnp.minimum(self.widths[0] / 2.0, self.axial_offset + self.widths[1] / 2.0)
+        ends = jnp.stack([low + semi_axis, high - semi_axis])
+        leaning = self.faces[0].slope(ends) + self.faces[1].slope(ends - self.axial_offset)
+        return jnp.maximum(jnp.min(jnp.abs(leaning), axis=0), 0.0) * (ends[0] < ends[1])
+
     @property
     def transverse_radius(self) -> Float[Array, ""]:
         """Relative radius of curvature across the profile R_y [m].
