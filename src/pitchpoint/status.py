@@ -26,6 +26,7 @@ class Code(IntEnum):
     NO_CONTACT = 9
     NOT_CONVERGED = 10
     NO_DESIGN = 11
+    BEYOND_FACE = 12
 
     @property
     def sentence(self) -> str:
@@ -53,6 +54,7 @@ _SENTENCES = {
     Code.NO_CONTACT: "no contact can carry the load",
     Code.NOT_CONVERGED: "the iteration ended without a solution",
     Code.NO_DESIGN: "the dimensions give no gears that can run",
+    Code.BEYOND_FACE: "an elliptic contact is longer than the face has room for, and Hertz's theory ends",
 }
 
 
