@@ -562,7 +562,7 @@ def leaves_of(found):
     return {
         field.name: np.asarray(getattr(found, field.name))
         for field in dataclasses.fields(found)
-        if field.name != "shape"
+        if field.name != "shape" and getattr(found, field.name) is not None
     }
 
 

@@ -17,7 +17,7 @@ FLATTENED = 1e-4
 LEVELS = (0.25, 1.0, 2.25)
 """Of that growth, over which widths are averaged: a contact hardly feels what lies at its very edge."""
 
-_ROUGH = 1e-3
+_ROUGH = 1e-2
 
 Each = Float[Array, "*b"]
 Sides = Float[Array, "side level *b"]
