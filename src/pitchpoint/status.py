@@ -26,6 +26,7 @@ class Code(IntEnum):
     NO_CONTACT = 9
     NOT_CONVERGED = 10
     NO_DESIGN = 11
+    NOT_SETTLED = 12
 
     @property
     def sentence(self) -> str:
@@ -53,6 +54,7 @@ _SENTENCES = {
     Code.NO_CONTACT: "no contact can carry the load",
     Code.NOT_CONVERGED: "the iteration ended without a solution",
     Code.NO_DESIGN: "the dimensions give no gears that can run",
+    Code.NOT_SETTLED: "the vibration had not become steady when the longest run ended",
 }
 
 
