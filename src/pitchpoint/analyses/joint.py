@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import numbers
-from pitchpoint.analyses.kinematic_error import kinematic_error_part
+from pitchpoint.analyses.kinematic_error import own_error
 from pitchpoint.analyses.torsion import engaged_at, lost_motion, mean_friction, wound_ups
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import along
@@ -88,9 +88,11 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
     waves = _waves(built, torsion.ripple, progress)
     joints = [_joint(built, torsion, free) for free in (False, True)]
     stacked = jax.tree.map(lambda *values: np.stack(values), *joints)
-    own = jax.device_get(_own(stacked, waves.order))
+    own = jax.device_get(_own(stacked, jnp.asarray(waves.order)))
     speeds = _speeds(built, own["critical_speed"], waves)
-    found = jax.device_get(_against_speed(stacked, waves.order, waves.amplitude, speeds))
+    found = jax.device_get(
+        _against_speed(stacked, *map(jnp.asarray, (waves.order, waves.amplitude, speeds)))
+    )
     courses = _courses(built, joints[0], waves, own["critical_speed"][0, waves.strongest])
     axes = ("motor", "excitation", "speed")
     over = {1: ("motor",), 2: ("motor", "excitation")}
@@ -177,7 +179,7 @@ def _of_deviations(built: Built, progress: Progress) -> list[tuple[str, float, f
     """The same of deviations of both members, at orders below half the number of teeth."""
     if not any(built.deviations):
         return []
-    data = kinematic_error_part(built, built.deviations, progress)
+    data = own_error(built, progress)
     spectrum = data["kinematic_error_spectrum"].sel(curve="under load").values
     turns = _turns(built)
     return [

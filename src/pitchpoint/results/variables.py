@@ -120,6 +120,7 @@ VARIABLES: dict[str, Variable] = {
     "course_speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
     "course_torque": torque("amplitude of the torque with the whole curve", "|T|"),
     "linear_torque": torque("amplitude of the torque by the tangent", "|T|"),
+    "course_smallest_torque": torque("smallest torque of the drive there", "T min"),
     "course_status": Variable("status of the vibration with the whole curve", "", "1"),
     "largest_multiplier": Variable("largest Floquet multiplier", "|Λ|", "1"),
     "vibration_status": Variable("status of the vibration", "", "1"),
