@@ -327,10 +327,11 @@ def _unsettled(courses: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def _still(built: Built) -> str | None:
+    """Only where a case asks for it, and its gears have no vibration of another kind."""
     if not built.transmits:
-        return "nothing is transmitted by a test rig"
+        return Unasked("nothing is transmitted by a test rig")
     if built.design.mesh.along_action:
-        return "the vibration of these gears is computed along their line of action"
+        return Unasked("the vibration of these gears is computed along their line of action")
     return Unasked("the case has no [dynamics]") if built.case.dynamics is None else None
 
 

@@ -42,7 +42,7 @@ CREEP = 1e-3
 _WORKS = 3
 
 One = Float[Arrays, ""]
-Times = Float[Array, " time"]
+Times = Float[Array, "*time"]
 
 
 class Drive(eqx.Module):
@@ -84,7 +84,7 @@ class Course(eqx.Module):
     """Motion of a joint over time.
 
     Attributes:
-        time: [s].
+        time: an axis of it, or none for one moment [s].
         motor: rotation of the driver over the ratio, beyond that of the even motion [rad].
         wind_up: from the middle of the play [rad].
         torque: of the drive on the load [N m].

@@ -26,7 +26,15 @@ from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, S
 __all__ = ["JOINT", "critical_rows", "joint_answer", "joint_panel"]
 
 _OWN = ("natural_frequency", "joint_damping_ratio", "reduced_inertia", "torsional_stiffness")
-_CURVE = ("course_speed", "course_torque", "linear_torque", "course_smallest_torque")
+_CURVE = {
+    "course_speed": "driver speed",
+    "course_torque": "amplitude of the torque",
+    "linear_torque": "by the tangent",
+    "course_smallest_torque": "smallest torque",
+}
+_PLAY = 1e-6
+"""Play that is worth a word [rad]."""
+
 _APART = 0.1
 """Part of the axis by which marks of critical speeds stand apart."""
 
@@ -163,10 +171,14 @@ def _campbell(name: str, data: xr.Dataset) -> Figure:
     )
 
 
+def _title(name: str, data: xr.Dataset) -> str:
+    return f"{show.described(name, data).long_name} {head(name, data)}"
+
+
 def _own_table(outcome: Outcome) -> Table:
     data = outcome.parts["joint"]
     rows = [
-        (head(name, data), *(shown(name, float(value), data) for value in data[name].values))
+        (_title(name, data), *(shown(name, float(value), data) for value in data[name].values))
         for name in _OWN
     ]
     return Table(["", *(str(motor) for motor in data["motor"].values)], rows, compact=True)
@@ -177,7 +189,10 @@ def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
     data = outcome.parts["joint"]
     return [
         {"at the": str(name)}
-        | {head(one, data): shown(one, float(data[one].values[k]), data) for one in _CURVE}
+        | {
+            f"{told} [{show.unit_of(one, data)}]": shown(one, float(data[one].values[k]), data)
+            for one, told in _CURVE.items()
+        }
         for k, name in enumerate(data["course"].values)
     ]
 
@@ -190,8 +205,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Paragraph(
             "Motor and load on both sides of the drive, with its error between them: small vibrations by the "
             "tangent of the wind-up at the operating torque. The damping ratio, "
-            f"{words(outcome, 'dynamics', 'damping_ratio')}, is that of the free joint, assumed where the case "
-            "gives none."
+            f"{words(outcome, 'dynamics', 'damping_ratio')}, is that of the free joint, assumed where the "
+            "case gives none."
         )
         yield _own_table(outcome)
         rows = critical_rows(outcome)
@@ -205,10 +220,13 @@ def _blocks(page: Page) -> Iterator[Block]:
 
 def _whole(data: xr.Dataset) -> str:
     """What the integration in time adds."""
-    play = show.quantity("lost_motion", float(data["lost_motion"]), of=data)
+    play = float(data["lost_motion"])
+    told = (
+        f"its play of {show.quantity('lost_motion', play, of=data)}" if play > _PLAY else "no play"
+    )
     return (
-        f"With the whole curve of the wind-up, its play of {play} and both flanks, integrated in time until "
-        f"steady: the strongest wave, {data.attrs['strongest']}, on a motor that holds its speed."
+        f"With the whole curve of the wind-up, {told} and both flanks, integrated in time until steady: the "
+        f"strongest wave, {data.attrs['strongest']}, on a motor that holds its speed."
     )
 
 
