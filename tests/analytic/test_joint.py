@@ -239,9 +239,7 @@ def test_a_free_motor_vibrates_as_the_tangent_says() -> None:
     # The wind-up of the state counts with the error, whose rate is zero at its crest.
     start = [swing["motor"][0], rates["motor"], rest + swing["wind_up"][0] + small]
     wave = Excitation(array([2.0]), array([small]), array([0.0]))
-    there = course(
-        made, wave, Drive.steady(speed), array(TIMES), array([*start, rates["wind_up"]])
-    )
+    there = course(made, wave, Drive.steady(speed), array(TIMES), array([*start, rates["wind_up"]]))
     size = np.ptp(swing["wind_up"])
     np.testing.assert_allclose(there.wind_up - rest, swing["wind_up"], atol=1e-4 * size)
     np.testing.assert_allclose(there.motor, swing["motor"], atol=1e-3 * np.ptp(swing["motor"]))

@@ -137,7 +137,7 @@ class Joint(eqx.Module):
         """Of the wind-up for small vibrations, without damping [1/s].
 
         f = sqrt(K (1/J1 + 1/J2))/(2 pi); on a held motor that of makers, sqrt(K/J2)/(2 pi).
-        Source: Harmonic Drive, CSF-3 manual, chapter 8.
+        Source: Harmonic Drive Systems, CSF-3 Series, manual, chapter 8.
         """
         return jnp.sqrt(self.stiffness / self.reduced) / (2.0 * jnp.pi)
 
