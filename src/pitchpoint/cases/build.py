@@ -490,7 +490,8 @@ def _check_joint(case: Case, asked: Dynamics) -> None:
     """InputError for what the torsional vibration of a joint does not take, or lacks."""
     if not case.gears.transmits:
         raise InputError(
-            "vibration is computed of gears that transmit, which a test rig does not; leave this table out",
+            "vibration is computed along a line of action, which these gears do not have; leave this "
+            "table out",
             key="dynamics",
         )
     strange = [key for key in _ALONG_ACTION if getattr(asked, key) != _usual(key)]
