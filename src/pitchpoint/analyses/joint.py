@@ -13,7 +13,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.analyses.kinematic_error import own_error
-from pitchpoint.analyses.torsion import engaged_at, lost_motion, mean_friction, wound_ups
+from pitchpoint.analyses.torsion import engaged_at, kinematic_play, mean_friction, wound_ups
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import along
 from pitchpoint.dynamics.joint import Joint, Sliding, respond
@@ -103,7 +103,7 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
             **{name: (("course",), values) for name, values in courses.items()},
             "wave_order": (("excitation",), waves.order),
             "wave_amplitude": (("excitation",), waves.amplitude),
-            "lost_motion": ((), float(torsion.curve.play)),
+            "kinematic_play": ((), float(torsion.curve.play)),
         },
         {
             "motor": [*MOTORS],
@@ -130,7 +130,7 @@ def _torsion(built: Built) -> _Torsion:
     at = int(np.flatnonzero(TORQUES == 1.0)[0])
     ripple = np.exp(-2j * np.pi * np.asarray(known.phase)) * weight
     approach = (found.wind_up + found.touch)[at] if rated else found.touch[at]
-    play = np.asarray(lost_motion(mesh, known.contacts, known.phase, body)) @ weight
+    play = np.asarray(kinematic_play(mesh, known.contacts, known.phase, body)) @ weight
     slope = 1.0 / ((1.0 / found.stiffness) @ weight)
     curve = WindUpCurve(*map(array, (found.wind_up @ weight, torques, slope, max(play, 0.0))))
     sliding = _sliding(built, known, each[at].force if rated else 0.0 * each[at].force)

@@ -14,6 +14,7 @@ from pitchpoint.analyses.caveats import proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
@@ -31,7 +32,7 @@ from pitchpoint.status import locked_or_lost, told
 __all__ = [
     "TORSION",
     "engaged_at",
-    "lost_motion",
+    "kinematic_play",
     "mean_friction",
     "rigid",
     "torsion_part",
@@ -72,6 +73,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     turned = at_output("wind_up")
     told_parts = (one.design.mesh.yielding for one in built.stages)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
+    parts = _parts_of_stages(built, steps, each)
     assumed = proportions_words(built.stages)
     data = dataset(
         {
@@ -83,17 +85,58 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
                 ("torque",),
                 at_output("angular_transmission_error_range").sum(axis=-1),
             ),
-            "lost_motion": ((), at_output("lost_motion").sum()),
+            "kinematic_play": ((), at_output("kinematic_play").sum()),
+            **(
+                {"wind_up_part": (("part", "torque"), np.stack([*parts.values()]))} if parts else {}
+            ),
         },
-        {"torque": ("torque", torques), "stage": [*built.numbers]},
+        {
+            "torque": ("torque", torques),
+            "stage": [*built.numbers],
+            **({"part": [*parts]} if parts else {}),
+        },
         title="torsion",
         travels=built.travels,
-        warnings=_lost(built, turned.sum(axis=-1), torques),
+        warnings=[
+            *_lost(built, turned.sum(axis=-1), torques),
+            *_on_edges_of_stages(built, torques, each),
+        ],
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
+        left_out=_SLOPELESS if parts else "",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
     data["torsional_stiffness"].attrs.update(_covered("; ".join(yields), assumed))
     return data
+
+
+_SLOPELESS = (
+    "Slopes K1 to K3, lost motion and hysteresis loss as in catalogues are those of one mesh: the strain "
+    "wave gear in a file of its own has them."
+)
+
+
+def _parts_of_stages(
+    built: BuiltDrive, steps: np.ndarray, each: list[dict[str, Any]]
+) -> dict[str, np.ndarray]:
+    """Parts of the wind-up at the output by stage and name [rad]; nothing where no body couples teeth."""
+    if not any(found["parts"] for found in each):
+        return {}
+    stages = zip(built.numbers, steps, each, strict=True)
+    return {
+        f"stage {number}: {name}": step * values
+        for number, step, found in stages
+        for name, values in (found["parts"] or {"teeth": found["wind_up"]}).items()
+    }
+
+
+def _on_edges_of_stages(
+    built: BuiltDrive, torques: np.ndarray, each: list[dict[str, Any]]
+) -> list[str]:
+    return [
+        in_stage(number, told)
+        for number, found in zip(built.numbers, each, strict=True)
+        for told in _on_edges(built, torques, _edges(found))
+    ]
 
 
 def _covered(yields: str, assumed: str) -> dict[str, str]:
@@ -111,7 +154,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     found = _torsion(built, every, friction)
     dims = {
         "path": ("phase", "pair"),
-        "lost_motion": (),
+        "kinematic_play": (),
         "wind_up_by_balls": (),
         "angular_transmission_error": ("torque", "phase"),
         "mesh_torsional_stiffness": ("torque", "phase"),
@@ -124,7 +167,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     parts = found.pop("parts")
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
     if told_of:
-        held, play = found["loading_torque"] - every, float(found["lost_motion"])
+        held, play = found["loading_torque"] - every, float(found["kinematic_play"])
         data |= as_in_catalogues(every, found["wind_up"], held, play, rated, limits)
         data["wind_up_part"] = (("part", "torque"), np.stack([*parts.values()]))
     yields, rigid = built.design.mesh.yielding
@@ -142,9 +185,9 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         travels=built.travels,
         warnings=[
             *_lost(built, found["wind_up"][at], torques),
-            *_on_edges(built, found["edge_share"][at], torques),
+            *_on_edges(built, torques, _edges(found)[at]),
             *_loopless(built, friction),
-            *_pressed(found["lost_motion"]),
+            *_pressed(found["kinematic_play"]),
         ],
         note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
         solve=solve,
@@ -162,6 +205,11 @@ def _reduces(built: Built) -> bool:
     return bool(driver > loaded)
 
 
+def _edges(found: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Part of the load on edges; none of teeth that nobody watches for them."""
+    return found.get("edge_share", np.zeros(found["wind_up"].shape))
+
+
 def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     """Torques at which teeth, ring and cup found no equilibrium."""
     lost = torques[np.isnan(wind_up)]
@@ -176,8 +224,8 @@ def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     ]
 
 
-def _on_edges(built: Built, share: np.ndarray, torques: np.ndarray) -> list[str]:
-    """Torques at which edges carry more than a little."""
+def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]:
+    """Torques of the loaded member at which edges carry more than a little."""
     much = share > MUCH
     if not much.any():
         return []
@@ -245,7 +293,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     return {
         "phase": phase[::SHOWN],
         "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
-        "lost_motion": np.asarray(lost_motion(design.mesh, known.contacts, known.phase, body))
+        "kinematic_play": np.asarray(kinematic_play(design.mesh, known.contacts, known.phase, body))
         @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
@@ -255,7 +303,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
         "torsional_stiffness": found.stiffness @ weight,
         "loaded_pairs": found.loaded_pairs @ weight,
         **_zone_load(found.inner_load @ weight),
-        "edge_share": _part_of(found.edge_load @ weight, found.force.sum(axis=(1, 2)) @ weight),
+        **_edge_share(design.mesh, found, weight),
         **_of_pairs(design.mesh, path, found.force),
         "loading_torque": loop.loading @ weight,
         "unloading_torque": loop.unloading @ weight,
@@ -297,6 +345,14 @@ def wound_ups(
     return each, body
 
 
+def _edge_share(mesh: Mesh, found: Any, weight: np.ndarray) -> dict[str, np.ndarray]:
+    """Part of the load on edges at each torque, of meshes that watch for them; none of no load."""
+    if not mesh.couples:
+        return {}
+    whole = found.force.sum(axis=(1, 2)) @ weight
+    return {"edge_share": (found.edge_load @ weight) / np.where(whole != 0.0, whole, 1.0)}
+
+
 def _by_balls(
     built: Built, contacts: Contacts, weight: np.ndarray, as_they_stand: float
 ) -> dict[str, np.ndarray]:
@@ -308,11 +364,6 @@ def _by_balls(
     given = other, design.solids, built.terms, jnp.asarray(built.case.operation.load)
     found = wound_up(*given, contacts, coupling(design, contacts))
     return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
-
-
-def _part_of(some: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """Part of a whole; none of nothing."""
-    return np.asarray(some / np.where(whole != 0.0, whole, 1.0))
 
 
 def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
@@ -367,7 +418,7 @@ def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @program
-def lost_motion(
+def kinematic_play(
     mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
 ) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
@@ -407,12 +458,12 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Wind-up over torque, and the play of the loaded member between its flanks [rad]."""
     data = parts.get("torsion")
     if data is None:
-        return {"torsion": {}, "lost_motion": None}
+        return {"torsion": {}, "kinematic_play": None}
     told = data["torsional_stiffness"].attrs
     of = {"stiffness_of": told.get("covers", "") + told.get("assumed", "")}
     return {
         "torsion": by_torque(data, WIND_UP) | of | _slopes(data),
-        "lost_motion": float(data["lost_motion"]),
+        "kinematic_play": float(data["kinematic_play"]),
     }
 
 
@@ -433,6 +484,6 @@ TORSION = Analysis(
     alone="",
     lacks=rigid,
     compute=_torsion_of,
-    main=(*WIND_UP, "lost_motion"),
+    main=(*WIND_UP, "kinematic_play"),
     figures=_figures,
 )

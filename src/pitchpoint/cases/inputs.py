@@ -176,7 +176,8 @@ def _of_oil(built: Built) -> Iterator[Row]:
         datum = known.get(name)
         if datum is None:
             continue
-        mark = Provenance(datum.status, datum.source, datum.note)
+        bend = built.lubricant.bend if name == "nu_0" else ""
+        mark = Provenance(datum.status, datum.source, "; ".join(filter(None, [datum.note, bend])))
         yield _row(OIL, name, datum.value, kind, mark)
 
 

@@ -188,15 +188,15 @@ VARIABLES: dict[str, Variable] = {
     ),
     "slope_torque": torque("torque at which a part of the curve ends", "T"),
     "catalogue_lost_motion": Variable(
-        "lost motion between plus and minus 4 % of the torque", "Δθ_4%", "rad", "arcmin", "angle"
+        "lost motion at ±4 % of the rated torque", "Δθ_4%", "rad", "arcmin", "angle"
     ),
     "hysteresis_loss": Variable(
         "hysteresis loss, the width of the loop without torque", "Δθ_h", "rad", "arcmin", "angle"
     ),
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
-    "lost_motion": Variable(
-        "play of the loaded member between its flanks without load",
+    "kinematic_play": Variable(
+        "kinematic play of the loaded member between its flanks",
         "Δθ_0",
         "rad",
         "arcmin",
@@ -300,7 +300,7 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "mesh_torsional_stiffness": stiffness(
             "stiffness at the output over the mesh cycle", "K(φ)"
         ),
-        "lost_motion": deviation("play of the loaded member without load", "Δs_0"),
+        "kinematic_play": deviation("kinematic play of the loaded member", "Δs_0"),
         "angular_transmission_error": deviation("travel of the loaded member under load", "s_e"),
         "angular_transmission_error_range": deviation(
             "static transmission error at the loaded member, peak to peak", "Δs_e"

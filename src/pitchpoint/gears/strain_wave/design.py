@@ -410,6 +410,7 @@ def _planned(
     _check_depth(form, deflection, clearance)
     if groove is not None:
         _check_free(form, deflection, clearance, z2 - z1)
+        _check_as_given(tip_relief, relief_length, bottom_clearance)
     if bearing is not None and bearing.play >= w0:
         raise InputError(
             f"a play of {1e3 * bearing.play:.4g} mm of the wave generator's balls leaves nothing of the "
@@ -755,6 +756,18 @@ def _check_free(
             "frees them",
             key="clearance",
         )
+
+
+def _check_as_given(*sizes: float) -> None:
+    """How tips and bottoms are made is said of swept splines; a given one is as it is given."""
+    usual = signature(build_strain_wave).parameters
+    for name, size in zip(("tip_relief", "relief_length", "bottom_clearance"), sizes, strict=True):
+        if size != usual[name].default:
+            raise InputError(
+                f"{size:.4g} modules were given, which would not shape a given circular spline; leave it "
+                "out, or leave the flanks of the circular spline to the flexspline's sweep",
+                key=name,
+            )
 
 
 def _roles(fixed: str, driver: str) -> tuple[int, int]:

@@ -220,9 +220,11 @@ def _blocks(page: Page) -> Iterator[Block]:
 
 def _whole(data: xr.Dataset) -> str:
     """What the integration in time adds."""
-    play = float(data["lost_motion"])
+    play = float(data["kinematic_play"])
     told = (
-        f"its play of {show.quantity('lost_motion', play, of=data)}" if play > _PLAY else "no play"
+        f"its play of {show.quantity('kinematic_play', play, of=data)}"
+        if play > _PLAY
+        else "no play"
     )
     return (
         f"With the whole curve of the wind-up, {told} and both flanks, integrated in time until steady: the "
