@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pitchpoint.analyses.joint import JOINT, joint_part
+from pitchpoint.analyses.joint import JOINT, RATED, TORQUES, _found, joint_part
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.errors import ConvergenceError
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome
@@ -143,6 +144,20 @@ def test_the_joint_is_told(deviating: Outcome, outcome: Outcome) -> None:
     assert "The damping ratio, 0.1, is that of the free joint" in page
     assert "The damping ratio, 0.03, is that of the free joint" in page
     assert "<dt>Joint resonance</dt>" in page
+
+
+def test_waves_far_from_resonance_are_not_integrated(deviating: Outcome, outcome: Outcome) -> None:
+    courses = [one.parts["joint"]["course"].values.tolist() for one in (deviating, outcome)]
+    assert courses == [["operating speed", "critical speed"], ["critical speed"]]
+
+
+def test_torques_without_equilibrium_end_the_curve() -> None:
+    points = np.stack([TORQUES, TORQUES, np.ones(TORQUES.size)])
+    points[0, -2:] = np.nan
+    assert _found(points).shape == (3, TORQUES.size - 2)
+    points[0, RATED] = np.nan
+    with pytest.raises(ConvergenceError, match="no spring for the joint to vibrate on"):
+        _found(points)
 
 
 def test_without_a_load_the_flanks_change_sides(case: str) -> None:

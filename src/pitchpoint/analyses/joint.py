@@ -19,6 +19,7 @@ from pitchpoint.contact.contacts import along
 from pitchpoint.dynamics.joint import Joint, Sliding, respond
 from pitchpoint.dynamics.joint_course import fading, settled
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
+from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
@@ -31,6 +32,9 @@ MOTORS = ("motor holds its speed", "motor runs free")
 
 TORQUES = np.array([0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0])
 """Points of the curve of the wind-up, over the torque of the operating point."""
+
+RATED = int(np.flatnonzero(TORQUES == 1.0)[0])
+"""Number of the point that is the operating one."""
 
 PARTS = 48
 """Parts in which the friction of the flanks is taken, by the rate that turns their sliding back."""
@@ -69,12 +73,11 @@ class _Waves:
 
 @dataclass(frozen=True)
 class _Torsion:
-    """What a joint asks of its drive: curve, friction of the flanks, ripple, and what was not found."""
+    """What a joint asks of its drive: curve, friction of the flanks, and the ripple of the teeth [rad]."""
 
     curve: WindUpCurve
     sliding: Sliding
     ripple: float
-    lost: bool
 
 
 def joint_part(built: Built, progress: Progress) -> xr.Dataset:
@@ -93,7 +96,7 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
     found = jax.device_get(
         _against_speed(stacked, *map(jnp.asarray, (waves.order, waves.amplitude, speeds)))
     )
-    courses = _courses(built, joints[0], waves, own["critical_speed"][0, waves.strongest])
+    names, courses = _courses(built, joints[0], waves, own["critical_speed"][0, waves.strongest])
     axes = ("motor", "excitation", "speed")
     over = {1: ("motor",), 2: ("motor", "excitation")}
     return dataset(
@@ -109,11 +112,11 @@ def joint_part(built: Built, progress: Progress) -> xr.Dataset:
             "motor": [*MOTORS],
             "excitation": waves.names,
             "speed": speeds,
-            "course": [*COURSES],
+            "course": names,
         },
         title="torsional vibration",
         travels=built.travels,
-        warnings=[*_unloaded(built, found, speeds, waves), *_unsettled(courses)],
+        warnings=[*_unloaded(built, found, speeds, waves), *_unsettled(names, courses)],
         note=f"{'' if any(built.deviations) else f'{ALONE} '}{LEFT_OUT}.",
         strongest=waves.names[waves.strongest],
         solve=told_of(courses["course_status"].astype(int)),
@@ -126,17 +129,31 @@ def _torsion(built: Built) -> _Torsion:
     torques = TORQUES * (rated or 1.0)
     each, body = wound_ups(built, known, torques)
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
+    at = RATED if rated else 0
     weight, mesh = np.asarray(known.weight), built.design.mesh
-    at = int(np.flatnonzero(TORQUES == 1.0)[0])
     ripple = np.exp(-2j * np.pi * np.asarray(known.phase)) * weight
-    approach = (found.wind_up + found.touch)[at] if rated else found.touch[at]
     play = np.asarray(kinematic_play(mesh, known.contacts, known.phase, body)) @ weight
     slope = 1.0 / ((1.0 / found.stiffness) @ weight)
-    curve = WindUpCurve(*map(array, (found.wind_up @ weight, torques, slope, max(play, 0.0))))
-    sliding = _sliding(built, known, each[at].force if rated else 0.0 * each[at].force)
-    return _Torsion(
-        curve, sliding, float(2.0 * np.abs(approach @ ripple)), bool(np.isnan(found.wind_up).any())
-    )
+    turned, carried, slopes = map(array, _found(np.stack([found.wind_up @ weight, torques, slope])))
+    curve = WindUpCurve(turned, carried, slopes, array(max(play, 0.0)))
+    approach = (found.wind_up + found.touch)[at]
+    sliding = _sliding(built, known, found.force[at])
+    return _Torsion(curve, sliding, float(2.0 * np.abs(approach @ ripple)))
+
+
+def _found(points: np.ndarray) -> np.ndarray:
+    """Points up to the first torque without equilibrium.
+
+    Raises:
+        ConvergenceError: that of the operating point has none.
+    """
+    lost = np.flatnonzero(~np.isfinite(points).all(axis=0))
+    if lost.size and lost[0] <= RATED:
+        raise ConvergenceError(
+            "no equilibrium of the teeth was found up to the torque of the operating point, and without one "
+            "there is no spring for the joint to vibrate on"
+        )
+    return points[:, : lost[0]] if lost.size else points
 
 
 def _sliding(built: Built, known: Any, force: np.ndarray) -> Sliding:
@@ -268,17 +285,24 @@ def _against_speed(
     return found
 
 
-COURSES = ("operating speed", "critical speed")
+NEAR = 10.0
+"""Times by which a wave may be faster or slower than the natural frequency to be integrated in time."""
 
 
-def _courses(built: Built, joint: Joint, waves: _Waves, critical: float) -> dict[str, np.ndarray]:
-    """The strongest wave with the whole curve of the wind-up, in time, beside its tangent."""
+def _courses(
+    built: Built, joint: Joint, waves: _Waves, critical: float
+) -> tuple[list[str], dict[str, np.ndarray]]:
+    """The strongest wave with the whole curve of the wind-up, in time, beside its tangent.
+
+    At its critical speed, and at the operating one where the wave is not far from the natural frequency.
+    """
     order, amplitude = (array(v[waves.strongest]) for v in (waves.order, waves.amplitude))
-    speeds = np.array([built.case.operation.speed, critical])
-    rows = [_course(joint, order, amplitude, array(speed)) for speed in speeds]
+    speeds = {"operating speed": built.case.operation.speed, "critical speed": critical}
+    near = {k: v for k, v in speeds.items() if 1.0 / NEAR < v / critical < NEAR}
+    rows = [_course(joint, order, amplitude, array(speed)) for speed in near.values()]
     torque, smallest, codes, linear = np.transpose(rows)
-    return {
-        "course_speed": speeds,
+    return [*near], {
+        "course_speed": np.array([*near.values()]),
         "course_torque": torque,
         "course_smallest_torque": smallest,
         "course_status": codes,
@@ -317,11 +341,11 @@ def _unloaded(
     ]
 
 
-def _unsettled(courses: Mapping[str, np.ndarray]) -> list[str]:
+def _unsettled(names: Sequence[str], courses: Mapping[str, np.ndarray]) -> list[str]:
     """Why the whole curve gives no steady vibration, where it does not."""
     return [
         f"Torsional vibration with the whole curve of the wind-up, at the {name}: {Code(int(code)).sentence}."
-        for name, code in zip(COURSES, courses["course_status"], strict=True)
+        for name, code in zip(names, courses["course_status"], strict=True)
         if not Code(int(code)).ok
     ]
 
