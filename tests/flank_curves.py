@@ -191,6 +191,23 @@ class Involutes(Curves):
         return phase + pair - self.helical * self.lag * (width + self.face / 2.0)
 
 
+class TorusFlanks(Involutes):
+    """Involutes of a pair of which tooth thicknesses vary across the face, by arcs of the pitch surfaces."""
+
+    def __init__(self, mesh):
+        super().__init__(mesh)
+        self.arcs = [float(face.radius) for face in mesh.faces]
+        self.lean = np.tan(float(mesh.pressure_angle)) * 2.0 / (self.teeth * self.module)
+
+    def section(self, path, direction):
+        return Across(self, path) if direction else InvoluteSection(self, path)
+
+    def thicker(self, member, across):
+        """Angle by which the flank of a tooth lies farther out than in the middle of the face [rad]."""
+        arc = self.arcs[member]
+        return self.lean[member] * np.sign(arc) * (np.sqrt(arc**2 - across**2) - abs(arc))
+
+
 class InvoluteSection(Section):
     """Involutes of both gears at a place of the path."""
 
@@ -211,6 +228,21 @@ class InvoluteSection(Section):
         touch = self.touch if member == 0 else curves.centres[1] - self.touch
         given = curves.base[member], self.turned[member], curves.angle, touch
         return side * involute(*given, side * across).imag
+
+
+class Across(InvoluteSection):
+    """Flanks along the face at a place of the path."""
+
+    def __init__(self, curves, path):
+        super().__init__(curves, path)
+        self.size = 0.2 * np.min(np.abs(curves.arcs))
+
+    def height(self, member, across):
+        curves, side = self.curves, 1.0 if member == 0 else -1.0
+        touch = self.touch if member == 0 else curves.centres[1] - self.touch
+        turned = self.turned[member] + curves.thicker(member, across)
+        local = involute(curves.base[member], turned, curves.angle, touch, np.zeros_like(across))
+        return side * local.imag
 
 
 class RackFlanks(Curves):

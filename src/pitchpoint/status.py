@@ -26,7 +26,8 @@ class Code(IntEnum):
     NO_CONTACT = 9
     NOT_CONVERGED = 10
     NO_DESIGN = 11
-    NOT_SETTLED = 12
+    BEYOND_FACE = 12
+    NOT_SETTLED = 13
 
     @property
     def sentence(self) -> str:
@@ -54,6 +55,7 @@ _SENTENCES = {
     Code.NO_CONTACT: "no contact can carry the load",
     Code.NOT_CONVERGED: "the iteration ended without a solution",
     Code.NO_DESIGN: "the dimensions give no gears that can run",
+    Code.BEYOND_FACE: "an elliptic contact is longer than the face has room for, and Hertz's theory ends",
     Code.NOT_SETTLED: "the vibration had not become steady when the longest run ended",
 }
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import equinox as eqx
 import numpy as np
 import pytest
-from flank_curves import Ball, Curves, Discs, Involutes, RackFlanks
+from flank_curves import Ball, Curves, Discs, Involutes, RackFlanks, TorusFlanks
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
@@ -24,6 +24,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
@@ -66,6 +67,19 @@ def rack(teeth=20, driver="pinion", **values):
     return built_gears(gears, "pinion", 6)[0].driven_by(driver)
 
 
+TORUS = {
+    "family": "torus",
+    "teeth": [40, 49],
+    "module": "2.5 mm",
+    "face_width": ["15 mm", "20 mm"],
+    "torus_radius": ["35 mm", "55 mm"],
+}
+
+
+def torus(driver="gear 1", **values):
+    return built_gears(TorusGears.model_validate(TORUS | values), driver, 6)[0]
+
+
 @dataclasses.dataclass(frozen=True)
 class Family:
     """How its mesh is made, and its flanks as curves; None where another file has them as positions."""
@@ -88,6 +102,10 @@ def pair(made, *args, **options):
 
 def travel(*args, **options):
     return Family(lambda: rack(*args, **options), RackFlanks)
+
+
+def tori(*args, **options):
+    return Family(lambda: torus(*args, **options), TorusFlanks)
 
 
 def wave(*args, **options):
@@ -131,6 +149,13 @@ FAMILIES: Mapping[str, Family] = {
         18, "rack", profile_shift=0.1, flank="right", mounting_distance="27.5 mm"
     ),
     "helical rack": travel(helix_angle="19.5 deg"),
+    "torus": tori(),
+    "torus, wheel drives, right flank, concave gear 1": tori(
+        "gear 2",
+        flank="right",
+        torus_radius=["60 mm", "40 mm"],
+        torus_offset=["110 mm", "21.25 mm"],
+    ),
     # Alike for the compiler; involute teeth and odd numbers are in test_strain_wave.py.
     "strain wave 200/202": wave(),
     "strain wave 200/202, flexspline fixed": wave(form=DOUBLE_ARCS["liu"], fixed="flexspline"),
@@ -222,7 +247,7 @@ def gradient_of_state(design, operation, phase, models):
 
 
 def models_for(mesh, law="constant", rolling="none"):
-    names = WHOLE_MESH if mesh.pitch_point else LOCAL
+    names = laws_for(mesh)
     return Models(
         friction=tuple(LAW[name] for name in names),
         choice=jnp.asarray(names.index(law)),
@@ -230,6 +255,10 @@ def models_for(mesh, law="constant", rolling="none"):
         sharing=LOAD_SHARING[sharing_for(mesh)],
         rolling=ROLLING_RESISTANCE[rolling],
     )
+
+
+def laws_for(mesh):
+    return WHOLE_MESH if mesh.pitch_point and mesh.shape == "line" else LOCAL
 
 
 def sharing_for(mesh):
@@ -365,10 +394,6 @@ def dot(rates, arms):
     return np.tensordot(rates, arms, axes=1)
 
 
-def laws(family):
-    return WHOLE_MESH if family.mesh.pitch_point else LOCAL
-
-
 def check_energy(found):
     """Power that the external torques put in is the power lost, and no friction gives any back."""
     assert np.all(found["residual"] < 1e-12)
@@ -377,13 +402,14 @@ def check_energy(found):
     assert np.all(found["loss"] >= 0.0)
 
 
-@pytest.mark.parametrize("rolling", ["none", "wu_cheng_1991"])
-def test_torque_route_equals_loss_route(family, rolling):
-    if rolling != "none" and family.at.shape != "line":
-        # Its film and load parameters are per length of a line: it is not defined for an ellipse.
-        pytest.skip("the formula is for line contacts")
+ROLLING = {"line": "wu_cheng_1991", "ellipse": "wu_cheng_1991_strips"}
+
+
+@pytest.mark.parametrize("rolls", [False, True], ids=["none", "rolling"])
+def test_torque_route_equals_loss_route(family, rolls):
+    rolling = ROLLING[family.at.shape] if rolls else "none"
     operation = operation_for(family.mesh)
-    for law in laws(family):
+    for law in laws_for(family.mesh):
         found = states(family, law, rolling)
         check_energy(found)
         rates = family.told.motion * float(operation.speed)
@@ -620,7 +646,7 @@ def test_every_lane_is_finite(family):
 @pytest.mark.parametrize("load", [0.0, None], ids=["no load", "loaded"])
 def test_every_lane_and_state_is_finite_with_its_gradient(family, load):
     """On the events too, where rounding decides on which side they are."""
-    for law in laws(family):
+    for law in laws_for(family.mesh):
         value, gradient, _ = family.differentiated(law, load)
         assert np.isfinite(value)
         for path, leaf in jax.tree_util.tree_leaves_with_path(floats(gradient)):

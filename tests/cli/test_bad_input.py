@@ -33,6 +33,7 @@ from pitchpoint.gears.cylindrical import table as cylindrical
 from pitchpoint.gears.rack_and_pinion import table as rack_and_pinion
 from pitchpoint.gears.strain_wave import table as strain_wave
 from pitchpoint.gears.table import MODULE
+from pitchpoint.gears.torus import table as torus
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
@@ -207,6 +208,31 @@ speed = "200 rpm"
 temperature = "60 degC"
 """)
 
+TORUS = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads("""
+[gears]
+family = "torus"
+teeth = [40, 49]
+module = "2.5 mm"
+face_width = ["15 mm", "20 mm"]
+torus_radius = ["35 mm", "55 mm"]
+centre_distance = "111.4 mm"
+inclination = "2 mrad"
+axial_offset = "0.1 mm"
+
+[gears.deviations]
+gear_1 = [{ order = 1, amplitude = "5 um", phase = "30 deg" }]
+gear_2 = [{ order = 2, amplitude = "3 um" }]
+
+[operation]
+torque = "49 N m"
+speed = "100 rad/s"
+temperature = "60 degC"
+
+[models]
+elliptic_contact = "hamrock_brewe_1983"
+rolling_resistance = "wu_cheng_1991_strips"
+""")
+
 DRIVE = tomllib.loads("""
 [stages.1]
 driver = "gear 1"
@@ -259,6 +285,7 @@ BASES = {
     "strain wave": STRAIN_WAVE,
     "involute": INVOLUTE,
     "rack": GANTRY,
+    "torus": TORUS,
     "rig": RIG,
 }
 WALKS = [
@@ -267,6 +294,7 @@ WALKS = [
     ("involute", strain_wave.InvoluteTooth, ("gears", "tooth")),
     ("involute", strain_wave.InvoluteGroove, ("gears", "circular_spline")),
     ("rack", rack_and_pinion.RackAndPinionGears, ("gears",)),
+    ("torus", torus.TorusGears, ("gears",)),
     ("rig", ball_on_disc.BallOnDiscRig, ("gears",)),
 ]
 """Sound case, table and its place: together every table of the schema."""
@@ -890,7 +918,15 @@ def test_the_whole_case_is_sound(
 def test_the_walk_reaches_every_table() -> None:
     defined = {
         each
-        for module in (schema, ball_on_disc, cylindrical, every, rack_and_pinion, strain_wave)
+        for module in (
+            schema,
+            ball_on_disc,
+            cylindrical,
+            every,
+            rack_and_pinion,
+            strain_wave,
+            torus,
+        )
         for each in vars(module).values()
         if isinstance(each, type) and issubclass(each, BaseModel)
     }

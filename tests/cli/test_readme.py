@@ -23,7 +23,7 @@ from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-PAIR, MODIFIED, PLASTIC, RACK, WAVE, STAGES, BALL, TARGETS = (
+PAIR, MODIFIED, PLASTIC, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
     text for kind, text in BLOCKS if kind == "toml"
 )
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
@@ -36,6 +36,7 @@ CASES = {
     "modified": (PAIR, MODIFIED),
     "plastic": (PAIR, PLASTIC),
     "rack": (PAIR, RACK),
+    "torus": (PAIR, TORUS),
     "wave": WAVE,
     "stages": STAGES,
     "ball": BALL,

@@ -17,6 +17,7 @@ from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
 __all__ = [
+    "beyond_face",
     "conformal_warning",
     "demand_convergence",
     "demand_motion",
@@ -25,6 +26,7 @@ __all__ = [
     "jamming_words",
     "pressure_warning",
     "proportions_words",
+    "room_warning",
     "told_of_law",
     "why_outside",
 ]
@@ -36,6 +38,7 @@ TOLERANCE = 1e-10
 NEARLY_JAMMED = 1e-3
 """Distance from the coefficient that locks the mesh, relative, at which it is said to be reached."""
 
+LENGTH = Quantity("length", 0.0, 1e3, "mm")
 PRESSURE = Quantity("pressure", 0.0, 1e15, "GPa")
 
 LEAST_FACE = 3.0
@@ -170,6 +173,33 @@ def faces_warning(points: Sequence[Built], carrying: np.ndarray, slices: np.ndar
             f"{most:.2g} %, gets no load: there flanks do not touch."
         )
     return told
+
+
+def beyond_face(run: Mapping[str, Any]) -> np.ndarray:
+    """True at nodes where an elliptic contact is longer than the face has room for [node]."""
+    if "contact_room" not in run:
+        return np.zeros(np.shape(run["weight"]), bool)
+    longest = np.asarray(run["semi_axis_across"]).max(axis=(1, 2))
+    found: np.ndarray = longest > np.asarray(run["contact_room"])
+    return found
+
+
+def room_warning(run: Mapping[str, Any]) -> list[str]:
+    """Elliptic contacts that are longer than the face has room for."""
+    if not beyond_face(run).any():
+        return []
+    longest, room = (float(np.max(run[name])) for name in ("semi_axis_across", "contact_room"))
+    return [
+        fails(
+            f"the contact reaches {_length(longest)} to each side across the face, and the nearest end of a "
+            f"face is {_length(room)} away: its pressure, approach and film are those of an ellipse that has "
+            "room."
+        )
+    ]
+
+
+def _length(value: float) -> str:
+    return LENGTH.show(float(f"{value:.3g}"))
 
 
 def pressure_warning(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:

@@ -7,18 +7,20 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.caveats import (
+    beyond_face,
     conformal_warning,
     demand_convergence,
     demand_motion,
     face_warning,
     pressure_warning,
+    room_warning,
     told_of_law,
     why_outside,
 )
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost
+from pitchpoint.status import Code, locked_or_lost
 from pitchpoint.status import told as told_of
 
 __all__ = [
@@ -55,13 +57,17 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     warnings += conformal_warning(mesh, runs[0])
     warnings += pressure_warning(built, runs)
     warnings += face_warning(built, runs[0])
+    warnings += room_warning(runs[0])
+    code = locked_or_lost(each["locked"][1])
+    beyond = np.stack([beyond_face(run) for run in runs])
+    code = np.where(beyond & (code == Code.SOLVED), int(Code.BEYOND_FACE), code)
     data = dataset(
         {**common, **each},
         {"law": names},
         title="mesh cycle",
         travels=built.travels,
         warnings=warnings,
-        solve=told_of(locked_or_lost(each["locked"][1]), each["residual"][1]),
+        solve=told_of(code, each["residual"][1]),
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )

@@ -33,6 +33,7 @@ from pitchpoint.cases.solids import (
     solids_in_use,
     surrounded,
 )
+from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
@@ -353,6 +354,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         lubricant=_built_oil(record),
         roughness=_roughness(case.roughness),
         drag=drags(case.losses, case.bodies, {mesh.inner_bearing}),
+        elliptic=ELLIPTIC_CONTACT[case.models.elliptic_contact],
     )
     told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
     told += _half_of_a_line(case.lubricant)
@@ -456,6 +458,11 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
             raise error.at(key=key) from None
     if own is not None:
         demand_shape(own, mesh.shape)
+    if mesh.shape == "line" and models.elliptic_contact != USUAL_ELLIPSE:
+        raise InputError(
+            f"these gears touch along lines; leave it at {USUAL_ELLIPSE}",
+            key="models.elliptic_contact",
+        )
 
 
 def _check_models(case: Case, mesh: Mesh) -> None:

@@ -164,6 +164,12 @@ def _rollings() -> list[str]:
     return list(ROLLING_RESISTANCE)
 
 
+def _ellipses() -> list[str]:
+    from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
+
+    return list(ELLIPTIC_CONTACT)
+
+
 def _films() -> list[str]:
     from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 
@@ -355,6 +361,9 @@ class Choices(Table):
     )
     film_thickness: Annotated[str, BeforeValidator(named(_films, "film thickness law"))] = (
         "dowson_higginson_1959"
+    )
+    elliptic_contact: Annotated[str, BeforeValidator(named(_ellipses, "elliptic contact"))] = (
+        "hertz_1881"
     )
     tooth_compliance: Annotated[
         str, BeforeValidator(named(_compliances, "tooth compliance model"))

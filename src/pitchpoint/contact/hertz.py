@@ -1,13 +1,19 @@
-"""Hertz pressure of line and elliptic contacts."""
+"""Line contacts of two solids: half-width, pressure, and the shear below the surface."""
 
 from jaxtyping import Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers, root
 
-__all__ = ["elliptic_pressure", "line_half_width", "line_pressure"]
+__all__ = ["line_half_width", "line_pressure", "line_shear"]
 
 Each = Float[Numbers, "*#b"]
+
+_DEPTH = 0.7861513777574233
+"""Root of (1 + s^2)^3 = s^2 (2 + s^2)^2, the square root of the golden section."""
+
+_SHEAR = 0.3002831060007762
+"""Shear there over the largest pressure: s - s^2/sqrt(1 + s^2)."""
 
 
 def line_half_width(*, line_load: Each, radius: Each, modulus: Each) -> Each:
@@ -48,36 +54,19 @@ def line_pressure(*, line_load: Each, radius: Each, modulus: Each) -> Each:
     return found
 
 
-def elliptic_pressure(
-    *,
-    load: Each,
-    radius: Each,
-    transverse_radius: Each,
-    modulus: Each,
-) -> Each:
-    """Largest pressure of an elliptic contact [Pa], exact for a circle, within 3 % of Hertz otherwise.
+def line_shear(*, pressure: Each, half_width: Each) -> tuple[Each, Each]:
+    """Largest shear stress below a line contact [Pa] and its depth [m], whatever Poisson's ratio.
 
     Args:
-        load: normal load [N], not negative.
-        radius: relative radius in the rolling direction R_x [m].
-        transverse_radius: relative radius across it R_y [m].
-        modulus: E' [Pa] with 2/E' = sum of (1 - nu^2)/E over both members.
+        pressure: largest one, p_H [Pa].
+        half_width: b [m].
 
-    Valid for 0.01 <= R_y/R_x <= 100. Source: Hamrock and Brewe (1983), eqs. 1-8.
+    Half the difference of the principal stresses at x = 0, p_H (s - s^2/sqrt(1 + s^2)) with s = z/b, at its
+    largest where (1 + s^2)^(3/2) = s (2 + s^2). Source: Johnson, Contact Mechanics (1985), eqs. 4.46, 4.47.
 
-    Example: a steel ball of 19 mm on a disc.
-
-        >>> pressure = elliptic_pressure(
-        ...     load=30.0, radius=9.5e-3, transverse_radius=9.5e-3, modulus=226.4e9
-        ... )
-        >>> round(float(pressure) / 1e6)
-        938
+    Example:
+        >>> stress, depth = line_shear(pressure=1e9, half_width=1e-4)
+        >>> round(stress / 1e9, 5), round(depth / 1e-4, 5)
+        (0.30028, 0.78615)
     """
-    slender = jnp.maximum(transverse_radius / radius, radius / transverse_radius)
-    small = jnp.minimum(radius, transverse_radius)
-    ratio = slender ** (2.0 / jnp.pi)
-    integral = 1.0 + (jnp.pi / 2.0 - 1.0) / slender
-    combined = small * slender / (1.0 + slender)
-    pressed = jnp.where(load > 0.0, load, 1.0)
-    major = jnp.cbrt(6.0 * ratio**2 * integral * pressed * combined / (jnp.pi * modulus))
-    return jnp.where(load > 0.0, 1.5 * pressed * ratio / (jnp.pi * major**2), 0.0)
+    return _SHEAR * pressure, _DEPTH * half_width

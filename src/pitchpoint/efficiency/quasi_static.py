@@ -10,6 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
@@ -68,6 +69,7 @@ class Design(eqx.Module):
         lubricant: the oil.
         roughness: of both flanks.
         drag: places beside the teeth where power is lost; none by default.
+        elliptic: how an elliptic contact follows from its load; static.
     """
 
     mesh: Mesh
@@ -75,6 +77,7 @@ class Design(eqx.Module):
     lubricant: Lubricant
     roughness: Roughness
     drag: tuple[Drag, ...] = ()
+    elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
 
     @property
     def modulus(self) -> Float[Array, ""]:
@@ -119,6 +122,7 @@ class Design(eqx.Module):
             roughness_ra=self.roughness.mean_ra,
             roughness_rq=self.roughness.composite_rq,
             reference=mesh.reference if mesh.pitch_point else None,
+            elliptic=self.elliptic,
         )
 
 

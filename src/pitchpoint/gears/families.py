@@ -13,6 +13,7 @@ from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.gears.table import GearsTable
+from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.input.tables import by, tag
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ TABLES: tuple[type[GearsTable], ...] = (
     CylindricalGears,
     StrainWaveGears,
     RackAndPinionGears,
+    TorusGears,
     BallOnDiscRig,
 )
 """Tables of all families, the usual one first. `family.py` and `sample.toml` stand beside each."""

@@ -282,6 +282,19 @@ class Mesh(eqx.Module):
         return {}
 
     @property
+    def contact_room(self) -> Float[Array, ""]:
+        """From elliptic contacts to the nearest end of a face [m]; infinite where no face ends."""
+        return jnp.asarray(inf)
+
+    def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Inclination of the axes at which elliptic contacts reach an end of a face [rad]; infinite without.
+
+        Args:
+            semi_axis: of the contact across the rolling direction [m].
+        """
+        return jnp.full_like(semi_axis, inf)
+
+    @property
     def other_flanks(self) -> Self:
         """The same mesh where its other flanks carry; gaps are counted from the same position."""
         return self

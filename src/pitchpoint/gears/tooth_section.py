@@ -36,6 +36,8 @@ class ToothSection(eqx.Module):
         rim_ratio: root radius over bore radius.
         stiff: what carries the tooth, in words, where no formula says how that yields; empty for a disc;
             static.
+        width: of the face over which a contact in a point bends the tooth [m]; None where contacts are
+            lines, each part of which bends its own slice.
     """
 
     fillet: Float[Array, "2 station"]
@@ -48,6 +50,7 @@ class ToothSection(eqx.Module):
     root_half_angle: Float[Array, ""]
     rim_ratio: Float[Array, ""]
     stiff: str = eqx.field(static=True)
+    width: Float[Array, ""] | None = None
 
 
 @cache

@@ -11,6 +11,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
@@ -151,13 +152,16 @@ def unit_stiffness(
 ) -> Field:
     """Stiffness of the pairs of teeth along the normal, per length of contact line [N/m2].
 
+    That of an elliptic contact is the whole one [N/m]: its teeth bend over their faces alike, and it yields
+    as Hertz has it, whatever the model says of lines.
+
     Args:
-        contacts: of a mesh of two gears with line contacts.
+        contacts: of a mesh of two gears.
         sections: the tooth of each member.
         solids: the material of each member.
         terms: of an entry of `TOOTH_COMPLIANCE`.
-        line_load: load per length [N/m], broadcast over the contacts; only a contact by Weber's law
-            depends on it, and less than 0.001 N/m counts as that.
+        line_load: load per length [N/m], or on an ellipse [N], broadcast over the contacts; only contacts
+            that do not yield in proportion to it depend on it, and less than 0.001 counts as that.
 
     Returns:
         Load over approach, a secant where the contact's law is not linear; finite in inactive lanes.
@@ -170,6 +174,12 @@ def unit_stiffness(
         for k, (section, solid) in enumerate(zip(sections, (first, second), strict=True))
     ]
     given = (contacts, sections, (first, second), line_load)
+    if contacts.shape == "ellipse":
+        over = [
+            one if at.width is None else one / at.width
+            for one, at in zip(teeth, sections, strict=True)
+        ]
+        return 1.0 / (over[0] + over[1] + _hertz(*given))
     flattening = jnp.where(terms.weber, _weber(*given), _linear(*given))
     return 1.0 / (teeth[0] + teeth[1] + flattening)
 
@@ -205,6 +215,20 @@ def _linear(
     young = jnp.stack([solid.young for solid in solids])
     poisson = jnp.stack([solid.poisson for solid in solids])
     return yang_sun_1985(young=young, poisson=poisson)
+
+
+def _hertz(
+    contacts: Contacts, sections: Sections, solids: Solids, load: Float[Array, "..."]
+) -> Field:
+    first, second = (solid.plane_strain_modulus for solid in solids)
+    pressed = jnp.maximum(load, _LEAST_LINE_LOAD)
+    found = hertz_1881(
+        load=pressed,
+        radius=contacts.radius,
+        transverse_radius=1.0 / contacts.relative_curvature[1],
+        modulus=2.0 / (1.0 / first + 1.0 / second),
+    )
+    return found.approach / pressed
 
 
 def _weber(

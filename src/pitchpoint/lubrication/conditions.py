@@ -11,6 +11,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, Ellipse, EllipticContact
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference
@@ -45,6 +46,7 @@ class Conditions(eqx.Module):
         roughness_ra: mean Ra of both flanks [m].
         roughness_rq: composite Rq of both flanks [m].
         reference: pitch-point values, or None.
+        elliptic: how an elliptic contact follows from its load; static.
     """
 
     contacts: Contacts
@@ -61,6 +63,7 @@ class Conditions(eqx.Module):
     roughness_ra: Float[Array, ""]
     roughness_rq: Float[Array, ""]
     reference: Reference | None
+    elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
 
     @property
     def shape(self) -> Shape:
@@ -125,15 +128,30 @@ class Conditions(eqx.Module):
     def pressure(self) -> Lanes:
         """Largest Hertz pressure [Pa]."""
         if self.shape == "ellipse":
-            return hertz.elliptic_pressure(
-                load=as_array(self.load),
-                radius=self.radius,
-                transverse_radius=self.transverse_radius,
-                modulus=self.modulus,
-            )
+            return self.ellipse.pressure
         return hertz.line_pressure(
             line_load=self.line_load, radius=self.radius, modulus=self.modulus
         )
+
+    @property
+    def ellipse(self) -> Ellipse:
+        """Semi-axes, pressure and approach of each contact; of elliptic contacts."""
+        return self.elliptic.function(
+            load=as_array(self.load),
+            radius=self.radius,
+            transverse_radius=self.transverse_radius,
+            modulus=self.modulus,
+        )
+
+    @property
+    def semi_axis_along(self) -> Lanes:
+        """Semi-axis of the contact in the rolling direction [m]; of elliptic contacts."""
+        return self.ellipse.along
+
+    @property
+    def semi_axis_across(self) -> Lanes:
+        """Semi-axis of the contact at right angles to the rolling direction [m]; of elliptic contacts."""
+        return self.ellipse.across
 
     @property
     def half_width(self) -> Lanes:
@@ -204,6 +222,8 @@ UNITS: Mapping[str, str] = {
     "transverse_radius": "m",
     "pressure": "Pa",
     "half_width": "m",
+    "semi_axis_along": "m",
+    "semi_axis_across": "m",
     "viscosity": "Pa s",
     "kinematic_viscosity": "m2/s",
     "pressure_viscosity": "1/Pa",
@@ -225,6 +245,8 @@ _OF_SHAPE: Mapping[str, Shape] = {
     "reference_line_load": "line",
     "load": "ellipse",
     "transverse_radius": "ellipse",
+    "semi_axis_along": "ellipse",
+    "semi_axis_across": "ellipse",
 }
 """Conditions that mean something for one shape of contact; a line carries its load per length."""
 

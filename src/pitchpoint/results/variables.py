@@ -60,6 +60,8 @@ VARIABLES: dict[str, Variable] = {
     "entrainment": Variable("entrainment velocity", "u", "m/s", "m/s", "velocity"),
     "slide_roll_ratio": Variable("slide-roll ratio", "SR", "1"),
     "pressure": Variable("largest Hertz pressure", "p_H", "Pa", "MPa", "pressure"),
+    "semi_axis_along": length("semi-axis of the contact in the rolling direction", "b"),
+    "semi_axis_across": length("semi-axis of the contact across the rolling direction", "a"),
     "film_thickness": Variable("film thickness", "h", "m", "um", "length"),
     "lambda_ratio": Variable("film thickness over composite Rq", "Λ", "1"),
     "sliding_loss": power("sliding loss of the pair", "P_s"),
@@ -147,6 +149,19 @@ VARIABLES: dict[str, Variable] = {
     "mounting_distance": length(
         "distance from the pinion's axis to the rack's reference line", "a"
     ),
+    "transverse_radius": length("relative radius of curvature across the profile", "R_y"),
+    "contact_place": length(
+        "place of the contacts across the face, from the middle of gear 1", "z"
+    ),
+    "contact_room": length("from the contacts to the nearest end of a face", "b_e"),
+    "largest_inclination": Variable(
+        "inclination of the axes at which the contact reaches an end of a face",
+        "γ",
+        "rad",
+        "mrad",
+        "angle",
+    ),
+    "misalignment_approach": deviation("approach of the flanks by misalignment", "δ_m"),
     "tip_alteration_1": Variable("tip alteration coefficient of gear 1", "k1", "1"),
     "tip_alteration_2": Variable("tip alteration coefficient of gear 2", "k2", "1"),
     "tip_thickness_1": length("tip thickness of gear 1, normal section", "s_an1"),

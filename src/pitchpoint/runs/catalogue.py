@@ -8,6 +8,7 @@ from pitchpoint import units
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION, limits_words
 from pitchpoint.cases.loss_sets import loss_sets
+from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
@@ -38,6 +39,7 @@ def entries() -> list[dict[str, str]]:
     rows += [
         _entry("rolling_resistance", model, _shape(model)) for model in ROLLING_RESISTANCE.values()
     ]
+    rows += [_entry("elliptic_contact", one, "") for one in ELLIPTIC_CONTACT.values()]
     rows += [
         _entry("film_thickness", law, f"{_shape(law)}, {law.place} film")
         for law in FILM_THICKNESS.values()

@@ -16,6 +16,9 @@ __all__ = ["PlaneOfAction", "plane_of_action"]
 
 _EDGE = 1e-9
 
+_MARK = 0.03
+"""Half the length of the mark of a contact in a point, as part of the face."""
+
 
 @dataclass(frozen=True)
 class PlaneOfAction:
@@ -27,6 +30,7 @@ class PlaneOfAction:
         face_width: [m].
         base_helix_angle: inclination of the lines to the axes [rad].
         pitch_line: position of the pitch point C from A [m].
+        point: part of the face at which flanks touch in points; None where they touch along lines.
     """
 
     transverse_ratio: float
@@ -35,6 +39,7 @@ class PlaneOfAction:
     face_width: float
     base_helix_angle: float
     pitch_line: float
+    point: float | None = None
 
     @property
     def length(self) -> float:
@@ -55,9 +60,14 @@ class PlaneOfAction:
         if not 0.0 <= entered <= self.transverse_ratio + self.overlap_ratio:
             return None
         if self.overlap_ratio == 0.0:
-            return 0.0, 1.0
+            return self._straight
         low = (entered - self.transverse_ratio) / self.overlap_ratio
         return max(low, 0.0), min(entered / self.overlap_ratio, 1.0)
+
+    @property
+    def _straight(self) -> tuple[float, float]:
+        """Parts of the face between which straight teeth touch; a mark where they touch in a point."""
+        return (0.0, 1.0) if self.point is None else (self.point - _MARK, self.point + _MARK)
 
     def total_length(self, phase: float) -> float:
         """Length of all contact lines together at a phase [m]."""
@@ -106,17 +116,19 @@ class PlaneOfAction:
             "pitch_line": round(-1e3 * self.pitch_line, 4),
             "has_pitch_line": 0.0 <= self.pitch_line <= self.length,
             "lanes": self.lanes,
+            "point": self.point,
             "mean": 1e3 * self.mean_length,
             "least": 1e3 * low,
             "most": 1e3 * high,
             "motion_json": json.dumps(self._motion()),
         }
 
-    def _motion(self) -> dict[str, float]:
+    def _motion(self) -> dict[str, Any]:
         """What the script needs to move the lines."""
         return {
             "alpha": self.transverse_ratio,
             "beta": self.overlap_ratio,
+            "ends": self._straight,
             "pitch": round(1e3 * self.base_pitch, 6),
             "width": round(1e3 * self.face_width, 6),
             "slope": cos(self.base_helix_angle),
@@ -133,7 +145,15 @@ def plane_of_action(teeth: xr.Dataset) -> PlaneOfAction:
         face_width=float(teeth["face_width"]),
         base_helix_angle=float(teeth["base_helix_angle"]),
         pitch_line=places["C"] - places["A"],
+        point=_point(teeth),
     )
+
+
+def _point(teeth: xr.Dataset) -> float | None:
+    """Part of the face at which flanks touch in a point."""
+    if "contact_place" not in teeth:
+        return None
+    return 0.5 + float(teeth["contact_place"]) / float(teeth["face_width"])
 
 
 def _text_size(width: float, height: float) -> float:

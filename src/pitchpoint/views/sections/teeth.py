@@ -72,6 +72,7 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         *_backlash(teeth),
         *_numbers(teeth, {"face_width": ("face width b [mm]", 1e3, 6)}),
         *_transverse(teeth, path),
+        *_numbers(teeth, _POINTS),
     ]
     return rows + (_numbers(teeth, _OVERLAP) if path.helical else [])
 
@@ -96,6 +97,16 @@ _LENGTHS = {
     "specific_sliding_E": ("specific sliding at E", 1.0, 4),
     "centre_distance": ("centre distance a [mm]", 1e3, 6),
     "mounting_distance": ("distance from the axis to the reference line a [mm]", 1e3, 6),
+}
+_POINTS = {
+    "transverse_radius": ("relative radius across the profile R_y [mm]", 1e3, 5),
+    "contact_place": (
+        "place of the contacts across the face, from the middle of gear 1 [mm]",
+        1e3,
+        4,
+    ),
+    "contact_room": ("from the contacts to the nearest end of a face [mm]", 1e3, 4),
+    "misalignment_approach": ("approach of the flanks by misalignment [µm]", 1e6, 4),
 }
 _OVERLAP = {
     "overlap_ratio": ("overlap ratio ε_β", 1.0, 4),

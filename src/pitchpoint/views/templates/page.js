@@ -85,7 +85,7 @@
     // Parts of the face between which the line of a pair touches.
     function ends(entered) {
       if (entered > zone.alpha + zone.beta + 1e-9) return null;
-      if (!zone.beta) return [0, 1];
+      if (!zone.beta) return zone.ends;
       return [Math.max((entered - zone.alpha) / zone.beta, 0), Math.min(entered / zone.beta, 1)];
     }
 
@@ -113,12 +113,15 @@
         dots[lane].setAttribute("cx", half[0]);
         dots[lane].setAttribute("cy", half[1]);
         const part = (share) => found[0] + (found[1] - found[0]) * share;
-        const [x, y] = at(Math.abs(part(0.2) - 0.5) < 0.05 ? part(0.8) : part(0.2));
+        const beside = found[1] - found[0] < 0.1 && !zone.beta;
+        const inside = Math.abs(part(0.2) - 0.5) < 0.05 ? part(0.8) : part(0.2);
+        const [x, y] = at(beside ? found[1] + 0.04 : inside);
         names[lane].setAttribute("x", x);
         names[lane].setAttribute("y", y);
         names[lane].setAttribute("dy", ".35em");
       });
-      mesh.querySelector(".now").textContent = length.toPrecision(4) + " mm now;";
+      const now = mesh.querySelector(".now");
+      if (now) now.textContent = length.toPrecision(4) + " mm now;";
       return count;
     }
 

@@ -1,0 +1,709 @@
+"""What all pairs of involute gears on parallel axes have in common, wherever on the face they touch."""
+
+import dataclasses
+from functools import cached_property
+from typing import ClassVar, Self
+
+import equinox as eqx
+from jaxtyping import Array, Bool, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.modifications import Relief
+from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
+from pitchpoint.factored import Arrays
+from pitchpoint.gears.contact_lines import (
+    PathOfContact,
+)
+from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.cylindrical import MEMBERS
+from pitchpoint.gears.involute import (
+    InvoluteGear,
+    base_helix,
+    inverse_involute,
+    involute,
+    transverse_angle,
+)
+from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
+from pitchpoint.gears.members import number_of
+from pitchpoint.gears.mesh import Mesh, Path, Reference, StandardPair
+from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.roots import hypot, root
+
+__all__ = ["InvolutePair", "LineOfAction", "zero_backlash_centre_distance"]
+
+
+def zero_backlash_centre_distance(
+    *,
+    teeth: Float[Array, "2"],
+    module: Float[Array, ""],
+    pressure_angle: Float[Array, ""],
+    helix_angle: Float[Array, ""],
+    profile_shift: Float[Array, "2"],
+) -> Float[Array, ""]:
+    """Centre distance at which the flanks touch on both sides [m].
+
+    NaN where none exists (the sum of x so low that there is always backlash) and where the working
+    pressure angle would be above 65 degrees.
+
+    Args:
+        teeth: numbers of teeth z1, z2; z2 negative for a ring.
+        module: normal module [m].
+        pressure_angle: normal pressure angle of the basic rack [rad].
+        helix_angle: [rad].
+        profile_shift: coefficients x1, x2.
+
+    Source: ISO 21771:2007, inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x1 + x2)/(z1 + z2).
+    """
+    total = jnp.sum(teeth)
+    transverse = transverse_angle(pressure_angle, helix_angle)
+    value = involute(transverse) + 2.0 * jnp.tan(pressure_angle) * jnp.sum(profile_shift) / total
+    working = inverse_involute(value)
+    reference = jnp.abs(total) * module / (2.0 * jnp.cos(helix_angle))
+    distance = reference * jnp.cos(transverse) / jnp.cos(working)
+    return jnp.where((value > 0.0) & (value < 1.0), distance, jnp.nan)
+
+
+class LineOfAction(PathOfContact):
+    """Lengths on the line of action of a pair, and what they follow from.
+
+    Args:
+        pair: whose dimensions count.
+    """
+
+    def __init__(self, pair: "InvolutePair") -> None:
+        self.pair = pair
+
+    @cached_property
+    def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
+        """Both gears for themselves."""
+        return self.pair.gears
+
+    @cached_property
+    def transverse_pressure_angle(self) -> Float[Array, ""]:
+        """Pressure angle in the transverse section alpha_t [rad]."""
+        return transverse_angle(self.pair.pressure_angle, self.pair.helix_angle)
+
+    @cached_property
+    def slope(self) -> Float[Array, ""]:
+        """Cosine of the helix angle on the base cylinders."""
+        return jnp.cos(self.pair.base_helix_angle)
+
+    @cached_property
+    def base_radii(self) -> Float[Array, "2"]:
+        """Base radii r_b1, r_b2 [m]."""
+        reference = self.pair.teeth * self.pair.module / (2.0 * jnp.cos(self.pair.helix_angle))
+        return reference * jnp.cos(self.transverse_pressure_angle)
+
+    @cached_property
+    def distance(self) -> Float[Array, ""]:
+        """Centre distance with the sign that the sum of the radii has [m]."""
+        return -self.pair.centre_distance if self.pair.internal else self.pair.centre_distance
+
+    @cached_property
+    def working_radii(self) -> Float[Array, "2"]:
+        """Radii of the pitch circles in operation r_w1, r_w2 [m]."""
+        return self.distance * self.pair.teeth / jnp.sum(self.pair.teeth)
+
+    @cached_property
+    def cosine(self) -> Float[Array, ""]:
+        """Cosine of the working pressure angle: cos(alpha_wt) = (r_b1 + r_b2)/a."""
+        return jnp.sum(self.base_radii) / self.distance
+
+    @cached_property
+    def sine(self) -> Float[Array, ""]:
+        """Sine of the working pressure angle."""
+        return jnp.sin(jnp.arccos(self.cosine))
+
+    @cached_property
+    def base_pitch(self) -> Float[Array, ""]:
+        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
+        return 2.0 * jnp.pi * self.base_radii[0] / self.pair.teeth[0]
+
+    @cached_property
+    def tangent_length(self) -> Float[Array, ""]:
+        """Length N1 N2 between the base circles [m]; negative if gear 2 is a ring."""
+        return self.distance * self.sine
+
+    @cached_property
+    def limits(self) -> Float[Array, "2"]:
+        """Positions of A and E from N1 [m]: tip circle or form circle of an undercut, the nearer one."""
+        first, second = self.gears
+        start = self.tangent_length - second.side * second.tip_roll_length
+        end = first.tip_roll_length
+        if first.undercut:
+            start = jnp.maximum(start, first.form_roll_length)
+        if second.undercut:
+            end = jnp.minimum(end, self.tangent_length - second.form_roll_length)
+        return jnp.stack([start, end])
+
+    @cached_property
+    def pitch_position(self) -> Float[Array, ""]:
+        """Position of the pitch point C from N1 [m]."""
+        return self.working_radii[0] * self.sine
+
+    @cached_property
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+        pair = self.pair
+        return pair.face_width * jnp.sin(pair.helix_angle) / (jnp.pi * pair.module)
+
+
+class InvolutePair(Mesh):
+    """Two gears on fixed parallel axes. Coordinates: rotation of gear 1 and of gear 2.
+
+    Gear 2 may be a ring: then its number of teeth and its radii are negative, as in ISO 21771, and
+    all formulas hold as they stand. Lengths along the line of action are transverse and counted from
+    N1, the point where it touches the base circle of gear 1. A is the end of the path of contact
+    near N1, where gear 2 has its tip; E the other end.
+
+    Attributes:
+        teeth: numbers of teeth z1, z2; z2 negative for a ring.
+        module: normal module [m].
+        pressure_angle: normal pressure angle of the basic rack [rad].
+        helix_angle: on the reference cylinders, without its hand [rad].
+        profile_shift: coefficients x1, x2.
+        tip_alteration: coefficients k1, k2; negative shortens the tips (ISO 21771).
+        addendum, dedendum, fillet_radius: of the basic racks, in normal modules, one for each gear.
+        least_tip: tip thickness in the normal section, in modules, that shortened tips keep.
+        face_width: common to both [m].
+        centre_distance: in operation, positive [m].
+        rim_ratio: root radius over bore radius (outer over root radius of a ring), for each gear.
+        wheel_drives: True if gear 2 drives and gear 1 carries the load; the same flanks touch.
+        right_flank: False while gear 1 pushes with its left flanks (seen with the tip up), turning
+            counter-clockwise when it drives; True for the other ones.
+        follows: static; whether centre distance (without backlash) and tip alterations (rack's tip
+            clearance) follow from the other dimensions.
+        shortened: for each gear whether its tip is shortened to `least_tip`; static.
+        undercut: for each gear whether the rack undercuts its flanks; static.
+        crossing: for each gear where the undercut crosses the involute, see `InvoluteGear`.
+        helical: False if the helix angle is zero; static.
+        internal: True if gear 2 is a ring; static.
+        lanes: static count of pairs held, at least the contact ratio rounded up.
+        slices: static count of slices of each contact line; even, or one.
+        surfaces: how all flanks of both gears differ from involutes.
+    """
+
+    pitch_point: ClassVar[bool] = True
+    toothed: ClassVar[bool] = True
+    along_action: ClassVar[bool] = True
+    counts: ClassVar[Path] = "action"
+
+    teeth: Float[Array, "2"]
+    module: Float[Array, ""]
+    pressure_angle: Float[Array, ""]
+    helix_angle: Float[Array, ""]
+    profile_shift: Float[Array, "2"]
+    tip_alteration: Float[Array, "2"]
+    addendum: Float[Array, "2"]
+    dedendum: Float[Array, "2"]
+    fillet_radius: Float[Array, "2"]
+    least_tip: Float[Array, ""]
+    face_width: Float[Array, ""]
+    centre_distance: Float[Array, ""]
+    rim_ratio: Float[Array, "2"]
+    wheel_drives: Bool[Array, ""]
+    right_flank: Bool[Array, ""]
+    follows: tuple[bool, bool] = eqx.field(static=True)
+    shortened: tuple[bool, bool] = eqx.field(static=True)
+    undercut: tuple[bool, bool] = eqx.field(static=True)
+    crossing: Float[Array, "2"]
+    helical: bool = eqx.field(static=True)
+    internal: bool = eqx.field(static=True)
+    lanes: int = eqx.field(static=True)
+    slices: int = eqx.field(static=True)
+    surfaces: Surfaces = ((), ())
+
+    def completed(self) -> Self:
+        """The pair with centre distance and tip alterations as they follow from the rest."""
+        pair, (distance_follows, tips_follow) = self, self.follows
+        if distance_follows:
+            pair = dataclasses.replace(pair, centre_distance=self.zero_backlash_centre_distance)
+        if tips_follow:
+            change = pair.clearance_keeping_tip_alteration
+            pair = dataclasses.replace(pair, tip_alteration=jnp.stack([change, change]))
+            pair = dataclasses.replace(pair, tip_alteration=pair._shortened_tips())
+        return dataclasses.replace(pair, surfaces=pair._fitted_surfaces())
+
+    def _fitted_surfaces(self) -> Surfaces:
+        """Surfaces on the flanks as they end now."""
+        if not any(self.surfaces):
+            return self.surfaces
+        ends, arcs = self.active_flanks, 2.0 * jnp.abs(self.base_radii)
+        first, second = (
+            tuple(
+                one.fitted(Flank(ends[k, 0], ends[k, 1], arcs[k], self.face_width)) for one in own
+            )
+            for k, own in enumerate(self.surfaces)
+        )
+        return first, second
+
+    @property
+    def gears(self) -> tuple[InvoluteGear, InvoluteGear]:
+        """Both gears for themselves."""
+        return self._gear(0), self._gear(1)
+
+    @property
+    def sections(self) -> tuple[ToothSection, ToothSection]:
+        """Teeth of both gears in the normal section."""
+        first, second = self.gears
+        return first.section(self.rim_ratio[0]), second.section(self.rim_ratio[1])
+
+    @property
+    def line(self) -> LineOfAction:
+        """Lengths on the line of action, for one question."""
+        return LineOfAction(self)
+
+    @property
+    def transverse_pressure_angle(self) -> Float[Array, ""]:
+        """Pressure angle in the transverse section alpha_t [rad]."""
+        return self.line.transverse_pressure_angle
+
+    @property
+    def base_helix_angle(self) -> Float[Array, ""]:
+        """Helix angle on the base cylinders beta_b [rad]."""
+        return base_helix(self.pressure_angle, self.helix_angle)
+
+    @property
+    def base_radii(self) -> Float[Array, "2"]:
+        """Base radii r_b1, r_b2 [m]."""
+        return self.line.base_radii
+
+    @property
+    def tip_radii(self) -> Float[Array, "2"]:
+        """Tip radii r_a1, r_a2 [m]."""
+        return jnp.stack([gear.tip_radius for gear in self.gears])
+
+    @property
+    def zero_backlash_centre_distance(self) -> Float[Array, ""]:
+        """Centre distance without backlash for these teeth [m], whatever the one in operation."""
+        return zero_backlash_centre_distance(
+            teeth=self.teeth,
+            module=self.module,
+            pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
+            profile_shift=self.profile_shift,
+        )
+
+    @property
+    def clearance_keeping_tip_alteration(self) -> Float[Array, ""]:
+        """Tip alteration coefficient k that keeps the rack's tip clearance; never lengthens (ISO 21771)."""
+        reference = jnp.sum(self.teeth) * self.module / (2.0 * jnp.cos(self.helix_angle))
+        change = (self.line.distance - reference) / self.module - jnp.sum(self.profile_shift)
+        return jnp.minimum(change, 0.0)
+
+    @property
+    def backlash(self) -> Float[Array, ""]:
+        """Circumferential backlash on the pitch circles j_wt [m]."""
+        return self.section_backlash
+
+    @property
+    def section_backlash(self) -> Float[Array, ""]:
+        """That of one transverse section [m]: the pitch less both tooth thicknesses."""
+        radii = jnp.abs(self.working_radii)
+        halves = [gear.half_thickness_angle(r) for gear, r in zip(self.gears, radii, strict=True)]
+        return 2.0 * jnp.sum(radii * (jnp.pi / jnp.abs(self.teeth) / 2.0 - jnp.stack(halves)))
+
+    @property
+    def normal_backlash(self) -> Float[Array, ""]:
+        """Backlash along the normal of the flanks j_bn = j_wt cos(alpha_wt) cos(beta_b) [m] (ISO 21771)."""
+        return self.backlash * jnp.cos(self.working_pressure_angle) * jnp.cos(self.base_helix_angle)
+
+    @property
+    def working_radii(self) -> Float[Array, "2"]:
+        """Radii of the pitch circles in operation r_w1, r_w2 [m]."""
+        return self.line.working_radii
+
+    @property
+    def working_pressure_angle(self) -> Float[Array, ""]:
+        """Transverse pressure angle in operation [rad]: cos(alpha_wt) = (r_b1 + r_b2)/a."""
+        return jnp.arccos(self.line.cosine)
+
+    @property
+    def base_pitch(self) -> Float[Array, ""]:
+        """Transverse base pitch p_bt, the pitch on the line of action [m]."""
+        return self.line.base_pitch
+
+    @property
+    def tangent_length(self) -> Float[Array, ""]:
+        """Length N1 N2 between the base circles [m]; negative if gear 2 is a ring."""
+        return self.line.tangent_length
+
+    @property
+    def limits(self) -> Float[Array, "2"]:
+        """Positions of A and E from N1 [m]: tip circle or form circle of an undercut, the nearer one."""
+        return self.line.limits
+
+    @property
+    def pitch_position(self) -> Float[Array, ""]:
+        """Position of the pitch point C from N1 [m]."""
+        return self.line.pitch_position
+
+    @property
+    def points(self) -> Float[Array, "5"]:
+        """Positions of A, B, C, D, E from N1 [m]; B and D one base pitch from the far end (1 < eps < 2)."""
+        return self.line.points
+
+    @property
+    def transverse_contact_ratio(self) -> Float[Array, ""]:
+        """Transverse contact ratio eps_alpha."""
+        return self.line.transverse_contact_ratio
+
+    @property
+    def overlap_ratio(self) -> Float[Array, ""]:
+        """Overlap ratio eps_beta = b sin(beta)/(pi m_n)."""
+        return self.line.overlap_ratio
+
+    @property
+    def contact_ratio(self) -> Float[Array, ""]:
+        """Total contact ratio eps_gamma = eps_alpha + eps_beta."""
+        return self.line.contact_ratio
+
+    def specific_sliding(self, position: Float[Array, "*b"]) -> Float[Array, "*b 2"]:
+        """Sliding speed over own rolling speed of each gear at positions from N1 [m] (ISO 21771).
+
+        Zero at the pitch point, negative below the pitch circle of each gear.
+        """
+        rolling = jnp.stack(
+            [
+                position / self.teeth[0],
+                (self.tangent_length - position) / self.teeth[1],
+            ],
+            axis=-1,
+        )
+        return jnp.asarray(1.0 - rolling[..., ::-1] / rolling)
+
+    @property
+    def motion(self) -> Float[Array, "2"]:
+        """Rates of both gears for one radian of the driver."""
+        ratio = self.teeth[0] / self.teeth[1]
+        gear_1_drives = jnp.stack([jnp.ones_like(ratio), -ratio])
+        return self._side * jnp.where(self.wheel_drives, -1.0 / jnp.abs(ratio), 1.0) * gear_1_drives
+
+    @property
+    def driver(self) -> Float[Array, "2"]:
+        """Gear 1, or gear 2 if the wheel drives."""
+        return jnp.where(self.wheel_drives, jnp.array([0.0, 1.0]), jnp.array([1.0, 0.0]))
+
+    @property
+    def loaded(self) -> Float[Array, "2"]:
+        """The driven gear."""
+        return 1.0 - self.driver
+
+    def driven_by(self, member: str | int) -> Self:
+        """The pair with this gear driving the other one; the same flanks touch."""
+        wheel_drives = array(number_of(member, MEMBERS) == 1)
+        return dataclasses.replace(self, wheel_drives=wheel_drives)
+
+    @property
+    def onward(self) -> Float[Array, ""]:
+        """Pairs run from A to E where gear 1 drives, else from E to A."""
+        return jnp.where(self.wheel_drives, -1.0, 1.0)
+
+    @property
+    def active_flanks(self) -> Float[Array, "2 2"]:
+        """Roll lengths of both gears at the start of the active profile and at the tip, positive [m]."""
+        tips = jnp.stack([gear.tip_roll_length for gear in self.gears])
+        return jnp.stack([jnp.abs(self._innermost), tips], axis=1)
+
+    @property
+    def period(self) -> Float[Array, ""]:
+        """Driver angle of one base pitch [rad]."""
+        return 2.0 * jnp.pi / jnp.sum(self.driver * jnp.abs(self.teeth))
+
+    @property
+    def line_of_action(self) -> Float[Array, "2"]:
+        """Base radii with the sense in which the gears close along the transverse line of action."""
+        return self._side * self.base_radii
+
+    @property
+    def reference(self) -> Reference:
+        """Values at the pitch point C."""
+        line = self.line
+        speed = jnp.sum(self.driver * jnp.abs(line.working_radii))
+        first, second = line.pitch_position, line.tangent_length - line.pitch_position
+        return Reference(
+            width=self.face_width,
+            line_length=self.face_width / line.slope,
+            radius=first * second / line.tangent_length / line.slope,
+            sum_speed=2.0 * speed * line.sine,
+            pitch_line_speed=speed,
+        )
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, Coordinate]:
+        """Both gears: the origin on the axis of gear 1, x towards the pitch point, z as `width`."""
+        places = jnp.zeros((2, 3)).at[1, 0].set(self.line.distance)
+        first, second = (
+            Coordinate(name, place, jnp.asarray(AXIAL), member)
+            for member, (name, place) in enumerate(zip(MEMBERS, places, strict=True))
+        )
+        return first, second
+
+    def events(self) -> Float[Array, " event"]:
+        """Phases of entry, exit and pitch point.
+
+        Of helical teeth also those at which a contact line stops growing and begins to shrink, and
+        at which the pitch line enters and leaves it; of spur teeth those at which a relief begins.
+        """
+        line = self.line
+        found = line.bounds(helical=self.helical)
+        if not self.helical:
+            found += self._relief_paths(line)
+        return jnp.sort(jnp.mod(jnp.stack(found), 1.0))
+
+    def _relief_paths(self, line: LineOfAction) -> list[Array]:
+        """Positions on the path at which a relief of either gear begins [base pitches]."""
+        rolls = [
+            [jnp.sqrt(2.0 * jnp.abs(base) * one.start) for one in own if isinstance(one, Relief)]
+            for base, own in zip(line.base_radii, self.surfaces, strict=True)
+        ]
+        second = -1.0 if self.internal else 1.0
+        positions = [*rolls[0], *(line.tangent_length - second * roll for roll in rolls[1])]
+        return [(position - line.limits[0]) / line.base_pitch for position in positions]
+
+    def entered(self, phase: Float[Array, "*b"]) -> Float[Array, "pair 1 *b"]:
+        """Base pitches since each pair entered, in the order in which pairs came; phase 0 is at A."""
+        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+        return jnp.asarray(jnp.mod(phase, 1.0) + number)
+
+    def contacts_at(
+        self,
+        path: Float[Arrays, "pair slice *b"],
+        *,
+        active: Bool[Arrays, "pair 1 *b"],
+        width: Float[Arrays, "..."],
+        weight: Float[Arrays, "..."],
+        tilt: Float[Array, ""],
+        across: Float[Array, "2"],
+    ) -> Contacts:
+        """Contacts at places on the plane of action.
+
+        Args:
+            path: from A along the line of action [base pitches].
+            active: True where the pair is in mesh.
+            width: place across the face, from its middle [m].
+            weight: see `Contacts`.
+            tilt: angle between the normal of the flanks and the transverse section [rad].
+            across: curvature of both flanks at right angles to the profile [1/m].
+        """
+        line, side, lanes = self.line, self._side, jnp.shape(path)
+        active = jnp.broadcast_to(active, lanes)
+        position = jnp.where(active, line.limits[0] + path * line.base_pitch, line.pitch_position)
+        rolling = jnp.stack([position, line.tangent_length - position])
+        none, width = jnp.zeros_like(position), jnp.broadcast_to(width, lanes)
+        first, second = side * rolling[0], -side * rolling[1]
+        slope, base = jnp.cos(tilt), line.base_radii
+        arms = side * base * slope
+        bent = across.reshape(2, *(1 for _ in lanes))
+        return Contacts(
+            active=active,
+            path=jnp.asarray(path),
+            width=width,
+            weight=jnp.broadcast_to(weight, lanes),
+            curvature=jnp.stack([slope / rolling, bent + jnp.zeros_like(rolling)], axis=1),
+            surface=jnp.stack([jnp.stack([first, none]), jnp.stack([none, second])]),
+            normal=jnp.stack([jnp.broadcast_to(arm, lanes) for arm in arms]),
+            gap=none,
+            flank=jnp.stack([rolling[k] ** 2 / (2.0 * jnp.abs(base[k])) for k in (0, 1)]),
+            **self._frame(line, position, width, tilt),
+            shape=self.shape,
+        )
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same gears on their other flanks, which lie back by the backlash."""
+        first, second = self.surfaces
+        surfaces = ((*first, Offset(self.normal_backlash)), second)
+        return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
+
+    def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
+        """Angles are those of the line of action, against which both gears turn; teeth follow each other."""
+        lanes = jnp.broadcast_shapes(contacts.path.shape, (1, 1, *jnp.shape(phase)))
+        number = jnp.arange(float(self.lanes)).reshape(-1, *([1] * (jnp.ndim(phase) + 1)))
+        entered = jnp.broadcast_to(jnp.floor(phase) - number, lanes)
+        found = []
+        for member, teeth in enumerate(jnp.abs(self.teeth)):
+            # A tooth that enters later lies behind those before it.
+            sense = -self._side * (1.0 if member == 0 else -jnp.sign(self.teeth[1]))
+            found.append(
+                Spot(
+                    flank=jnp.broadcast_to(contacts.flank[member], lanes),
+                    across=jnp.broadcast_to(contacts.width, lanes),
+                    angle=jnp.broadcast_to(sense * phase * 2.0 * jnp.pi / teeth, lanes),
+                    tooth=jnp.mod(sense * entered, teeth).astype(int),
+                    leaning=jnp.ones(lanes),
+                )
+            )
+        return found[0], found[1]
+
+    @property
+    def standard(self) -> StandardPair:
+        """What standards ask about the pair."""
+        gears = self.gears
+        radii = jnp.abs(jnp.stack([gear.reference_radius for gear in gears]))
+        return StandardPair(
+            virtual_teeth=jnp.abs(jnp.stack([gear.virtual_spur_gear.teeth for gear in gears])),
+            profile_shift=self.profile_shift,
+            dedendum=self.dedendum,
+            pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
+            transverse_contact_ratio=self.transverse_contact_ratio,
+            face_width=self.face_width,
+            reference_arm=jnp.sum(self.loaded * radii),
+        )
+
+    @property
+    def standardised(self) -> bool:
+        """The standards are for external gears."""
+        return not self.internal
+
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
+        """Moments of inertia of discs as wide as the face, from bore to reference circle [kg m2].
+
+        A ring reaches from its reference circle outwards.
+        """
+        outer = jnp.stack([gear.reference_radius for gear in self.gears])
+        root = jnp.abs(jnp.stack([gear.root_radius for gear in self.gears]))
+        ring = jnp.asarray([False, self.internal])
+        bore = jnp.where(ring, root * self.rim_ratio, root / self.rim_ratio)
+        return jnp.pi / 2.0 * density * self.face_width * jnp.abs(outer**4 - bore**4)
+
+    def dimensions(self) -> dict[str, Float[Array, "..."]]:
+        """Contact ratios, centre distance, and for each gear its shortening, tip and undercut limit."""
+        gears = self.gears
+        return {
+            "module": self.module,
+            "transverse_contact_ratio": self.transverse_contact_ratio,
+            "overlap_ratio": self.overlap_ratio,
+            "centre_distance": self.centre_distance,
+            "circumferential_backlash": self.backlash,
+            "normal_backlash": self.normal_backlash,
+            "tip_alteration": self.tip_alteration,
+            "tip_thickness": jnp.stack([gear.tip_thickness for gear in gears]),
+            "undercut_limit": jnp.stack([gear.undercut_limit for gear in gears]),
+        }
+
+    def drawing(self) -> dict[str, Float[Array, "..."]]:
+        """Layers of the picture, circles, points of the path; radii without sign [m]."""
+        gears = self.gears
+        radii = {
+            "base_radius": self.base_radii,
+            "tip_radius": self.tip_radii,
+            "root_radius": jnp.stack([gear.root_radius for gear in gears]),
+            "reference_radius": jnp.stack([gear.reference_radius for gear in gears]),
+            "working_radius": self.working_radii,
+            "form_radius": hypot(
+                self.base_radii, jnp.stack([gear.form_roll_length for gear in gears])
+            ),
+            "active_root_radius": hypot(self.base_radii, self._innermost),
+        }
+        return {
+            **self._layers(),
+            "points": self.points,
+            "teeth": self.teeth,
+            **{name: jnp.abs(values) for name, values in radii.items()},
+            "working_pressure_angle": self.working_pressure_angle,
+            "tangent_length": self.tangent_length,
+            "base_pitch": self.base_pitch,
+            "base_helix_angle": self.base_helix_angle,
+            "face_width": self.face_width,
+            "contact_ratio": self.contact_ratio,
+            "specific_sliding_A": self.specific_sliding(self.limits[0]),
+            "specific_sliding_E": self.specific_sliding(self.limits[1]),
+            **self.dimensions(),
+        }
+
+    def _layers(self) -> dict[str, Float[Array, "..."]]:
+        """The transverse section at the middle of the face, gear 2 above gear 1, a ring below.
+
+        A contact line reaches that section half of the overlap ratio after it entered.
+        """
+        line, side, gears = self.line, self._side, self.gears
+        first = line.base_radii[0]
+        path = DrawnPath(
+            origin=first * jnp.stack([side * line.sine, line.cosine]),
+            along=jnp.stack([-side * line.cosine, line.sine]),
+            limits=line.limits,
+            points=self.points,
+            ends=jnp.stack([jnp.zeros(()), line.tangent_length]),
+            base_pitch=line.base_pitch,
+            behind=line.overlap_ratio / 2.0,
+        )
+        bodies = [
+            drawn_gear(
+                gear,
+                place=jnp.stack([jnp.zeros(()), member * line.distance]),
+                contact=path.at(line.limits[0]),
+                side=side,
+                earlier=(1.0, -1.0)[member] * side * 2.0 * jnp.pi / gear.teeth * path.behind,
+                working_radius=line.working_radii[member],
+            )
+            for member, gear in enumerate(gears)
+        ]
+        z1, z2 = self.teeth
+        none = jnp.zeros(())
+        rolling = [[none, 1.0 / z1], [line.tangent_length / z2, -1.0 / z2]]
+        return layers(bodies, path) | {"rolling": jnp.array(rolling)}
+
+    def _frame(
+        self, line: LineOfAction, position: Array, width: Array, tilt: Array
+    ) -> dict[str, Float[Array, "3 pair slice *b"]]:
+        """Points on the plane of action and the directions there, the same at all of them."""
+        cosine, sine, side, none = line.cosine, line.sine, self._side, jnp.zeros(())
+        start = line.base_radii[0] * jnp.stack([cosine, -side * sine])
+        along = jnp.stack([sine, side * cosine])
+
+        def everywhere(parts: list[Array]) -> Array:
+            return jnp.stack([jnp.broadcast_to(part, position.shape) for part in parts])
+
+        return {
+            "point": jnp.stack([start[k] + position * along[k] for k in (0, 1)] + [width]),
+            "direction": everywhere([*(jnp.cos(tilt) * along), jnp.sin(tilt)]),
+            "tangent": everywhere([-cosine, side * sine, none]),
+        }
+
+    @property
+    def _innermost(self) -> Float[Array, "2"]:
+        """Roll lengths at which the path of contact ends nearest to the root of each gear [m]."""
+        start, end = self.limits
+        return jnp.stack([start, self.tangent_length - end])
+
+    @property
+    def _side(self) -> Float[Array, ""]:
+        return jnp.where(self.right_flank, -1.0, 1.0)
+
+    def _shortened_tips(self) -> Float[Array, "2"]:
+        """Tip alterations at which the tips that are to be shortened are as thick as asked."""
+        return jnp.stack(
+            [
+                gear.tip_alteration - (self._shortening(gear) if short else 0.0)
+                for gear, short in zip(self.gears, self.shortened, strict=True)
+            ]
+        )
+
+    def _shortening(self, gear: InvoluteGear) -> Float[Array, ""]:
+        """Modules by which a tip is cut back to the least thickness in the normal section."""
+
+        def missing(cut: Float[Array, ""]) -> Float[Array, ""]:
+            shorter = dataclasses.replace(gear, tip_alteration=gear.tip_alteration - cut)
+            return shorter.tip_thickness / gear.module - self.least_tip
+
+        most = (jnp.abs(gear.tip_radius) - jnp.abs(gear.base_radius)) / gear.module
+        return root(missing, 0.2 * most, most)[0]
+
+    def _gear(self, index: int) -> InvoluteGear:
+        return InvoluteGear(
+            teeth=self.teeth[index],
+            module=self.module,
+            pressure_angle=self.pressure_angle,
+            helix_angle=self.helix_angle,
+            profile_shift=self.profile_shift[index],
+            tip_alteration=self.tip_alteration[index],
+            addendum=self.addendum[index],
+            dedendum=self.dedendum[index],
+            fillet_radius=self.fillet_radius[index],
+            undercut=self.undercut[index],
+            crossing=self.crossing[index],
+            internal=self.internal and index == 1,
+        )

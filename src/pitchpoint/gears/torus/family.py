@@ -1,0 +1,174 @@
+"""A torus-involute pair from its table in a case file."""
+
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from typing import Any
+
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.contact.surface import Surfaces
+from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.checks import check_cylindrical
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.family import Family, waves
+from pitchpoint.gears.involute import usual_fillet
+from pitchpoint.gears.layers import LAYERS, labels
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.torus import MEMBERS
+from pitchpoint.gears.torus.face import TorusFace
+from pitchpoint.gears.torus.pair import TorusPair
+from pitchpoint.gears.torus.table import TorusGears
+from pitchpoint.programs import program
+
+__all__ = ["FAMILY", "torus_pair"]
+
+_ROUNDED_BACKLASH = 1e-9
+
+
+def _build(gears: TorusGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
+    middle = _middle(gears, driver)
+    told = [*check_cylindrical(middle)]
+    pair = torus_pair(gears, middle)
+    _check_place(gears, pair)
+    told += _jammed(pair)
+    told += [text for text in _at_the_ends(gears, pair, middle) if text not in told]
+    return pair, tuple(told)
+
+
+def torus_pair(gears: TorusGears, middle: CylindricalPair) -> TorusPair:
+    """The pair of a table.
+
+    Args:
+        gears: the table.
+        middle: its transverse section in the middle of the face.
+    """
+    given = {one.name: getattr(middle, one.name) for one in fields(InvolutePair)}
+    first, second = (
+        TorusFace(array(-radius if concave else radius), array(gears.pressure_angle))
+        for radius, concave in zip(gears.torus_radius, gears.concave, strict=True)
+    )
+    pair = TorusPair(
+        **given,
+        faces=(first, second),
+        widths=array(gears.face_width),
+        middle_shift=middle.profile_shift,
+        axial_offset=array(gears.axial_offset),
+        inclination=array(gears.inclination),
+    )
+    return _completed(pair)
+
+
+@program
+def _completed(pair: TorusPair) -> TorusPair:
+    return pair.completed()
+
+
+def _middle(gears: TorusGears, driver: str) -> CylindricalPair:
+    """The spur pair that the gears are in the middle of their faces."""
+    depth, fillet = _depths(gears)
+    pair = build_cylindrical_pair(
+        teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
+        module=gears.module,
+        pressure_angle=gears.pressure_angle,
+        face_width=min(gears.face_width),
+        profile_shift=gears.middle_shift,
+        addendum=gears.addendum,
+        dedendum=depth,
+        fillet_radius=fillet,
+        centre_distance=gears.centre_distance,
+        driver=2 if driver == MEMBERS[1] else 1,
+        right_flank=gears.flank == "right",
+    )
+    if gears.bore_diameter is None:
+        return pair
+    roots = [2.0 * float(gear.root_radius) for gear in pair.gears]
+    for number, (bore, root) in enumerate(zip(gears.bore_diameter, roots, strict=True), 1):
+        if bore >= root:
+            raise InputError(
+                f"the bore diameter of gear {number} is {1e3 * bore:.6g} mm; it must be smaller than its "
+                f"root circle, {1e3 * root:.6g} mm",
+                key="bore_diameter",
+            )
+    ratios = [root / bore for root, bore in zip(roots, gears.bore_diameter, strict=True)]
+    return replace(pair, rim_ratio=jnp.asarray(ratios))
+
+
+def _depths(gears: TorusGears) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Dedenda and fillet radii in modules, the usual ones where none are given."""
+    depth = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
+    first, second = (usual_fillet(each, gears.pressure_angle) for each in depth)
+    return depth, gears.fillet_radius or (first, second)
+
+
+def _check_place(gears: TorusGears, pair: TorusPair) -> None:
+    """InputError where misalignment moves the contact off the faces."""
+    if float(pair.contact_room) > 0.0:
+        return
+    key = "inclination" if gears.inclination else "axial_offset"
+    raise InputError(
+        f"misalignment moves the contact {1e3 * abs(float(pair.place)):.4g} mm from the middle plane of gear "
+        f"1, off the faces, {1e3 * gears.face_width[0]:.4g} and {1e3 * gears.face_width[1]:.4g} mm wide; a "
+        "smaller misalignment or torus radii that differ more keep it on them",
+        key=key,
+    )
+
+
+def _jammed(pair: TorusPair) -> list[str]:
+    """A warning where misalignment takes more than the backlash."""
+    backlash = float(_backlash(pair))
+    if backlash > -_ROUNDED_BACKLASH or not float(pair.misalignment_approach):
+        return []
+    return [
+        f"Misalignment takes {-1e6 * backlash:.3g} um more than the backlash along the normal that the pair "
+        "has: both flanks of the teeth press, and these figures leave the other ones out; a larger centre "
+        "distance parts them."
+    ]
+
+
+@program
+def _backlash(pair: TorusPair) -> Float[Array, ""]:
+    return pair.normal_backlash
+
+
+def _at_the_ends(gears: TorusGears, pair: TorusPair, middle: CylindricalPair) -> Iterator[str]:
+    """Warnings for the teeth at the ends of the common face; InputError where they cannot be made."""
+    ends = array(min(gears.face_width) / 2.0)
+    more = jnp.stack([face.shift(ends) for face in pair.faces]) / pair.module
+    end = replace(middle, profile_shift=middle.profile_shift + more)
+    try:
+        told = check_cylindrical(end)
+    except InputError as error:
+        raise InputError(f"at the ends of the face, {error.message}", key="face_width") from None
+    for text in told:
+        yield f"At the ends of the face: {text}"
+
+
+def _following(gears: TorusGears, pair: TorusPair) -> dict[str, Any]:
+    """Values that the table leaves open."""
+    depth, fillet = _depths(gears)
+    radii = jnp.stack([face.radius for face in pair.faces])
+    reference = jnp.stack([gear.reference_radius for gear in pair.gears])
+    return {
+        "dedendum": depth,
+        "fillet_radius": fillet,
+        "centre_distance": pair.centre_distance,
+        "profile_shift": pair.middle_shift,
+        "torus_offset": reference + pair.middle_shift * pair.module - radii,
+    }
+
+
+def _deviations(gears: TorusGears, pair: TorusPair) -> Surfaces:
+    asked = gears.deviations
+    return (waves(asked.gear_1), waves(asked.gear_2)) if asked is not None else ((), ())
+
+
+FAMILY = Family(
+    _build,
+    _following,
+    _deviations,
+    drawing={**LAYERS, "points": ("point",)},
+    coordinates=labels(MEMBERS, ("N1", "N2")),
+)

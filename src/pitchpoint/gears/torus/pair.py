@@ -1,0 +1,177 @@
+"""Torus-involute pair: a convex and a concave gear that touch in points, and these contacts."""
+
+import dataclasses
+from typing import ClassVar, Self
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.factored import Numbers
+from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.gears.tooth_section import ToothSection
+from pitchpoint.gears.torus.face import TorusFace, least
+
+__all__ = ["TorusPair"]
+
+
+class TorusPair(InvolutePair):
+    """Two gears whose flanks touch in points, since their profile shifts vary across the face.
+
+    Every transverse section is that of a spur pair, see `InvolutePair`; dimensions are those of the section
+    in which the flanks touch. Without misalignment that is the middle of the face. Teeth bend over their
+    whole face, each over its own width.
+
+    Attributes:
+        faces: of both gears, one convex and one concave.
+        widths: of both faces [m]; the narrower one counts as `face_width`.
+        middle_shift: profile shift coefficients in the middle planes.
+        axial_offset: of the middle plane of gear 2 from that of gear 1, along z [m].
+        inclination: angle by which the flanks part towards positive z, in the plane of action [rad].
+
+    Source: Liu and Xiong, Dynamic characteristics of torus involute gear drive, section 2.
+    """
+
+    shape: ClassVar[Shape] = "ellipse"
+
+    faces: tuple[TorusFace, TorusFace] = eqx.field(kw_only=True)
+    widths: Float[Array, "2"] = eqx.field(kw_only=True)
+    middle_shift: Float[Array, "2"] = eqx.field(kw_only=True)
+    axial_offset: Float[Array, ""] = eqx.field(kw_only=True)
+    inclination: Float[Array, ""] = eqx.field(kw_only=True)
+
+    def completed(self) -> Self:
+        """The pair with profile shifts, and what follows from them, where the flanks touch."""
+        return dataclasses.replace(self, profile_shift=self.contact_shift)
+
+    @property
+    def contact_shift(self) -> Float[Array, "2"]:
+        """Profile shift coefficients in the transverse section in which the flanks touch."""
+        place = self.place
+        own = jnp.stack([place, place - self.axial_offset])
+        more = jnp.stack([face.shift(at) for face, at in zip(self.faces, own, strict=True)])
+        return self.middle_shift + more / self.module
+
+    @property
+    def place(self) -> Float[Array, ""]:
+        """Where across the face the flanks touch, from the middle plane of gear 1 [m]."""
+        return self._least(self.inclination)[0]
+
+    @property
+    def misalignment_approach(self) -> Float[Array, ""]:
+        """How far the flanks come towards each other by misalignment, along the line of action [m]."""
+        return -self._least(self.inclination)[1]
+
+    @property
+    def contact_room(self) -> Float[Array, ""]:
+        """From the contact to the nearest end of a face [m]; negative where it has left one."""
+        ends = self.widths / 2.0
+        own = jnp.abs(jnp.stack([self.place, self.place - self.axial_offset]))
+        return jnp.min(ends - own)
+
+    def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Inclination, of whichever sense, at which a contact reaches an end of a face [rad].
+
+        Args:
+            semi_axis: of the contact across the rolling direction [m].
+
+        From the place at which flanks touch, where their slopes across the face and the inclination cancel.
+        """
+        low = jnp.maximum(-self.widths[0] / 2.0, self.axial_offset - self.widths[1] / 2.0)
+        high = jnp.minimum(self.widths[0] / 2.0, self.axial_offset + self.widths[1] / 2.0)
+        ends = jnp.stack([low + semi_axis, high - semi_axis])
+        leaning = self.faces[0].slope(ends) + self.faces[1].slope(ends - self.axial_offset)
+        return jnp.maximum(jnp.min(jnp.abs(leaning), axis=0), 0.0) * (ends[0] < ends[1])
+
+    @property
+    def transverse_radius(self) -> Float[Array, ""]:
+        """Relative radius of curvature across the profile R_y [m].
+
+        Source: sum of the curvatures of both flanks; 1/R_y = sin(alpha) (1/R_1 - 1/R_2) in the middle.
+        """
+        return 1.0 / jnp.sum(self._bends)
+
+    @property
+    def backlash(self) -> Float[Array, ""]:
+        """Circumferential backlash on the pitch circles [m]: that in the middle less what misalignment takes.
+
+        Both flanks come nearer to each other by misalignment, each where it touches; below zero both press.
+        """
+        middle = dataclasses.replace(self, profile_shift=self.middle_shift).section_backlash
+        apart = self._least(self.inclination)[1] + self._least(-self.inclination)[1]
+        return middle + apart / jnp.cos(self.working_pressure_angle)
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same gears on their other flanks, which lean the other way and lie back by the backlash."""
+        other = dataclasses.replace(super().other_flanks, inclination=-self.inclination)
+        return other.completed()
+
+    @property
+    def sections(self) -> tuple[ToothSection, ToothSection]:
+        """Teeth of both gears, each with the face over which it bends."""
+        first, second = super().sections
+        return (
+            dataclasses.replace(first, width=self.widths[0]),
+            dataclasses.replace(second, width=self.widths[1]),
+        )
+
+    def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:
+        """The one contact of each pair in mesh; phase 0 is the entry of a pair at A [base pitches]."""
+        entered = self.entered(phase)
+        return self.contacts_at(
+            entered,
+            active=entered <= self.line.contact_ratio,
+            width=self.place,
+            weight=jnp.ones(()),
+            tilt=jnp.arctan(self.faces[0].slope(self.place)),
+            across=self._bends,
+        )
+
+    def flank_points(
+        self, member: int, radius: Float[Numbers, "*#b"], across: Float[Numbers, "*#b"]
+    ) -> Float[Array, "3 *b"]:
+        """Points of the flank of one tooth whose axis is y, in the frame of its gear [m].
+
+        Args:
+            member: 0 or 1.
+            radius: of each point about the gear's axis, above that of the base circle [m].
+            across: of each point from the middle plane of the gear [m].
+
+        Source: ISO 21771:2007, tooth thickness, with the profile shift at each place across the face.
+        """
+        shift = self.middle_shift[member] + self.faces[member].shift(across) / self.module
+        gear = dataclasses.replace(self.gears[member], profile_shift=jnp.zeros(()))
+        lean = 2.0 * shift * jnp.tan(self.pressure_angle) / self.teeth[member]
+        angle = gear.half_thickness_angle(jnp.asarray(radius)) + lean
+        given = radius * jnp.sin(angle), radius * jnp.cos(angle), jnp.asarray(across)
+        return jnp.stack(jnp.broadcast_arrays(*given))
+
+    @property
+    def standardised(self) -> bool:
+        """The standards are for contact along lines."""
+        return False
+
+    def inertia(self, density: Float[Array, "2"]) -> Float[Array, "2"]:
+        """Moments of inertia of discs as wide as the face of each gear [kg m2]."""
+        return super().inertia(density) * self.widths / self.face_width
+
+    def dimensions(self) -> dict[str, Float[Array, "..."]]:
+        """Those of a spur pair in the section of the contacts, and where these lie."""
+        return {
+            **super().dimensions(),
+            "transverse_radius": self.transverse_radius,
+            "contact_place": self.place,
+            "contact_room": self.contact_room,
+            "misalignment_approach": self.misalignment_approach,
+        }
+
+    @property
+    def _bends(self) -> Float[Array, "2"]:
+        """Curvature of both flanks across the profile where they touch [1/m]."""
+        own = (self.place, self.place - self.axial_offset)
+        return jnp.stack([face.curvature(at) for face, at in zip(self.faces, own, strict=True)])
+
+    def _least(self, inclination: Float[Array, ""]) -> tuple[Float[Array, ""], Float[Array, ""]]:
+        return least(*self.faces, axial_offset=self.axial_offset, inclination=inclination)
