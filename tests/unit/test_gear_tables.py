@@ -172,13 +172,33 @@ def test_another_form_leaves_the_values_of_the_former() -> None:
     assert tree["gears"]["tooth"]["set"] == "flat"
 
 
+JOINT = {"inertia": ["0.6 kg cm2", "1 kg m2"]}
+STILL = {"start": "0 rpm", "stop": "900 rpm"}
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"models.friction": "iso_tr_14179_2"}, "models.friction: 'iso_tr_14179_2' is a law for a"),
         ({"models.load_sharing": "equal"}, "models.load_sharing: 'equal' holds where all rigid"),
         ({"models.tooth_temperature": "vdi_2736_2"}, "models.tooth_temperature: 'vdi_2736_2' asks"),
-        ({"dynamics.damping_ratio": 0.1}, "dynamics: vibration is computed along a line of action"),
+        (
+            {"dynamics.damping_ratio": 0.1},
+            "dynamics.inertia: is missing; a joint vibrates between two",
+        ),
+        (
+            {"dynamics": {**JOINT, "backlash": "1 um"}},
+            "dynamics.backlash: was given; it is for vib",
+        ),
+        (
+            {"dynamics": {**JOINT, "damping_ratio": 0.0}},
+            "dynamics.damping_ratio: 0.0 is out of range",
+        ),
+        ({"dynamics.inertia": ["-1 kg m2", "1 kg m2"]}, 'dynamics.inertia: "-1 kg m2" is out of'),
+        (
+            {"dynamics": {**JOINT, "speeds": STILL}},
+            'dynamics.speeds.start: "0 rpm" is out of range',
+        ),
         ({"gears.teeth": [200, 203]}, "gears.teeth: 200 and 203 teeth were given"),
         ({"gears.wave_generator.deflection": 2.0}, "gears.wave_generator.deflection: the wave"),
         ({"gears.tooth.set": "liu", "gears.tooth.convex_radius": 4.0}, "gears.tooth: the arcs of"),

@@ -18,7 +18,7 @@ from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
-from pitchpoint.efficiency.quasi_static import Design, coupling, engagement
+from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, OnBalls, opened
@@ -29,7 +29,15 @@ from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["TORSION", "rigid", "torsion_part"]
+__all__ = [
+    "TORSION",
+    "engaged_at",
+    "kinematic_play",
+    "mean_friction",
+    "rigid",
+    "torsion_part",
+    "wound_ups",
+]
 
 TORQUES = 25
 MUCH = 0.03
@@ -137,7 +145,7 @@ def _covered(yields: str, assumed: str) -> dict[str, str]:
 
 
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
-    friction, rated = _mean_friction(built), built.case.operation.load
+    friction, rated = mean_friction(built), built.case.operation.load
     limits = getattr(built.case.gears, "slopes", None)
     told_of = built.design.mesh.couples and rated > 0.0 and _reduces(built)
     more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
@@ -266,7 +274,7 @@ def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     ]
 
 
-def _mean_friction(built: Built) -> np.ndarray:
+def mean_friction(built: Built) -> np.ndarray:
     """Coefficient at the operating point by each law, as for sliding that begins anew."""
     point = [(built.design, built.operation)]
     runs = [summarise(point, models) for models in built.models]
@@ -275,20 +283,8 @@ def _mean_friction(built: Built) -> np.ndarray:
 
 def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[str, Any]:
     """Wind-up at every torque, and the load on every tooth there."""
-    design = built.design
-    known = built.engaged
-    if known is None:
-        known = engagement(design, built.operation.load, built.models[0])
-    body = coupling(design, known.contacts) if known.body is None else known.body
-    given = design.mesh, design.solids, built.terms
-    each: list[Any] = []
-    for torque in torques:
-        if each and isinstance(
-            body, OnBalls
-        ):  # balls stand near where they stood for the torque before
-            body = replace(body, start=jnp.asarray(each[-1].balls))
-        at = wound_up(*given, jnp.asarray(torque), known.contacts, body)
-        each.append(jax.device_get(at))
+    design, known = built.design, engaged_at(built)
+    each, body = wound_ups(built, known, torques)
     found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
     loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
     phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
@@ -297,9 +293,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     return {
         "phase": phase[::SHOWN],
         "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
-        "kinematic_play": np.asarray(
-            _kinematic_play(design.mesh, known.contacts, known.phase, body)
-        )
+        "kinematic_play": np.asarray(kinematic_play(design.mesh, known.contacts, known.phase, body))
         @ weight,
         "angular_transmission_error": approach[:, ::SHOWN],
         "angular_transmission_error_range": np.ptp(approach, axis=-1),
@@ -318,6 +312,37 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
             built, known.contacts, weight, np.interp(built.case.operation.load, torques, turned)
         ),
     }
+
+
+def engaged_at(built: Built) -> Engagement:
+    """Contacts at the operating point, with what was found of them there."""
+    if built.engaged is not None:
+        return built.engaged
+    return engagement(built.design, built.operation.load, built.models[0])
+
+
+def wound_ups(
+    built: Built, known: Engagement, torques: np.ndarray
+) -> tuple[list[Any], Body | None]:
+    """Wind-up at rising torques, plain numbers, and the body of the teeth at the last one.
+
+    Args:
+        built: the case.
+        known: contacts at the operating point.
+        torques: of the loaded member [N m].
+    """
+    design = built.design
+    body = coupling(design, known.contacts) if known.body is None else known.body
+    given = design.mesh, design.solids, built.terms
+    each: list[Any] = []
+    for torque in torques:
+        if each and isinstance(
+            body, OnBalls
+        ):  # balls stand near where they stood for the torque before
+            body = replace(body, start=jnp.asarray(each[-1].balls))
+        at = wound_up(*given, jnp.asarray(torque), known.contacts, body)
+        each.append(jax.device_get(at))
+    return each, body
 
 
 def _edge_share(mesh: Mesh, found: Any, weight: np.ndarray) -> dict[str, np.ndarray]:
@@ -393,7 +418,7 @@ def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @program
-def _kinematic_play(
+def kinematic_play(
     mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
 ) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""

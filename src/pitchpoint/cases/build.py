@@ -17,6 +17,7 @@ from pitchpoint.cases.schema import (
     TEMPERATURE,
     TORQUE,
     Case,
+    Dynamics,
     Loss,
     Oil,
     Operating,
@@ -477,14 +478,10 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         raise error.at(key="models.load_sharing") from None
     if models.tooth_temperature != "isothermal":
         _check_heat(case, mesh)
-    if case.dynamics is not None and not mesh.along_action:
-        raise InputError(
-            "vibration is computed along a line of action, which these gears do not have; leave this "
-            "table out",
-            key="dynamics",
-        )
-    if case.dynamics is not None:
+    if case.dynamics is not None and mesh.along_action:
         _check_masses(case, mesh)
+    elif case.dynamics is not None:
+        _check_joint(case, case.dynamics)
 
 
 def _check_heat(case: Case, mesh: Mesh) -> None:
@@ -518,6 +515,38 @@ def _check_masses(case: Case, mesh: Mesh) -> None:
             f"is missing; a vibration asks for the mass of the {travelling[0]} and of all that moves with it",
             key="gears.mass",
         )
+
+
+def _check_joint(case: Case, asked: Dynamics) -> None:
+    """InputError for what the torsional vibration of a joint does not take, or lacks."""
+    if not case.gears.transmits:
+        raise InputError(
+            "vibration is computed along a line of action, which these gears do not have; leave this "
+            "table out",
+            key="dynamics",
+        )
+    strange = [key for key in _ALONG_ACTION if getattr(asked, key) != _usual(key)]
+    if strange:
+        raise InputError(
+            "was given; it is for vibration along a line of action, which these gears do not have, and a "
+            f"joint takes {', '.join(_OF_JOINT)}",
+            key=f"dynamics.{strange[0]}",
+        )
+    if asked.inertia is None:
+        ends = f"the motor at the {case.operation.driver} and the load at the output"
+        raise InputError(
+            f"is missing; a joint vibrates between two moments of inertia, a list of those of {ends}",
+            key="dynamics.inertia",
+        )
+
+
+_ALONG_ACTION = ("profile_error", "backlash", "torques", "forces")
+_OF_JOINT = ("inertia", "damping_ratio", "speeds")
+
+
+def _usual(key: str) -> object:
+    """Value of a key of [dynamics] where none is given."""
+    return Dynamics.model_fields[key].default
 
 
 def drags(

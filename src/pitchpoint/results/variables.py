@@ -94,6 +94,36 @@ VARIABLES: dict[str, Variable] = {
     "natural_frequency": Variable("natural frequency", "f_n", "1/s", "Hz", "frequency"),
     "mesh_frequency": Variable("mesh frequency", "f_z", "1/s", "Hz", "frequency"),
     "equivalent_mass": Variable("equivalent mass", "m_e", "kg", "g", "mass"),
+    "joint_damping_ratio": Variable("damping ratio", "ξ", "1"),
+    "reduced_inertia": Variable(
+        "moment of inertia that vibrates, at the output",
+        "J_r",
+        "kg m2",
+        "kg m2",
+        "moment of inertia",
+    ),
+    "wave_order": Variable("waves in a turn of the driver", "n", "1"),
+    "wave_amplitude": Variable("amplitude of the error", "|Δφ_n|", "rad", "arcsec", "angle"),
+    "critical_speed": Variable(
+        "driver speed at which it meets the natural frequency",
+        "n_c",
+        "rad/s",
+        "rpm",
+        "rotational speed",
+    ),
+    "output_amplitude": Variable(
+        "amplitude of the load's rotation", "|θ_L|", "rad", "arcsec", "angle"
+    ),
+    "output_speed_amplitude": Variable(
+        "amplitude of the load's speed", "|ω_L|", "rad/s", "deg/s", "rotational speed"
+    ),
+    "torque_amplitude": torque("amplitude of the drive's torque", "|T|"),
+    "flank_damping_ratio": Variable("damping ratio by friction of the flanks", "ξ_f", "1"),
+    "course_speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
+    "course_torque": torque("amplitude of the torque with the whole curve", "|T|"),
+    "linear_torque": torque("amplitude of the torque by the tangent", "|T|"),
+    "course_smallest_torque": torque("smallest torque of the drive there", "T min"),
+    "course_status": Variable("status of the vibration with the whole curve", "", "1"),
     "largest_multiplier": Variable("largest Floquet multiplier", "|Λ|", "1"),
     "vibration_status": Variable("status of the vibration", "", "1"),
     "radius": Variable("relative radius of curvature", "R", "m", "mm", "length"),
