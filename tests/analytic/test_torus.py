@@ -95,7 +95,7 @@ def test_misalignment_moves_the_contact_as_published(given, place, approach):
 def test_flanks_are_nearest_where_positions_say(given):
     """Involutes of both gears as thick as each section makes them, one leaning and moved along its axis."""
     mesh = pair(**given)
-    curves, middle = TorusFlanks(mesh), 0.0
+    curves = TorusFlanks(mesh)
     section = TorusFlanks(dataclasses.replace(mesh, profile_shift=mesh.middle_shift)).section(
         0.8, 1
     )
@@ -110,7 +110,7 @@ def test_flanks_are_nearest_where_positions_say(given):
     found = minimize_scalar(apart, bounds=(-6e-3, 6e-3), method="bounded", options={"xatol": 1e-9})
     told = figures(mesh)
     assert float(told["contact_place"]) == pytest.approx(found.x, abs=1e-6)
-    assert float(told["misalignment_approach"]) == pytest.approx(-(found.fun - middle), abs=1e-12)
+    assert float(told["misalignment_approach"]) == pytest.approx(-found.fun, abs=1e-12)
     step = 2e-4
     bend = (apart(found.x + step) - 2.0 * found.fun + apart(found.x - step)) / step**2
     assert float(told["transverse_radius"]) * bend == pytest.approx(1.0, rel=1e-3)
@@ -212,13 +212,47 @@ def test_derivatives_of_what_misalignment_does():
 
     @jax.jit
     def told(radius):
-        faces = (dataclasses.replace(mesh.faces[0], radius=radius), mesh.faces[1])
-        other = dataclasses.replace(mesh, faces=faces).completed()
+        radii = mesh.torus_radii.at[0].set(radius)
+        other = dataclasses.replace(mesh, torus_radii=radii).completed()
         return jnp.stack([other.place, other.misalignment_approach, other.contact_ratio])
 
     step = 1e-7
     slope = (told(0.035 + step) - told(0.035 - step)) / (2.0 * step)
     np.testing.assert_allclose(jax.jit(jax.jacfwd(told))(0.035), slope, rtol=1e-6)
+
+
+def test_what_follows_is_taken_along():
+    """Derivatives by the shift in the middle are those of pairs built anew: distance and tips follow."""
+    mesh, step = pair(inclination="5 mrad"), 1e-4
+
+    @jax.jit
+    def told(shift):
+        moved = dataclasses.replace(mesh, middle_shift=mesh.middle_shift.at[0].set(shift))
+        return jnp.stack([moved.completed().contact_ratio, moved.completed().centre_distance])
+
+    ends = [pair(inclination="5 mrad", profile_shift=[sign * step, 0.0]) for sign in (-1, 1)]
+    values = [np.array([float(one.contact_ratio), float(one.centre_distance)]) for one in ends]
+    slope = (values[1] - values[0]) / (2.0 * step)
+    np.testing.assert_allclose(jax.jit(jax.jacfwd(told))(0.0), slope, rtol=1e-5)
+
+
+def test_the_largest_inclination_counts_from_where_the_contact_lies():
+    """Of gears that an axial offset moves along each other an ellipse reaches one end before the other."""
+    mesh = pair(axial_offset="3 mm")
+    free = np.asarray(mesh.largest_inclination(jnp.array([1e-4, 1e-3, 1.7e-3, 1.8e-3, 4e-3])))
+    assert np.all(np.diff(free[:3]) < 0.0)
+    assert np.all(free[:3] > 0.0)
+    np.testing.assert_array_equal(free[3:], 0.0)
+    most = [f"{sign * 1e3 * free[1]} mrad" for sign in (-1, 1)]
+    rooms = [float(pair(axial_offset="3 mm", inclination=one).contact_room) for one in most]
+    assert min(rooms) == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_teeth_pointed_at_the_ends_of_the_wider_face_are_refused():
+    with pytest.raises(
+        InputError, match="the teeth of gear 2 are pointed at the ends of its face of 50 mm"
+    ):
+        pair(face_width=["15 mm", "50 mm"])
 
 
 @pytest.mark.parametrize(
@@ -258,7 +292,7 @@ def test_tables_that_make_no_pair_are_refused(values, told):
 
 def test_a_contact_off_the_faces_is_refused():
     with pytest.raises(
-        InputError, match=r"moves the contact 12\.32 mm from the middle plane"
+        InputError, match="moves the contact off the faces, 15 and 20 mm wide"
     ) as error:
         pair(inclination="50 mrad")
     assert error.value.key == "inclination"

@@ -82,6 +82,7 @@ def test_the_inclination_is_largest_where_the_contact_reaches_the_end() -> None:
     [
         (SAMPLE, {"film_thickness": "dowson_higginson_1959"}, "holds for line contacts"),
         (SAMPLE, {"rolling_resistance": "wu_cheng_1991"}, "holds for line contacts"),
+        (SAMPLE, {"load_sharing": "sanchez_2017"}, "holds for line contacts"),
         (SAMPLE, {"friction": "iso_tr_14179_2"}, "touch in an ellipse"),
     ],
 )

@@ -67,8 +67,10 @@ def test_shapes_of_the_library():
         "xu_2007": None,
         "dowson_higginson_1959": "line",
         "hamrock_dowson_1977": "ellipse",
+        "hamrock_dowson_1977_central": "ellipse",
         "none": None,
         "wu_cheng_1991": "line",
+        "wu_cheng_1991_strips": "ellipse",
     }
 
 
@@ -79,7 +81,7 @@ def test_shapes_of_the_library():
             FILM_THICKNESS["dowson_higginson_1959"],
             "ellipse",
             "'dowson_higginson_1959' holds for line contacts, and these touch in an ellipse; choose one "
-            "of hamrock_dowson_1977",
+            "of hamrock_dowson_1977, hamrock_dowson_1977_central",
         ),
         (
             FILM_THICKNESS["hamrock_dowson_1977"],
@@ -101,7 +103,8 @@ def test_shapes_of_the_library():
         (
             ROLLING_RESISTANCE["wu_cheng_1991"],
             "ellipse",
-            "'wu_cheng_1991' holds for line contacts, and these touch in an ellipse; choose one of none",
+            "'wu_cheng_1991' holds for line contacts, and these touch in an ellipse; choose one of none, "
+            "wu_cheng_1991_strips",
         ),
     ],
     ids=["film of a line", "film of an ellipse", "function alone", "friction", "rolling"],

@@ -187,7 +187,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
             *_lost(built, found["wind_up"][at], torques),
             *_on_edges(built, torques, _edges(found)[at]),
             *_loopless(built, friction),
-            *_pressed(found["kinematic_play"]),
+            *(_pressed(float(found["kinematic_play"])) if _on_balls(built) else []),
         ],
         note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
         solve=solve,
@@ -238,13 +238,18 @@ def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]
     ]
 
 
-def _pressed(lost_motion: float) -> list[str]:
+def _on_balls(built: Ready) -> bool:
+    """True if balls hold the body under the teeth of a mesh."""
+    return any(one.design.mesh.balls_elsewhere is not None for one in built.meshes)
+
+
+def _pressed(play: float) -> list[str]:
     """Teeth that balls without load push into both flanks of their spaces."""
-    if not lost_motion < 0.0:
+    if not play < 0.0:
         return []
     return [
         "Without load the balls of the wave generator press the teeth onto both flanks of their spaces, by "
-        f"{60.0 * np.degrees(-lost_motion):.2g} arcmin at the loaded member: the wind-up counts one flank."
+        f"{60.0 * np.degrees(-play):.2g} arcmin at the loaded member: the wind-up counts one flank."
     ]
 
 

@@ -1,5 +1,6 @@
 """The contact type: where teeth touch and how they move there, the same for every gear family."""
 
+from collections.abc import Mapping
 from typing import Literal
 
 import equinox as eqx
@@ -8,9 +9,15 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
 
-__all__ = ["Contacts", "Shape", "along", "total"]
+__all__ = ["KINDS", "TOUCH", "Contacts", "Shape", "along", "total"]
 
 Shape = Literal["line", "ellipse"]
+
+KINDS: Mapping[Shape, str] = {"line": "line contacts", "ellipse": "elliptic contacts"}
+"""Contacts of a shape in words."""
+
+TOUCH: Mapping[Shape, str] = {"line": "along lines", "ellipse": "in an ellipse"}
+"""How flanks of a shape touch, in words."""
 
 
 class Contacts(eqx.Module):

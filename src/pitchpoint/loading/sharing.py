@@ -7,7 +7,7 @@ from typing import Literal
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, Shape, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import Compliance
@@ -45,6 +45,7 @@ class LoadSharing:
         ratio_range: contact ratios for which it holds, exclusive.
         straight: True if it holds only for contact lines parallel to the axes.
         by_stiffness: True if the function asks how the pairs yield.
+        shape: of contacts for which alone it holds; None for any.
         flanks: "touching" if it holds only where all rigid flanks in mesh touch, "wave" only for teeth
             that a wave presses into mesh, or "any".
         hand_over: phases, beside entry and exit, at which the share jumps or bends.
@@ -58,6 +59,7 @@ class LoadSharing:
     ratio_range: tuple[float, float] = (0.0, float("inf"))
     straight: bool = False
     by_stiffness: bool = False
+    shape: Shape | None = None
     flanks: Flanks = "any"
     hand_over: Callable[[Float[Array, ""]], Float[Array, " event"]] | None = None
     note: str = ""
@@ -79,6 +81,8 @@ class LoadSharing:
         low, high = self.ratio_range
         if self.by_stiffness and not mesh.toothed:
             return "needs teeth that yield, and this mesh has none"
+        if self.shape not in (None, mesh.shape):
+            return f"holds for {KINDS[self.shape]}, and these touch {TOUCH[mesh.shape]}"
         if self.flanks == "touching" and not mesh.touching:
             return "holds where all rigid flanks in mesh touch, and some of these have a gap"
         if self.flanks == "wave" and mesh.counts != "wave":
@@ -216,6 +220,7 @@ LOAD_SHARING = Registry(
         ("sanchez_2017", "tian_2024"),
         (1.0, 2.0),
         straight=True,
+        shape="line",
         flanks="touching",
         note="Spur pairs of equal modulus without tip relief or deviation.",
     ),

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
-from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, Shape
 from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, Ellipse, EllipticContact
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Numbers, as_array, product
@@ -198,7 +198,7 @@ class Conditions(eqx.Module):
     def _demand(self, shape: Shape, what: str) -> None:
         """InputError if the contacts have no such quantity."""
         if self.shape != shape:
-            raise InputError(f"{_KINDS[shape]} have a {what}, and these touch {_TOUCH[self.shape]}")
+            raise InputError(f"{KINDS[shape]} have a {what}, and these touch {TOUCH[self.shape]}")
 
     @property
     def _pitch_point(self) -> Reference:
@@ -249,9 +249,6 @@ _OF_SHAPE: Mapping[str, Shape] = {
     "semi_axis_across": "ellipse",
 }
 """Conditions that mean something for one shape of contact; a line carries its load per length."""
-
-_KINDS: Mapping[Shape, str] = {"line": "line contacts", "ellipse": "elliptic contacts"}
-_TOUCH: Mapping[Shape, str] = {"line": "along lines", "ellipse": "in an ellipse"}
 
 
 @runtime_checkable
@@ -322,7 +319,7 @@ def of_other_shape(law: Law | Callable[..., Any], shape: Shape) -> str | None:
     if own is None or own == shape:
         return None
     name = getattr(law, "name", getattr(law, "__name__", "the law"))
-    return f"'{name}' holds for {_KINDS[own]}, and these touch {_TOUCH[shape]}"
+    return f"'{name}' holds for {KINDS[own]}, and these touch {TOUCH[shape]}"
 
 
 def _function(law: Law | Callable[..., Any]) -> Callable[..., Any]:

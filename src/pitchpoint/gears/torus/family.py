@@ -18,7 +18,6 @@ from pitchpoint.gears.involute import usual_fillet
 from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.torus import MEMBERS
-from pitchpoint.gears.torus.face import TorusFace
 from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.programs import program
@@ -46,13 +45,13 @@ def torus_pair(gears: TorusGears, middle: CylindricalPair) -> TorusPair:
         middle: its transverse section in the middle of the face.
     """
     given = {one.name: getattr(middle, one.name) for one in fields(InvolutePair)}
-    first, second = (
-        TorusFace(array(-radius if concave else radius), array(gears.pressure_angle))
+    radii = [
+        -radius if concave else radius
         for radius, concave in zip(gears.torus_radius, gears.concave, strict=True)
-    )
+    ]
     pair = TorusPair(
         **given,
-        faces=(first, second),
+        torus_radii=array(radii),
         widths=array(gears.face_width),
         middle_shift=middle.profile_shift,
         axial_offset=array(gears.axial_offset),
@@ -107,11 +106,13 @@ def _check_place(gears: TorusGears, pair: TorusPair) -> None:
     """InputError where misalignment moves the contact off the faces."""
     if float(pair.contact_room) > 0.0:
         return
-    key = "inclination" if gears.inclination else "axial_offset"
+    mate, place = pair.faces[1], pair.place
+    by_offset = abs(float(mate.slope(place) - mate.slope(place - pair.axial_offset)))
+    key = "inclination" if abs(gears.inclination) > by_offset else "axial_offset"
     raise InputError(
-        f"misalignment moves the contact {1e3 * abs(float(pair.place)):.4g} mm from the middle plane of gear "
-        f"1, off the faces, {1e3 * gears.face_width[0]:.4g} and {1e3 * gears.face_width[1]:.4g} mm wide; a "
-        "smaller misalignment or torus radii that differ more keep it on them",
+        f"misalignment moves the contact off the faces, {1e3 * gears.face_width[0]:.4g} and "
+        f"{1e3 * gears.face_width[1]:.4g} mm wide; a smaller misalignment or torus radii that differ "
+        "more keep it on them",
         key=key,
     )
 
@@ -135,6 +136,7 @@ def _backlash(pair: TorusPair) -> Float[Array, ""]:
 
 def _at_the_ends(gears: TorusGears, pair: TorusPair, middle: CylindricalPair) -> Iterator[str]:
     """Warnings for the teeth at the ends of the common face; InputError where they cannot be made."""
+    _check_tips(gears, pair, middle)
     ends = array(min(gears.face_width) / 2.0)
     more = jnp.stack([face.shift(ends) for face in pair.faces]) / pair.module
     end = replace(middle, profile_shift=middle.profile_shift + more)
@@ -146,17 +148,31 @@ def _at_the_ends(gears: TorusGears, pair: TorusPair, middle: CylindricalPair) ->
         yield f"At the ends of the face: {text}"
 
 
+def _check_tips(gears: TorusGears, pair: TorusPair, middle: CylindricalPair) -> None:
+    """InputError where the teeth of a gear are pointed at the ends of its own face."""
+    for number, (gear, face, width) in enumerate(
+        zip(middle.gears, pair.faces, gears.face_width, strict=True), 1
+    ):
+        shift = gear.profile_shift + face.shift(array(width / 2.0)) / gear.module
+        if float(replace(gear, profile_shift=shift).tip_thickness) < 0.0:
+            raise InputError(
+                f"the teeth of gear {number} are pointed at the ends of its face of {1e3 * width:.4g} mm, "
+                f"where its profile shift is {float(shift):.3g}; a narrower face or a larger torus radius "
+                "leaves tips",
+                key="face_width",
+            )
+
+
 def _following(gears: TorusGears, pair: TorusPair) -> dict[str, Any]:
     """Values that the table leaves open."""
     depth, fillet = _depths(gears)
-    radii = jnp.stack([face.radius for face in pair.faces])
     reference = jnp.stack([gear.reference_radius for gear in pair.gears])
     return {
         "dedendum": depth,
         "fillet_radius": fillet,
         "centre_distance": pair.centre_distance,
         "profile_shift": pair.middle_shift,
-        "torus_offset": reference + pair.middle_shift * pair.module - radii,
+        "torus_offset": reference + pair.middle_shift * pair.module - pair.torus_radii,
     }
 
 

@@ -24,26 +24,35 @@ class TorusPair(InvolutePair):
     whole face, each over its own width.
 
     Attributes:
-        faces: of both gears, one convex and one concave.
+        torus_radii: of the arcs of both pitch surfaces, see `TorusFace.radius` [m].
         widths: of both faces [m]; the narrower one counts as `face_width`.
         middle_shift: profile shift coefficients in the middle planes.
         axial_offset: of the middle plane of gear 2 from that of gear 1, along z [m].
-        inclination: angle by which the flanks part towards positive z, in the plane of action [rad].
+        inclination: of the axes across the line of centres, counted along the line of action: angle by which
+            the flanks that touch part towards positive z, and the other flanks close [rad].
 
     Source: Liu and Xiong, Dynamic characteristics of torus involute gear drive, section 2.
     """
 
     shape: ClassVar[Shape] = "ellipse"
 
-    faces: tuple[TorusFace, TorusFace] = eqx.field(kw_only=True)
+    torus_radii: Float[Array, "2"] = eqx.field(kw_only=True)
     widths: Float[Array, "2"] = eqx.field(kw_only=True)
     middle_shift: Float[Array, "2"] = eqx.field(kw_only=True)
     axial_offset: Float[Array, ""] = eqx.field(kw_only=True)
     inclination: Float[Array, ""] = eqx.field(kw_only=True)
 
     def completed(self) -> Self:
-        """The pair with profile shifts, and what follows from them, where the flanks touch."""
-        return dataclasses.replace(self, profile_shift=self.contact_shift)
+        """The pair with what follows in the middle of the face, and its shifts where the flanks touch."""
+        middle = dataclasses.replace(self, profile_shift=self.middle_shift)
+        whole = super(TorusPair, middle).completed()
+        return dataclasses.replace(whole, profile_shift=whole.contact_shift)
+
+    @property
+    def faces(self) -> tuple[TorusFace, TorusFace]:
+        """Faces of both gears, one convex and one concave."""
+        first, second = (TorusFace(radius, self.pressure_angle) for radius in self.torus_radii)
+        return first, second
 
     @property
     def contact_shift(self) -> Float[Array, "2"]:
@@ -71,7 +80,7 @@ class TorusPair(InvolutePair):
         return jnp.min(ends - own)
 
     def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
-        """Inclination, of whichever sense, at which a contact reaches an end of a face [rad].
+        """Inclination up to which, in either sense, a contact reaches no end of a face [rad]; zero if none.
 
         Args:
             semi_axis: of the contact across the rolling direction [m].
@@ -82,7 +91,7 @@ class TorusPair(InvolutePair):
         high = jnp.minimum(self.widths[0] / 2.0, self.axial_offset + self.widths[1] / 2.0)
         ends = jnp.stack([low + semi_axis, high - semi_axis])
         leaning = self.faces[0].slope(ends) + self.faces[1].slope(ends - self.axial_offset)
-        return jnp.maximum(jnp.min(jnp.abs(leaning), axis=0), 0.0) * (ends[0] < ends[1])
+        return jnp.maximum(jnp.minimum(-leaning[0], leaning[1]), 0.0)
 
     @property
     def transverse_radius(self) -> Float[Array, ""]:

@@ -292,7 +292,7 @@ def bearing_rows(outcome: Outcome) -> list[dict[str, str]]:
             if name in data and np.any(data[name])
         }
         | {
-            f"{head('bearing_load')} {place}": shown("bearing_load", float(load))
+            f"{head('bearing_load')} {place.replace('_', ' ')}": shown("bearing_load", float(load))
             for place, load in bearing_loads(data, k)
         }
         for k, law in enumerate(data["law"].values)
