@@ -29,6 +29,7 @@ _TABLES = (
     "losses",
     "dynamics",
     "loss_map",
+    "formulas",
 )
 
 _DIMENSIONS = (

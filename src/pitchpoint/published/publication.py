@@ -8,10 +8,28 @@ from pitchpoint.input.tables import Table
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.variable import Variable
 
-__all__ = ["Publication", "Reading"]
+__all__ = ["Point", "Publication", "Reading"]
 
-Reading = Callable[[Table, Design, Operation], dict[str, float]]
-"""What its formulas give for gears, as they are given and as they are built, at one operating point."""
+
+@dataclass(frozen=True)
+class Point:
+    """What formulas are read at.
+
+    Attributes:
+        gears: as the case gives them.
+        design: as it is built.
+        operation: one operating point.
+        formulas: inputs of the formulas beside all that, where the publication has a table of them.
+    """
+
+    gears: Table
+    design: Design
+    operation: Operation
+    formulas: Table | None = None
+
+
+Reading = Callable[[Point], dict[str, float]]
+"""What its formulas give at a point."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +48,7 @@ class Publication:
     readings: tuple[Reading, ...] = ()
     variables: Mapping[str, Variable] = field(default_factory=dict)
 
-    def read(self, gears: Table, design: Design, operation: Operation) -> dict[str, float]:
-        """Values of all readings.
-
-        Args:
-            gears: as the case gives them.
-            design: as it is built.
-            operation: one operating point.
-        """
-        found = [reading(gears, design, operation) for reading in self.readings]
+    def read(self, point: Point) -> dict[str, float]:
+        """Values of all readings at a point."""
+        found = [reading(point) for reading in self.readings]
         return {name: value for one in found for name, value in one.items()}
