@@ -218,21 +218,20 @@ def _conditions(design: Design, operation: Operation) -> Known:
     """Materials, oil and masses as the equations take them; both gears are solid discs."""
     mesh, oil, temperature = design.mesh, design.lubricant, operation.temperature
     assert isinstance(mesh, TorusPair)
-    inertia = mesh.inertia(jnp.stack([solid.density for solid in design.solids]))
     radii = jnp.stack([gear.reference_radius for gear in mesh.gears])
+    mass = jnp.stack([solid.density for solid in design.solids]) * jnp.pi * radii**2 * mesh.widths
     return {
-        "inertia": inertia,
-        "mass": 2.0 * inertia / radii**2,
+        "inertia": mass * radii**2 / 2.0,
+        "mass": mass,
         "teeth": mesh.teeth[0],
         "modulus": design.modulus,
-        "roughness": design.roughness.composite_rq,
         "viscosity": oil.viscosity(temperature),
         "pressure_viscosity": oil.pressure_viscosity(temperature),
     }
 
 
 _OF_LINE = ("base_radii", "tangent", "entry", "base_pitch")
-_OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "roughness", "viscosity")
+_OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity")
 
 
 def _drive(
@@ -250,6 +249,7 @@ def _drive(
         "bearing_damping": given.bearing_damping,
         "mesh_damping": given.mesh_damping,
         "error": given.error,
+        "roughness": given.roughness,
         "speed": operation.speed,
         "torque": operation.load,
     }

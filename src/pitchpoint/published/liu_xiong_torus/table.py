@@ -14,6 +14,7 @@ STIFFNESS = Quantity("stiffness", 0.0, 1e13, "N/um", open_low=True)
 ROLL = Quantity("angle", 0.0, 1.0, "deg", open_low=True)
 RATIO = Quantity("dimensionless", 0.0, 1.0)
 AMPLITUDE = Quantity("length", 0.0, 1e-3, "um")
+ROUGHNESS = Quantity("length", 0.0, 1e-5, "um")
 CYCLES = Quantity("dimensionless", 1.0, 20.0)
 FACTOR = Quantity("dimensionless", 0.0, 100.0, open_low=True)
 
@@ -35,6 +36,7 @@ class TorusFormulas(Table):
         error: amplitude e_s of the static transmission error.
         mesh_cycles: from rest on, over which the tables take means and extremes.
         radius_factor: c of R' = c rho_1, the effective radius of the torus pair.
+        roughness: composite Rq S of eq. 22.
         torus_roll, torus_stiffness: of a pair of teeth against the roll angle of the pinion.
         standard_roll, standard_stiffness: the same for the standard pair, at fewer places.
         standard_scale: by which the latter is multiplied.
@@ -46,6 +48,7 @@ class TorusFormulas(Table):
     error: Annotated[float, AMPLITUDE]
     mesh_cycles: Annotated[float, CYCLES]
     radius_factor: Annotated[float, FACTOR]
+    roughness: Annotated[float, ROUGHNESS]
     torus_roll: Rolls
     torus_stiffness: Springs
     standard_roll: Rolls
