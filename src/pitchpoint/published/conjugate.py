@@ -8,8 +8,8 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.published.publication import Point
 from pitchpoint.programs import program
+from pitchpoint.published.publication import Point
 from pitchpoint.results.variable import Variable, angle, deviation, length, speed
 
 __all__ = ["VARIABLES", "readings"]

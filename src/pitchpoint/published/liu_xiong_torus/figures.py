@@ -54,6 +54,7 @@ def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, ""]
         "printed_efficiency": _mean(moved, 1.0 - (heat + rolling) / put_in),
         "film_0": film[0],
         "film_1": film[1],
+        "film_parts": film[0] / film[1],
         "friction_power": driven,
         "friction_heat": _mean(moved, heat),
         "energy_imbalance": (driven + _mean(moved, heat)) / put_in,

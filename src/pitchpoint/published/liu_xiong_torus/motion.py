@@ -82,14 +82,15 @@ class Drive(eqx.Module):
 
     @property
     def error_rate(self) -> Float[Array, ""]:
-        """w of the static transmission error as printed after eq. 11, w_p Z_p/(2 pi), read as rad/s."""
+        """Rate w of the static transmission error as printed after eq. 11, w_p Z_p/(2 pi), read as rad/s."""
         return self.speed * self.teeth / (2.0 * jnp.pi)
 
     @property
     def joint_mass(self) -> Float[Array, ""]:
         """I_e of eq. 9 [kg]."""
         first, second = self.inertia
-        return first * second / (first * self.base_radii[1] ** 2 + second * self.base_radii[0] ** 2)
+        both = first * self.base_radii[1] ** 2 + second * self.base_radii[0] ** 2
+        return jnp.asarray(first * second / both)
 
 
 class Pairs(eqx.Module):
@@ -141,7 +142,9 @@ def pairs(drive: Drive, cycle: Float[Array, ""], older: Bool[Array, ""]) -> Pair
     )
 
 
-def normal_forces(drive: Drive, time: Float[Array, ""], state: State, found: Pairs) -> Float[Array, "2"]:
+def normal_forces(
+    drive: Drive, time: Float[Array, ""], state: State, found: Pairs
+) -> Float[Array, "2"]:
     """Normal forces of both pairs, eqs. 9 to 11; they pull where the flanks would part [N]."""
     swing = drive.error_rate * time
     stretch = UNIT * _error(state[:6]) - drive.error * jnp.cos(swing)
@@ -151,7 +154,7 @@ def normal_forces(drive: Drive, time: Float[Array, ""], state: State, found: Pai
 
 
 def _error(values: Float[Array, "6"]) -> Float[Array, ""]:
-    """Dynamic transmission error of the coordinates x_p, x_g, y_p, y_g, r_bp theta_p, r_bg theta_g, eq. 12."""
+    """Dynamic transmission error, eq. 12, of x_p, x_g, y_p, y_g, r_bp theta_p and r_bg theta_g."""
     return values[4] - values[5] + values[0] - values[1]
 
 

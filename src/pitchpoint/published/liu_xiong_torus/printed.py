@@ -99,7 +99,7 @@ def _durations(mesh: TorusPair, operation: Operation) -> Known:
         "single_contact_start": known["single"],
         "pitch_point_passed": known["pitch"],
         "contact_roll": known["ratio"] * known["base_pitch"] / known["base_radii"][0],
-        "mesh_rate": np.asarray(rate),
+        "mesh_rate": jnp.asarray(rate),
         **{name: known[name] for name in ("transverse_radius", *_MISALIGNED)},
     }
 
@@ -197,17 +197,25 @@ def _literal(point: Point, mesh: TorusPair) -> dict[str, float]:
         drive = _drive(name, given, {**known, **line}, point.operation)
         told = jax.device_get(figures(drive, course(drive, turn), oil))
         found |= {f"{name}_{key}": float(value) for key, value in told.items()}
-    films = (found["torus_film_0"] + found["torus_film_1"]) / (
-        found["standard_film_0"] + found["standard_film_1"]
-    )
-    return {**found, "printed_film_ratio": films}
+    return {**found, **_beside(found)}
+
+
+def _beside(found: Mapping[str, float]) -> dict[str, float]:
+    """Torus pair over standard pair."""
+    torus, standard = (found[f"{name}_film_0"] + found[f"{name}_film_1"] for name in PAIRS)
+    return {
+        "error_ratio": found["torus_largest_error"] / found["standard_largest_error"],
+        "friction_ratio": found["torus_sliding_friction"] / found["standard_sliding_friction"],
+        "printed_film_ratio": torus / standard,
+    }
 
 
 def _pieces(line: Mapping[str, Array], given: TorusFormulas) -> Piece:
     single, pitch = float(line["single"]), float(line["pitch"])
     if not 0.0 < single < 1.0:
         raise InputError(
-            f"the equations have one pair of teeth in turn with two; the contact ratio is {single + 1.0:.4g}",
+            "the equations have one pair of teeth in turn with two; the contact ratio is "
+            f"{single + 1.0:.4g}",
             key="formulas",
         )
     return pieces(single=single, pitch=pitch % 1.0, cycles=given.mesh_cycles)
@@ -241,7 +249,7 @@ def _drive(
     rolls, springs = (getattr(given, f"{name}_{what}") for what in ("roll", "stiffness"))
     if not torus:
         rolls, springs = _filled(given, np.asarray(rolls), np.asarray(springs))
-    numbers = {
+    numbers: dict[str, ArrayLike] = {
         "coefficients": pair_stiffness(roll=rolls, stiffness=springs),
         "pointed": float(torus),
         "radius_factor": given.radius_factor,
@@ -254,7 +262,7 @@ def _drive(
         "torque": operation.load,
     }
     own = {key: known[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
-    return Drive(**{key: array(value) for key, value in {**own, **numbers}.items()})
+    return Drive(**{key: jnp.asarray(value, float) for key, value in {**own, **numbers}.items()})
 
 
 def _filled(given: TorusFormulas, rolls: Values, springs: Values) -> tuple[Values, Values]:

@@ -43,7 +43,14 @@ _AT_PITCH = {
     "printed_pressure": _pressure("pressure of the standard pair, formula without face width"),
     "torus_pitch_film": deviation("film of the torus pair, pitch point, R' by Hertz", "h_min"),
     "standard_pitch_film": deviation("film of the standard pair, pitch point", "h_min"),
-    "film_ratio": _plain("film of the torus pair over that of the standard pair, R' by Hertz", "h/h"),
+    "film_ratio": _plain(
+        "film of the torus pair over that of the standard pair, R' by Hertz", "h/h"
+    ),
+}
+
+_BESIDE = {
+    "error_ratio": _plain("largest transmission error, torus over standard pair", "ε/ε"),
+    "friction_ratio": _plain("sliding friction, torus over standard pair, as published", "F/F"),
     "printed_film_ratio": _plain(
         "film of the torus pair over that of the standard pair, R' as published", "h/h"
     ),
@@ -59,6 +66,7 @@ def _of_motion(pair: str) -> dict[str, Variable]:
         "printed_efficiency": percent("mean efficiency, eq. 23", "χ"),
         "film_0": deviation("mean least film, pair 0", "h_min"),
         "film_1": deviation("mean least film, pair 1", "h_min"),
+        "film_parts": _plain("film of pair 0 over that of pair 1", "h/h"),
         "friction_power": power("mean power of friction by the printed signs", "P_f"),
         "friction_heat": power("mean loss by sliding", "P_v"),
         "energy_imbalance": percent("energy that the printed signs create, of the input", "ΔE/E"),
@@ -82,5 +90,11 @@ def _of_motion(pair: str) -> dict[str, Variable]:
 PUBLICATION = Publication(
     name="liu_xiong_torus",
     readings=(printed.readings,),
-    variables={**_GEOMETRY, **_AT_PITCH, **_of_motion("torus"), **_of_motion("standard")},
+    variables={
+        **_GEOMETRY,
+        **_AT_PITCH,
+        **_BESIDE,
+        **_of_motion("torus"),
+        **_of_motion("standard"),
+    },
 )

@@ -1,5 +1,6 @@
 """The table [formulas] of the case: what the equations of the paper take beside gears, oil and roughness."""
 
+from itertools import pairwise
 from typing import Annotated
 
 from pydantic import Field, model_validator
@@ -59,9 +60,7 @@ class TorusFormulas(Table):
     def _paired(self) -> "TorusFormulas":
         for name in ("torus", "standard"):
             rolls, springs = getattr(self, f"{name}_roll"), getattr(self, f"{name}_stiffness")
-            if len(rolls) != len(springs) or any(
-                later <= one for one, later in zip(rolls, rolls[1:], strict=False)
-            ):
+            if len(rolls) != len(springs) or any(later <= one for one, later in pairwise(rolls)):
                 raise InputError(
                     f"{len(springs)} stiffnesses were given for {len(rolls)} roll angles; give one for "
                     "each angle, in growing order",
