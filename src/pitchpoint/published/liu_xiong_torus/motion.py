@@ -105,12 +105,12 @@ class Pairs(eqx.Module):
         radius: effective radius R' [m].
     """
 
-    place: Float[Array, "2"]
-    stiffness: Float[Array, "2"]
-    active: Bool[Array, "2"]
-    sliding: Float[Array, "2"]
-    entrainment: Float[Array, "2"]
-    radius: Float[Array, "2"]
+    place: Float[Array, "*b 2"]
+    stiffness: Float[Array, "*b 2"]
+    active: Bool[Array, "*b 2"]
+    sliding: Float[Array, "*b 2"]
+    entrainment: Float[Array, "*b 2"]
+    radius: Float[Array, "*b 2"]
 
 
 def pairs(drive: Drive, cycle: Float[Array, ""], older: Bool[Array, ""]) -> Pairs:
@@ -188,12 +188,12 @@ class Course(eqx.Module):
         pairs: both pairs of teeth.
     """
 
-    time: Float[Array, " time"]
-    weight: Float[Array, " time"]
-    error: Float[Array, " time"]
-    rate: Float[Array, "time 6"]
-    force: Float[Array, "time 2"]
-    friction: Float[Array, "time 2"]
+    time: Float[Array, "*b"]
+    weight: Float[Array, "*b"]
+    error: Float[Array, "*b"]
+    rate: Float[Array, "*b 6"]
+    force: Float[Array, "*b 2"]
+    friction: Float[Array, "*b 2"]
     pairs: Pairs
 
 

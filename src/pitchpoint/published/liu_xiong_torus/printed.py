@@ -1,10 +1,10 @@
 """Formulas as Liu and Xiong print them, beside what their derivation asks for."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import ceil, floor, sin
 
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Float
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax, jnp
@@ -12,6 +12,7 @@ from pitchpoint.contact.ellipse import hamrock_brewe_1983, hertz_1881
 from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
@@ -24,7 +25,8 @@ from pitchpoint.published.publication import Point
 __all__ = ["pair_stiffness", "pieces", "readings"]
 
 Values = NDArray[np.float64]
-Known = dict[str, Float[Array, "..."]]
+Numbers = Sequence[float] | Values
+Known = dict[str, Float[Arrays, "..."]]
 
 PAIRS = ("torus", "standard")
 """Torus-involute pair and standard pair of the same dimensions."""
@@ -32,7 +34,7 @@ PAIRS = ("torus", "standard")
 _DEGREE = 4
 
 
-def pair_stiffness(*, roll: ArrayLike, stiffness: ArrayLike) -> Values:
+def pair_stiffness(*, roll: Numbers, stiffness: Numbers) -> Values:
     """Coefficients of powers 1 to 4 of the roll angle, by least squares.
 
     The polynomial is zero at the entry of a pair: with one that is not, the extremes of Table 4 miss by
@@ -79,28 +81,28 @@ def readings(point: Point) -> dict[str, float]:
     mesh, gears = point.design.mesh, point.gears
     if not isinstance(mesh, TorusPair) or not isinstance(gears, TorusGears):
         return {}
-    given = point.design, point.operation
-    told = {**_durations(mesh, point.operation), **_at_pitch(*given)}
+    at_pitch = jax.device_get(_contact(point.design, point.operation))
     return {
-        **{name: float(value) for name, value in told.items()},
+        **_durations(mesh, float(point.operation.speed)),
+        **{name: float(value) for name, value in at_pitch.items()},
         **_quadratic(gears),
         **_literal(point, mesh),
     }
 
 
-def _durations(mesh: TorusPair, operation: Operation) -> Known:
+def _durations(mesh: TorusPair, speed: float) -> dict[str, float]:
     """Key durations, eqs. 1 to 3, and what they rest on."""
     known: Known = jax.device_get(_line(mesh))
-    rate = operation.speed * known["base_radii"][0] / known["base_pitch"]
+    (first, second), pitch = known["base_radii"].tolist(), float(known["base_pitch"])
     return {
-        "base_radius_pinion": known["base_radii"][0],
-        "base_radius_gear": known["base_radii"][1],
-        "line_of_action": known["tangent"],
-        "single_contact_start": known["single"],
-        "pitch_point_passed": known["pitch"],
-        "contact_roll": known["ratio"] * known["base_pitch"] / known["base_radii"][0],
-        "mesh_rate": jnp.asarray(rate),
-        **{name: known[name] for name in ("transverse_radius", *_MISALIGNED)},
+        "base_radius_pinion": first,
+        "base_radius_gear": second,
+        "line_of_action": float(known["tangent"]),
+        "single_contact_start": float(known["single"]),
+        "pitch_point_passed": float(known["pitch"]),
+        "contact_roll": float(known["ratio"]) * pitch / first,
+        "mesh_rate": speed * first / pitch,
+        **{name: float(known[name]) for name in ("transverse_radius", *_MISALIGNED)},
     }
 
 
@@ -125,11 +127,6 @@ def _line(mesh: TorusPair) -> Known:
         "contact_place": mesh.place,
         "misalignment_approach": mesh.misalignment_approach,
     }
-
-
-def _at_pitch(design: Design, operation: Operation) -> Known:
-    found: Known = jax.device_get(_contact(design, operation))
-    return found
 
 
 @program
@@ -190,7 +187,7 @@ def _literal(point: Point, mesh: TorusPair) -> dict[str, float]:
     oil = Oil(
         array(known.pop("pressure_viscosity")),
         array(line["transverse_radius"]),
-        array(floor(given.mesh_cycles)),
+        array(float(floor(given.mesh_cycles))),
     )
     found: dict[str, float] = {}
     for name in PAIRS:
@@ -210,7 +207,7 @@ def _beside(found: Mapping[str, float]) -> dict[str, float]:
     }
 
 
-def _pieces(line: Mapping[str, Array], given: TorusFormulas) -> Piece:
+def _pieces(line: Known, given: TorusFormulas) -> Piece:
     single, pitch = float(line["single"]), float(line["pitch"])
     if not 0.0 < single < 1.0:
         raise InputError(
@@ -242,9 +239,7 @@ _OF_LINE = ("base_radii", "tangent", "entry", "base_pitch")
 _OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity")
 
 
-def _drive(
-    name: str, given: TorusFormulas, known: Mapping[str, Array], operation: Operation
-) -> Drive:
+def _drive(name: str, given: TorusFormulas, known: Known, operation: Operation) -> Drive:
     torus = name == "torus"
     rolls, springs = (getattr(given, f"{name}_{what}") for what in ("roll", "stiffness"))
     if not torus:
