@@ -118,7 +118,7 @@ def test_no_printed_number_is_forgotten():
     ("change", "names"),
     [
         ({"formulas.bearing_stiffness": "2299.5 N/um"}, {"#6 torus, largest transmission error"}),
-        ({"gears.torus_radius": ["35.35 mm", "55 mm"]}, {"#2 torus, largest transmission error"}),
+        ({"gears.torus_radius": ["35.35 mm", "55 mm"]}, {"#4 torus, least transmission error"}),
         ({"formulas.radius_factor": 1.7}, {"#2 torus, film of pair 0"}),
         ({"formulas.error": "11 um"}, {"#2 standard, largest transmission error"}),
     ],
