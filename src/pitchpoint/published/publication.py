@@ -8,7 +8,7 @@ from pitchpoint.input.tables import Table
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.variable import Variable
 
-__all__ = ["Point", "Publication", "Reading"]
+__all__ = ["Beside", "Point", "Publication", "Reading"]
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,21 @@ Reading = Callable[[Point], dict[str, float]]
 
 
 @dataclass(frozen=True)
+class Beside:
+    """Readings that the report sets beside each other, at every point of a study.
+
+    Attributes:
+        columns: what stands beside each other, in words.
+        rows: by words for the quantity, the variable of each column; of one kind and unit.
+        note: what they are, and what to see in them.
+    """
+
+    columns: tuple[str, ...]
+    rows: Mapping[str, tuple[str, ...]]
+    note: str
+
+
+@dataclass(frozen=True)
 class Publication:
     """Formulas that only the cases of a publication need.
 
@@ -41,12 +56,14 @@ class Publication:
         laws: of friction, as its tables rest on them; any case may name them, no spread counts them.
         readings: each gives values by the name of their variable.
         variables: of the readings.
+        beside: those that the report sets beside each other; None for most.
     """
 
     name: str
     laws: tuple[FrictionLaw, ...] = ()
     readings: tuple[Reading, ...] = ()
     variables: Mapping[str, Variable] = field(default_factory=dict)
+    beside: Beside | None = None
 
     def read(self, point: Point) -> dict[str, float]:
         """Values of all readings at a point."""

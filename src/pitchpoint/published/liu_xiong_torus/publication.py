@@ -1,7 +1,9 @@
 """What Liu and Xiong print beside what the library computes, as quantities of a result."""
 
+from dataclasses import replace
+
 from pitchpoint.published.liu_xiong_torus import printed
-from pitchpoint.published.publication import Publication
+from pitchpoint.published.publication import Beside, Publication
 from pitchpoint.results.variable import Variable, deviation, force, length, percent, power
 
 __all__ = ["PUBLICATION"]
@@ -57,44 +59,63 @@ _BESIDE = {
 }
 
 
-def _of_motion(pair: str) -> dict[str, Variable]:
-    """Numbers of the motion by the printed equations, of one pair."""
-    named = {
-        "largest_error": deviation("largest dynamic transmission error", "ε_d"),
-        "least_error": deviation("least dynamic transmission error", "ε_d"),
-        "sliding_friction": force("mean sliding friction of both pairs of teeth", "|ΣF_f|"),
-        "printed_efficiency": percent("mean efficiency, eq. 23", "χ"),
-        "film_0": deviation("mean least film, pair 0", "h_min"),
-        "film_1": deviation("mean least film, pair 1", "h_min"),
-        "film_parts": _plain("film of pair 0 over that of pair 1", "h/h"),
-        "friction_power": power("mean power of friction by the printed signs", "P_f"),
-        "friction_heat": power("mean loss by sliding", "P_v"),
-        "energy_imbalance": percent("energy that the printed signs create, of the input", "ΔE/E"),
-        "mean_force": force("mean normal force over whole mesh cycles", "F_n"),
-        "force_peak": Variable(
-            "frequency of the highest line of the normal force", "f", "1/s", "Hz", "frequency"
-        ),
-    }
+_OF_MOTION = {
+    "largest_error": deviation("largest dynamic transmission error", "ε_d"),
+    "least_error": deviation("least dynamic transmission error", "ε_d"),
+    "sliding_friction": force("mean sliding friction of both pairs of teeth", "|ΣF_f|"),
+    "printed_efficiency": percent("mean efficiency, eq. 23", "χ"),
+    "film_0": deviation("mean least film, pair 0", "h_min"),
+    "film_1": deviation("mean least film, pair 1", "h_min"),
+    "film_parts": _plain("film of pair 0 over that of pair 1", "h/h"),
+    "friction_power": power("mean power of friction by the printed signs", "P_f"),
+    "friction_heat": power("mean loss by sliding", "P_v"),
+    "energy_imbalance": percent("energy that the printed signs create, of the input", "ΔE/E"),
+    "mean_force": force("mean normal force over whole mesh cycles", "F_n"),
+    "force_peak": Variable(
+        "frequency of the highest line of the normal force", "f", "1/s", "Hz", "frequency"
+    ),
+}
+"""Numbers of the motion by the printed equations, of one pair."""
+
+_HIDDEN = ("film_parts", "mean_force", "force_peak")
+
+
+def _of(pair: str) -> dict[str, Variable]:
     return {
-        f"{pair}_{name}": Variable(
-            f"{one.long_name}, {pair} pair, as published",
-            one.symbol,
-            one.unit,
-            one.shown,
-            one.kind,
-        )
-        for name, one in named.items()
+        f"{pair}_{name}": replace(one, long_name=f"{one.long_name}, {pair} pair, as published")
+        for name, one in _OF_MOTION.items()
     }
 
+
+_SIDE_BY_SIDE = Beside(
+    columns=("torus pair", "standard pair"),
+    rows={
+        **{
+            f"{one.long_name}, as published": (f"torus_{name}", f"standard_{name}")
+            for name, one in _OF_MOTION.items()
+            if name not in _HIDDEN
+        },
+        "film at the pitch point, with the radii of Hertz": (
+            "torus_pitch_film",
+            "standard_pitch_film",
+        ),
+        "pressure at the pitch point, of the ellipse and of the line": (
+            "ellipse_pressure",
+            "line_pressure",
+        ),
+    },
+    note=(
+        "As published: start from rest by the printed equations with the fitted inputs. The thicker film of "
+        "the torus pair follows from its effective radius alone, R' = c rho_1; with the radii of Hertz, in "
+        "the last rows, its film is the thinner one. By the printed signs friction drives both gears: its "
+        "power is 2 mu F v_e with the sign of the sliding, not the loss -mu F |v_s|, and what lies between "
+        "them is energy from nothing."
+    ),
+)
 
 PUBLICATION = Publication(
     name="liu_xiong_torus",
     readings=(printed.readings,),
-    variables={
-        **_GEOMETRY,
-        **_AT_PITCH,
-        **_BESIDE,
-        **_of_motion("torus"),
-        **_of_motion("standard"),
-    },
+    variables={**_GEOMETRY, **_AT_PITCH, **_BESIDE, **_of("torus"), **_of("standard")},
+    beside=_SIDE_BY_SIDE,
 )
