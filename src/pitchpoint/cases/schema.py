@@ -220,7 +220,8 @@ class Oil(Table):
     """An oil of the catalogue, by value, or a catalogue oil with some values of one's own.
 
     With a thickener or a consistency (NLGI number) it is a grease, and the values are those of its base oil.
-    With its viscosity at -40 degC it goes down to there.
+    With its viscosity at -40 degC it goes down to there, and between -40 and 40 degC its viscosity follows
+    the line through that one and the one at 40 degC: it changes at 25 degC too.
     """
 
     name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
