@@ -28,7 +28,6 @@ from pitchpoint.published.liu_xiong_torus import printed
 from pitchpoint.published.liu_xiong_torus.motion import course
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import Outcome, compare_case
-from pitchpoint.views.figures import Curves
 from pitchpoint.views.section import Page
 from pitchpoint.views.sections.formulas import FORMULAS
 
@@ -339,13 +338,19 @@ def test_report_sets_torus_beside_standard():
         name: read("heavy").assign_attrs(read("heavy").attrs, title=title)
         for name in ("study_heavy", "study_again")
     }
-    page = Page({"as_published": outcome}, Mock(spec=Curves))
+    page = Page({"as_published": outcome}, {})
     assert FORMULAS.lacking(page) is None
     note, heading, table = FORMULAS.blocks(page)  # points that were seen are not shown again
     assert "follows from its effective radius alone" in note.words
     assert heading.words == title
-    assert [one.rpartition(", ")[2] for one in table.head[1:]] == ["torus pair", "standard pair"] * 3
-    rows = {row[0]: np.array([float(cell.replace("\u2212", "-")) for cell in row[1:]]) for row in table.rows}
+    assert [one.rpartition(", ")[2] for one in table.head[1:]] == [
+        "torus pair",
+        "standard pair",
+    ] * 3
+    rows = {
+        row[0]: np.array([float(cell.replace("\u2212", "-")) for cell in row[1:]])
+        for row in table.rows
+    }
     published, hertz = (
         next(row for told, row in rows.items() if told.startswith(begin)).reshape(3, 2)
         for begin in ("mean least film, pair 0", "film at the pitch point, with the radii of Hertz")
@@ -357,7 +362,7 @@ def test_report_sets_torus_beside_standard():
 def test_report_of_another_source_has_no_such_section():
     outcome = Mock(spec=Outcome)
     outcome.manifest, outcome.parts = {"source": "xu_2021"}, {}
-    assert FORMULAS.lacking(Page({"as_published": outcome}, Mock(spec=Curves))) == ""
+    assert FORMULAS.lacking(Page({"as_published": outcome}, {})) == ""
 
 
 def test_summary_says_what_the_thicker_film_follows_from():

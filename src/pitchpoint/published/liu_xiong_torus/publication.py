@@ -107,9 +107,9 @@ _SIDE_BY_SIDE = Beside(
     note=(
         "As published: start from rest by the printed equations with the fitted inputs. The thicker film of "
         "the torus pair follows from its effective radius alone, R' = c rho_1; with the radii of Hertz, in "
-        "the last rows, its film is the thinner one. By the printed signs friction drives both gears: its "
-        "power is 2 mu F v_e with the sign of the sliding, not the loss -mu F |v_s|, and what lies between "
-        "them is energy from nothing."
+        "the last rows, its film is the thinner one. By the printed signs friction drives both gears behind "
+        "the pitch point and brakes both before it: its power is 2 mu F v_e with the sign of the sliding, "
+        "not the loss -mu F |v_s|, and what lies between the two is energy from nothing."
     ),
 )
 
