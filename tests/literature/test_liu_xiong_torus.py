@@ -20,7 +20,7 @@ from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
-from pitchpoint.errors import InputError
+from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
 from pitchpoint.lubrication.friction_coefficient import xu_2007
 from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991
@@ -380,6 +380,19 @@ def test_summary_says_what_the_thicker_film_follows_from():
 def test_what_cannot_be_formulas_is_refused(change, told):
     with pytest.raises(InputError, match=told):
         Variant(TREE, NAME, "as_published").built(change)
+
+
+def test_a_negative_stiffness_is_refused():
+    springs = [f"{value} N/um" for value in np.linspace(400.0, 1.0, 20) ** 3 / 1e6]
+    with pytest.raises(InputError, match="needs a positive stiffness") as told:
+        read("validation", **{"formulas.torus_stiffness": springs})
+    assert told.value.key == "formulas.torus_stiffness"
+
+
+def test_a_motion_that_is_not_found_is_told(monkeypatch):
+    monkeypatch.setattr(printed, "figures", lambda *_: {"largest_error": np.array(np.inf)})
+    with pytest.raises(ConvergenceError, match="motion of the torus pair"):
+        read("validation")
 
 
 def test_other_contact_ratios_are_refused():

@@ -19,7 +19,7 @@ UNIT = 1e-6
 TOLERANCE = 1e-8
 """Largest estimated error of a step, of itself and of a micrometre."""
 
-MOST_STEPS = 100_000
+MOST_STEPS = 20_000
 """Steps between two hand-overs after which the motion is given up."""
 
 SAMPLES = 1500

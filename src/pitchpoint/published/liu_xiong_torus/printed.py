@@ -11,7 +11,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.ellipse import hamrock_brewe_1983, hertz_1881
 from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.efficiency.quasi_static import Design, Operation
-from pitchpoint.errors import InputError
+from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
@@ -193,8 +193,17 @@ def _literal(point: Point, mesh: TorusPair) -> dict[str, float]:
     for name in PAIRS:
         drive = _drive(name, given, {**known, **line}, point.operation)
         told = jax.device_get(figures(drive, course(drive, turn), oil))
+        _check_found(name, told)
         found |= {f"{name}_{key}": float(value) for key, value in told.items()}
     return {**found, **_beside(found)}
+
+
+def _check_found(name: str, told: Known) -> None:
+    if not all(np.isfinite(value) for value in told.values()):
+        raise ConvergenceError(
+            f"the motion of the {name} pair by the printed equations was not found: it grows without bound, "
+            "or takes more steps than are allowed"
+        )
 
 
 def _beside(found: Mapping[str, float]) -> dict[str, float]:
@@ -244,8 +253,10 @@ def _drive(name: str, given: TorusFormulas, known: Known, operation: Operation) 
     rolls, springs = (getattr(given, f"{name}_{what}") for what in ("roll", "stiffness"))
     if not torus:
         rolls, springs = _filled(given, np.asarray(rolls), np.asarray(springs))
+    coefficients = pair_stiffness(roll=rolls, stiffness=springs)
+    _check_stiffness(name, coefficients, known)
     numbers: dict[str, ArrayLike] = {
-        "coefficients": pair_stiffness(roll=rolls, stiffness=springs),
+        "coefficients": coefficients,
         "pointed": float(torus),
         "radius_factor": given.radius_factor,
         "bearing": given.bearing_stiffness,
@@ -258,6 +269,19 @@ def _drive(name: str, given: TorusFormulas, known: Known, operation: Operation) 
     }
     own = {key: known[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
     return Drive(**{key: jnp.asarray(value, float) for key, value in {**own, **numbers}.items()})
+
+
+def _check_stiffness(name: str, coefficients: Values, known: Known) -> None:
+    """InputError if the polynomial is negative somewhere on the way of a pair."""
+    end = float(known["ratio"] * known["base_pitch"] / known["base_radii"][0])
+    roll = np.linspace(0.0, end, 201)[1:]
+    values = np.polynomial.polynomial.polyval(roll, [0.0, *coefficients])
+    if values.min() <= 0.0:
+        raise InputError(
+            f"the polynomial through these stiffnesses is {1e-6 * values.min():.4g} N/um at "
+            f"{np.rad2deg(roll[values.argmin()]):.4g} deg; a pair of teeth needs a positive stiffness",
+            key=f"formulas.{name}_stiffness",
+        )
 
 
 def _filled(given: TorusFormulas, rolls: Values, springs: Values) -> tuple[Values, Values]:
