@@ -37,6 +37,7 @@ SLOWEST_FIRST = (
     "unit/test_report.py",
     "cli/test_stiffness_and_vibration.py",
     "literature/test_zhao2022.py",
+    "literature/test_liu_xiong_torus.py",
     "literature/test_atanasiu2011.py",
     "properties/test_random_cases.py",
     "cli/test_bad_input.py",

@@ -42,7 +42,7 @@ from pitchpoint.runs.jobs import jobs
 BASE = tomllib.loads("""
 title = "a title"
 summary = "a summary"
-source = "tian_2024"
+source = "liu_xiong_torus"
 
 [gears]
 family = "cylindrical"
@@ -113,6 +113,20 @@ torque = "40 N m"
 
 [loss_map]
 temperatures = ["60 degC"]
+
+[formulas]
+bearing_stiffness = "2190 N/um"
+bearing_damping = 0.001
+mesh_damping = 0.005
+error = "10 um"
+mesh_cycles = 3.2
+radius_factor = 1.6
+roughness = "1.2 um"
+torus_roll = ["1 deg", "4 deg", "8 deg", "12 deg", "16 deg"]
+torus_stiffness = ["110 N/um", "140 N/um", "160 N/um", "160 N/um", "140 N/um"]
+standard_roll = ["1 deg", "4 deg", "8 deg", "12 deg", "16 deg"]
+standard_stiffness = ["110 N/um", "140 N/um", "160 N/um", "160 N/um", "140 N/um"]
+standard_scale = 0.9
 
 [[targets]]
 quantity = "contact ratio"

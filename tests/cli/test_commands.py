@@ -142,6 +142,7 @@ def test_cases(pitchpoint: Callable[..., Told]) -> None:
         "atanasiu2011",
         "csd25",
         "hfuc32",
+        "liu_xiong_torus",
         "tian2024",
         "xu2021",
         "zhao2022",

@@ -17,6 +17,7 @@ from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
+from pitchpoint.published.publication import Point
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.units import si_unit
 
@@ -34,7 +35,7 @@ PIECE = 256
 PREFIX = "study_"
 """Names of parts that are studies begin with it."""
 
-SWEPT = ("gears", "stages", "materials", "lubricant", "roughness", "operation")
+SWEPT = ("gears", "stages", "materials", "lubricant", "roughness", "operation", "formulas")
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
 
 
@@ -110,7 +111,10 @@ def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     if source not in PUBLICATIONS or not alone:
         return {}
     read = PUBLICATIONS[source].read
-    found = [read(point.case.gears, point.design, point.operation) for point in alone]
+    found = [
+        read(Point(point.case.gears, point.design, point.operation, point.case.formulas))
+        for point in alone
+    ]
     return {
         name: (("law", "point"), np.array([[one[name] for one in found]] * laws))
         for name in found[0]

@@ -30,6 +30,7 @@ _TABLES = (
     "losses",
     "dynamics",
     "loss_map",
+    "formulas",
 )
 
 _DIMENSIONS = (

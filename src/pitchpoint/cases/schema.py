@@ -25,6 +25,7 @@ from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, forms
+from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.registry import nearest
 
 __all__ = [
@@ -663,6 +664,7 @@ class Case(Table):
     dynamics: Dynamics | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
+    formulas: TorusFormulas | None = None
     targets: Targets = ()
     issues: Issues = ()
 
@@ -682,6 +684,7 @@ class Case(Table):
         _check_load(self, self.gears)
         _check_losses(self.losses, self.gears.shafts, self.bodies)
         _check_meant(self)
+        _check_formulas(self)
         _check_driver(self)
         operation, models = self.operation, self.models
         driver = operation.driver if _given(operation, "driver") else self.gears.drivers[0]
@@ -900,6 +903,16 @@ def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
             "a loss map runs over the torque of an output, which a test rig does not have; leave this "
             "table out",
             key="loss_map",
+        )
+
+
+def _check_formulas(case: Case) -> None:
+    """InputError if inputs of formulas are given to a case whose source has none."""
+    if case.formulas is not None and case.source != "liu_xiong_torus":
+        raise InputError(
+            "these are inputs of the equations of one paper; they belong to a case with its source, "
+            'source = "liu_xiong_torus"',
+            key="formulas",
         )
 
 

@@ -7,10 +7,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.input.tables import Table
 from pitchpoint.programs import program
+from pitchpoint.published.publication import Point
 from pitchpoint.results.variable import Variable, angle, deviation, length, speed
 
 __all__ = ["VARIABLES", "readings"]
@@ -51,18 +50,18 @@ _TOUCHING = 1e-5  # modules
 Points = Float[Array, "branch place"]
 
 
-def readings(_: Table, design: Design, operation: Operation) -> dict[str, float]:
+def readings(point: Point) -> dict[str, float]:
     """Where points of the flank touch their envelope, how they roll on it, and what the groove leaves of it.
 
     Every point does so twice, deep in the space near the long axis and again on its way out. Ends are
     those of the flank without the rounding of its tip.
     """
-    mesh = design.mesh
+    mesh = point.design.mesh
     assert isinstance(mesh, StrainWave)
     found = _conjugate(mesh)
     rate = float(found["phase_rate"])
     (deep, outer), (r_deep, r_outer) = found["angle"], found["radius"]
-    speed = np.abs(found["entrainment"][0]) * rate * float(operation.speed)
+    speed = np.abs(found["entrainment"][0]) * rate * float(point.operation.speed)
     return {
         "phase_rate": rate,
         "deep_angle_first": float(np.nanmin(deep)),

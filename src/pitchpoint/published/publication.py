@@ -8,10 +8,43 @@ from pitchpoint.input.tables import Table
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.variable import Variable
 
-__all__ = ["Publication", "Reading"]
+__all__ = ["Beside", "Point", "Publication", "Reading"]
 
-Reading = Callable[[Table, Design, Operation], dict[str, float]]
-"""What its formulas give for gears, as they are given and as they are built, at one operating point."""
+
+@dataclass(frozen=True)
+class Point:
+    """What formulas are read at.
+
+    Attributes:
+        gears: as the case gives them.
+        design: as it is built.
+        operation: one operating point.
+        formulas: inputs of the formulas beside all that, where the publication has a table of them.
+    """
+
+    gears: Table
+    design: Design
+    operation: Operation
+    formulas: Table | None = None
+
+
+Reading = Callable[[Point], dict[str, float]]
+"""What its formulas give at a point."""
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Readings that the report sets beside each other, at every point of a study.
+
+    Attributes:
+        columns: what stands beside each other, in words.
+        rows: by words for the quantity, the variable of each column; of one kind and unit.
+        note: what they are, and what to see in them.
+    """
+
+    columns: tuple[str, ...]
+    rows: Mapping[str, tuple[str, ...]]
+    note: str
 
 
 @dataclass(frozen=True)
@@ -23,20 +56,16 @@ class Publication:
         laws: of friction, as its tables rest on them; any case may name them, no spread counts them.
         readings: each gives values by the name of their variable.
         variables: of the readings.
+        beside: those that the report sets beside each other; None for most.
     """
 
     name: str
     laws: tuple[FrictionLaw, ...] = ()
     readings: tuple[Reading, ...] = ()
     variables: Mapping[str, Variable] = field(default_factory=dict)
+    beside: Beside | None = None
 
-    def read(self, gears: Table, design: Design, operation: Operation) -> dict[str, float]:
-        """Values of all readings.
-
-        Args:
-            gears: as the case gives them.
-            design: as it is built.
-            operation: one operating point.
-        """
-        found = [reading(gears, design, operation) for reading in self.readings]
+    def read(self, point: Point) -> dict[str, float]:
+        """Values of all readings at a point."""
+        found = [reading(point) for reading in self.readings]
         return {name: value for one in found for name, value in one.items()}

@@ -1,6 +1,7 @@
 """All publications that bring something of their own."""
 
 from pitchpoint.published.atanasiu2011.publication import PUBLICATION as ATANASIU_2011
+from pitchpoint.published.liu_xiong_torus.publication import PUBLICATION as LIU_XIONG_TORUS
 from pitchpoint.published.publication import Publication
 from pitchpoint.published.tian2024.publication import PUBLICATION as TIAN_2024
 from pitchpoint.published.xu2021.publication import PUBLICATION as XU_2021
@@ -11,7 +12,7 @@ from pitchpoint.results.variables import VARIABLES
 __all__ = ["PUBLICATIONS"]
 
 PUBLICATIONS: Registry[Publication] = Registry(
-    "publication", ATANASIU_2011, TIAN_2024, XU_2021, ZHAO_2022
+    "publication", ATANASIU_2011, LIU_XIONG_TORUS, TIAN_2024, XU_2021, ZHAO_2022
 )
 
 for _each in PUBLICATIONS.values():

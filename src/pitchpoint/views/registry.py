@@ -8,6 +8,7 @@ from pitchpoint.views.sections.beside import BESIDE
 from pitchpoint.views.sections.compared import COMPARED
 from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.drive import DRIVE
+from pitchpoint.views.sections.formulas import FORMULAS
 from pitchpoint.views.sections.inputs import INPUTS
 from pitchpoint.views.sections.issues import ISSUES
 from pitchpoint.views.sections.joint import JOINT
@@ -42,6 +43,7 @@ SECTIONS: Registry[Section] = Registry(
     STIFFNESS,
     VIBRATION,
     STUDIES,
+    FORMULAS,
     LOSS_MAP,
     COMPARED,
     ISSUES,

@@ -6,10 +6,9 @@ from math import cos, sin, sqrt, tan
 import numpy as np
 
 from pitchpoint._jax import jnp
-from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
-from pitchpoint.input.tables import Table
+from pitchpoint.published.publication import Point
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]
 
@@ -49,8 +48,9 @@ def equivalent_mass(*, inertia: Sequence[float], base_radius: Sequence[float]) -
     return first * second / (first * r_1**2 + second * r_2**2)
 
 
-def readings(gears: Table, design: Design, _: Operation) -> dict[str, float]:
+def readings(point: Point) -> dict[str, float]:
     """Both formulas for a case, under the names of result variables."""
+    gears, design = point.gears, point.design
     mesh = design.mesh
     assert isinstance(gears, CylindricalGears)
     assert isinstance(mesh, CylindricalPair)

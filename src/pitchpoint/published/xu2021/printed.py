@@ -10,7 +10,7 @@ from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.input.tables import Table
+from pitchpoint.published.publication import Point
 
 __all__ = [
     "assumed_radius",
@@ -270,11 +270,12 @@ OIL = {"viscosity_0": 0.04, "alpha": 2.2e-8, "beta": 0.0476, "temperature_0": 31
 """Table 2, without the density."""
 
 
-def readings(gears: Table, design: Design, operation: Operation) -> dict[str, float]:
+def readings(point: Point) -> dict[str, float]:
     """What the formulas give for a case, under the names of result variables.
 
     Those with base circles are left out for teeth that have none.
     """
+    gears, design, operation = point.gears, point.design, point.operation
     mesh = design.mesh
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)

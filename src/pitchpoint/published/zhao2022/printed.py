@@ -5,11 +5,10 @@ from math import atan, cos, pi, sin, sqrt, tan
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.input.tables import Table
+from pitchpoint.published.publication import Point
 
 __all__ = [
     "arc_distance",
@@ -132,8 +131,9 @@ def closure_residual(
     return start_y - (end_x - start_x) / tan(theta_b) - end_y
 
 
-def readings(gears: Table, design: Design, operation: Operation) -> dict[str, float]:
+def readings(point: Point) -> dict[str, float]:
     """What the formulas give for a case, under the names of result variables."""
+    gears, design, operation = point.gears, point.design, point.operation
     mesh = design.mesh
     assert isinstance(gears, StrainWaveGears)
     assert isinstance(mesh, StrainWave)

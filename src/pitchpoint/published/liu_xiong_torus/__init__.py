@@ -1,0 +1,1 @@
+"""Liu and Xiong, Dynamic characteristics of torus involute gear drive."""

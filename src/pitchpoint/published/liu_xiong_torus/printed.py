@@ -1,0 +1,291 @@
+"""Formulas as Liu and Xiong print them, beside what their derivation asks for."""
+
+from collections.abc import Mapping, Sequence
+from math import ceil, floor, sin
+
+import numpy as np
+from jaxtyping import Float
+from numpy.typing import ArrayLike, NDArray
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.ellipse import hamrock_brewe_1983, hertz_1881
+from pitchpoint.contact.hertz import line_pressure
+from pitchpoint.efficiency.quasi_static import Design, Operation
+from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.factored import Arrays
+from pitchpoint.gears.torus.pair import TorusPair
+from pitchpoint.gears.torus.table import TorusGears
+from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
+from pitchpoint.programs import program
+from pitchpoint.published.liu_xiong_torus.figures import Oil, figures
+from pitchpoint.published.liu_xiong_torus.motion import Drive, Piece, course
+from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
+from pitchpoint.published.publication import Point
+
+__all__ = ["pair_stiffness", "pieces", "readings"]
+
+Values = NDArray[np.float64]
+Numbers = Sequence[float] | Values
+Known = dict[str, Float[Arrays, "..."]]
+
+PAIRS = ("torus", "standard")
+"""Torus-involute pair and standard pair of the same dimensions."""
+
+_DEGREE = 4
+
+
+def pair_stiffness(*, roll: Numbers, stiffness: Numbers) -> Values:
+    """Coefficients of powers 1 to 4 of the roll angle, by least squares.
+
+    The polynomial is zero at the entry of a pair: with one that is not, the extremes of Table 4 miss by
+    four times as much.
+
+    Args:
+        roll: angle of the pinion since the entry, shape (place) [rad].
+        stiffness: of the pair there, shape (place) [N/m].
+
+    Source: Liu and Xiong, text under Table 1; the zero at the entry is fitted.
+
+    Example:
+        >>> pair_stiffness(roll=[0.1, 0.2, 0.3, 0.4], stiffness=[1e8, 2e8, 3e8, 4e8]).round(-3)[0]
+        np.float64(1000000000.0)
+    """
+    powers = np.asarray(roll)[:, None] ** np.arange(1, _DEGREE + 1)
+    found = np.linalg.lstsq(powers, np.asarray(stiffness), rcond=None)[0]
+    return np.asarray(found)
+
+
+def pieces(*, single: float, pitch: float, cycles: float) -> Piece:
+    """What lies between neighbouring hand-overs from the start on.
+
+    Args:
+        single: part of the mesh cycle t_Cp/t_c at which the older pair leaves.
+        pitch: that at which a pair passes the pitch point, t_p/t_c less whole cycles.
+        cycles: mesh cycles in all.
+    """
+    cuts, count = np.unique([0.0, single, pitch, 1.0]), ceil(cycles)
+    gone = np.repeat(np.arange(float(count)), cuts.size - 1)
+    start, stop = (np.tile(part, count) for part in (cuts[:-1], cuts[1:]))
+    stop = np.minimum(stop, cycles - gone)
+    there = stop > start
+    return Piece(
+        gone=array(gone[there]),
+        start=array(start[there]),
+        stop=array(stop[there]),
+        older=jnp.asarray((start < single)[there]),
+    )
+
+
+def readings(point: Point) -> dict[str, float]:
+    """What the formulas give for a torus pair, under the names of result variables."""
+    mesh, gears = point.design.mesh, point.gears
+    if not isinstance(mesh, TorusPair) or not isinstance(gears, TorusGears):
+        return {}
+    at_pitch = jax.device_get(_contact(point.design, point.operation))
+    return {
+        **_durations(mesh, float(point.operation.speed)),
+        **{name: float(value) for name, value in at_pitch.items()},
+        **_quadratic(gears),
+        **_literal(point, mesh),
+    }
+
+
+def _durations(mesh: TorusPair, speed: float) -> dict[str, float]:
+    """Key durations, eqs. 1 to 3, and what they rest on."""
+    known: Known = jax.device_get(_line(mesh))
+    (first, second), pitch = known["base_radii"].tolist(), float(known["base_pitch"])
+    return {
+        "base_radius_pinion": first,
+        "base_radius_gear": second,
+        "line_of_action": float(known["tangent"]),
+        "single_contact_start": float(known["single"]),
+        "pitch_point_passed": float(known["pitch"]),
+        "contact_roll": float(known["ratio"]) * pitch / first,
+        "mesh_rate": speed * first / pitch,
+        **{name: float(known[name]) for name in ("transverse_radius", *_MISALIGNED)},
+    }
+
+
+_MISALIGNED = ("contact_place", "misalignment_approach")
+
+
+@program
+def _line(mesh: TorusPair) -> Known:
+    """Places on the line of action, and where across the face the flanks touch."""
+    line = mesh.line
+    start, end = line.limits
+    ratio = (end - start) / line.base_pitch
+    return {
+        "base_radii": line.base_radii,
+        "tangent": line.tangent_length,
+        "entry": start,
+        "base_pitch": line.base_pitch,
+        "ratio": ratio,
+        "single": ratio - 1.0,
+        "pitch": (line.pitch_position - start) / line.base_pitch,
+        "transverse_radius": mesh.transverse_radius,
+        "contact_place": mesh.place,
+        "misalignment_approach": mesh.misalignment_approach,
+    }
+
+
+@program
+def _contact(design: Design, operation: Operation) -> Known:
+    """Contact and film of a pair that carries all at the pitch point, in points and along a line."""
+    mesh = design.mesh
+    assert isinstance(mesh, TorusPair)
+    line = mesh.line
+    place = line.pitch_position
+    load, radius = operation.load / line.base_radii[1], place * (1.0 - place / line.tangent_length)
+    points = {"load": load, "transverse_radius": mesh.transverse_radius}
+    lines = {"line_load": load / mesh.face_width}
+    both = {"radius": radius, "modulus": design.modulus}
+    oil = {
+        "entrainment": operation.speed * place,
+        "viscosity": design.lubricant.viscosity(operation.temperature),
+        "pressure_viscosity": design.lubricant.pressure_viscosity(operation.temperature),
+    }
+    films = (
+        hamrock_dowson_1977(**points, **both, **oil),
+        dowson_higginson_1959(**lines, **both, **oil),
+    )
+    exact, near = hertz_1881(**points, **both), hamrock_brewe_1983(**points, **both)
+    return {
+        "static_force": load,
+        "ellipse_across": exact.across,
+        "ellipse_along": exact.along,
+        "ellipse_pressure": exact.pressure,
+        "regressed_across": near.across,
+        "regressed_along": near.along,
+        "regressed_pressure": near.pressure,
+        "line_pressure": line_pressure(**lines, **both),
+        "printed_pressure": line_pressure(line_load=load, **both),
+        "torus_pitch_film": films[0],
+        "standard_pitch_film": films[1],
+        "film_ratio": films[0] / films[1],
+    }
+
+
+def _quadratic(gears: TorusGears) -> dict[str, float]:
+    """Where the contact goes if the inclination meets a parabola between the flanks, and what it costs."""
+    first, second = gears.torus_radius
+    radius = 1.0 / (sin(gears.pressure_angle) * (1.0 / first - 1.0 / second))
+    return {
+        "quadratic_place": -gears.inclination * radius,
+        "quadratic_approach": gears.inclination**2 * radius / 2.0,
+    }
+
+
+def _literal(point: Point, mesh: TorusPair) -> dict[str, float]:
+    """The motion of both pairs by the equations as printed; nothing without their inputs."""
+    given = point.formulas
+    if not isinstance(given, TorusFormulas):
+        return {}
+    known: Known = jax.device_get(_conditions(point.design, point.operation))
+    line: Known = jax.device_get(_line(mesh))
+    turn = _pieces(line, given)
+    oil = Oil(
+        array(known.pop("pressure_viscosity")),
+        array(line["transverse_radius"]),
+        array(float(floor(given.mesh_cycles))),
+    )
+    found: dict[str, float] = {}
+    for name in PAIRS:
+        drive = _drive(name, given, {**known, **line}, point.operation)
+        told = jax.device_get(figures(drive, course(drive, turn), oil))
+        _check_found(name, told)
+        found |= {f"{name}_{key}": float(value) for key, value in told.items()}
+    return {**found, **_beside(found)}
+
+
+def _check_found(name: str, told: Known) -> None:
+    if not all(np.isfinite(value) for value in told.values()):
+        raise ConvergenceError(
+            f"the motion of the {name} pair by the printed equations was not found: it grows without bound, "
+            "or takes more steps than are allowed"
+        )
+
+
+def _beside(found: Mapping[str, float]) -> dict[str, float]:
+    """Torus pair over standard pair."""
+    torus, standard = (found[f"{name}_film_0"] + found[f"{name}_film_1"] for name in PAIRS)
+    return {
+        "error_ratio": found["torus_largest_error"] / found["standard_largest_error"],
+        "friction_ratio": found["torus_sliding_friction"] / found["standard_sliding_friction"],
+        "printed_film_ratio": torus / standard,
+    }
+
+
+def _pieces(line: Known, given: TorusFormulas) -> Piece:
+    single, pitch = float(line["single"]), float(line["pitch"])
+    if not 0.0 < single < 1.0:
+        raise InputError(
+            "the equations have one pair of teeth in turn with two; the contact ratio is "
+            f"{single + 1.0:.4g}",
+            key="formulas",
+        )
+    return pieces(single=single, pitch=pitch % 1.0, cycles=given.mesh_cycles)
+
+
+@program
+def _conditions(design: Design, operation: Operation) -> Known:
+    """Materials, oil and masses as the equations take them; both gears are solid discs."""
+    mesh, oil, temperature = design.mesh, design.lubricant, operation.temperature
+    assert isinstance(mesh, TorusPair)
+    radii = jnp.stack([gear.reference_radius for gear in mesh.gears])
+    mass = jnp.stack([solid.density for solid in design.solids]) * jnp.pi * radii**2 * mesh.widths
+    return {
+        "inertia": mass * radii**2 / 2.0,
+        "mass": mass,
+        "teeth": mesh.teeth[0],
+        "modulus": design.modulus,
+        "viscosity": oil.viscosity(temperature),
+        "pressure_viscosity": oil.pressure_viscosity(temperature),
+    }
+
+
+_OF_LINE = ("base_radii", "tangent", "entry", "base_pitch")
+_OF_CONDITIONS = ("inertia", "mass", "teeth", "modulus", "viscosity")
+
+
+def _drive(name: str, given: TorusFormulas, known: Known, operation: Operation) -> Drive:
+    torus = name == "torus"
+    rolls, springs = (getattr(given, f"{name}_{what}") for what in ("roll", "stiffness"))
+    if not torus:
+        rolls, springs = _filled(given, np.asarray(rolls), np.asarray(springs))
+    coefficients = pair_stiffness(roll=rolls, stiffness=springs)
+    _check_stiffness(name, coefficients, known)
+    numbers: dict[str, ArrayLike] = {
+        "coefficients": coefficients,
+        "pointed": float(torus),
+        "radius_factor": given.radius_factor,
+        "bearing": given.bearing_stiffness,
+        "bearing_damping": given.bearing_damping,
+        "mesh_damping": given.mesh_damping,
+        "error": given.error,
+        "roughness": given.roughness,
+        "speed": operation.speed,
+        "torque": operation.load,
+    }
+    own = {key: known[key] for key in (*_OF_LINE, *_OF_CONDITIONS)}
+    return Drive(**{key: jnp.asarray(value, float) for key, value in {**own, **numbers}.items()})
+
+
+def _check_stiffness(name: str, coefficients: Values, known: Known) -> None:
+    """InputError if the polynomial is negative somewhere on the way of a pair."""
+    end = float(known["ratio"] * known["base_pitch"] / known["base_radii"][0])
+    roll = np.linspace(0.0, end, 201)[1:]
+    values = np.polynomial.polynomial.polyval(roll, [0.0, *coefficients])
+    if values.min() <= 0.0:
+        raise InputError(
+            f"the polynomial through these stiffnesses is {1e-6 * values.min():.4g} N/um at "
+            f"{np.rad2deg(roll[values.argmin()]):.4g} deg; a pair of teeth needs a positive stiffness",
+            key=f"formulas.{name}_stiffness",
+        )
+
+
+def _filled(given: TorusFormulas, rolls: Values, springs: Values) -> tuple[Values, Values]:
+    """Stiffness of the standard pair at the roll angles of the torus pair, by a polynomial of degree 4."""
+    every = np.asarray(given.torus_roll)
+    smooth = np.polynomial.Polynomial.fit(rolls, springs, _DEGREE)
+    return every, given.standard_scale * smooth(every)

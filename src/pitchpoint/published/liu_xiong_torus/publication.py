@@ -1,0 +1,121 @@
+"""What Liu and Xiong print beside what the library computes, as quantities of a result."""
+
+from dataclasses import replace
+
+from pitchpoint.published.liu_xiong_torus import printed
+from pitchpoint.published.publication import Beside, Publication
+from pitchpoint.results.variable import Variable, deviation, force, length, percent, power
+
+__all__ = ["PUBLICATION"]
+
+
+def _pressure(long_name: str) -> Variable:
+    return Variable(long_name, "p_H", "Pa", "GPa", "pressure")
+
+
+def _plain(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "1")
+
+
+_GEOMETRY = {
+    "base_radius_pinion": length("base radius of the pinion", "r_bp"),
+    "base_radius_gear": length("base radius of the gear", "r_bg"),
+    "line_of_action": length("line of action between the base circles", "N_pN_g"),
+    "single_contact_start": _plain(
+        "part of a mesh cycle at which the older pair leaves", "t_Cp/t_c"
+    ),
+    "pitch_point_passed": _plain(
+        "part of a mesh cycle at which a pair passes the pitch point", "t_p/t_c"
+    ),
+    "contact_roll": Variable("roll of the pinion in contact", "φ", "rad", "deg", "angle"),
+    "mesh_rate": Variable("mesh frequency", "1/t_c", "1/s", "Hz", "frequency"),
+    "static_force": force("normal force without friction", "F_n"),
+    "quadratic_place": length("place of the contact across the face, parabola", "z"),
+    "quadratic_approach": deviation("approach by misalignment, parabola", "δ"),
+}
+
+_AT_PITCH = {
+    "ellipse_across": length("semi-axis across, Hertz, pitch point", "a"),
+    "ellipse_along": length("semi-axis along the profile, Hertz, pitch point", "b"),
+    "ellipse_pressure": _pressure("pressure, Hertz, pitch point"),
+    "regressed_across": length("semi-axis across, Hamrock and Brewe, pitch point", "a"),
+    "regressed_along": length("semi-axis along the profile, Hamrock and Brewe, pitch point", "b"),
+    "regressed_pressure": _pressure("pressure, Hamrock and Brewe, pitch point"),
+    "line_pressure": _pressure("pressure of the standard pair, pitch point"),
+    "printed_pressure": _pressure("pressure of the standard pair, formula without face width"),
+    "torus_pitch_film": deviation("film of the torus pair, pitch point, R' by Hertz", "h_min"),
+    "standard_pitch_film": deviation("film of the standard pair, pitch point", "h_min"),
+    "film_ratio": _plain(
+        "film of the torus pair over that of the standard pair, R' by Hertz", "h/h"
+    ),
+}
+
+_BESIDE = {
+    "error_ratio": _plain("largest transmission error, torus over standard pair", "ε/ε"),
+    "friction_ratio": _plain("sliding friction, torus over standard pair, as published", "F/F"),
+    "printed_film_ratio": _plain(
+        "film of the torus pair over that of the standard pair, R' as published", "h/h"
+    ),
+}
+
+
+_OF_MOTION = {
+    "largest_error": deviation("largest dynamic transmission error", "ε_d"),
+    "least_error": deviation("least dynamic transmission error", "ε_d"),
+    "sliding_friction": force("mean sliding friction of both pairs of teeth", "|ΣF_f|"),
+    "printed_efficiency": percent("mean efficiency, eq. 23", "χ"),
+    "film_0": deviation("mean least film, pair 0", "h_min"),
+    "film_1": deviation("mean least film, pair 1", "h_min"),
+    "film_parts": _plain("film of pair 0 over that of pair 1", "h/h"),
+    "friction_power": power("mean power of friction by the printed signs", "P_f"),
+    "friction_heat": power("mean loss by sliding", "P_v"),
+    "energy_imbalance": percent("energy that the printed signs create, of the input", "ΔE/E"),
+    "mean_force": force("mean normal force over whole mesh cycles", "F_n"),
+    "force_peak": Variable(
+        "frequency of the highest line of the normal force", "f", "1/s", "Hz", "frequency"
+    ),
+}
+"""Numbers of the motion by the printed equations, of one pair."""
+
+_HIDDEN = ("film_parts", "mean_force", "force_peak")
+
+
+def _of(pair: str) -> dict[str, Variable]:
+    return {
+        f"{pair}_{name}": replace(one, long_name=f"{one.long_name}, {pair} pair, as published")
+        for name, one in _OF_MOTION.items()
+    }
+
+
+_SIDE_BY_SIDE = Beside(
+    columns=("torus pair", "standard pair"),
+    rows={
+        **{
+            f"{one.long_name}, as published": (f"torus_{name}", f"standard_{name}")
+            for name, one in _OF_MOTION.items()
+            if name not in _HIDDEN
+        },
+        "film at the pitch point, with the radii of Hertz": (
+            "torus_pitch_film",
+            "standard_pitch_film",
+        ),
+        "pressure at the pitch point, of the ellipse and of the line": (
+            "ellipse_pressure",
+            "line_pressure",
+        ),
+    },
+    note=(
+        "As published: start from rest by the printed equations with the fitted inputs. The thicker film of "
+        "the torus pair follows from its effective radius alone, R' = c rho_1; with the radii of Hertz, in "
+        "the last rows, its film is the thinner one. By the printed signs friction drives both gears behind "
+        "the pitch point and brakes both before it: its power is 2 mu F v_e with the sign of the sliding, "
+        "not the loss -mu F |v_s|, and what lies between the two is energy from nothing."
+    ),
+)
+
+PUBLICATION = Publication(
+    name="liu_xiong_torus",
+    readings=(printed.readings,),
+    variables={**_GEOMETRY, **_AT_PITCH, **_BESIDE, **_of("torus"), **_of("standard")},
+    beside=_SIDE_BY_SIDE,
+)
