@@ -88,7 +88,8 @@ def motor(*, stall_torque: float, no_load_speed: float, inertia: float) -> Body:
     """
     if not no_load_speed > 0.0:
         raise InputError(f"no-load speed of a motor is above 0 rad/s, got {no_load_speed:g}")
-    return Body(inertia, (stall_torque,), viscous=abs(stall_torque) / no_load_speed)
+    viscous = abs(stall_torque) / no_load_speed
+    return Body(as_array(inertia), as_array([stall_torque]), viscous=as_array(viscous))
 
 
 def across(mass: float, stiffness: float, damping: float = 0.0) -> Support:

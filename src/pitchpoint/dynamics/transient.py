@@ -109,9 +109,9 @@ def transient(
     """
     asked = np.asarray(times, float)
     _check(moving, asked)
-    start = [_start(moving, *one) for one in (("place", place), ("rate", rate))]
-    events = _hand_overs(moving, asked, *start)
-    found: Transient = _travel(moving, array(asked), *start, events)
+    places, rates = (_start(moving, *one) for one in (("place", place), ("rate", rate)))
+    events = _hand_overs(moving, asked, places, rates)
+    found: Transient = _travel(moving, array(asked), places, rates, events)
     return found
 
 
