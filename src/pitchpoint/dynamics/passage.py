@@ -181,7 +181,7 @@ def _sampled(
     stiffness = springs()
     found = Passage(
         edges=edges(events),
-        contacts=jax.tree.map(_powers, contacts),
+        contacts=jax.tree.map(lambda values: _powers(jnp.asarray(values, float)), contacts),
         stiffness=_powers(stiffness),
     )
     softest = jnp.argmin(jnp.where(contacts.active, stiffness, jnp.inf))
@@ -204,7 +204,7 @@ def _along_path(contacts: Contacts, curve: PathStiffness) -> Lanes:
 
 def _powers(values: Float[Array, "... segment node"]) -> Float[Array, "power ... segment"]:
     """Coefficients of the polynomials through the nodes of each segment."""
-    return jnp.moveaxis(jnp.asarray(values, float) @ _to_powers(), -1, 0)
+    return jnp.moveaxis(values @ _to_powers(), -1, 0)
 
 
 @cache

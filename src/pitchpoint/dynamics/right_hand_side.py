@@ -34,6 +34,7 @@ __all__ = [
     "powers",
     "relaxation_time",
     "torques",
+    "torques_beside_contacts",
 ]
 
 Lanes = Float[Array, "pair slice *b"]
@@ -266,6 +267,16 @@ def torques(
     return external + jnp.where(jnp.isinf(_column(moving.mass, missing)), missing, 0.0)
 
 
+def torques_beside_contacts(moving: Moving, rate: Coordinates) -> Coordinates:
+    """External torques as given at the first knot, less the drag of the bodies [N m or N].
+
+    Args:
+        moving: mesh and bodies.
+        rate: of all coordinates.
+    """
+    return _external(moving, moving.knots[0]) - _drag(moving, rate)
+
+
 def acceleration(
     moving: Moving, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
 ) -> Coordinates:
@@ -293,7 +304,7 @@ def powers(
 
     From force times velocity wherever a force acts.
     """
-    held = damping(moving.bodies) @ rate
+    held = jnp.tensordot(damping(moving.bodies), rate, 1)
     along_line = found.damped * jnp.sum(found.line * rate, axis=0)
     damped = total((found.force - found.elastic) * found.closing) + along_line
     return jnp.stack(
@@ -381,8 +392,8 @@ def _push(
 ) -> Coordinates:
     """What is left of the external torques to accelerate the bodies."""
     bodies = moving.bodies
-    held = stiffness(bodies) @ place + damping(bodies) @ rate + _drag(moving, rate)
-    return external - held - found.on_coordinates
+    held = jnp.tensordot(stiffness(bodies), place, 1) + jnp.tensordot(damping(bodies), rate, 1)
+    return external - held - _drag(moving, rate) - found.on_coordinates
 
 
 def _drag(moving: Moving, rate: Coordinates) -> Coordinates:

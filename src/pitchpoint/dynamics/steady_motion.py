@@ -26,10 +26,12 @@ from pitchpoint.dynamics.right_hand_side import (
     kinetic,
     powers,
     torques,
+    torques_beside_contacts,
 )
 from pitchpoint.dynamics.shooting import Shot, search
 from pitchpoint.dynamics.transient import demand_bodies, demand_effects
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.programs import fast_program
@@ -43,7 +45,7 @@ TOLERANCE = 1e-10
 CLOSED = 1e-6
 """Largest closure of the energy of a period that counts as found."""
 
-MOST_STEPS = 1_000_000
+MOST_STEPS = 100_000
 """Steps between two events after which a period is given up."""
 
 SHORTEST = 1e-12
@@ -58,7 +60,7 @@ UNRESOLVED = 1e-4
 WHOLE = 1e-9
 """How far the orders of an error times the cycles of a period may be from whole numbers."""
 
-Values = Float[Array, "*b element node"]
+Values = Float[Arrays, "*b element node"]
 States = Float[Array, "coordinate element node"]
 State = Float[Array, " state"]
 
@@ -195,6 +197,7 @@ def steady_motion(
     *,
     cycles: int = 1,
     start: State | None = None,
+    tolerance: float = TOLERANCE,
 ) -> Motion:
     """Steady motion at a mean speed of the driver, under the torques of the other bodies.
 
@@ -211,6 +214,7 @@ def steady_motion(
         grid: static; elements and nodes at which the motion is kept.
         cycles: static; mesh cycles in a period.
         start: `Motion.state` of a neighbour.
+        tolerance: largest estimated error of a step, of states of order one.
 
     Returns:
         The motion; its status says where none was found, and where a linear contact pulls.
@@ -222,7 +226,7 @@ def steady_motion(
     Source: Nayfeh and Balachandran (1995), chapter 6, shooting; Poincaré's section at a phase of the mesh.
     """
     ready = _checked(moving, [speed], cycles)
-    found: Motion = _steady(ready, array(speed), grid or Grid(), cycles, start)
+    found: Motion = _steady(ready, array(speed), grid or Grid(), cycles, start, array(tolerance))
     return found
 
 
@@ -259,25 +263,32 @@ def periodic_motion(
     grid: Grid,
     cycles: int = 1,
     start: State | None = None,
+    tolerance: Float[Array, ""] | float = TOLERANCE,
 ) -> Motion:
     """The same without checks, for programs and batches of one's own; `moving` has a passage.
 
     Arguments as in `steady_motion`.
     """
     fixed, at = jax.lax.stop_gradient((_arrays(moving), speed))
-    search_in = _Turning(eqx.combine(fixed, moving), at, cycles)
-    first = jnp.zeros(search_in.size) if start is None else jax.lax.stop_gradient(start)
+    search_in = _Turning(eqx.combine(fixed, moving), at, cycles, tolerance)
+    first = search_in.first if start is None else jax.lax.stop_gradient(start)
     shot = search(search_in.period, first, 1)
-    turning = _Turning(moving, speed, cycles)
-    state, floquet = _polished(turning, shot)
+    turning = _Turning(moving, speed, cycles, tolerance)
+    state = _polished(turning, shot)
+    floquet = search_in.multipliers(jax.lax.stop_gradient(state))
     return _described(turning, state, shot, floquet, grid)
 
 
 @fast_program
 def _steady(
-    moving: Moving, speed: Float[Array, ""], grid: Grid, cycles: int, start: State | None
+    moving: Moving,
+    speed: Float[Array, ""],
+    grid: Grid,
+    cycles: int,
+    start: State | None,
+    tolerance: Float[Array, ""],
 ) -> Motion:
-    return periodic_motion(moving, speed, grid, cycles, start)
+    return periodic_motion(moving, speed, grid, cycles, start, tolerance)
 
 
 @fast_program
@@ -290,9 +301,10 @@ def _many(
 
     def at(state: State, speed: Float[Array, ""]) -> tuple[State, Motion]:
         found = periodic_motion(moving, speed, grid, cycles, state)
-        return jnp.where(jnp.all(jnp.isfinite(found.state)), found.state, 0.0), found
+        return jnp.where(jnp.all(jnp.isfinite(found.state)), found.state, first), found
 
-    _, motions = jax.lax.scan(at, jnp.zeros(2 * moving.mass.shape[0]), speeds)
+    first = _Turning(moving, speeds[0], cycles, TOLERANCE).first
+    _, motions = jax.lax.scan(at, first, speeds)
     return motions
 
 
@@ -348,8 +360,15 @@ class _Turning:
     speed stands in the place of the lag, which starts at zero.
     """
 
-    def __init__(self, moving: Moving, speed: Float[Array, ""], cycles: int) -> None:
+    def __init__(
+        self,
+        moving: Moving,
+        speed: Float[Array, ""],
+        cycles: int,
+        tolerance: Float[Array, ""] | float,
+    ) -> None:
         assert moving.passage is not None
+        self.tolerance = tolerance
         self.moving, self.speed, self.cycles = moving, speed, cycles
         self.passage: Passage = moving.passage
         mesh = moving.design.mesh
@@ -359,6 +378,13 @@ class _Turning:
         self.size = 2 * moving.mass.shape[0]
         self.nominal = self.motion * speed
         self.place, self.rate, self.energy, self.push = _units(moving)
+
+    @property
+    def first(self) -> State:
+        """Nominal motion under the torque that balances the others."""
+        others = torques_beside_contacts(self.moving, self.nominal) @ self.motion
+        torque = jnp.where(self.held, 0.0, -self.sense * others / self.push)
+        return jnp.pad(self.driver * torque, (0, self.size // 2))
 
     @property
     def length(self) -> Float[Array, ""]:
@@ -395,7 +421,7 @@ class _Turning:
         """Derivative of the scaled state by the mesh cycles of the driver."""
         beside, rate, _ = self.parts(state)
         driving = self.sense * (self.driver @ rate)
-        pace = self.way / jnp.where(driving > SLOWEST * self.speed, driving, jnp.nan)
+        pace = self.way / jnp.maximum(driving, SLOWEST * self.speed)
         found = self.forces(moving, turned, place, beside, rate)
         still = jnp.zeros(())
         faster = acceleration(moving, still, beside, rate, found)
@@ -436,7 +462,7 @@ class _Turning:
 
     def integrated(
         self, moving: Moving, start: State, edges: Array, place: np.ndarray, *, works: bool
-    ) -> tuple[Float[Array, "element node state"], Bool[Array, ""], Int[Array, ""]]:
+    ) -> tuple[Float[Array, "element node part"], Bool[Array, ""], Int[Array, ""]]:
         """States at places of all elements in turn, whether all were reached, and the steps."""
 
         def element(
@@ -448,7 +474,7 @@ class _Turning:
             def rate(at: Array, now: Array, _: None) -> Array:
                 return length * self.change(moving, low + length * at, where, now, works)
 
-            states, reached, count = _solved(rate, state, place)
+            states, reached, count = _solved(rate, state, place, self.tolerance)
             return (states[-1], fine & reached, steps + count), states
 
         first = jnp.append(start, jnp.zeros(len(WORKS))) if works else start
@@ -482,19 +508,20 @@ class _Turning:
 
     def period(self, state: State) -> tuple[Array, Array, Bool[Array, ""]]:
         """State of the search after a period, its derivative, and whether it was reached."""
-        end, slope, fine = self.with_slope(state)
+        end, slope, fine = self._with_slope(state)
         by_end, by_state = jax.jacfwd(self.after, (0, 1))(end, state)
         return self.after(end, state)[None], by_end @ slope + by_state, fine
 
-    def multipliers(self, slope: Array) -> Complex[Array, " multiplier"]:
-        """Floquet multipliers from the derivative of a period, without that of the mean speed."""
+    def multipliers(self, state: State) -> Complex[Array, " multiplier"]:
+        """Floquet multipliers of the motion from a state, without that of the mean speed."""
         half = self.size // 2
         others = jnp.argsort(self.driver)[: half - 1]
         kept = jnp.concatenate([others, half + jnp.arange(half)])
+        _, slope, _ = self._with_slope(state)
         values = multipliers(slope[kept][:, kept])
         return values[jnp.argsort(jnp.abs(values - 1.0))[1:]]
 
-    def with_slope(self, state: State) -> tuple[Array, Array, Bool[Array, ""]]:
+    def _with_slope(self, state: State) -> tuple[Array, Array, Bool[Array, ""]]:
         """Scaled state after one period, its derivative, and whether it was reached."""
 
         def twice(given: State) -> tuple[Array, tuple[Array, Array]]:
@@ -528,11 +555,11 @@ def _units(moving: Moving) -> tuple[Array, Array, Array, Array]:
 
 
 def _solved(
-    rate: object, start: Array, place: np.ndarray
+    rate: object, start: Array, place: np.ndarray, tolerance: Float[Array, ""] | float
 ) -> tuple[Float[Array, "node state"], Bool[Array, ""], Int[Array, ""]]:
     """States at places of one element, whether they were reached, and the steps that it took."""
     control = diffrax.PIDController(
-        rtol=TOLERANCE, atol=TOLERANCE, dtmin=SHORTEST, force_dtmin=False
+        rtol=tolerance, atol=tolerance, dtmin=SHORTEST, force_dtmin=False
     )
     solution = diffrax.diffeqsolve(
         diffrax.ODETerm(rate),  # type: ignore[arg-type]
@@ -552,16 +579,12 @@ def _solved(
     return solution.ys, reached, solution.stats["num_steps"]
 
 
-def _polished(turning: _Turning, shot: Shot) -> tuple[State, Complex[Array, " multiplier"]]:
-    """The state that a search found, a step of Newton's method further, and the Floquet multipliers.
-
-    The step carries the derivative.
-    """
+def _polished(turning: _Turning, shot: Shot) -> State:
+    """The state that a search found, a step of Newton's method further, which carries the derivative."""
     state, slope = jax.lax.stop_gradient((shot.start, shot.monodromy))
-    end, own, _ = turning.with_slope(state)
+    end, _ = turning.end(state)
     left = turning.after(end, state) - state
-    further = jnp.linalg.solve(jnp.eye(turning.size) - slope, left)
-    return state + further, turning.multipliers(jax.lax.stop_gradient(own))
+    return state + jnp.linalg.solve(jnp.eye(turning.size) - slope, left)
 
 
 def _described(
@@ -637,12 +660,14 @@ def _status(
     grid: Grid,
 ) -> Status:
     """How the search ended."""
+    slowest = SLOWEST * turning.speed
     force, error = values["found"].force, values["transmission_error"]
+    stops = jnp.any(turning.sense * jnp.tensordot(turning.driver, values["rate"], 1) <= slowest)
     size = jnp.max(jnp.abs(values["beside"]), axis=(-2, -1))
     coarse = jnp.any(grid.tail(values["beside"]) > UNRESOLVED * size)
     checks = (
         (~_finite(turning.moving), Code.NOT_FINITE),
-        (~(shot.found & jnp.all(jnp.isfinite(error))), Code.NOT_PERIODIC),
+        (~(shot.found & jnp.all(jnp.isfinite(error))) | stops, Code.NOT_PERIODIC),
         (~fine | ~(closure <= CLOSED), Code.NOT_CONVERGED),
         (jnp.max(jnp.abs(values["multipliers"])) > STABLE, Code.UNSTABLE),
         (coarse, Code.UNRESOLVED),
