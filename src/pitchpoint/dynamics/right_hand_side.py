@@ -118,7 +118,10 @@ class ContactForces(eqx.Module):
         rolled: rolling resistance on each surface [N].
         closing: velocity at which the flanks approach, the error counted [m/s].
         moved: what the error adds to that [m/s].
-        slip, roll: difference and sum of the surface velocities [m/s].
+        slip, roll: difference and sum of the surface velocities [m/s], the latter by the coordinates of the
+            mesh alone.
+        roll_arm: sum of the surface velocities for a unit rate of each of these: rolling resistance is a
+            couple on each body, whose forces the pressure of the film balances.
         line: closing along the line of action, or along the normal, for a unit rate of each coordinate.
         damped: force of the damper along it [N].
         phase: of the mesh, counted on beyond a period [periods].
@@ -136,6 +139,7 @@ class ContactForces(eqx.Module):
     moved: Lanes
     slip: Lanes
     roll: Lanes
+    roll_arm: Float[Array, "coordinate pair slice *b"]
     line: Coordinates
     damped: Each
     phase: Each
@@ -159,7 +163,7 @@ class ContactForces(eqx.Module):
         pairs = (
             (self.force, contacts.normal),
             (self.drawn, contacts.slip_arm),
-            (self.rolled, contacts.roll_arm),
+            (self.rolled, self.roll_arm),
         )
         of_contacts = sum((force * arm for force, arm in pairs), jnp.zeros(()))
         return jnp.sum(of_contacts, axis=(1, 2)) + self.damped * self.line
@@ -228,8 +232,9 @@ def forces_beside(
     pace = mesh.onward / mesh.period * _driving(moving, rate)
     apart, parting = (leaning * value for value in _error(moving, phase, pace))
     stretch = _lanes(contacts.normal, beside) - contacts.gap - apart
+    roll_arm = _on_mesh(own.roll_arm, contacts)
     closing, slip, roll = (
-        _lanes(arm, rate) for arm in (contacts.normal, contacts.slip_arm, contacts.roll_arm)
+        _lanes(arm, rate) for arm in (contacts.normal, contacts.slip_arm, roll_arm)
     )
     pressed, force = _normal(moving, springs, stretch, closing - parting)
     conditions = _conditions(moving, contacts, force, rate)
@@ -249,6 +254,7 @@ def forces_beside(
         moved=-parting,
         slip=slip,
         roll=roll,
+        roll_arm=roll_arm,
         line=line,
         damped=moving.mesh_damping * jnp.sum(line * rate, axis=0),
         phase=phase,
@@ -355,6 +361,12 @@ def _leaning(mesh: Mesh, contacts: Contacts) -> Lanes:
         return jnp.ones_like(contacts.gap)
     action = mesh.line_of_action
     return along(contacts.normal, action) / jnp.sum(action**2)
+
+
+def _on_mesh(arms: Float[Array, "dof pair slice *b"], contacts: Contacts) -> Array:
+    """Arms on all coordinates, zero on the translations of bodies."""
+    more = contacts.normal.shape[0] - arms.shape[0]
+    return jnp.pad(arms, ((0, more), *((0, 0) for _ in arms.shape[1:])))
 
 
 def _error(moving: Moving, phase: Each, pace: Each) -> tuple[Each, Each]:

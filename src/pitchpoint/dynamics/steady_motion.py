@@ -504,7 +504,8 @@ class _Turning:
     @property
     def sense(self) -> Float[Array, ""]:
         """Sign of the nominal motion of the driver."""
-        return self.driver @ self.motion
+        sign: Float[Array, ""] = self.driver @ self.motion
+        return sign
 
     def period(self, state: State) -> tuple[Array, Array, Bool[Array, ""]]:
         """State of the search after a period, its derivative, and whether it was reached."""
@@ -584,7 +585,8 @@ def _polished(turning: _Turning, shot: Shot) -> State:
     state, slope = jax.lax.stop_gradient((shot.start, shot.monodromy))
     end, _ = turning.end(state)
     left = turning.after(end, state) - state
-    return state + jnp.linalg.solve(jnp.eye(turning.size) - slope, left)
+    further: State = jnp.linalg.solve(jnp.eye(turning.size) - slope, left)
+    return state + further
 
 
 def _described(
