@@ -171,6 +171,10 @@ def test_a_result_does_not_depend_on_the_tolerance():
 # ---- the quasi-static limit
 
 
+SLOW = {"spur": 0.5, "helical": 0.5, "torus": 0.03}
+"""Speeds [rad/s]; elliptic contacts are softer, so that it takes longer until a hand-over is forgotten."""
+
+
 @program
 def quasi_static(design, point, own, phase):
     """Mean efficiency, and forces at phases."""
@@ -189,12 +193,12 @@ def test_a_slow_motion_is_the_quasi_static_cycle(family):
     design = design_of(mesh, FIRM)
     heavy = (Body(np.inf), Body(600.0, LOAD))
     slow = {"creep": array(1e-6), "relaxation": array(2.5e-4), "own": own, "design": design}
-    found = steady_motion(moving(heavy, **slow), 0.5, GRID)
+    slow["error"] = Waves(np.zeros(2), ORDERS, np.zeros(2))
+    found = steady_motion(moving(heavy, **slow), SLOW[family], GRID)
     assert found.status.code in (Code.SOLVED, Code.UNRESOLVED)  # jumps at the pitch point
     settled, node = np.flatnonzero(np.diff(found.bounds) > 0.1), GRID.nodes // 2
     assert settled.size > 2
-    load = quasi_static(design, operation(), own, found.found.phase[settled, node])[1]
-    mean = quasi_static(design, operation(), own, found.found.phase[settled, node])[0]
+    mean, load = quasi_static(design, operation(), own, found.found.phase[settled, node])
     assert float(found.efficiency) == pytest.approx(float(mean), abs=1e-6)
     force = found.found.force[:, :, settled, node]
     np.testing.assert_allclose(force, load, atol=1e-6 * np.max(load))
