@@ -27,6 +27,7 @@ class Code(IntEnum):
     NOT_CONVERGED = 10
     NO_DESIGN = 11
     BEYOND_FACE = 12
+    NOT_SETTLED = 13
 
     @property
     def sentence(self) -> str:
@@ -55,6 +56,7 @@ _SENTENCES = {
     Code.NOT_CONVERGED: "the iteration ended without a solution",
     Code.NO_DESIGN: "the dimensions give no gears that can run",
     Code.BEYOND_FACE: "an elliptic contact is longer than the face has room for, and Hertz's theory ends",
+    Code.NOT_SETTLED: "the vibration had not become steady when the longest run ended",
 }
 
 

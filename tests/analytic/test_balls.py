@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq, minimize
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.gears import on_balls
 from pitchpoint.gears.on_balls import OnBalls, ball_force, ball_stiffness, seated
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing, palmgren_1959
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
@@ -37,7 +38,7 @@ def body():
     settled = _seated(jnp.asarray(balls), jnp.asarray(POINT), jnp.asarray(PUSH))
     start = jnp.asarray(np.asarray(settled)[:, None])
     parts = (lanes[..., None], across[..., None], balls, np.asarray(POINT))
-    return OnBalls(*map(jnp.asarray, parts), settled, start)
+    return OnBalls(*map(jnp.asarray, parts), settled, jnp.zeros((LANES, 1)), start)
 
 
 @jax.jit
@@ -111,6 +112,12 @@ def test_balls_stay_off_where_a_body_would_have_to_be_pulled():
     assert (force > 0.0).any()
 
 
+def test_balls_that_do_not_come_to_rest_have_no_seat(monkeypatch):
+    monkeypatch.setattr(on_balls, "SEATING_STEPS", 1)
+    given = BODY[LANES:, LANES:], POINT, PUSH
+    assert np.isnan(seated(*map(jnp.asarray, given))).all()
+
+
 # ------------------------------------------------------------------ with lanes that share a load
 
 
@@ -145,6 +152,15 @@ def test_balls_that_go_on_moving_give_no_figures(monkeypatch):
     own = jnp.asarray(OWN)[:, None, None]
     found = equilibrium(own, body(), **lanes, load=jnp.asarray([300.0]))
     for values in (found.force, found.share, found.approach, found.stiffness, found.balls):
+        assert np.all(np.isnan(values))
+    assert int(found.status.code[0]) == Code.NOT_CONVERGED
+
+
+def test_a_body_without_a_seat_finds_no_equilibrium():
+    held = body()
+    lost = replace(held, approach=held.approach * np.nan, shift=held.shift * np.nan)
+    _, _, found = _solved(lost, jnp.asarray(200.0), jnp.asarray(OWN))
+    for values in (found.force, found.approach, found.stiffness, found.balls):
         assert np.all(np.isnan(values))
     assert int(found.status.code[0]) == Code.NOT_CONVERGED
 
@@ -225,7 +241,7 @@ def test_two_opposite_forces_bend_a_ring_of_thin_wall_as_in_a_handbook():
 
 def test_a_race_bends_beside_the_ring():
     """With the section of the rim it halves what two opposite forces bend."""
-    bearing = ball_bearing(Balls(race_thickness=RIM), 2.0 * RADIUS, WIDTH)
+    bearing = ball_bearing(Balls(race_thickness=RIM), 2.0 * RADIUS, 2.0 * RADIUS - RIM, WIDTH)
     loads = radial(np.array([0.0, np.pi]))
     alone, both = (moves(ring(1e-7), loads, *race).sum() for race in ((), (bearing.race,)))
     assert both == pytest.approx(alone / 2.0, rel=1e-3)

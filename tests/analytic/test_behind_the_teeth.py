@@ -5,10 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.optimize import nnls, root
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.gears.strain_wave.ball_bearing import Balls
+from pitchpoint.contact.contacts import along
+from pitchpoint.gears.on_balls import ball_force, opened
+from pitchpoint.gears.strain_wave.ball_bearing import Balls, on_balls
 from pitchpoint.gears.strain_wave.design import build_strain_wave
+from pitchpoint.gears.strain_wave.flexible_ring import RingLoads
 from pitchpoint.gears.strain_wave.in_series import (
     STEEL_SHEAR_MODULUS,
     Behind,
@@ -17,6 +21,7 @@ from pitchpoint.gears.strain_wave.in_series import (
     shaft_in_torsion,
 )
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
+from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import body_parts, wind_up, wound_up
 from pitchpoint.materials.solids import Solid
@@ -127,6 +132,7 @@ def test_parts_in_series_turn_with_the_driver():
     [
         {"support_stiffness": 2e9},
         {"behind": Behind(), "bearing": Balls()},
+        {"behind": Behind(), "bearing": Balls(play=8e-6)},
     ],
 )
 def test_parts_sum_up_to_the_wind_up(given):
@@ -185,3 +191,143 @@ def test_a_thicker_circular_spline_is_stiffer():
     ]
     stiff = float(np.mean(at(build(behind=Behind(circular_spline="rigid")), 40.0)[0].wind_up))
     assert stiff < gone[1] < gone[0]
+
+
+# ------------------------------------------------------------------ play and preload of the balls
+
+
+def held(play, number=23):
+    """A drive on such balls, its contacts, and how it lies on the balls."""
+    drive = build(bearing=Balls(play=play, number=number))
+    contacts = _contacts(drive)
+    return drive, contacts, _coupled(drive, contacts)
+
+
+def pushes(body, approach=None):
+    """Forces of the balls, without load unless their approach is given [N]."""
+    return np.asarray(_force(body.stiffness, body.approach if approach is None else approach))
+
+
+_force = jax.jit(ball_force)
+
+
+def test_without_play_the_teeth_stand_as_in_the_nominal_wave():
+    _, contacts, body = held(0.0)
+    np.testing.assert_array_equal(body.shift, 0.0)
+    np.testing.assert_array_equal(opened(contacts.gap, body), contacts.gap)
+
+
+def test_teeth_sit_back_by_what_the_balls_push_less():
+    """Seats of both by SciPy; the displacement of a lane for a force of a ball is the drive's own."""
+    drive, _, body = held(8e-6)
+    balls, point = np.asarray(body.balls), float(body.stiffness)
+    wave = np.asarray(drive.line.radial(drive.bearing.angle))
+    forces = []
+    for play in (8e-6, 0.0):
+
+        def balance(x, play=play):
+            return 1e6 * (wave - play - balls @ (point * np.maximum(x, 0.0) ** 1.5)) - 1e6 * x
+
+        seat = root(balance, np.asarray(body.approach), tol=1e-13)
+        forces.append(point * np.maximum(seat.x, 0.0) ** 1.5)
+    moved = np.einsum("ij...,j->i...", body.across, forces[0] - forces[1])
+    np.testing.assert_allclose(body.shift, moved, atol=1e-12)
+    assert 1e-6 < np.max(np.abs(body.shift)) < 8e-6
+
+
+@pytest.mark.parametrize("play", [8e-6, -2e-6])
+def test_teeth_and_balls_are_one_equilibrium(play):
+    """The same forces by non-negative least squares: no gap counts from a state that balls already made."""
+    drive, contacts, body = held(play)
+    torque, node = 20.0, 1
+    found = wound_up(drive, SOLIDS, TERMS, jnp.asarray(torque), contacts, body)
+    own = _own(drive, contacts, torque)[:, node]
+    nominal = held(0.0)[2]
+    may = np.asarray(contacts.active)[:, 0, node]
+    across = np.asarray(body.across)[..., node]
+    gap = np.asarray(contacts.gap)[:, 0, node] - across @ pushes(nominal)
+    arm = np.abs(np.asarray(along(contacts.normal, drive.loaded)))[:, 0, node]
+    turned = float(found.wind_up[node] + found.touch[node])
+    push = np.asarray(drive.line.radial(drive.bearing.angle)) - play
+    approach = np.asarray(found.balls)[:, node]
+    force = pushes(body, approach)
+    springs = np.where(force > 0.0, approach / np.where(force > 0.0, force, 1.0), 1e-9)
+    upper = np.asarray(body.lanes)[..., node] + np.diag(own)
+    lower = np.asarray(body.balls) + np.diag(springs)
+    whole = np.block([[upper, across], [across.T, lower]])
+    side = np.concatenate([gap - arm * turned, -push])
+    take = np.concatenate([may, np.ones(force.size, bool)])
+    factor = np.linalg.cholesky(1e6 * whole[np.ix_(take, take)])
+    expected, _ = nnls(factor.T, np.linalg.solve(factor, -1e6 * side[take]))
+    both = np.concatenate([np.asarray(found.force)[:, 0, node], force])[take]
+    np.testing.assert_allclose(both, expected, atol=1e-7 * both.max())
+    assert arm[may] @ expected[: may.sum()] == pytest.approx(torque, rel=1e-8)
+
+
+def _own(drive, contacts, torque):
+    """Compliance of each tooth by itself [m/N]."""
+    return np.asarray(_teeth(drive, contacts, jnp.asarray(torque)))[:, 0]
+
+
+_teeth = jax.jit(
+    lambda drive, contacts, torque: compliance(drive, contacts, SOLIDS, TERMS, torque).of_teeth(
+        contacts
+    )
+)
+
+
+@pytest.mark.parametrize("number", [23, 24])
+def test_preloaded_balls_carry_without_torque_in_balance_with_the_wall(number):
+    """What does not cancel around the ring moves it sideways, against the shear of the wall."""
+    drive, _, body = held(-3e-6, number)
+    force, angle = pushes(body), np.asarray(drive.bearing.angle)
+    assert force.min() > 0.0
+    around = 2.0 * np.pi * np.arange(512) / 512
+    ones, none = np.ones(512), np.zeros(512)
+    loads = RingLoads(*(jnp.asarray(x)[:, None] for x in (around, ones, none, none)))
+    moved = _on_ring(drive, loads)
+    along_ring = np.asarray(moved.across) @ force
+    shear = STEEL.young / (2.0 + 2.0 * STEEL.poisson)
+    wall = float(shear * drive.rim.wall_thickness / drive.rim.cup_length)
+    step = 2.0 * np.pi / 512 * float(drive.rim.radius)
+    held_by = wall * step * np.array([along_ring @ np.sin(around), -along_ring @ np.cos(around)])
+    pushed = np.array([force @ np.cos(angle), force @ np.sin(angle)])
+    np.testing.assert_allclose(pushed + held_by, 0.0, atol=1e-9 * force.sum())
+    if number == 24:
+        np.testing.assert_allclose(pushed, 0.0, atol=1e-9 * force.sum())
+
+
+_on_ring = jax.jit(
+    lambda drive, loads: on_balls(drive.bearing, drive.rim, drive.line, STEEL, loads)
+)
+
+
+def test_balls_with_much_play_hold_the_ring_near_the_long_axis_only():
+    angle = 2.0 * np.pi * np.arange(23) / 23
+    few, many = (pushes(held(play)[2]) > 0.0 for play in (40e-6, 0.0))
+    assert few.sum() < many.sum()
+    assert np.abs(np.cos(angle[few])).min() > np.cos(np.deg2rad(40.0))
+    assert not many[np.abs(np.cos(angle)) < np.cos(np.deg2rad(70.0))].any()
+
+
+def test_the_first_slope_falls_with_the_play():
+    slopes = [float(np.mean(at(held(play)[0], 1.0)[0].stiffness)) for play in (0.0, 5e-6, 15e-6)]
+    assert slopes[0] > 1.2 * slopes[1] > 1.44 * slopes[2]
+
+
+@pytest.mark.parametrize("number", [23, 24])
+def test_balls_stand_elsewhere_as_far_from_here_as_they_come(number):
+    """Ends change places by half a pitch of an odd number, and an even one stands alike after a whole."""
+    drive = build(bearing=Balls(number=number))
+    pitch = 2.0 * np.pi / number
+    same = pitch / 2.0 if number % 2 else pitch
+    there = drive.balls_elsewhere
+    turned = np.asarray(there.bearing.angle - drive.bearing.angle)
+    np.testing.assert_allclose(turned, same / 2.0, rtol=1e-12)
+    back = replace(there, bearing=there.bearing.elsewhere)
+    here, away, again = (at(one, 20.0)[0] for one in (drive, there, back))
+    np.testing.assert_allclose(again.wind_up, here.wind_up, rtol=1e-9)
+    order = [1, 0] if number % 2 else [0, 1]
+    np.testing.assert_allclose(again.inner_load, here.inner_load[np.array(order)], rtol=1e-6)
+    assert np.abs(away.wind_up / here.wind_up - 1.0).max() > 1e-4
+    assert build().balls_elsewhere is None

@@ -11,6 +11,7 @@ from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Stage, chained, drive_cycle
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.efficiency.running_torque import starting_torque_of_drive
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.reactions import Bearing
@@ -157,6 +158,20 @@ def test_the_output_drives_backwards():
     np.testing.assert_allclose(smooth["input"], 300.0, rtol=1e-12)
     rough = solved(back, 0.06, point)
     assert 0.95 < float(rough["efficiency"]) < float(smooth["efficiency"])
+
+
+def seal(shaft, torque):
+    return Drag(np.eye(3)[shaft], seal_torque=torque)
+
+
+def test_seals_of_all_shafts_are_what_starts_a_drive_without_friction():
+    drive = chained([FIRST, SECOND], [seal(0, 0.1), seal(1, 0.2), seal(2, 0.5)])
+    idle = Operation(*map(jnp.asarray, (0.0, 1e-3, 330.0)))
+    laws = [models(0.0)] * 2
+    first = 0.1 + 0.2 * 23 / 61 + 0.5 / RATIO
+    assert float(starting_torque_of_drive(drive, idle, laws)) == pytest.approx(first, rel=1e-12)
+    back = starting_torque_of_drive(drive.driven_backwards(), idle, laws)
+    assert float(back) == pytest.approx(first * RATIO, rel=1e-12)
 
 
 def test_stages_that_do_not_follow_each_other():

@@ -221,6 +221,27 @@ def test_an_oil_for_the_cold_goes_through_its_three_viscosities(name):
     assert 1.7 < float(alone) / known[0] < 2.3
 
 
+def test_an_oil_for_the_cold_tells_what_changes_at_room_temperature():
+    oil = lubricants.find("pao-4")
+    line = astm_d341(T=298.15, nu_1=19e-6, T_1=313.15, nu_2=4.1e-6, T_2=373.15)
+    there = float(oil.build().kinematic_viscosity(298.15))
+    assert f"at 25 degC it is {there * 1e6:.4g} mm2/s" in oil.bend
+    assert f"{100.0 * (there / float(line) - 1.0):+.1f} % against the line" in oil.bend
+    assert lubricants.find("fva-3").bend == ""
+
+
+def test_a_viscosity_in_the_cold_goes_with_the_other_two():
+    oil = lubricants.find("pao-4")
+    line = float(astm_d341(T=233.15, nu_1=oil.nu_1.value, T_1=313.15, nu_2=4.1e-6, T_2=373.15))
+    for known in ("pao-4", "pao-6", "pao-8", "fva-3"):
+        lubricants.demand_plausible_cold(lubricants.find(known))
+    for factor in (0.21, 4.9):
+        lubricants.demand_plausible_cold(oil.with_values(nu_0=factor * line))
+    for factor in (0.19, 5.1):
+        with pytest.raises(InputError, match=r"no oil is off it by more than a factor of 5"):
+            lubricants.demand_plausible_cold(oil.with_values(nu_0=factor * line))
+
+
 def test_a_grease_tells_its_consistency_and_what_is_left_out_in_the_cold():
     grease = lubricants.find("pao-6").thickened(thickener="lithium soap", consistency="2")
     assert grease.data() == lubricants.find("pao-6").data()

@@ -593,6 +593,18 @@ BAD = {
         "clearance",
         "reach 2.25 modules into each other, and twice the deflection is 2 modules; a clearance of 0.35",
     ),
+    **{
+        f"{key} of a given circular spline": (
+            {"form": INVOLUTE, "groove": InvoluteForm(3.6), "clearance": 0.35, key: size},
+            key,
+            f"{size} modules were given, which would not shape a given circular spline",
+        )
+        for key, size in {
+            "tip_relief": 0.006,
+            "relief_length": 0.08,
+            "bottom_clearance": 0.2,
+        }.items()
+    },
     "pointed teeth": (
         {"form": InvoluteForm(5.0)},
         "form",

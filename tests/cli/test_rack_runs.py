@@ -59,7 +59,7 @@ def test_what_travels_has_units_of_its_own(outcome: Outcome) -> None:
         "torque": "N",
         "wind_up": "m",
         "torsional_stiffness": "N/m",
-        "lost_motion": "m",
+        "kinematic_play": "m",
         "mesh_torsional_stiffness": "N/m",
     }
     assert {name: torsion[name].attrs["units"] for name in units} == units

@@ -66,7 +66,7 @@ def tree(name: str) -> dict[str, Any]:
 
 def test_every_block_is_known() -> None:
     assert {kind for kind, _ in BLOCKS} == {"sh", "toml", "python"}
-    assert sum(kind == "python" for kind, _ in BLOCKS) == 1
+    assert sum(kind == "python" for kind, _ in BLOCKS) == 2
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
 
@@ -75,7 +75,7 @@ def test_a_case(name: str) -> None:
     """Read, built, and its parts laid out, targets and sweeps with them."""
     made = [job.name for job in jobs(Variant(tree(name), "README.md", "default"), {})]
     assert ("vibration" in made) == (name == "plastic")
-    assert ("running" in made) == (name in ("wave", "targets"))
+    assert ("running" in made) == (name in ("wave", "targets", "stages"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "targets"))
 
 
@@ -144,9 +144,16 @@ def test_the_table_of_commands_is_whole() -> None:
 
 
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (block,) = (text for kind, text in BLOCKS if kind == "python")
+    block = next(text for kind, text in BLOCKS if kind == "python")
     exec(compile(block, "README.md", "exec"), {})
     assert (folder / "again.html").stat().st_size > 1_000_000
     out = capsys.readouterr().out
     assert "instantaneous efficiency" in out
     assert "['teeth', 'cycle', 'operation', 'laws', 'loss_map', 'back_driving']" in out
+
+
+def test_the_parts_of_a_strain_wave_drive_are_those_of_the_text() -> None:
+    """What the block reads of them is run beside a drive, in `test_strain_wave_runs`."""
+    (told,) = re.findall(r"print\(list\(drive\.parts\)\)\n# (.*)", README)
+    made = [job.name for job in jobs(Variant(tree("wave"), "README.md", "default"), {})]
+    assert told.split(", ") == made

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from pitchpoint import cli
+from pitchpoint.analyses.torsion import _on_edges_of_stages
 from pitchpoint.cases.schema import Study, Sweep
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
@@ -44,7 +45,7 @@ count = 2
 temperatures = ["60 degC"]
 """
 PARTS = ["operation", "laws", "torsion", "study_sweep_operation_speed"]
-PARTS += ["study_sweep_stages_1_gears_profile_shift_1", "loss_map", "back_driving"]
+PARTS += ["study_sweep_stages_1_gears_profile_shift_1", "running", "loss_map", "back_driving"]
 SWEEPS = ["--sweep", "operation.speed=500 rpm:1500 rpm:2"]
 SWEEPS += ["--sweep", "stages.1.gears.profile_shift.1=0:0.3:2"]
 SPEED = 1500.0 * np.pi / 30.0
@@ -103,6 +104,15 @@ def test_the_loss_of_a_seal_is_that_of_its_shaft(folder: Path) -> None:
     np.testing.assert_allclose(product, data["mean_efficiency"].values, rtol=1e-12)
 
 
+def test_a_seal_at_the_output_is_what_starts_the_drive(folder: Path) -> None:
+    data = load(folder / "out" / "default" / "running.nc")
+    assert data["speed"].values == pytest.approx([SPEED])
+    np.testing.assert_allclose(data["back_driving_torque"], 0.5, rtol=1e-10)  # no load on teeth
+    for name in ("starting_torque", "no_load_torque"):
+        over = data[name].values * RATIO / 0.5
+        assert np.all((over > 1.0) & (over < 1.06)), name  # and the friction of teeth that turn it
+
+
 def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
     where = folder / "out" / "default"
     point, speeds = load(where / "operation.nc"), load(where / f"{PARTS[3]}.nc")
@@ -145,6 +155,16 @@ def test_the_screen_has_a_row_for_each_stage(
     lines = capsys.readouterr().out.splitlines()
     assert any(line.startswith("friction law") and "stage" in line for line in lines)
     assert any("Averages over: all meetings of phases." in line for line in lines)
+
+
+def test_edges_that_carry_are_told_of_their_stage() -> None:
+    built = Variant(tomllib.loads(TWO), "two.toml", "default").built({})
+    torques, none = np.array([0.0, 150.0, 300.0]), {"wind_up": np.zeros(3)}
+    much = none | {"edge_share": np.array([0.0, 0.01, 0.05])}
+    (told,) = _on_edges_of_stages(built, torques, [none, much])
+    assert told.startswith("Stage 2: edges of the teeth")
+    assert "carry up to 5 % of the load, that part at 300 N m" in told
+    assert _on_edges_of_stages(built, torques, [none, none]) == []
 
 
 def test_variants_change_one_stage() -> None:

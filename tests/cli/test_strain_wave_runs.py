@@ -1,6 +1,7 @@
 """A strain wave gear from its file: every part is computed, kept and shown as for other gears."""
 
 import json
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 import xarray as xr
 from sound import PAIR
 
+import pitchpoint as pp
 from pitchpoint import programs
 from pitchpoint.cases.build import ALONE, BEARING_FREE, TEETH_ALONE
 from pitchpoint.cases.library import find
@@ -147,6 +149,8 @@ def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:
     assert covers.startswith("teeth, ring and cup wall of the flexspline")
     assert "flange joint" in drive.parts["torsion"].attrs["note"]
     assert covers in TORSION.screen(drive)[0].line
+    assert "assumed proportions: rim thickness, wall" in TORSION.screen(drive)[0].line
+    assert "assumed proportions: rim thickness" in figures(drive)["torsion"]["stiffness_of"]
 
 
 def test_the_tables_on_screen(drive: Outcome) -> None:
@@ -238,13 +242,28 @@ def test_running_without_load(drive: Outcome) -> None:
     told, place = figures(drive)["running"], [row["θ [degC]"] for row in rows].index("40")
     shown = float(rows[place]["T_start [N m]"])
     assert shown == pytest.approx(told["constant"]["starting_torque"][place], rel=1e-4)
-    torques = [[float(row[key]) for row in rows] for key in ("T_0 [N m]", "T_back [N m]")]
+    torques = [
+        [float(row[key]) for row in rows] for key in ("T_0 at 2000 rpm [N m]", "T_back [N m]")
+    ]
     assert all(np.all(np.diff(torque) <= 0.0) for torque in torques)
     there = data.sel(law="constant", temperature=313.15)
     told = float(there["starting_torque"])
     assert words["starting torque"] == show.quantity("starting_torque", told)
     told = float(there["no_load_torque"].sel(speed=2000.0 * np.pi / 30.0, method="nearest"))
-    assert words["torque without load"] == show.quantity("no_load_torque", told)
+    assert words["torque without load at 2000\u00a0rpm"] == show.quantity("no_load_torque", told)
+
+
+def test_python_of_the_readme(
+    drive: Outcome, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As it stands there, with the drive at hand in place of the one that it runs."""
+    text = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
+    block = re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)[-1]
+    monkeypatch.setattr(pp, "run", lambda case: {"default": drive})
+    exec(compile(block, "README.md", "exec"), {})
+    told = capsys.readouterr().out
+    assert str(PARTS) in told
+    assert all(name in told for name in ("wall of the cup", "K1", "starting_torque"))
 
 
 def test_the_map_agrees_with_the_operating_point(drive: Outcome) -> None:

@@ -89,7 +89,7 @@ def mesh():
         module=0.5e-3,
         face_width=0.01,
         form=DOUBLE_ARCS["flat"],
-        deflection=1.0127,
+        deflection=1.0122,
         clearance=0.35,
     )
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.analyses.caveats import proportions_words
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.schema import Case, quantity_at, validate
@@ -18,6 +19,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, check_strain_wave
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.reactions import InnerBearing
 from pitchpoint.lubrication.applicability import applies
@@ -113,6 +115,52 @@ def test_values_of_the_set_stand_where_none_is_given() -> None:
     assert rows["speed_ratio"]["value"] == pytest.approx(100.0)
 
 
+def test_what_lies_behind_the_teeth_stands_among_the_inputs_with_its_status() -> None:
+    """Of 60 mm pitch diameter; what the case gives is given, what it leaves open is assumed and says how."""
+    parts = {"gears.wave_generator.bearing": {"balls": 21}, "gears.yielding": {"bolts": 6}}
+    parts["gears.yielding"] |= {"wave_generator": "rigid"}
+    known = Variant(copy.deepcopy(DRIVE), "drive.toml", "default", parts)
+    built = known.built({})
+    rows = {row["key"]: row for row in resolved(built, known.document())}
+    assumed = {
+        "wave_generator.bearing.ball_diameter": (PROPORTIONS.ball * 60e-3, "0.078 of the pitch"),
+        "wave_generator.bearing.race_thickness": (PROPORTIONS.race * 60e-3, "0.0125 of the pitch"),
+        "flexspline.rim_thickness": (0.6e-3, "two modules"),
+        "flexspline.wall_thickness": (0.3e-3, "half of the rim"),
+        "flexspline.cup_length": (30e-3, "half of the pitch diameter"),
+        "yielding.bottom_thickness": (0.6e-3, "as thick as the rim"),
+        "yielding.flange_diameter": (PROPORTIONS.flange * 60e-3, "of the pitch diameter"),
+        "yielding.bolt_circle": (PROPORTIONS.bolt_circle * 60e-3, "of the pitch diameter"),
+        "yielding.bolt_diameter": (PROPORTIONS.bolt * 60e-3, "of the pitch diameter"),
+        "yielding.outside_diameter": (PROPORTIONS.outside * 60e-3, "of the pitch diameter"),
+    }
+    for key, (value, rule) in assumed.items():
+        assert rows[key]["value"] == pytest.approx(value, rel=1e-12)
+        assert rows[key]["status"] == "assumed"
+        assert rule in rows[key]["note"]
+        assert not rows[key]["given"]
+    assert set(built.assumed) == set(assumed)
+    for key, value in (("wave_generator.bearing.balls", 21), ("yielding.bolts", 6)):
+        assert (rows[key]["value"], rows[key]["given"]) == (value, True)
+    assert not [key for key in rows if "shaft" in key]  # of a rigid one nothing is asked
+
+
+@pytest.mark.parametrize(
+    ("walls", "words"),
+    [("two modules", "follow from the module"), ("bending strain", "follow from the wave")],
+)
+def test_stiffness_says_what_of_it_is_assumed_and_what_changes_with_the_ratio(
+    walls: str, words: str
+) -> None:
+    built = drive(gears__flexspline__walls=walls).built({})
+    told = proportions_words([built, built])
+    assert told.startswith("; assumed proportions: rim thickness, wall thickness, cup length; rim")
+    assert told.count(words) == 1
+    given = {"rim_thickness": "0.6 mm", "wall_thickness": "0.3 mm", "cup_length": "30 mm"}
+    assert proportions_words([drive(gears__flexspline=given).built({})]) == ""
+    assert proportions_words([Variant(PAIR, "pair.toml", "default").built({})]) == ""
+
+
 def test_another_form_leaves_the_values_of_the_former() -> None:
     tree = copy.deepcopy(DRIVE)
     tree["gears"]["tooth"] = {"set": "flat", "convex_radius": 2.05, "dedendum": 0.8}
@@ -124,13 +172,33 @@ def test_another_form_leaves_the_values_of_the_former() -> None:
     assert tree["gears"]["tooth"]["set"] == "flat"
 
 
+JOINT = {"inertia": ["0.6 kg cm2", "1 kg m2"]}
+STILL = {"start": "0 rpm", "stop": "900 rpm"}
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"models.friction": "iso_tr_14179_2"}, "models.friction: 'iso_tr_14179_2' is a law for a"),
         ({"models.load_sharing": "equal"}, "models.load_sharing: 'equal' holds where all rigid"),
         ({"models.tooth_temperature": "vdi_2736_2"}, "models.tooth_temperature: 'vdi_2736_2' asks"),
-        ({"dynamics.damping_ratio": 0.1}, "dynamics: vibration is computed along a line of action"),
+        (
+            {"dynamics.damping_ratio": 0.1},
+            "dynamics.inertia: is missing; a joint vibrates between two",
+        ),
+        (
+            {"dynamics": {**JOINT, "backlash": "1 um"}},
+            "dynamics.backlash: was given; it is for vib",
+        ),
+        (
+            {"dynamics": {**JOINT, "damping_ratio": 0.0}},
+            "dynamics.damping_ratio: 0.0 is out of range",
+        ),
+        ({"dynamics.inertia": ["-1 kg m2", "1 kg m2"]}, 'dynamics.inertia: "-1 kg m2" is out of'),
+        (
+            {"dynamics": {**JOINT, "speeds": STILL}},
+            'dynamics.speeds.start: "0 rpm" is out of range',
+        ),
         ({"gears.teeth": [200, 203]}, "gears.teeth: 200 and 203 teeth were given"),
         ({"gears.wave_generator.deflection": 2.0}, "gears.wave_generator.deflection: the wave"),
         ({"gears.tooth.set": "liu", "gears.tooth.convex_radius": 4.0}, "gears.tooth: the arcs of"),
@@ -270,6 +338,19 @@ def test_what_a_loop_of_torque_cannot_show_is_said() -> None:
     (told,) = _lost(built, np.array([0.0, np.nan, 1.0, np.nan]), np.array([0.0, 1.0, 2.0, 3.0]))
     assert "at 2 of 4 torques (1 N m to 3 N m)" in told
     assert _lost(built, np.zeros(2), np.ones(2)) == []
+
+
+def test_balls_that_press_teeth_or_stand_elsewhere_are_told() -> None:
+    from pitchpoint.analyses.torsion import _of_balls, _pressed
+
+    assert _pressed(0.0) == []
+    (told,) = _pressed(-np.deg2rad(0.25 / 60.0))
+    assert "press the teeth onto both flanks of their spaces, by 0.25 arcmin" in told
+    assert _of_balls({}, 1.0) == ""
+    assert _of_balls({"wind_up_by_balls": 1e-5}, 0.0) == ""
+    told = _of_balls({"wind_up_by_balls": -1.234e-5}, 1e-3)
+    assert told.endswith("the wind-up at the operating point is 1.2 % smaller")
+    assert _of_balls({"wind_up_by_balls": 1e-5}, 1e-3).endswith("1 % larger")
 
 
 def test_conformal_contacts_that_carry_are_told() -> None:

@@ -1,11 +1,16 @@
 """Losses by the name of a set: constants as data, scaled to the gears, told with their marks."""
 
+import numpy as np
 import pytest
 
+from pitchpoint.analyses.running import running_axes
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.loss_sets import loss_sets, marks_of
 from pitchpoint.cases.schema import validate
+from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
+from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle
+from pitchpoint.gears.strain_wave.design import build_strain_wave
 
 NAME, PLACE = "strain_wave_component", "wave_generator_bearing"
 TREE = {
@@ -93,7 +98,54 @@ def test_marks_say_how_each_constant_was_come_by():
     assert marks_of({}) == marks_of(None) == {}
 
 
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ({"operation.temperature": "-10 degC", "lubricant.name": "pao-4"}, None),
+        ({"operation.temperature": "-20 degC", "lubricant.name": "pao-4"}, "at -20 degC they are"),
+        ({"loss_map": {"temperatures": ["40 degC", "60 degC"]}}, "at 60 degC they are"),
+    ],
+)
+def test_losses_beyond_the_temperatures_of_their_fit_are_told(settings, told):
+    warnings = Variant(TREE, "drive.toml", "default").built(settings).warnings
+    found = [text for text in warnings if "fitted from -10 degC to 40 degC" in text]
+    assert len(found) == (told is not None)
+    assert all(told in text for text in found)
+
+
+def test_values_beside_a_named_oil_are_told():
+    built = Variant(TREE, "drive.toml", "default").built({"lubricant.viscosity_40": "110 mm2/s"})
+    assert built.lubricant.title == "PAO gear oil ISO VG 100 with viscosity_40 of the case file"
+    assert built.lubricant.nu_1.note.endswith("those of pao-vg-100 in the catalogue")
+    assert any(
+        "viscosity_40 of the case file and the viscosity_100 of" in w for w in built.warnings
+    )
+
+
+def test_a_cold_day_is_among_the_temperatures_without_load():
+    built = Variant(TREE, "drive.toml", "default").built({"lubricant.name": "pao-4"})
+    degrees = running_axes(built)[1]
+    assert degrees[0] == pytest.approx(233.15)
+    assert np.isclose(degrees, 243.15, rtol=1e-12).sum() == 1
+    warmer = Variant(TREE, "drive.toml", "default").built({})
+    assert running_axes(warmer)[1].min() == pytest.approx(273.15)
+
+
 def test_gears_without_a_wave_generator_have_no_such_losses():
     gears = {"teeth": [23, 61], "module": "1 mm", "face_width": "9 mm"}
     with pytest.raises(InputError, match="scales with pitch diameter and deflection over pitch"):
         losses({**TREE, "gears": gears})
+
+
+@pytest.mark.parametrize(("ratio", "part"), [(50, 0.84), (100, 0.87), (160, 0.88)])
+def test_the_bearing_of_the_losses_is_that_of_the_stiffness(ratio, part):
+    """Its diameter is the circle of the balls in usual proportions: exact at 100, and as noted elsewhere."""
+    teeth, diameter = 2 * ratio, 60e-3
+    drive = build_strain_wave(
+        teeth=(teeth, teeth + 2), module=diameter / teeth, face_width=1e-2, bearing=Balls()
+    )
+    bore = 2.0 * float(drive.rim.radius) - float(drive.rim.thickness)
+    circle = ball_circle(Balls(), diameter, bore)
+    (value,) = constants("mean_diameter")
+    assert circle / diameter == pytest.approx(part, abs=0.006)
+    assert circle / diameter == pytest.approx(value, rel=0.035 if ratio != 100 else 0.002)

@@ -375,8 +375,15 @@ def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes
     data = wheel["default"].parts["operation"]
     limit = float(data["jamming_coefficient"].values[0, 0])
     assert limit > float(data["nearest_friction"].values[0, 0]) == pytest.approx(0.05)
-    assert f"locks from μ {limit:.3g}" in Words(render(wheel)).text
-    assert summary(wheel["default"]).rows[0]["locks from μ"] == f"{limit:.4f}"
+    assert limit > 1.0
+    told = Words(render(wheel)).text
+    assert "locks from μ not below 1" in told
+    assert "friction does not lock the mesh (nor would it below μ = 1)" in told
+    assert summary(wheel["default"]).rows[0]["locks from μ"] == "not below 1"
+    less = data.assign(jamming_coefficient=0.3 * data["jamming_coefficient"])
+    rough = replace(wheel["default"], parts={**wheel["default"].parts, "operation": less})
+    assert summary(rough).rows[0]["locks from μ"] == f"{0.3 * limit:.4f}"
+    assert f"locks from μ {0.3 * limit:.3g}" in Words(render({"default": rough})).text
 
 
 @pytest.mark.parametrize("kept", [(), ("teeth",), ("teeth", "cycle"), ("teeth", "operation")])

@@ -22,8 +22,9 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Figure, Panel, curves
 from pitchpoint.views.outlines import simplified
-from pitchpoint.views.point import period_of
+from pitchpoint.views.point import operating_point, period_of
 from pitchpoint.views.report import render
+from pitchpoint.views.sections.answer import teeth_rows
 from pitchpoint.views.sections.arc import arc_panel, wave_losses, wave_sentence
 from pitchpoint.views.sections.beside import drag_panel, starting_answer
 from pitchpoint.views.sections.cycle import cycle_panel
@@ -162,7 +163,7 @@ def torsion() -> xr.Dataset:
             "loaded_pairs": (("torque",), 1.0 + torque / 4.0),
             "zone_load": (("torque", "zone"), np.stack([torque, torque], axis=-1)),
             "path": (("phase", "pair"), angle / (2.0 * np.pi)),
-            "lost_motion": ((), 3e-4),
+            "kinematic_play": ((), 3e-4),
             "angular_transmission_error": (("torque", "phase"), np.outer(wind_up, [1.0, 1.01])),
             "angular_transmission_error_range": (("torque",), 0.01 * wind_up),
             "tooth_force": (("torque", "phase", "pair"), force),
@@ -365,9 +366,9 @@ def test_an_efficiency_of_the_teeth_alone_says_so(whole: Outcome, page: str) -> 
 
 def test_the_torsional_stiffness_says_what_yields(whole: Outcome, page: str) -> None:
     assert (
-        "pairs carry in the mean; without load it is free to turn by 1.031 arcmin between its flanks"
-        in words(page)
-    )
+        "pairs carry in the mean; without load its flanks let it turn freely by a kinematic play of "
+        "1.031 arcmin"
+    ) in words(page)
     assert torsion_answer(whole).endswith("; teeth and ring yield")
 
 
@@ -551,7 +552,7 @@ def test_the_transmission_error_is_drawn_around_its_mean(whole: Outcome) -> None
 
 def test_play_that_rounding_leaves_is_none(whole: Outcome) -> None:
     data = whole.parts["torsion"].copy()
-    data["lost_motion"] = 1e-17
+    data["kinematic_play"] = 1e-17
     one = replace(whole, parts={**whole.parts, "torsion": data})
     assert "without load" not in torsion_answer(one)
 
@@ -639,3 +640,17 @@ def test_efficiency_lines_are_those_of_the_map(whole: Outcome) -> None:
     expected = 100.0 * data["mean_efficiency"].values[0, 1:, 1, 0]
     assert heights(panel.figures[0]) == pytest.approx(expected, rel=1e-4)
     assert "At 954.9\u00a0rpm" in panel.figures[0].note
+
+
+def test_what_flanks_bear_stands_in_the_answer_and_on_the_screen(whole: Outcome) -> None:
+    data = whole.parts["torsion"]
+    share = ("torque", np.linspace(0.0, 0.08, data.sizes["torque"]))
+    one = replace(whole, parts={**whole.parts, "torsion": data.assign(edge_share=share)})
+    largest = float(whole.parts["cycle"]["pressure"].values[0].max())
+    (row,) = (row for row in teeth_rows(one) if row["friction law"] == LAWS[0])
+    assert row["largest Hertz pressure"] == show.quantity("pressure", largest)
+    at = operating_point(one).torque
+    edges = show.quantity("edge_share", 0.08 * at / 40.0)
+    assert row["part of the load on edges of the teeth"] == edges
+    assert f"part of the load on edges of the teeth {edges}" in words(render({"default": one}))
+    assert "part of the load on edges" not in words(render({"default": whole}))

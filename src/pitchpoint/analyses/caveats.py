@@ -25,6 +25,7 @@ __all__ = [
     "faces_warning",
     "jamming_words",
     "pressure_warning",
+    "proportions_words",
     "room_warning",
     "told_of_law",
     "why_outside",
@@ -217,6 +218,20 @@ def pressure_warning(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> 
             f"{PRESSURE.show(weakest)}, and that a few times only."
         )
     ]
+
+
+def proportions_words(points: Sequence[Built]) -> str:
+    """What the stiffness of gears rests on that is assumed, as the end of a sentence; empty if nothing is.
+
+    Args:
+        points: one, or the stages of a drive.
+    """
+    every = [(key, one) for built in points for key, one in built.assumed.items()]
+    if not every:
+        return ""
+    names = dict.fromkeys(key.rpartition(".")[2].replace("_", " ") for key, _ in every)
+    varies = dict.fromkeys(one.varies for _, one in every if one.varies)
+    return "; ".join([f"; assumed proportions: {', '.join(names)}", *varies])
 
 
 def told_of_law(law: FrictionLaw, reasons: Sequence[str]) -> list[str]:

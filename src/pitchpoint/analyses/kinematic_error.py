@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import equinox as eqx
 import numpy as np
@@ -25,7 +26,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
 
-__all__ = ["KINEMATIC_ERROR", "kinematic_error_part"]
+__all__ = ["KINEMATIC_ERROR", "kinematic_error_part", "own_error"]
 
 PHASES = 2
 """States in each tooth period of bodies that couple many teeth: four for every wave of the highest order."""
@@ -194,8 +195,23 @@ def _exact(built: Built) -> str | None:
     return Unasked("the teeth have no deviations around their gears")
 
 
+_FOUND: WeakKeyDictionary[Built, xr.Dataset] = WeakKeyDictionary()
+
+
+def own_error(built: Built, progress: Progress) -> xr.Dataset:
+    """Kinematic error by the deviations of a case, computed once for all that ask.
+
+    Args:
+        built: the case.
+        progress: as in `kinematic_error_part`.
+    """
+    if built not in _FOUND:
+        _FOUND[built] = kinematic_error_part(built, built.deviations, progress)
+    return _FOUND[built]
+
+
 def _computed(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
-    return kinematic_error_part(built, built.deviations, progress)
+    return own_error(built, progress)
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:

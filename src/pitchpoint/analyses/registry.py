@@ -3,6 +3,7 @@
 from pitchpoint.analyses.along_action import RESONANCE, STIFFNESS, VIBRATIONS
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
+from pitchpoint.analyses.joint import JOINT
 from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
@@ -23,6 +24,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     LAWS_THERE,
     TORSION,
     KINEMATIC_ERROR,
+    JOINT,
     STIFFNESS,
     VIBRATIONS,
     RESONANCE,

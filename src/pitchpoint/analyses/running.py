@@ -1,20 +1,27 @@
 """Torque that runs and starts a drive with losses beside its teeth, as a dataset of a case."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Array
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.analyses.operation import untransmitted
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.schema import TEMPERATURE
+from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.efficiency.drag import Drag
+from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Operation
-from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
+from pitchpoint.efficiency.running_torque import (
+    no_load_torque,
+    starting_torque,
+    starting_torque_of_drive,
+)
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.results.store import dataset, without_nan
 from pitchpoint.status import locked_or_lost, told
@@ -28,6 +35,8 @@ SPEEDS = 9
 TEMPERATURES = 7
 WARM = 353.15
 """Temperature up to which torques are shown that matter in the cold [K]."""
+COLD = 243.15
+"""Temperature of a cold day, -30 degC [K]."""
 CREEPING = 2.0 * np.pi / 60.0
 """Speed of a driver that begins to turn, at which laws of tooth friction are taken [rad/s]."""
 
@@ -35,7 +44,7 @@ _DIMS = ("law", "speed", "temperature")
 _AT_REST = ("law", "temperature")
 
 
-def running_part(built: Built) -> xr.Dataset:
+def running_part(built: Ready) -> xr.Dataset:
     """Torque without load over speed and temperature, and torques that start the drive either way.
 
     Speed and temperature of the operating point are among them.
@@ -44,24 +53,15 @@ def running_part(built: Built) -> xr.Dataset:
         built: the case.
     """
     speeds, degrees = running_axes(built)
-    idle = replace(built.operation, load=array(0.0))
-
-    def over(torque: Callable[..., Array], rates: np.ndarray, one: Built) -> np.ndarray:
-        speed, degree = np.meshgrid(rates, degrees, indexing="ij")
-        points = Operation(*map(jnp.asarray, (0.0 * speed, speed, degree)))
-        known = engaged(one.design, idle, built.models[0])
-        return np.stack(
-            [np.asarray(torque(one.design, points, own, known)) for own in built.models]
-        )
-
     back = built.backwards
+
+    def at_rest(one: Ready) -> np.ndarray:
+        return _over(one, _creeping(one), degrees, resting=True)[:, 0]
+
     data = {
-        "no_load_torque": (_DIMS, over(no_load_torque, speeds, built)),
-        "starting_torque": (_AT_REST, over(starting_torque, _creeping(built), built)[:, 0]),
-        "back_driving_torque": (
-            _AT_REST,
-            over(starting_torque, _creeping(back), back)[:, 0],
-        ),
+        "no_load_torque": (_DIMS, _over(built, speeds, degrees, resting=False)),
+        "starting_torque": (_AT_REST, at_rest(built)),
+        "back_driving_torque": (_AT_REST, at_rest(back)),
     }
     return dataset(
         data,
@@ -75,12 +75,61 @@ def running_part(built: Built) -> xr.Dataset:
         warnings=_unloaded(built),
         solve=told(np.concatenate([_held(values).ravel() for _, values in data.values()])),
         note="NaN where friction holds the drive whatever the torque",
+        fitted=_fitted(built),
     )
 
 
-def _creeping(built: Built) -> np.ndarray:
+def _over(built: Ready, speeds: np.ndarray, degrees: np.ndarray, *, resting: bool) -> np.ndarray:
+    """Torque of the driver without load [law, speed, temperature]: running, or at which it starts."""
+    every = np.meshgrid(speeds, degrees, indexing="ij")
+    if isinstance(built, BuiltDrive):
+        return _of_drive(built, *every, resting=resting)
+    return _of_mesh(built, *every, resting=resting)
+
+
+def _of_mesh(built: Built, speeds: np.ndarray, degrees: np.ndarray, *, resting: bool) -> np.ndarray:
+    idle = replace(built.operation, load=array(0.0))
+    points = Operation(*map(jnp.asarray, (0.0 * speeds, speeds, degrees)))
+    known = engaged(built.design, idle, built.models[0])
+    torque = starting_torque if resting else no_load_torque
+    each = [torque(built.design, points, own, known) for own in built.models]
+    return np.stack([np.asarray(one) for one in each])
+
+
+def _of_drive(
+    built: BuiltDrive, speeds: np.ndarray, degrees: np.ndarray, *, resting: bool
+) -> np.ndarray:
+    """The same of stages: what one of them takes is the load of the one before."""
+    drive, idle = built.design, 0.0 * speeds
+    if resting:
+        points = Operation(*map(jnp.asarray, (idle, speeds, degrees)))
+        each = [starting_torque_of_drive(drive, points, own.stages) for own in built.models]
+        return np.stack([np.asarray(one) for one in each])
+    every = zip(idle.ravel(), speeds.ravel(), degrees.ravel(), strict=True)
+    running = [(drive, Operation(*map(array, one))) for one in every]
+    found = [drive_figures(running, own.stages) for own in built.models]
+    torques = [np.where(one["locked"], np.nan, one["mean_input_torque"]) for one in found]
+    return np.stack(torques).reshape(-1, *speeds.shape)
+
+
+def _fitted(built: Ready) -> str:
+    """Where the constants of the named sets of losses were fitted, in words; empty without any."""
+    ranges = [one.fitted for one in built.meshes if one.fitted is not None]
+    if not ranges:
+        return ""
+    low, high = max(low for low, _ in ranges), min(high for _, high in ranges)
+    return (
+        f"The losses of the set were fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}; "
+        "beyond, these torques are extrapolated."
+    )
+
+
+def _creeping(built: Ready) -> np.ndarray:
     """Speed of a driver that begins to move; of one that travels that at which the other turns so."""
-    turned = abs(float(built.nominal["loaded"] @ built.nominal["motion"]))
+    if isinstance(built, BuiltDrive):
+        turned = abs(built.motion[-1] / built.motion[0])
+    else:
+        turned = abs(float(built.nominal["loaded"] @ built.nominal["motion"]))
     return np.array([CREEPING / turned if "driver" in built.travels else CREEPING])
 
 
@@ -88,9 +137,15 @@ def _held(torques: np.ndarray) -> np.ndarray:
     return locked_or_lost(np.isnan(torques))
 
 
-def _unloaded(built: Built) -> list[str]:
+def _places(built: Ready) -> tuple[Drag, ...]:
+    """Losses beside the teeth, of a drive those of its stages too."""
+    stages = built.design.stages if isinstance(built, BuiltDrive) else ()
+    return (*built.design.drag, *(drag for one in stages for drag in one.design.drag))
+
+
+def _unloaded(built: Ready) -> list[str]:
     """Starting torques without what mostly makes them."""
-    drags = built.design.drag
+    drags = _places(built)
     if any(float(drag.preload) or drag.holds for drag in drags):
         return []
     return [
@@ -99,18 +154,21 @@ def _unloaded(built: Built) -> list[str]:
     ]
 
 
-def running_axes(built: Built) -> tuple[np.ndarray, np.ndarray]:
+def running_axes(built: Ready) -> tuple[np.ndarray, np.ndarray]:
     """Speeds [rad/s] and temperatures [K] with those of the operating point.
 
-    Speeds go up to that of the loss map. Temperatures are those of the map where the case gives them,
-    else they go from the oil's lowest to a warm one.
+    Speeds go up to that of the loss map; of a drive of several meshes there is that of the operating
+    point alone. Temperatures are those of the map where the case gives them, else they go from the oil's
+    lowest to a warm one, with that of a cold day where the oil reaches it.
     """
     point, asked = built.case.operation, built.case.loss_map
     speeds, degrees = map_axes(built)[1:]
-    speeds = np.linspace(0.0, speeds[-1], SPEEDS + 1)[1:]
+    count = 0 if isinstance(built, BuiltDrive) else SPEEDS
+    speeds = np.linspace(0.0, speeds[-1], count + 1)[1:]
     if asked is None or not asked.temperatures:
         low, high = built.temperatures
         degrees = np.linspace(low, max(min(high, WARM), point.temperature), TEMPERATURES)
+        degrees = _with(degrees, COLD) if low <= COLD else degrees
     return _with(speeds, point.speed), _with(degrees, point.temperature)
 
 
@@ -120,12 +178,12 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
     return np.unique(np.append(others, one))
 
 
-def _free(built: Built) -> str | None:
-    told = None if built.design.drag else Unasked("the case has no [losses] beside its teeth")
+def _free(built: Ready) -> str | None:
+    told = None if _places(built) else Unasked("the case has no [losses] beside its teeth")
     return untransmitted(built) or told
 
 
-def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+def _computed(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     return running_part(built)
 
 
@@ -145,6 +203,7 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 RUNNING = Analysis(
     name="running",
     title="running without load",
+    alone="",
     lacks=_free,
     compute=_computed,
     main=TORQUES,

@@ -263,7 +263,7 @@ def temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
 
 def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
     """Figures of stiffness and vibration, the same under every friction law."""
-    if points[0].case.dynamics is None:
+    if points[0].case.dynamics is None or not points[0].design.mesh.along_action:
         return {}
     from pitchpoint.analyses.vibration import figures_of
 

@@ -10,16 +10,18 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.caveats import proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
-from pitchpoint.efficiency.quasi_static import Design, coupling, engagement
+from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.on_balls import OnBalls
+from pitchpoint.gears.on_balls import Body, OnBalls, opened
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
@@ -27,7 +29,15 @@ from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["TORSION", "rigid", "torsion_part"]
+__all__ = [
+    "TORSION",
+    "engaged_at",
+    "kinematic_play",
+    "mean_friction",
+    "rigid",
+    "torsion_part",
+    "wound_ups",
+]
 
 TORQUES = 25
 MUCH = 0.03
@@ -63,6 +73,8 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
     turned = at_output("wind_up")
     told_parts = (one.design.mesh.yielding for one in built.stages)
     yields, rigid = (dict.fromkeys(words) for words in zip(*told_parts, strict=True))
+    parts = _parts_of_stages(built, steps, each)
+    assumed = proportions_words(built.stages)
     data = dataset(
         {
             "wind_up": (("torque",), turned.sum(axis=-1)),
@@ -73,21 +85,67 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
                 ("torque",),
                 at_output("angular_transmission_error_range").sum(axis=-1),
             ),
-            "lost_motion": ((), at_output("lost_motion").sum()),
+            "kinematic_play": ((), at_output("kinematic_play").sum()),
+            **(
+                {"wind_up_part": (("part", "torque"), np.stack([*parts.values()]))} if parts else {}
+            ),
         },
-        {"torque": ("torque", torques), "stage": [*built.numbers]},
+        {
+            "torque": ("torque", torques),
+            "stage": [*built.numbers],
+            **({"part": [*parts]} if parts else {}),
+        },
         title="torsion",
         travels=built.travels,
-        warnings=_lost(built, turned.sum(axis=-1), torques),
-        note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it",
+        warnings=[
+            *_lost(built, turned.sum(axis=-1), torques),
+            *_on_edges_of_stages(built, torques, each),
+        ],
+        note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
+        left_out=_SLOPELESS if parts else "",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
-    data["torsional_stiffness"].attrs.update(covers="; ".join(yields))
+    data["torsional_stiffness"].attrs.update(_covered("; ".join(yields), assumed))
     return data
 
 
+_SLOPELESS = (
+    "Slopes K1 to K3, lost motion and hysteresis loss as in catalogues are those of one mesh: the strain "
+    "wave gear in a file of its own has them."
+)
+
+
+def _parts_of_stages(
+    built: BuiltDrive, steps: np.ndarray, each: list[dict[str, Any]]
+) -> dict[str, np.ndarray]:
+    """Parts of the wind-up at the output by stage and name [rad]; nothing where no body couples teeth."""
+    if not any(found["parts"] for found in each):
+        return {}
+    stages = zip(built.numbers, steps, each, strict=True)
+    return {
+        f"stage {number}: {name}": step * values
+        for number, step, found in stages
+        for name, values in (found["parts"] or {"teeth": found["wind_up"]}).items()
+    }
+
+
+def _on_edges_of_stages(
+    built: BuiltDrive, torques: np.ndarray, each: list[dict[str, Any]]
+) -> list[str]:
+    return [
+        in_stage(number, told)
+        for number, found in zip(built.numbers, each, strict=True)
+        for told in _on_edges(built, torques, _edges(found))
+    ]
+
+
+def _covered(yields: str, assumed: str) -> dict[str, str]:
+    """Attributes on what a stiffness is of: what yields, and what of it is assumed if anything is."""
+    return {"covers": yields} | ({"assumed": assumed} if assumed else {})
+
+
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
-    friction, rated = _mean_friction(built), built.case.operation.load
+    friction, rated = mean_friction(built), built.case.operation.load
     limits = getattr(built.case.gears, "slopes", None)
     told_of = built.design.mesh.couples and rated > 0.0 and _reduces(built)
     more = torques_of_catalogues(rated, limits) if told_of else torques[:0]
@@ -96,7 +154,8 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     found = _torsion(built, every, friction)
     dims = {
         "path": ("phase", "pair"),
-        "lost_motion": (),
+        "kinematic_play": (),
+        "wind_up_by_balls": (),
         "angular_transmission_error": ("torque", "phase"),
         "mesh_torsional_stiffness": ("torque", "phase"),
         "tooth_force": ("torque", "phase", "pair"),
@@ -108,10 +167,12 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
     parts = found.pop("parts")
     data = {name: (dims.get(name, ("torque",)), values) for name, values in found.items()}
     if told_of:
-        held, play = found["loading_torque"] - every, float(found["lost_motion"])
+        held, play = found["loading_torque"] - every, float(found["kinematic_play"])
         data |= as_in_catalogues(every, found["wind_up"], held, play, rated, limits)
         data["wind_up_part"] = (("part", "torque"), np.stack([*parts.values()]))
     yields, rigid = built.design.mesh.yielding
+    assumed = proportions_words([built])
+    at_rated = float(np.interp(rated, every, found["wind_up"]))
     whole = dataset(
         {**data, "mean_friction": (("law",), friction)},
         {
@@ -124,13 +185,14 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
         travels=built.travels,
         warnings=[
             *_lost(built, found["wind_up"][at], torques),
-            *_on_edges(built, found["edge_share"][at], torques),
+            *_on_edges(built, torques, _edges(found)[at]),
             *_loopless(built, friction),
+            *_pressed(found["kinematic_play"]),
         ],
-        note=f"{yields} yield; {rigid} are not in it",
+        note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
         solve=solve,
     )
-    whole["torsional_stiffness"].attrs.update(covers=yields)
+    whole["torsional_stiffness"].attrs.update(_covered(yields, assumed))
     whole["path"].attrs.update(built.way)
     return whole.isel(torque=at)
 
@@ -141,6 +203,11 @@ def _reduces(built: Built) -> bool:
         abs(built.nominal[end] @ built.nominal["motion"]) for end in ("driver", "loaded")
     )
     return bool(driver > loaded)
+
+
+def _edges(found: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Part of the load on edges; none of teeth that nobody watches for them."""
+    return found.get("edge_share", np.zeros(found["wind_up"].shape))
 
 
 def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
@@ -157,8 +224,8 @@ def _lost(built: Ready, wind_up: np.ndarray, torques: np.ndarray) -> list[str]:
     ]
 
 
-def _on_edges(built: Built, share: np.ndarray, torques: np.ndarray) -> list[str]:
-    """Torques at which edges carry more than a little."""
+def _on_edges(built: Ready, torques: np.ndarray, share: np.ndarray) -> list[str]:
+    """Torques of the loaded member at which edges carry more than a little."""
     much = share > MUCH
     if not much.any():
         return []
@@ -169,6 +236,27 @@ def _on_edges(built: Built, share: np.ndarray, torques: np.ndarray) -> list[str]
         f"{built.carried.show(torques[much][0])} on. Loss, stiffness and pressure then hang on how those "
         "edges are made."
     ]
+
+
+def _pressed(lost_motion: float) -> list[str]:
+    """Teeth that balls without load push into both flanks of their spaces."""
+    if not lost_motion < 0.0:
+        return []
+    return [
+        "Without load the balls of the wave generator press the teeth onto both flanks of their spaces, by "
+        f"{60.0 * np.degrees(-lost_motion):.2g} arcmin at the loaded member: the wind-up counts one flank."
+    ]
+
+
+def _of_balls(found: Mapping[str, Any], wind_up: float) -> str:
+    """How much the places of the balls change the wind-up at the operating point, in words."""
+    if "wind_up_by_balls" not in found or not wind_up > 0.0:
+        return ""
+    part = 100.0 * float(found["wind_up_by_balls"]) / wind_up
+    return (
+        "; a ball stands on the long axis, and with the balls half way to the next such place the "
+        f"wind-up at the operating point is {abs(part):.2g} % {'larger' if part > 0.0 else 'smaller'}"
+    )
 
 
 def _loopless(built: Built, friction: np.ndarray) -> list[str]:
@@ -186,7 +274,7 @@ def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     ]
 
 
-def _mean_friction(built: Built) -> np.ndarray:
+def mean_friction(built: Built) -> np.ndarray:
     """Coefficient at the operating point by each law, as for sliding that begins anew."""
     point = [(built.design, built.operation)]
     runs = [summarise(point, models) for models in built.models]
@@ -195,10 +283,55 @@ def _mean_friction(built: Built) -> np.ndarray:
 
 def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[str, Any]:
     """Wind-up at every torque, and the load on every tooth there."""
+    design, known = built.design, engaged_at(built)
+    each, body = wound_ups(built, known, torques)
+    found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
+    loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
+    phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
+    approach, lost = found.wind_up + found.touch, np.isnan(found.wind_up)
+    turned = found.wind_up @ weight
+    return {
+        "phase": phase[::SHOWN],
+        "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
+        "kinematic_play": np.asarray(kinematic_play(design.mesh, known.contacts, known.phase, body))
+        @ weight,
+        "angular_transmission_error": approach[:, ::SHOWN],
+        "angular_transmission_error_range": np.ptp(approach, axis=-1),
+        "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
+        "wind_up": turned,
+        "wind_up_range": np.ptp(found.wind_up, axis=-1),
+        "torsional_stiffness": found.stiffness @ weight,
+        "loaded_pairs": found.loaded_pairs @ weight,
+        **_zone_load(found.inner_load @ weight),
+        **_edge_share(design.mesh, found, weight),
+        **_of_pairs(design.mesh, path, found.force),
+        "loading_torque": loop.loading @ weight,
+        "unloading_torque": loop.unloading @ weight,
+        "parts": _parts(design, known.contacts, found, weight),
+        **_by_balls(
+            built, known.contacts, weight, np.interp(built.case.operation.load, torques, turned)
+        ),
+    }
+
+
+def engaged_at(built: Built) -> Engagement:
+    """Contacts at the operating point, with what was found of them there."""
+    if built.engaged is not None:
+        return built.engaged
+    return engagement(built.design, built.operation.load, built.models[0])
+
+
+def wound_ups(
+    built: Built, known: Engagement, torques: np.ndarray
+) -> tuple[list[Any], Body | None]:
+    """Wind-up at rising torques, plain numbers, and the body of the teeth at the last one.
+
+    Args:
+        built: the case.
+        known: contacts at the operating point.
+        torques: of the loaded member [N m].
+    """
     design = built.design
-    known = built.engaged
-    if known is None:
-        known = engagement(design, built.operation.load, built.models[0])
     body = coupling(design, known.contacts) if known.body is None else known.body
     given = design.mesh, design.solids, built.terms
     each: list[Any] = []
@@ -209,33 +342,28 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
             body = replace(body, start=jnp.asarray(each[-1].balls))
         at = wound_up(*given, jnp.asarray(torque), known.contacts, body)
         each.append(jax.device_get(at))
-    found: Any = jax.tree.map(lambda *values: np.stack(values), *each)
-    loop: Any = hysteresis(found, friction[:, None, None], _at_rest(built, known.contacts, each))
-    phase, weight, path = map(np.asarray, (known.phase, known.weight, known.contacts.path))
-    approach, lost = found.wind_up + found.touch, np.isnan(found.wind_up)
-    return {
-        "phase": phase[::SHOWN],
-        "solve": told(locked_or_lost(False, lost), found.residual, found.iterations),
-        "lost_motion": np.asarray(_lost_motion(design.mesh, known.contacts, known.phase)) @ weight,
-        "angular_transmission_error": approach[:, ::SHOWN],
-        "angular_transmission_error_range": np.ptp(approach, axis=-1),
-        "mesh_torsional_stiffness": found.stiffness[:, ::SHOWN],
-        "wind_up": found.wind_up @ weight,
-        "wind_up_range": np.ptp(found.wind_up, axis=-1),
-        "torsional_stiffness": found.stiffness @ weight,
-        "loaded_pairs": found.loaded_pairs @ weight,
-        **_zone_load(found.inner_load @ weight),
-        "edge_share": _part_of(found.edge_load @ weight, found.force.sum(axis=(1, 2)) @ weight),
-        **_of_pairs(design.mesh, path, found.force),
-        "loading_torque": loop.loading @ weight,
-        "unloading_torque": loop.unloading @ weight,
-        "parts": _parts(design, known.contacts, found, weight),
-    }
+    return each, body
 
 
-def _part_of(some: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """Part of a whole; none of nothing."""
-    return np.asarray(some / np.where(whole != 0.0, whole, 1.0))
+def _edge_share(mesh: Mesh, found: Any, weight: np.ndarray) -> dict[str, np.ndarray]:
+    """Part of the load on edges at each torque, of meshes that watch for them; none of no load."""
+    if not mesh.couples:
+        return {}
+    whole = found.force.sum(axis=(1, 2)) @ weight
+    return {"edge_share": (found.edge_load @ weight) / np.where(whole != 0.0, whole, 1.0)}
+
+
+def _by_balls(
+    built: Built, contacts: Contacts, weight: np.ndarray, as_they_stand: float
+) -> dict[str, np.ndarray]:
+    """Wind-up at the operating point with the balls elsewhere less that as they stand; none without balls."""
+    other = built.design.mesh.balls_elsewhere
+    if other is None:
+        return {}
+    design = replace(built.design, mesh=other)
+    given = other, design.solids, built.terms, jnp.asarray(built.case.operation.load)
+    found = wound_up(*given, contacts, coupling(design, contacts))
+    return {"wind_up_by_balls": np.asarray(found.wind_up) @ weight - as_they_stand}
 
 
 def _of_pairs(mesh: Mesh, path: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
@@ -290,12 +418,17 @@ def _zone_load(loads: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @program
-def _lost_motion(mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"]) -> Array:
+def kinematic_play(
+    mesh: Mesh, contacts: Contacts, phase: Float[Array, " node"], body: Body | None
+) -> Array:
     """Rotation of the loaded member between first touch of its flanks on either side [rad]."""
     other = mesh.other_flanks
     both = (mesh, contacts), (other, contacts if other is mesh else other.contacts(phase))
     return sum(
-        (touch(at.gap, jnp.abs(along(at.normal, one.loaded)), at.active) for one, at in both),
+        (
+            touch(opened(at.gap, body), jnp.abs(along(at.normal, one.loaded)), at.active)
+            for one, at in both
+        ),
         jnp.zeros(()),
     )
 
@@ -325,11 +458,12 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Wind-up over torque, and the play of the loaded member between its flanks [rad]."""
     data = parts.get("torsion")
     if data is None:
-        return {"torsion": {}, "lost_motion": None}
-    of = {"stiffness_of": data["torsional_stiffness"].attrs.get("covers", "")}
+        return {"torsion": {}, "kinematic_play": None}
+    told = data["torsional_stiffness"].attrs
+    of = {"stiffness_of": told.get("covers", "") + told.get("assumed", "")}
     return {
         "torsion": by_torque(data, WIND_UP) | of | _slopes(data),
-        "lost_motion": float(data["lost_motion"]),
+        "kinematic_play": float(data["kinematic_play"]),
     }
 
 
@@ -350,6 +484,6 @@ TORSION = Analysis(
     alone="",
     lacks=rigid,
     compute=_torsion_of,
-    main=(*WIND_UP, "lost_motion"),
+    main=(*WIND_UP, "kinematic_play"),
     figures=_figures,
 )

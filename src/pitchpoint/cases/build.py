@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from typing import Any
 
 import equinox as eqx
@@ -11,11 +11,13 @@ import numpy as np
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.schema import (
     FORCE,
     TEMPERATURE,
     TORQUE,
     Case,
+    Dynamics,
     Loss,
     Oil,
     Operating,
@@ -42,7 +44,7 @@ from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import built_gears, family_of
-from pitchpoint.gears.family import Family
+from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.input.quantities import Quantity
@@ -55,6 +57,7 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
+from pitchpoint.materials._leaves import Datum
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
@@ -102,6 +105,7 @@ class Built:
         solids: of both gears, with the temperature at which they are taken.
         told: sentences about the design.
         warming: what became of the balance of heat, modulus and friction; None where nothing warms up.
+        fitted: temperatures between which the named set of losses was fitted [K]; None without one.
     """
 
     case: Case
@@ -112,6 +116,7 @@ class Built:
     solids: tuple[SolidInUse, SolidInUse]
     told: tuple[str, ...]
     warming: Status | None = None
+    fitted: tuple[float, float] | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -215,6 +220,20 @@ class Built:
     def following(self) -> dict[str, Any]:
         """Values that the table of the gears leaves open, by key inside it."""
         return self.family.following(self.case.gears, self.design.mesh)
+
+    @property
+    def assumed(self) -> dict[str, Followed]:
+        """Those of them that rest on assumed proportions."""
+        found = self.following.items()
+        return {
+            key: one
+            for key, one in found
+            if isinstance(one, Followed) and one.status == "assumed" and self._open(key)
+        }
+
+    def _open(self, key: str) -> bool:
+        """True if the table of the gears leaves a value open."""
+        return reduce(getattr, key.split("."), self.case.gears) is None
 
     @cached_property
     def deviations(self) -> Surfaces:
@@ -338,9 +357,29 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         elliptic=ELLIPTIC_CONTACT[case.models.elliptic_contact],
     )
     told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
+    told += _half_of_a_line(case.lubricant)
     models = _models(case, own)
-    built = Built(case, design, operation_at(case.operation), models, record, used, tuple(told))
-    return replace(built, told=(*told, *_left_out(built)))
+    name = named_set(document.tree.get("losses"))
+    fitted = loss_sets()[name].fitted if name else None
+    point = operation_at(case.operation)
+    built = Built(case, design, point, models, record, used, tuple(told), fitted=fitted)
+    return replace(built, told=(*told, *_left_out(built), *_extrapolated(built)))
+
+
+def _extrapolated(built: Built) -> list[str]:
+    """Temperatures of a case beyond those to which its set of losses was fitted."""
+    if built.fitted is None:
+        return []
+    low, high = built.fitted
+    asked = [built.case.operation.temperature]
+    asked += (built.case.loss_map and built.case.loss_map.temperatures) or ()
+    told = [TEMPERATURE.show(one) for one in sorted({*asked}) if not low <= one <= high]
+    if not told:
+        return []
+    return [
+        f"The losses of the set were fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}; at "
+        f"{' and '.join(told)} they are an extrapolation."
+    ]
 
 
 def _left_out(built: Built) -> list[str]:
@@ -439,14 +478,10 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         raise error.at(key="models.load_sharing") from None
     if models.tooth_temperature != "isothermal":
         _check_heat(case, mesh)
-    if case.dynamics is not None and not mesh.along_action:
-        raise InputError(
-            "vibration is computed along a line of action, which these gears do not have; leave this "
-            "table out",
-            key="dynamics",
-        )
-    if case.dynamics is not None:
+    if case.dynamics is not None and mesh.along_action:
         _check_masses(case, mesh)
+    elif case.dynamics is not None:
+        _check_joint(case, case.dynamics)
 
 
 def _check_heat(case: Case, mesh: Mesh) -> None:
@@ -480,6 +515,38 @@ def _check_masses(case: Case, mesh: Mesh) -> None:
             f"is missing; a vibration asks for the mass of the {travelling[0]} and of all that moves with it",
             key="gears.mass",
         )
+
+
+def _check_joint(case: Case, asked: Dynamics) -> None:
+    """InputError for what the torsional vibration of a joint does not take, or lacks."""
+    if not case.gears.transmits:
+        raise InputError(
+            "vibration is computed along a line of action, which these gears do not have; leave this "
+            "table out",
+            key="dynamics",
+        )
+    strange = [key for key in _ALONG_ACTION if getattr(asked, key) != _usual(key)]
+    if strange:
+        raise InputError(
+            "was given; it is for vibration along a line of action, which these gears do not have, and a "
+            f"joint takes {', '.join(_OF_JOINT)}",
+            key=f"dynamics.{strange[0]}",
+        )
+    if asked.inertia is None:
+        ends = f"the motor at the {case.operation.driver} and the load at the output"
+        raise InputError(
+            f"is missing; a joint vibrates between two moments of inertia, a list of those of {ends}",
+            key="dynamics.inertia",
+        )
+
+
+_ALONG_ACTION = ("profile_error", "backlash", "torques", "forces")
+_OF_JOINT = ("inertia", "damping_ratio", "speeds")
+
+
+def _usual(key: str) -> object:
+    """Value of a key of [dynamics] where none is given."""
+    return Dynamics.model_fields[key].default
 
 
 def drags(
@@ -616,17 +683,11 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
         for key, value in values.items()
         if value is not None
     }
-    if "nu_0" in given:
-        given = {**lubricants.known_cold(given["nu_0"]), **given}
     try:
-        if oil.name is not None:
-            found: dict[str, Any] = dict(given)
-            return replace(lubricants.find(oil.name), **found)
-        assert oil.base is not None
-        data = {**lubricants.base_oils()[oil.base], **given}
-        return lubricants.LubricantRecord(
-            name="oil by value", title=f"{oil.base} oil by value", base=oil.base, **data
-        )
+        record = _of_values(oil, given)
+        if given:
+            lubricants.demand_plausible_cold(record)
+        return record
     except InputError as error:
         key = _OIL_KEYS.get((error.key or "").rsplit(".", 1)[-1], "")
         message = error.message
@@ -634,6 +695,48 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
             message = message.replace(name, word)
         where = f"lubricant.{key}".rstrip(".")
         raise InputError(message, file=document.name, key=where) from None
+
+
+def _of_values(oil: Oil, given: Mapping[str, Datum]) -> lubricants.LubricantRecord:
+    """An oil by value, or one of the catalogue with some values of the case file."""
+    cold = lubricants.known_cold(given["nu_0"]) if "nu_0" in given else {}
+    if oil.name is not None:
+        return _with_own(lubricants.find(oil.name), given, cold)
+    assert oil.base is not None
+    data = {**lubricants.base_oils()[oil.base], **cold, **given}
+    return lubricants.LubricantRecord(
+        name="oil by value", title=f"{oil.base} oil by value", base=oil.base, **data
+    )
+
+
+def _with_own(
+    oil: lubricants.LubricantRecord, given: Mapping[str, Datum], following: Mapping[str, Datum]
+) -> lubricants.LubricantRecord:
+    """An oil of the catalogue with values of the case file, which say so, and what follows from them."""
+    if not given:
+        return oil
+    beside = f"of the case file; the other values are those of {oil.name} in the catalogue"
+    values: dict[str, Any] = {
+        key: replace(value, note="; ".join(filter(None, [value.note, beside])))
+        for key, value in given.items()
+    }
+    own = ", ".join(dict.fromkeys(_OIL_KEYS[key] for key in given))
+    title = f"{oil.title or oil.name} with {own} of the case file"
+    return replace(oil, title=title, **{**following, **values})
+
+
+def _half_of_a_line(oil: Oil) -> list[str]:
+    """One of two viscosities given beside the other one of the catalogue."""
+    given = [oil.viscosity_40 is not None, oil.viscosity_100 is not None]
+    if oil.name is None or all(given) or not any(given):
+        return []
+    own, other = (
+        ("viscosity_40", "viscosity_100") if given[0] else ("viscosity_100", "viscosity_40")
+    )
+    return [
+        f"The oil has the {own} of the case file and the {other} of {oil.name}: together they make the line "
+        "of viscosity over temperature; give both."
+    ]
 
 
 _OIL_KEYS = {

@@ -11,6 +11,7 @@ from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.gears.family import Followed
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = ["DIMENSIONS", "OIL", "SOLIDS", "STUDIES", "resolved"]
@@ -179,7 +180,8 @@ def _of_oil(built: Built) -> Iterator[Row]:
         datum = known.get(name)
         if datum is None:
             continue
-        mark = Provenance(datum.status, datum.source, datum.note)
+        bend = built.lubricant.bend if name == "nu_0" else ""
+        mark = Provenance(datum.status, datum.source, "; ".join(filter(None, [datum.note, bend])))
         yield _row(OIL, name, datum.value, kind, mark)
 
 
@@ -209,20 +211,27 @@ def _rows(
     derived = (following or {}) if table == "gears" else {}
     usual = marks_of(document.tree.get(table)) if table == "losses" else {}
     for key, left in _leaves(getattr(case, table)):
-        path, value = f"{table}.{key}", derived.get(key) if left is None else left
+        found = _followed(derived.get(key))
+        path, value = f"{table}.{key}", found.value if left is None else left
         if value is None:
             continue
         if any(one == path or one.startswith(f"{path}.") for one in asked):
             mark = document.provenance.get(path, Provenance())
             yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
         else:
-            mark = usual.get(key, Provenance("derived" if left is None else "default"))
+            followed = Provenance(found.status, note=found.note)
+            mark = usual.get(key, followed if left is None else Provenance("default"))
             yield _row(table, key, value, _kind(path, _plain(value)), mark)
     for path, value in asked.items():
         key = path[len(table) + 1 :]
         if value == {} or (usual and key == SET):
             mark = document.provenance.get(path, Provenance())
             yield _row(table, key, value, "", mark, given=True)
+
+
+def _followed(found: Any) -> Followed:
+    """A value that the gears leave open, with how it was come by."""
+    return found if isinstance(found, Followed) else Followed(found, "derived", "")
 
 
 def _leaves(table: Any) -> Iterator[tuple[str, Any]]:

@@ -47,12 +47,14 @@ class LossSet:
     Attributes:
         name, title: by which it is picked, and what it is.
         note: caution for the user.
+        fitted: temperatures of the oil between which the data lie that it was fitted to [K].
         places: by name; of each the values that are names, and those that are sums of terms.
     """
 
     name: str
     title: str
     note: str
+    fitted: tuple[float, float]
     places: Mapping[str, Mapping[str, Any]]
 
     @property
@@ -143,7 +145,8 @@ def _set(name: str, entry: Mapping[str, Any]) -> LossSet:
         place: {key: _read(value) for key, value in table.items()}
         for place, table in entry["places"].items()
     }
-    return LossSet(name, entry["title"], entry["note"], places)
+    low, high = entry["fitted"]
+    return LossSet(name, entry["title"], entry["note"], (low, high), places)
 
 
 def _read(value: Any) -> Any:

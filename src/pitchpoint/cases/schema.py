@@ -219,7 +219,8 @@ class Oil(Table):
     """An oil of the catalogue, by value, or a catalogue oil with some values of one's own.
 
     With a thickener or a consistency (NLGI number) it is a grease, and the values are those of its base oil.
-    With its viscosity at -40 degC it goes down to there.
+    With its viscosity at -40 degC it goes down to there, and between -40 and 40 degC its viscosity follows
+    the line through that one and the one at 40 degC: it changes at 25 degC too.
     """
 
     name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
@@ -501,7 +502,7 @@ class Speeds(Table):
 
 
 class Dynamics(Table):
-    """Vibration of the pair along its line of action, under torques or forces as `operation` has them."""
+    """Vibration of a pair along its line of action, or of a joint about the axis of its drive."""
 
     damping_ratio: Annotated[float, RATIO] = 0.1
     inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
@@ -694,8 +695,16 @@ class Case(Table):
             update={
                 "operation": operation.model_copy(update={"driver": driver}),
                 "models": models.model_copy(update=left),
+                "dynamics": _damped(self.dynamics, self.gears.damping_ratio),
             }
         )
+
+
+def _damped(dynamics: Dynamics | None, usual: float) -> Dynamics | None:
+    """The table with the damping ratio that is usual for the gears where it gives none."""
+    if dynamics is None or _given(dynamics, "damping_ratio"):
+        return dynamics
+    return dynamics.model_copy(update={"damping_ratio": usual})
 
 
 MOST_STAGES = 5

@@ -38,6 +38,8 @@ class Contacts(eqx.Module):
         direction: unit normal there, out of member 0 towards member 1: the force on member 1 acts along it.
         tangent: unit vector along which `surface` counts, at right angles to the normal and to a contact
             line.
+        felt: relative curvature in the rolling direction that a contact feels over its width, where that at
+            the point jumps on its way [1/m]; None where it is that at the point.
         shape: a line contact or an elliptic one; a line is not the limit of an ellipse.
     """
 
@@ -54,6 +56,7 @@ class Contacts(eqx.Module):
     direction: Float[Array, "3 pair slice *b"]
     tangent: Float[Array, "3 pair slice *b"]
     shape: Shape = eqx.field(static=True)
+    felt: Float[Array, "pair slice *b"] | None = None
 
     @property
     def slip_arm(self) -> Float[Arrays, "dof pair slice *b"]:
@@ -81,8 +84,8 @@ class Contacts(eqx.Module):
 
     @property
     def radius(self) -> Float[Arrays, "pair slice *b"]:
-        """Relative radius of curvature in the rolling direction [m]."""
-        return 1.0 / self.relative_curvature[0]
+        """Relative radius of curvature in the rolling direction [m], as the contact feels it."""
+        return 1.0 / (self.relative_curvature[0] if self.felt is None else self.felt)
 
 
 def along(arms: Float[Arrays, "dof *b"], rates: Float[Arrays, "dof ..."]) -> Float[Arrays, "*b"]:

@@ -136,11 +136,12 @@ def _ratio_of_axes(radii: Float[Array, "*b"]) -> Float[Array, "*b"]:
         _, cosine, sine = complete(jnp.exp(-2.0 * at))
         return 2.0 * at + jnp.log(cosine / sine) - wanted
 
-    at = jax.lax.stop_gradient(2.0 / jnp.pi * wanted)
-    for _ in range(_STEPS):
-        at = jax.lax.stop_gradient(at)
+    def step(at: Float[Array, "*b"], _: None) -> tuple[Float[Array, "*b"], None]:
         value, slope = jax.jvp(missing, (at,), (jnp.ones_like(at),))
-        at = at - value / jax.lax.stop_gradient(slope)
+        return at - value / jax.lax.stop_gradient(slope), None
+
+    at, _ = jax.lax.scan(step, 2.0 / jnp.pi * wanted, None, _STEPS - 1)
+    at, _ = step(jax.lax.stop_gradient(at), None)
     return jnp.exp(at)
 
 

@@ -142,12 +142,14 @@ def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spo
     Source: Johnson, Contact Mechanics (1985), section 4.1: curvatures are the second derivatives of the
     separation.
     """
-    gap, curvature = contacts.gap, contacts.curvature
+    gap, curvature, felt = contacts.gap, contacts.curvature, contacts.felt
     for member, (own, spot) in enumerate(zip(surfaces, spots, strict=True)):
         if own:
             gap = gap + missing(own, spot)
-            curvature = curvature.at[member].add(_bend(own, spot))
-    return replace(contacts, gap=gap, curvature=curvature)
+            bend = _bend(own, spot)
+            curvature = curvature.at[member].add(bend)
+            felt = felt if felt is None else felt + bend[0]
+    return replace(contacts, gap=gap, curvature=curvature, felt=felt)
 
 
 def _bend(surfaces: tuple[Surface, ...], spot: Spot) -> Float[Array, "2 *#b"]:

@@ -1,36 +1,13 @@
 """Friction torque of rolling bearings, by named models."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.efficiency.drag_model import DragModel
 from pitchpoint.registry import Registry
 
-__all__ = ["BEARING_LOSS", "BearingLoss", "none", "palmgren_1959"]
-
-
-@dataclass(frozen=True, eq=False)
-class BearingLoss:
-    """A named model of the friction torque of a rolling bearing.
-
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        function: torque [N m], not negative, from keywords `speed` [rad/s], `load` [N],
-            `kinematic_viscosity` [m2/s], `mean_diameter` [m] and the factors of the model.
-        factors: names of the further keywords, which a maker's catalogue gives for each bearing.
-        sources: keys of the bibliography.
-        note: caution for the user.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    factors: tuple[str, ...] = ()
-    sources: tuple[str, ...] = ()
-    note: str = ""
+__all__ = ["BEARING_LOSS", "none", "palmgren_1959"]
 
 
 def none(
@@ -90,8 +67,8 @@ def palmgren_1959(
 
 BEARING_LOSS = Registry(
     "bearing loss model",
-    BearingLoss("none", "bearings without friction", none),
-    BearingLoss(
+    DragModel("none", "bearings without friction", none),
+    DragModel(
         "palmgren_1959",
         "torque of the lubricant with (viscosity times speed)^(2/3), torque in proportion to the load",
         palmgren_1959,
@@ -100,3 +77,5 @@ BEARING_LOSS = Registry(
         "Rolling bearings without contact seals; f0 and f1 are those of the bearing's maker.",
     ),
 )
+"""Models of the friction torque of a rolling bearing: keywords `speed` [rad/s], `load` [N],
+`kinematic_viscosity` [m2/s], `mean_diameter` [m] and the factors, which a maker's catalogue gives."""

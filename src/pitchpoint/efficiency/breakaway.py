@@ -1,39 +1,16 @@
 """Torque that holds bearings and seals at rest beyond their friction in motion, by named models."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.efficiency.drag_model import DragModel
 from pitchpoint.registry import Registry
 
-__all__ = ["BREAKAWAY", "Breakaway", "dry_and_viscous", "none"]
+__all__ = ["BREAKAWAY", "dry_and_viscous", "none"]
 
 REFERENCE_VISCOSITY = 100e-6
 """Kinematic viscosity at which the viscous part of the breakaway torque is stated [m2/s]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Breakaway:
-    """A named model of the torque at which bodies begin to turn against each other.
-
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        function: torque [N m], not negative, from keywords `mean_diameter` [m],
-            `kinematic_viscosity` [m2/s] and the factors of the model.
-        factors: names of the further keywords.
-        sources: keys of the bibliography.
-        note: caution for the user.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    factors: tuple[str, ...] = ()
-    sources: tuple[str, ...] = ()
-    note: str = ""
 
 
 def none(*, mean_diameter: ArrayLike, kinematic_viscosity: ArrayLike) -> Float[Array, ""]:
@@ -83,8 +60,8 @@ def dry_and_viscous(
 
 BREAKAWAY = Registry(
     "breakaway model",
-    Breakaway("none", "nothing beyond the friction in motion", none),
-    Breakaway(
+    DragModel("none", "nothing beyond the friction in motion", none),
+    DragModel(
         "dry_and_viscous",
         "square of the diameter times a dry part, with the preload, and one with viscosity^(2/3)",
         dry_and_viscous,
@@ -94,3 +71,5 @@ BREAKAWAY = Registry(
         "the viscosity as in Palmgren's law. The cold stiffening of a grease is left out.",
     ),
 )
+"""Models of the torque at which bodies begin to turn against each other: keywords `mean_diameter` [m],
+`kinematic_viscosity` [m2/s] and the factors of the model."""

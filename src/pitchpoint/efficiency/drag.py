@@ -9,8 +9,9 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, BearingLoss
-from pitchpoint.efficiency.breakaway import BREAKAWAY, Breakaway
+from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+from pitchpoint.efficiency.breakaway import BREAKAWAY
+from pitchpoint.efficiency.drag_model import DragModel
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh
@@ -30,7 +31,7 @@ def _as_arrays(values: Mapping[str, Any]) -> dict[str, Float[Array, ""]]:
     return {name: as_array(value) for name, value in values.items()}
 
 
-def _check_factors(model: BearingLoss | Breakaway, factors: Mapping[str, Any]) -> None:
+def _check_factors(model: DragModel, factors: Mapping[str, Any]) -> None:
     if set(factors) != set(model.factors):
         wanted = ", ".join(model.factors) or "no factors"
         raise InputError(f"'{model.name}' asks for {wanted}, got {[*factors]}")
@@ -65,7 +66,7 @@ class Drag(eqx.Module):
     """
 
     between: Float[Array, " dof"] = eqx.field(converter=as_array)
-    bearing: BearingLoss = eqx.field(static=True, default=BEARING_LOSS["none"])
+    bearing: DragModel = eqx.field(static=True, default=BEARING_LOSS["none"])
     mean_diameter: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
     factors: Mapping[str, Float[Array, ""]] = eqx.field(converter=_as_arrays, default_factory=dict)
     preload: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
@@ -75,7 +76,7 @@ class Drag(eqx.Module):
     churning_speed: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
     churning_exponent: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
     breakaway_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
-    breakaway: Breakaway = eqx.field(static=True, default=BREAKAWAY["none"])
+    breakaway: DragModel = eqx.field(static=True, default=BREAKAWAY["none"])
     breakaway_factors: Mapping[str, Float[Array, ""]] = eqx.field(
         converter=_as_arrays, default_factory=dict
     )

@@ -26,7 +26,7 @@ from pitchpoint.loading.reactions import Bearing
 from pitchpoint.programs import program
 from pitchpoint.status import Status
 
-__all__ = ["Drive", "DriveCycle", "Stage", "chained", "drive_cycle", "owner"]
+__all__ = ["Drive", "DriveCycle", "Stage", "braked", "chained", "drive_cycle", "owner"]
 
 Each = Float[Array, "*#b"]
 Meetings = Float[Array, "..."]
@@ -334,7 +334,7 @@ def drive_cycle(
             speed=(operation.speed * ratios[number]).reshape(*operation.speed.shape, *behind),
             temperature=operation.temperature.reshape(*operation.temperature.shape, *behind),
         )
-        drag = (*_braked(drive, number, states[0] if states else None), *stage.design.drag)
+        drag = braked(drive, number, states[0] if states else None)
         found = state(replace(stage.design, drag=drag), point, phase, laws, engaged=known)
         loads = bearing_loads(drag, stage.design.mesh, found.contacts, found.balance.load)
         states.insert(0, found)
@@ -345,13 +345,15 @@ def drive_cycle(
     return DriveCycle(tuple(states), tuple(pressed), tuple(weights), operation.speed, nodes, smooth)
 
 
-def _braked(drive: Drive, number: int, behind: State | None) -> tuple[Drag, ...]:
-    """Losses of the drive that a stage overcomes, in its coordinates.
+def braked(drive: Drive, number: int, behind: State | None = None) -> tuple[Drag, ...]:
+    """Losses of the drive that a stage overcomes, in its coordinates, then its own.
 
     Args:
         drive: of which.
         number: of the stage.
-        behind: state of the stage behind it, which loads the bearings of the same shaft.
+        behind: state of the stage behind it, which loads the bearings of the same shaft; it does not without.
+
+    From `Drive.owners`.
     """
     stage, (_, last) = drive.stages[number], drive.links[number]
     found = []
@@ -366,7 +368,7 @@ def _braked(drive: Drive, number: int, behind: State | None) -> tuple[Drag, ...]
             seat = replace(_seated(seat, stage), beside=beside)
         between = jnp.stack([drag.between[one] for one in stage.shafts])
         found.append(replace(drag, between=between, seat=seat))
-    return tuple(found)
+    return (*found, *stage.design.drag)
 
 
 def _seated(seat: Bearing, stage: Stage) -> Bearing:

@@ -114,6 +114,8 @@ def _profile(
     if contacts.shape == "ellipse":
         each |= {"semi_axis_along": at.semi_axis_along, "semi_axis_across": at.semi_axis_across}
         mesh["contact_room"] = design.mesh.contact_room
+        longest = jnp.max(jnp.where(contacts.active, at.semi_axis_across, 0.0), axis=(0, 1))
+        mesh["largest_inclination"] = design.mesh.largest_inclination(longest)
     if design.drag:
         mesh["drag_loss"] = state.drag_loss
     mesh = {name: jnp.broadcast_to(v, result.phase.shape) for name, v in mesh.items()}

@@ -1,15 +1,17 @@
 """Torque that a drive takes to run without load, and to start from rest."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.efficiency.drag import at_rest
+from pitchpoint.efficiency.drive import Drive, braked
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
 from pitchpoint.programs import program
 
-__all__ = ["no_load_torque", "starting_torque"]
+__all__ = ["no_load_torque", "starting_torque", "starting_torque_of_drive"]
 
 Each = Float[Array, "*b"]
 
@@ -63,3 +65,27 @@ def starting_torque(
     resting = replace(design, drag=at_rest(design.drag))
     found = cycle(resting, operation, models, engaged=engaged)
     return found.extremes(found.state.input_torque)[1]
+
+
+def starting_torque_of_drive(drive: Drive, operation: Operation, models: Sequence[Models]) -> Each:
+    """Torque at which the input of a drive of several meshes begins to turn from rest [N m].
+
+    What starts a stage is the load of the one before it; each stands at its worst phase. Bearings of a shaft
+    feel the teeth of the stage that overcomes them, not those of the stage behind, which carry little then.
+
+    Args:
+        drive: see `chained`; for back-driving `drive.driven_backwards()`.
+        operation: operating points [*b], see `starting_torque`; their load is that of the output.
+        models: laws of each stage.
+
+    Returns:
+        Torque, shape [*b]; NaN where friction holds a stage whatever the torque.
+
+    From the torques of the stages, from the output to the input.
+    """
+    torque, ratios = operation.load, drive.ratios
+    for number in reversed(range(len(drive.stages))):
+        design = replace(drive.stages[number].design, drag=braked(drive, number))
+        point = replace(operation, load=torque, speed=operation.speed * ratios[number])
+        torque = starting_torque(design, point, models[number])
+    return torque

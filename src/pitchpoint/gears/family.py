@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from math import ceil
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,7 +12,24 @@ from pitchpoint.contact.surface import Surfaces, Waves
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import Deviation
 
-__all__ = ["Family", "Turning", "waves"]
+__all__ = ["Family", "Followed", "Turning", "waves"]
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A value that the table leaves open, and how it was come by.
+
+    Attributes:
+        value: in SI.
+        status: "derived" from the others, or "assumed".
+        note: the rule.
+        varies: how it changes with the speed ratio of gears of one size, in words; empty if it does not.
+    """
+
+    value: Any
+    status: Literal["derived", "assumed"]
+    note: str
+    varies: str = ""
 
 
 @dataclass(frozen=True)
@@ -44,7 +61,8 @@ class Family:
     Attributes:
         build: mesh and warnings from the table, the name of the driver and the number of slices;
             InputError for gears that cannot run, with the key inside the table.
-        following: values that the table leaves open, as the mesh has them, by key inside the table.
+        following: values that the table leaves open, as the mesh has them, by key inside the table; those
+            that follow by a rule to be told as `Followed`.
         deviations: of the teeth around both members, from the table and the mesh.
         turning: words of a turn around which they repeat themselves.
         drawing: dimensions of the arrays of a drawing.

@@ -286,10 +286,23 @@ class Mesh(eqx.Module):
         """From elliptic contacts to the nearest end of a face [m]; infinite where no face ends."""
         return jnp.asarray(inf)
 
+    def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Inclination of the axes at which elliptic contacts reach an end of a face [rad]; infinite without.
+
+        Args:
+            semi_axis: of the contact across the rolling direction [m].
+        """
+        return jnp.full_like(semi_axis, inf)
+
     @property
     def other_flanks(self) -> Self:
         """The same mesh where its other flanks carry; gaps are counted from the same position."""
         return self
+
+    @property
+    def balls_elsewhere(self) -> "Mesh | None":
+        """The same mesh while the balls under its teeth stand elsewhere; None without balls."""
+        return None
 
     @abc.abstractmethod
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:

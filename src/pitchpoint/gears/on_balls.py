@@ -4,11 +4,15 @@ import equinox as eqx
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.factored import Arrays
 
-__all__ = ["Body", "OnBalls", "ball_force", "ball_stiffness", "over_batch", "seated"]
+__all__ = ["Body", "OnBalls", "ball_force", "ball_stiffness", "opened", "over_batch", "seated"]
 
 SEATING_STEPS = 60
 """Newton steps of the balls that seat a body without load; usual are ten."""
+
+SEATED = 1e-9
+"""Change of an approach in the last step, over the largest one, up to which balls count as seated."""
 
 
 class OnBalls(eqx.Module):
@@ -23,6 +27,7 @@ class OnBalls(eqx.Module):
         balls: of balls for forces of balls [m/N].
         stiffness: force of a ball over its approach to the power 1.5 [N/m1.5].
         approach: of the balls without load; negative where one has play [m].
+        shift: how much further apart the balls hold the flanks without load than gaps are counted [m].
         start: approach from which that under load is looked for, as one that is known for another load [m].
     """
 
@@ -31,11 +36,26 @@ class OnBalls(eqx.Module):
     balls: Float[Array, "ball ball"]
     stiffness: Float[Array, ""]
     approach: Float[Array, " ball"]
+    shift: Float[Array, "lane *#b"]
     start: Float[Array, "ball *#b"]
 
 
 Body = Float[Array, "lane lane *#b"] | OnBalls
 """How a body couples lanes: by a matrix of its own, or held by balls."""
+
+
+def opened(
+    gap: Float[Arrays, "pair slice *#b"], body: Body | None
+) -> Float[Array, "pair slice *#b"]:
+    """Separation of unloaded flanks on a body as its balls hold it [m].
+
+    Args:
+        gap: of flanks on the body in its nominal shape [m].
+        body: that carries them.
+    """
+    if not isinstance(body, OnBalls):
+        return jnp.asarray(gap)
+    return gap + body.shift.reshape(*gap.shape[:2], *body.shift.shape[1:])
 
 
 def over_batch(balls: Float[Array, " ball"], rank: int) -> Float[Array, "ball *#b"]:
@@ -77,7 +97,8 @@ def seated(
         stiffness: of the balls [N/m1.5].
         push: by which each ball stands beyond the body without forces; negative with play [m].
 
-    From the balance approach = push - C force by Newton's steps; the last one carries derivatives.
+    From the balance approach = push - C force by Newton's steps; the last one carries derivatives. NaN
+    where the balls do not settle.
     """
 
     def step(approach: Float[Array, " ball"]) -> Float[Array, " ball"]:
@@ -96,4 +117,7 @@ def seated(
     def settle(_: Int[Array, ""], approach: Float[Array, " ball"]) -> Float[Array, " ball"]:
         return jax.lax.stop_gradient(step(approach))
 
-    return step(jax.lax.fori_loop(0, SEATING_STEPS, settle, start))
+    before = jax.lax.fori_loop(0, SEATING_STEPS, settle, start)
+    found = step(before)
+    rests = jnp.max(jnp.abs(found - before)) <= SEATED * jnp.max(jnp.abs(found))
+    return jnp.where(rests, found, jnp.nan)

@@ -54,6 +54,7 @@ class GearsTable(Table):
         friction, film_thickness, load_sharing: laws where none are given.
         meaningless: by key of the models why they say nothing about these gears.
         drivers: members that may drive, the usual one first.
+        damping_ratio: of a vibration where none is given.
         sources: keys of the bibliography for what is given.
     """
 
@@ -63,6 +64,7 @@ class GearsTable(Table):
     transmits: ClassVar[bool] = True
     friction: ClassVar[str] = "constant"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
+    damping_ratio: ClassVar[float] = 0.1
     meaningless: ClassVar[Mapping[str, str]] = {}
     family: str
 

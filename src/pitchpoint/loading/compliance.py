@@ -6,7 +6,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.on_balls import Body
+from pitchpoint.gears.on_balls import Body, opened
 from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
 from pitchpoint.materials.solids import Solid
 
@@ -35,6 +35,14 @@ class Compliance(eqx.Module):
         """
         length = jnp.where(contacts.active & (contacts.weight > 0.0), contacts.weight, 1.0)
         return 1.0 / (self.stiffness * length)
+
+    def gap(self, contacts: Contacts) -> Float[Array, "pair slice *b"]:
+        """Separation of the unloaded flanks as their bodies stand [m].
+
+        Args:
+            contacts: of the mesh.
+        """
+        return opened(contacts.gap, self.body)
 
 
 def compliance(

@@ -261,7 +261,7 @@ def _on_balls(
     settled = jax.lax.while_loop(lambda at: (at.steps < PASSES) & jnp.any(at.open), again, begin)
     frozen = jax.lax.stop_gradient(settled.approach)
     found, approach = on_springs(body, frozen, settled.loaded, *given)
-    done = ~settled.open
+    done = ~settled.open & jnp.all(jnp.isfinite(frozen), axis=-1)
     # Balls that went on moving are no equilibrium: one, the whole of their approach, is far from solved.
     return Equilibrium(
         force=_where(done, found.force),

@@ -71,18 +71,20 @@ def kinematic_error(
     teeth = yields.of_teeth(contacts)
     given = {"arm": jnp.abs(along(contacts.normal, loaded)), "active": contacts.active}
 
+    gaps = yields.gap(contacts)
+
     def under(gap: Lanes, load: Each) -> Equilibrium:
         return equilibrium(teeth, yields.body, gap=gap, load=load, **given)
 
     def plainly(load: Each) -> tuple[Lanes, Equilibrium]:
-        found = under(contacts.gap, load)
+        found = under(gaps, load)
         return found.force, found
 
     load = yields.load
     _, more, plain = jax.jvp(plainly, (load,), (jnp.ones_like(load),), has_aux=True)
-    deviating = under(contacts.gap + added, load)
+    deviating = under(gaps + added, load)
     return KinematicError(
-        geometric=touch(contacts.gap + added, **given) - touch(contacts.gap, **given),
+        geometric=touch(gaps + added, **given) - touch(gaps, **given),
         elastic_mean=total(more * added),
         under_load=deviating.approach - plain.approach,
         wind_up=plain.approach,

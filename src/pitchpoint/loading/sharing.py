@@ -129,7 +129,7 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Compliance | None) 
     return equilibrium(
         yielding.of_teeth(contacts),
         yielding.body,
-        gap=contacts.gap,
+        gap=yielding.gap(contacts),
         arm=jnp.abs(along(contacts.normal, mesh.loaded)),
         active=contacts.active,
         load=yielding.load,

@@ -101,19 +101,20 @@ def wind_up(
     contacts = mesh.contacts(phase) if contacts is None else contacts
     arm = jnp.abs(along(contacts.normal, mesh.loaded))
     load = jnp.broadcast_to(load, jnp.broadcast_shapes(jnp.shape(load), jnp.shape(phase)))
-    given = {"gap": contacts.gap, "arm": arm, "active": contacts.active}
+    given = {"arm": arm, "active": contacts.active}
     behind = sum(mesh.in_series(solids).values(), jnp.zeros(()))
 
-    def approach(torque: Each) -> tuple[Each, tuple[Equilibrium, Arrays]]:
+    def approach(torque: Each) -> tuple[Each, tuple[Equilibrium, Arrays, Arrays]]:
         yields = compliance(mesh, contacts, solids, terms, torque, body)
-        own = yields.of_teeth(contacts)
-        found = equilibrium(own, yields.body, **given, load=torque)
-        return found.approach + behind * torque, (found, own)
+        own, gap = yields.of_teeth(contacts), yields.gap(contacts)
+        found = equilibrium(own, yields.body, gap=gap, **given, load=torque)
+        return found.approach + behind * torque, (found, own, gap)
 
     # The springs themselves depend on the load where the contact of the teeth does.
-    moved, slope, (found, own) = jax.jvp(approach, (load,), (jnp.ones_like(load),), has_aux=True)
-    free = jnp.broadcast_to(touch(**given), moved.shape)
-    closed = jnp.where(contacts.active, contacts.gap - arm * free, 0.0)
+    moved, slope, aux = jax.jvp(approach, (load,), (jnp.ones_like(load),), has_aux=True)
+    found, own, gap = aux
+    free = jnp.broadcast_to(touch(gap, **given), moved.shape)
+    closed = jnp.where(contacts.active, gap - arm * free, 0.0)
     slip = jnp.abs(along(contacts.slip_arm, mesh.loaded))
     return WindUp(
         load=load,

@@ -6,6 +6,7 @@ import math
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from typing import Any, Literal, get_args
 
@@ -35,8 +36,9 @@ def as_array(value: ArrayLike | Sequence[float]) -> Float[Array, "..."]:
     return array(value, jnp.float64)
 
 
+@cache
 def read_data(name: str) -> dict[str, Any]:
-    """Read one file of the catalogue folder."""
+    """One file of the catalogue folder, read once; what it gives is not to be changed."""
     text = resources.files(__package__).joinpath("catalogue", name).read_text(encoding="utf-8")
     return tomllib.loads(text)
 

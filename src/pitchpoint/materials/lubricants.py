@@ -16,6 +16,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
 from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
+from pitchpoint.programs import program
 from pitchpoint.registry import unknown_name
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "base_oils",
     "catalogue",
     "constant_alpha",
+    "demand_plausible_cold",
     "find",
     "known_cold",
     "of_base",
@@ -35,6 +37,14 @@ DENSITY_TEMPERATURE = ZERO_CELSIUS + 15.0
 """Temperature at which the density of an oil is stated [K]."""
 COLD = ZERO_CELSIUS - 40.0
 """Temperature at which the viscosity of an oil for the cold is stated [K]."""
+ROOM = ZERO_CELSIUS + 25.0
+"""Temperature of a room [K]."""
+ASTRAY = 5.0
+"""Factor by which the viscosity at -40 degC may be off the line through those at 40 and 100 degC.
+
+Thin polyalphaolefins lie at half of it, oils thickened with polymers at twice it (both recalled), and 5 % in
+the viscosity at 100 degC move the line there by 1.5.
+"""
 
 
 class Lubricant(eqx.Module):
@@ -204,6 +214,18 @@ class LubricantRecord:
         """What is assumed of it, in a sentence; empty for an oil."""
         return ""
 
+    @property
+    def bend(self) -> str:
+        """What the viscosity at -40 degC changes at room temperature; empty where it is not known."""
+        if self.nu_0 is None:
+            return ""
+        with_it, without = (_viscosity(one, ROOM) for one in (self, replace(self, nu_0=None)))
+        return (
+            "below 40 degC the viscosity follows the line to this one: at 25 degC it is "
+            f"{with_it * 1e6:.4g} mm2/s, {100.0 * (with_it / without - 1.0):+.1f} % against the line through "
+            "those at 40 and 100 degC"
+        )
+
     def data(self) -> dict[str, Datum]:
         """Return the values by name, each with its status and source."""
         every = {field.name: getattr(self, field.name) for field in fields(self)}
@@ -300,6 +322,28 @@ def _check_order(record: LubricantRecord) -> None:
     for key, (passed, message) in checks.items():
         if not passed:
             raise InputError(message, key=f"{record.name}.{key}")
+
+
+def demand_plausible_cold(record: LubricantRecord) -> None:
+    """InputError if the viscosity of an oil at -40 degC does not go with its other two, see `ASTRAY`."""
+    if record.nu_0 is None:
+        return
+    cold, line = record.nu_0.value, _viscosity(replace(record, nu_0=None), COLD)
+    if not line / ASTRAY <= cold <= line * ASTRAY:
+        raise InputError(
+            f"{cold * 1e6:.4g} mm2/s at -40 degC does not go with the other two viscosities, whose line "
+            f"leads to {line * 1e6:.3g} mm2/s there: no oil is off it by more than a factor of {ASTRAY:g}",
+            key=f"{record.name}.nu_0",
+        )
+
+
+def _viscosity(record: LubricantRecord, temperature: float) -> float:
+    return float(_kinematic_viscosity(record.build(), as_array(temperature)))
+
+
+@program
+def _kinematic_viscosity(oil: Lubricant, temperature: Float[Array, ""]) -> Float[Array, ""]:
+    return oil.kinematic_viscosity(temperature)
 
 
 def _lightest(record: LubricantRecord) -> float:

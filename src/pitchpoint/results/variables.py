@@ -94,6 +94,36 @@ VARIABLES: dict[str, Variable] = {
     "natural_frequency": Variable("natural frequency", "f_n", "1/s", "Hz", "frequency"),
     "mesh_frequency": Variable("mesh frequency", "f_z", "1/s", "Hz", "frequency"),
     "equivalent_mass": Variable("equivalent mass", "m_e", "kg", "g", "mass"),
+    "joint_damping_ratio": Variable("damping ratio", "ξ", "1"),
+    "reduced_inertia": Variable(
+        "moment of inertia that vibrates, at the output",
+        "J_r",
+        "kg m2",
+        "kg m2",
+        "moment of inertia",
+    ),
+    "wave_order": Variable("waves in a turn of the driver", "n", "1"),
+    "wave_amplitude": Variable("amplitude of the error", "|Δφ_n|", "rad", "arcsec", "angle"),
+    "critical_speed": Variable(
+        "driver speed at which it meets the natural frequency",
+        "n_c",
+        "rad/s",
+        "rpm",
+        "rotational speed",
+    ),
+    "output_amplitude": Variable(
+        "amplitude of the load's rotation", "|θ_L|", "rad", "arcsec", "angle"
+    ),
+    "output_speed_amplitude": Variable(
+        "amplitude of the load's speed", "|ω_L|", "rad/s", "deg/s", "rotational speed"
+    ),
+    "torque_amplitude": torque("amplitude of the drive's torque", "|T|"),
+    "flank_damping_ratio": Variable("damping ratio by friction of the flanks", "ξ_f", "1"),
+    "course_speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
+    "course_torque": torque("amplitude of the torque with the whole curve", "|T|"),
+    "linear_torque": torque("amplitude of the torque by the tangent", "|T|"),
+    "course_smallest_torque": torque("smallest torque of the drive there", "T min"),
+    "course_status": Variable("status of the vibration with the whole curve", "", "1"),
     "largest_multiplier": Variable("largest Floquet multiplier", "|Λ|", "1"),
     "vibration_status": Variable("status of the vibration", "", "1"),
     "radius": Variable("relative radius of curvature", "R", "m", "mm", "length"),
@@ -124,6 +154,13 @@ VARIABLES: dict[str, Variable] = {
         "place of the contacts across the face, from the middle of gear 1", "z"
     ),
     "contact_room": length("from the contacts to the nearest end of a face", "b_e"),
+    "largest_inclination": Variable(
+        "inclination of the axes at which the contact reaches an end of a face",
+        "γ",
+        "rad",
+        "mrad",
+        "angle",
+    ),
     "misalignment_approach": deviation("approach of the flanks by misalignment", "δ_m"),
     "tip_alteration_1": Variable("tip alteration coefficient of gear 1", "k1", "1"),
     "tip_alteration_2": Variable("tip alteration coefficient of gear 2", "k2", "1"),
@@ -166,16 +203,23 @@ VARIABLES: dict[str, Variable] = {
     ),
     "slope_torque": torque("torque at which a part of the curve ends", "T"),
     "catalogue_lost_motion": Variable(
-        "lost motion between plus and minus 4 % of the torque", "Δθ_4%", "rad", "arcmin", "angle"
+        "lost motion at ±4 % of the rated torque", "Δθ_4%", "rad", "arcmin", "angle"
     ),
     "hysteresis_loss": Variable(
         "hysteresis loss, the width of the loop without torque", "Δθ_h", "rad", "arcmin", "angle"
     ),
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
-    "lost_motion": Variable(
-        "play of the loaded member between its flanks without load",
+    "kinematic_play": Variable(
+        "kinematic play of the loaded member between its flanks",
         "Δθ_0",
+        "rad",
+        "arcmin",
+        "angle",
+    ),
+    "wind_up_by_balls": Variable(
+        "wind-up at the operating point with the balls elsewhere less that as they stand",
+        "Δθ_b",
         "rad",
         "arcmin",
         "angle",
@@ -271,7 +315,7 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "mesh_torsional_stiffness": stiffness(
             "stiffness at the output over the mesh cycle", "K(φ)"
         ),
-        "lost_motion": deviation("play of the loaded member without load", "Δs_0"),
+        "kinematic_play": deviation("kinematic play of the loaded member", "Δs_0"),
         "angular_transmission_error": deviation("travel of the loaded member under load", "s_e"),
         "angular_transmission_error_range": deviation(
             "static transmission error at the loaded member, peak to peak", "Δs_e"

@@ -594,7 +594,7 @@ def _of_mesh(built: Built) -> dict[str, Any]:
     }
     if case.dynamics is not None or found["load sharing"].by_stiffness:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
-    if case.dynamics is not None:
+    if case.dynamics is not None and built.design.mesh.along_action:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
     found |= _bearings(case.losses)
     if case.models.tooth_temperature != "isothermal":

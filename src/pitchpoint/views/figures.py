@@ -46,6 +46,7 @@ __all__ = [
     "rounded",
     "short_axis",
     "text",
+    "verticals",
 ]
 
 Trace = dict[str, Any]
@@ -262,6 +263,22 @@ def layout(x: str, y: str, **more: Any) -> dict[str, Any]:
         "plot_bgcolor": "#fff",
         "separators": ".\u2009",
         **more,
+    }
+
+
+def verticals(marks: Sequence[tuple[str, float]]) -> dict[str, Any]:
+    """Dotted lines of a layout at places of the x axis, each with its words above."""
+    return {
+        "shapes": [
+            {"type": "line", "x0": x, "x1": x, "yref": "paper", "y0": 0, "y1": 1, "layer": "below"}
+            | {"line": {"color": "#9aa5ad", "width": 1, "dash": "dot"}}
+            for _, x in marks
+        ],
+        "annotations": [
+            {"text": label, "x": x, "yref": "paper", "y": 1, "yanchor": "bottom"}
+            | {"showarrow": False, "font": {"size": 12}}
+            for label, x in marks
+        ],
     }
 
 

@@ -10,6 +10,7 @@ from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.drive import DRIVE
 from pitchpoint.views.sections.inputs import INPUTS
 from pitchpoint.views.sections.issues import ISSUES
+from pitchpoint.views.sections.joint import JOINT
 from pitchpoint.views.sections.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.views.sections.loss_map import LOSS_MAP
 from pitchpoint.views.sections.models import MODELS
@@ -36,6 +37,7 @@ SECTIONS: Registry[Section] = Registry(
     CYCLE,
     TORSION,
     KINEMATIC_ERROR,
+    JOINT,
     BESIDE,
     STIFFNESS,
     VIBRATION,

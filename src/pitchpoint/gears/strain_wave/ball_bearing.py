@@ -1,6 +1,6 @@
 """The bearing of a wave generator: balls between a rigid inner race and a thin outer one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, sqrt
 from typing import NamedTuple
 
@@ -17,7 +17,15 @@ from pitchpoint.gears.strain_wave.ring_compliance import RingParts, of_modes, ri
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.materials.solids import Solid
 
-__all__ = ["BallBearing", "Balls", "ball_bearing", "on_balls", "palmgren_1959", "parts_on_balls"]
+__all__ = [
+    "BallBearing",
+    "Balls",
+    "ball_bearing",
+    "ball_circle",
+    "on_balls",
+    "palmgren_1959",
+    "parts_on_balls",
+]
 
 STEEL = {"young": 206e9, "poisson": 0.3}
 """Of the races, whatever the flexspline is made of."""
@@ -33,14 +41,26 @@ class Balls:
         number: of balls.
         diameter: of one ball [m].
         race_thickness: of the outer race [m].
-        play: radial one between ball and races where the ring has its wave; negative of balls that push
-            the ring beyond it [m].
+        play: radial one between ball and races; negative of balls that push the ring beyond its wave,
+            which is its shape on balls without play [m].
     """
 
     number: float | None = None
     diameter: float | None = None
     race_thickness: float | None = None
     play: float = 0.0
+
+    def sizes(self, pitch_diameter: float) -> dict[str, float]:
+        """Dimensions as given or usual, by their keys in the table [m]; of balls their number.
+
+        Args:
+            pitch_diameter: of the flexspline [m].
+        """
+        given = (self.number, self.diameter, self.race_thickness)
+        usual = PROPORTIONS.bearing(pitch_diameter).items()
+        return {
+            key: part if own is None else own for (key, part), own in zip(usual, given, strict=True)
+        }
 
 
 class BallBearing(eqx.Module):
@@ -58,6 +78,17 @@ class BallBearing(eqx.Module):
     play: Float[Array, ""]
     bending: Float[Array, ""]
     stretching: Float[Array, ""]
+
+    @property
+    def elsewhere(self) -> "BallBearing":
+        """The same with the balls as far from where they stand as they come.
+
+        Every half of their pitch the ends of the long axis change places if their number is odd, so that a
+        quarter is farthest then; else it is half of it.
+        """
+        number = self.angle.shape[0]
+        turned = (0.5 if number % 2 else 1.0) * pi / number
+        return replace(self, angle=self.angle + turned)
 
     def race(self, radius: Float[Array, ""], waves: int) -> Float[Array, " wave"]:
         """Stiffness of the outer race against each number of waves, for one metre around [N/m2].
@@ -88,22 +119,37 @@ def palmgren_1959(diameter: float) -> float:
     return sqrt(diameter / 4.36e-8**3)
 
 
-def ball_bearing(balls: Balls, diameter: float, width: float) -> BallBearing:
+def ball_circle(balls: Balls, diameter: float, bore: float) -> float:
+    """Diameter of the circle on which the balls stand before the wave bends it [m].
+
+    Args:
+        balls: what is given of the bearing.
+        diameter: pitch diameter of the flexspline [m].
+        bore: of its rim, in which the outer race lies [m].
+
+    Example:
+        >>> from pitchpoint.gears.strain_wave.ball_bearing import Balls
+        >>> round(ball_circle(Balls(), 60e-3, 58.4e-3) / 60e-3, 3)
+        0.87
+    """
+    sizes = balls.sizes(diameter)
+    return bore - 2.0 * sizes["race_thickness"] - sizes["ball_diameter"]
+
+
+def ball_bearing(balls: Balls, diameter: float, bore: float, width: float) -> BallBearing:
     """The bearing of a drive.
 
     Args:
-        balls: what is given of it.
-        diameter: pitch diameter of the flexspline [m].
+        balls, diameter, bore: as in `ball_circle`.
         width: of its toothed ring, and of the race under it [m].
     """
-    number = PROPORTIONS.balls if balls.number is None else int(balls.number)
-    ball = PROPORTIONS.ball * diameter if balls.diameter is None else balls.diameter
-    race = PROPORTIONS.race * diameter if balls.race_thickness is None else balls.race_thickness
-    circle = diameter - ball - 2.0 * race
+    sizes = balls.sizes(diameter)
+    number, ball, race = int(sizes["balls"]), sizes["ball_diameter"], sizes["race_thickness"]
+    circle = ball_circle(balls, diameter, bore)
     if not (circle > 0.0 and number * ball < pi * circle):
         raise InputError(
             f"{number} balls of {1e3 * ball:.4g} mm under a race of {1e3 * race:.4g} mm do not fit into a "
-            f"flexspline of {1e3 * diameter:.5g} mm; fewer or smaller ones do",
+            f"flexspline with a bore of {1e3 * bore:.5g} mm; fewer or smaller ones do",
             key="balls" if balls.number is not None else "ball_diameter",
         )
     young, poisson = STEEL["young"], STEEL["poisson"]
@@ -144,26 +190,33 @@ def on_balls(
         loads: where and how a unit force at each contact acts.
 
     The balls stand where they would hold the ring in its wave if they and the play did not give way;
-    where the ring would have to be pulled, they let it go.
+    where the ring would have to be pulled, they let it go. The gaps of the teeth are counted from the ring
+    on balls without play: what those with play bear less lets the ring, and so the teeth, sit back.
     """
     modes = _modes(bearing, ring, solid, loads)
     balls, free = modes.balls @ modes.balls.T, modes.lanes.shape[2:]
-    approach = _seated(bearing, balls, line)
+    across = jnp.einsum("im...,jm->ij...", modes.lanes, modes.balls)
+    approach, nominal = (_seated(bearing, balls, line, x) for x in (bearing.play, jnp.zeros(())))
+    more = ball_force(bearing.stiffness, approach) - ball_force(bearing.stiffness, nominal)
     return OnBalls(
         lanes=jnp.einsum("im...,jm...->ij...", modes.lanes, modes.lanes),
-        across=jnp.einsum("im...,jm->ij...", modes.lanes, modes.balls),
+        across=across,
         balls=balls,
         stiffness=bearing.stiffness,
         approach=approach,
+        shift=jnp.einsum("ij...,j->i...", across, more),
         start=jnp.broadcast_to(over_batch(approach, len(free)), (*approach.shape, *free)),
     )
 
 
 def _seated(
-    bearing: BallBearing, balls: Float[Array, "ball ball"], line: NeutralLine
+    bearing: BallBearing,
+    balls: Float[Array, "ball ball"],
+    line: NeutralLine,
+    play: Float[Array, ""],
 ) -> Float[Array, " ball"]:
-    """Approach of the balls without load on the teeth [m]."""
-    return seated(balls, bearing.stiffness, line.radial(bearing.angle) - bearing.play)
+    """Approach of balls with a play without load on the teeth [m]."""
+    return seated(balls, bearing.stiffness, line.radial(bearing.angle) - play)
 
 
 def parts_on_balls(
@@ -186,7 +239,7 @@ def parts_on_balls(
     """
     modes = _modes(bearing, ring, solid, loads)
     coupled = modes.balls @ modes.balls.T
-    before = ball_force(bearing.stiffness, _seated(bearing, coupled, line))
+    before = ball_force(bearing.stiffness, _seated(bearing, coupled, line, bearing.play))
     more = ball_force(bearing.stiffness, balls) - over_batch(before, balls.ndim - 1)
     of_balls = jnp.einsum("im,i...->m...", modes.balls, more)
     flat = force.reshape(-1, *force.shape[2:])

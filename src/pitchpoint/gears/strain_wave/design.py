@@ -410,6 +410,7 @@ def _planned(
     _check_depth(form, deflection, clearance)
     if groove is not None:
         _check_free(form, deflection, clearance, z2 - z1)
+        _check_as_given(tip_relief, relief_length, bottom_clearance)
     if bearing is not None and bearing.play >= w0:
         raise InputError(
             f"a play of {1e3 * bearing.play:.4g} mm of the wave generator's balls leaves nothing of the "
@@ -421,7 +422,7 @@ def _planned(
     wall = rim / 2.0 if wall_thickness is None else wall_thickness
     bottom = bottom_clearance * module
     root = neutral + rim / 2.0 + module * (form.addendum + form.dedendum) + w0 + bottom
-    cup = Cup(module * z1, neutral, rim, root, face_width)
+    cup, bore = Cup(module * z1, neutral, rim, root, face_width), 2.0 * neutral - rim
     parts = {
         "teeth": array([z1, z2], float),
         "module": array(module),
@@ -436,7 +437,9 @@ def _planned(
             cup_length=array(module * z1 / 2.0 if cup_length is None else cup_length),
             support_stiffness=array(support_stiffness),
         ),
-        "bearing": None if bearing is None else ball_bearing(bearing, module * z1, face_width),
+        "bearing": None
+        if bearing is None
+        else ball_bearing(bearing, module * z1, bore, face_width),
         "series": InSeries.rigid() if behind is None else in_series(behind, cup),
         "tips": tips,
         "edges_carry": edges_carry,
@@ -753,6 +756,18 @@ def _check_free(
             "frees them",
             key="clearance",
         )
+
+
+def _check_as_given(*sizes: float) -> None:
+    """How tips and bottoms are made is said of swept splines; a given one is as it is given."""
+    usual = signature(build_strain_wave).parameters
+    for name, size in zip(("tip_relief", "relief_length", "bottom_clearance"), sizes, strict=True):
+        if size != usual[name].default:
+            raise InputError(
+                f"{size:.4g} modules were given, which would not shape a given circular spline; leave it "
+                "out, or leave the flanks of the circular spline to the flexspline's sweep",
+                key=name,
+            )
 
 
 def _roles(fixed: str, driver: str) -> tuple[int, int]:

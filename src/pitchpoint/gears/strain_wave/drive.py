@@ -18,6 +18,7 @@ from pitchpoint.gears.mesh import Mesh, Path
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.ball_bearing import BallBearing, on_balls, parts_on_balls
+from pitchpoint.gears.strain_wave.contact_width import curvature_in_contact
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.flexspline_tooth import Flank, unit
 from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept
@@ -375,6 +376,7 @@ class StrainWave(Mesh):
         local = unit(-at.direction) * velocity
         first = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
+        flat = self.module, self.largest_radius
         # The space that a tooth meets lies at its angle around the circular spline.
         zone = _as_lanes(self._zone, jnp.asarray(phase))
         turned = unit(given * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
@@ -391,6 +393,7 @@ class StrainWave(Mesh):
             point=_vector(turned * at.place),
             direction=_vector(1j * turned * unit(at.direction)),
             tangent=_vector(turned * unit(at.direction)),
+            felt=curvature_in_contact(motion, self.groove, found.along, angle, *flat),
             shape="line",
         )
 
@@ -436,6 +439,13 @@ class StrainWave(Mesh):
             return ring_compliance(self.rim, solids[0], loads) + around
         held = on_balls(self.bearing, self.rim, self.line, solids[0], loads)
         return dataclasses.replace(held, lanes=held.lanes + around)
+
+    @property
+    def balls_elsewhere(self) -> Mesh | None:
+        """The same drive with the balls of its wave generator as far from where they stand as they come."""
+        if self.bearing is None:
+            return None
+        return dataclasses.replace(self, bearing=self.bearing.elsewhere)
 
     def body_parts(
         self,

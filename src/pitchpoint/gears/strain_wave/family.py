@@ -6,7 +6,7 @@ from typing import Any
 
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
-from pitchpoint.gears.family import Family, Turning, waves
+from pitchpoint.gears.family import Family, Followed, Turning, waves
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave.ball_bearing import Balls
 from pitchpoint.gears.strain_wave.design import (
@@ -17,7 +17,7 @@ from pitchpoint.gears.strain_wave.design import (
     check_strain_wave,
 )
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.gears.strain_wave.in_series import Behind
+from pitchpoint.gears.strain_wave.in_series import Behind, dimensions
 from pitchpoint.gears.strain_wave.table import (
     BallBearing,
     DoubleArcTooth,
@@ -106,13 +106,65 @@ def _involute(table: InvoluteTooth | InvoluteGroove) -> InvoluteForm:
 
 
 def _of_drive(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Any]:
-    form, rim = _form(gears.tooth), drive.rim
+    form = _form(gears.tooth)
     return {
         **{f"tooth.{one.name}": getattr(form, one.name) for one in fields(form)},
-        "flexspline.rim_thickness": rim.thickness,
-        "flexspline.wall_thickness": rim.wall_thickness,
-        "flexspline.cup_length": rim.cup_length,
+        **_of_walls(gears, drive),
+        **_of_parts(gears, drive),
     }
+
+
+_RIMS = {
+    "two modules": (
+        "two modules",
+        "rim and wall follow from the module, so that another ratio of the same size has other walls",
+    ),
+    "bending strain": (
+        "by the strain of its wave, at most in proportion to the size",
+        "rim and wall follow from the wave, so that a lower ratio of the same size has thinner walls",
+    ),
+}
+"""Rule of the rim's thickness, and how it changes with the ratio."""
+
+
+def _of_walls(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Followed]:
+    """Rim and cup where the table leaves them open."""
+    rim = drive.rim
+    return {
+        "flexspline.rim_thickness": Followed(
+            rim.thickness, "assumed", *_RIMS[gears.flexspline.walls]
+        ),
+        "flexspline.wall_thickness": Followed(rim.wall_thickness, "assumed", "half of the rim"),
+        "flexspline.cup_length": Followed(rim.cup_length, "assumed", "half of the pitch diameter"),
+    }
+
+
+def _of_parts(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Followed]:
+    """Dimensions of bearing and of what yields behind the teeth, where their tables leave them open."""
+    diameter, bearing, behind = (
+        gears.module * gears.teeth[0],
+        gears.wave_generator.bearing,
+        gears.yielding,
+    )
+    found: dict[str, float] = {}
+    if bearing is not None:
+        sizes = _balls(bearing).sizes(diameter)
+        found |= {f"wave_generator.bearing.{key}": value for key, value in sizes.items()}
+    if behind is not None:
+        sizes = dimensions(_behind(behind), diameter, float(drive.rim.thickness))
+        found |= {f"yielding.{key}": value for key, value in sizes.items()}
+    return {
+        key: Followed(value, "assumed", _rule(key, value / diameter))
+        for key, value in found.items()
+    }
+
+
+def _rule(key: str, part: float) -> str:
+    """How a dimension behind the teeth was come by, from its part of the pitch diameter."""
+    name = key.rpartition(".")[2]
+    if name == "bottom_thickness":
+        return "as thick as the rim"
+    return "a usual number" if name in ("balls", "bolts") else f"{part:.4g} of the pitch diameter"
 
 
 def _deviations(gears: StrainWaveGears, drive: StrainWave) -> Surfaces:

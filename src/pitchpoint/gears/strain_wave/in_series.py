@@ -1,5 +1,6 @@
 """What yields behind the teeth of a strain wave gear, one part after the other: cup bottom, joint, shaft."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
@@ -10,7 +11,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
-from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
+from pitchpoint.gears.strain_wave.proportions import DIMENSIONS, PROPORTIONS
 from pitchpoint.materials.solids import Solid
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "Cup",
     "InSeries",
     "bolts_in_shear",
+    "dimensions",
     "disc_in_torsion",
     "in_series",
     "shaft_in_torsion",
@@ -177,52 +179,60 @@ def in_series(behind: Behind, cup: Cup) -> InSeries:
     Raises:
         InputError: a flange as wide as the cup, a circular spline without a body; the key is the name.
     """
-    given = {part: getattr(behind, f"{part}_stiffness") for part in _MODELS}
-    modelled = {part: given[part] is None and getattr(behind, part) != "rigid" for part in _MODELS}
-    values = [0.0 if stiffness is None else 1.0 / stiffness for stiffness in given.values()]
+    given = (getattr(behind, f"{part}_stiffness") for part in DIMENSIONS)
+    modelled = {part: _modelled(behind, part) for part in DIMENSIONS}
+    sizes = dimensions(behind, cup.diameter, cup.rim)
+    values = [0.0 if stiffness is None else 1.0 / stiffness for stiffness in given]
     if modelled["flange"]:
-        values[1] = 1.0 / _joint(behind, cup)
+        values[1] = 1.0 / _joint(sizes, cup)
     if modelled["wave_generator"]:
-        values[2] = 1.0 / _shaft(behind, cup)
+        values[2] = 1.0 / _shaft(sizes, cup)
     return InSeries(
-        bottom=array(_bottom(behind, cup) if modelled["cup_bottom"] else 0.0),
+        bottom=array(_bottom(sizes, cup) if modelled["cup_bottom"] else 0.0),
         compliance=array(values),
-        ring=_ring(behind, cup) if modelled["circular_spline"] else None,
+        ring=_ring(sizes, cup) if modelled["circular_spline"] else None,
     )
 
 
-_MODELS = ("cup_bottom", "flange", "wave_generator", "circular_spline")
+def dimensions(behind: Behind, diameter: float, rim: float) -> dict[str, float]:
+    """Dimensions of the parts that a model describes, as given or usual, by name [m]; of bolts their number.
+
+    Args:
+        behind: what is given of them.
+        diameter: pitch diameter of the flexspline [m].
+        rim: thickness of its rim [m].
+    """
+    usual = PROPORTIONS.behind(diameter) | {"bottom_thickness": rim}
+    names = (name for part, own in DIMENSIONS.items() if _modelled(behind, part) for name in own)
+    given = {name: getattr(behind, name) for name in names}
+    return {name: usual[name] if value is None else value for name, value in given.items()}
 
 
-def _or(given: float | None, part: float, cup: Cup) -> float:
-    """A dimension as given, or as this part of the pitch diameter."""
-    return part * cup.diameter if given is None else given
+def _modelled(behind: Behind, part: str) -> bool:
+    return getattr(behind, f"{part}_stiffness") is None and getattr(behind, part) != "rigid"
 
 
-def _bottom(behind: Behind, cup: Cup) -> float:
-    thickness = cup.rim if behind.bottom_thickness is None else behind.bottom_thickness
-    flange = _or(behind.flange_diameter, PROPORTIONS.flange, cup)
+def _bottom(sizes: Mapping[str, float], cup: Cup) -> float:
+    flange = sizes["flange_diameter"]
     if flange >= 2.0 * cup.radius:
         raise InputError(
             f"the flange has a diameter of {1e3 * flange:.5g} mm and leaves no bottom of the cup, which has "
             f"one of {2e3 * cup.radius:.5g} mm",
             key="flange_diameter",
         )
-    return disc_in_torsion(thickness, flange / 2.0, cup.radius)
+    return disc_in_torsion(sizes["bottom_thickness"], flange / 2.0, cup.radius)
 
 
-def _joint(behind: Behind, cup: Cup) -> float:
-    number = PROPORTIONS.bolts if behind.bolts is None else behind.bolts
-    diameter = _or(behind.bolt_diameter, PROPORTIONS.bolt, cup)
-    circle = _or(behind.bolt_circle, PROPORTIONS.bolt_circle, cup)
+def _joint(sizes: Mapping[str, float], cup: Cup) -> float:
+    circle = sizes["bolt_circle"]
     _demand_inside("bolt_circle", "bolts stand on a circle", circle, cup)
-    return bolts_in_shear(number, diameter, circle)
+    return bolts_in_shear(sizes["bolts"], sizes["bolt_diameter"], circle)
 
 
-def _shaft(behind: Behind, cup: Cup) -> float:
-    diameter = _or(behind.shaft_diameter, PROPORTIONS.shaft, cup)
+def _shaft(sizes: Mapping[str, float], cup: Cup) -> float:
+    diameter = sizes["shaft_diameter"]
     _demand_inside("shaft_diameter", "the wave generator's shaft has a diameter", diameter, cup)
-    return shaft_in_torsion(diameter, _or(behind.shaft_length, PROPORTIONS.shaft_length, cup))
+    return shaft_in_torsion(diameter, sizes["shaft_length"])
 
 
 def _demand_inside(key: str, what: str, diameter: float, cup: Cup) -> None:
@@ -234,12 +244,12 @@ def _demand_inside(key: str, what: str, diameter: float, cup: Cup) -> None:
         )
 
 
-def _ring(behind: Behind, cup: Cup) -> FlexibleRing:
+def _ring(sizes: Mapping[str, float], cup: Cup) -> FlexibleRing:
     """The circular spline from its roots outwards, free to bend, held against turning at its outside.
 
     The shear of its face between both radii, as of a disc, stands for the wall of a cup.
     """
-    outside = _or(behind.outside_diameter, PROPORTIONS.outside, cup) / 2.0
+    outside = sizes["outside_diameter"] / 2.0
     if outside <= cup.root:
         raise InputError(
             f"the circular spline has an outside diameter of {2e3 * outside:.5g} mm, and its roots lie on "

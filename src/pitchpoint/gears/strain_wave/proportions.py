@@ -2,7 +2,15 @@
 
 from dataclasses import dataclass
 
-__all__ = ["PROPORTIONS", "Proportions", "rim_by_strain"]
+__all__ = ["DIMENSIONS", "PROPORTIONS", "Proportions", "rim_by_strain"]
+
+DIMENSIONS = {
+    "cup_bottom": ("bottom_thickness", "flange_diameter"),
+    "flange": ("bolts", "bolt_diameter", "bolt_circle"),
+    "wave_generator": ("shaft_diameter", "shaft_length"),
+    "circular_spline": ("outside_diameter",),
+}
+"""Dimensions that the model of each part behind the teeth asks for."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,34 @@ class Proportions:
     race: float = 0.0125
     rim: float = 0.01
     strain: float = 3.75e-4
+
+    def behind(self, diameter: float) -> dict[str, float]:
+        """Usual dimensions of the parts behind the teeth, by name [m]; of bolts their number.
+
+        Args:
+            diameter: pitch diameter of the flexspline [m].
+        """
+        return {
+            "flange_diameter": self.flange * diameter,
+            "bolts": self.bolts,
+            "bolt_circle": self.bolt_circle * diameter,
+            "bolt_diameter": self.bolt * diameter,
+            "shaft_diameter": self.shaft * diameter,
+            "shaft_length": self.shaft_length * diameter,
+            "outside_diameter": self.outside * diameter,
+        }
+
+    def bearing(self, diameter: float) -> dict[str, float]:
+        """Usual dimensions of the wave generator's bearing, by name [m]; of balls their number.
+
+        Args:
+            diameter: pitch diameter of the flexspline [m].
+        """
+        return {
+            "balls": self.balls,
+            "ball_diameter": self.ball * diameter,
+            "race_thickness": self.race * diameter,
+        }
 
 
 PROPORTIONS = Proportions()

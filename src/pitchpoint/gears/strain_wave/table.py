@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field, Tag, model_validator
 
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.proportions import DIMENSIONS
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
@@ -197,7 +198,7 @@ class Yielding(Table):
     @model_validator(mode="after")
     def _one_each(self) -> "Yielding":
         """A part has one model, and no dimension that its model does not ask for."""
-        for part, dimensions in _DIMENSIONS.items():
+        for part, dimensions in DIMENSIONS.items():
             value = f"{part}_stiffness"
             if getattr(self, value) is not None and part in self.model_fields_set:
                 raise InputError(f"{part} and {value} were both given; give one", key=value)
@@ -210,15 +211,6 @@ class Yielding(Table):
                         key=key,
                     )
         return self
-
-
-_DIMENSIONS = {
-    "cup_bottom": ("bottom_thickness", "flange_diameter"),
-    "flange": ("bolts", "bolt_diameter", "bolt_circle"),
-    "wave_generator": ("shaft_diameter", "shaft_length"),
-    "circular_spline": ("outside_diameter",),
-}
-"""Dimensions that the model of each part asks for."""
 
 
 class SplineDeviations(Table):
@@ -257,6 +249,7 @@ class StrainWaveGears(GearsTable):
     """
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
+    damping_ratio: ClassVar[float] = 0.03
     meaningless: ClassVar[Mapping[str, str]] = {
         "slices": "contacts of strain-wave teeth are not divided into slices",
         "averaging": "the path of one pair does not stand for strain-wave teeth, many of which touch at "

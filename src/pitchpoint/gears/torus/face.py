@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.factored import Numbers
 
 __all__ = ["TorusFace", "least"]
 
@@ -14,7 +14,7 @@ _STEPS = 8
 _FARTHEST = 0.9
 """Part of the smaller radius beyond which no place is looked for: no face is that wide."""
 
-Place = Float[Arrays, "..."]
+Place = Float[Numbers, "..."]
 
 
 class TorusFace(eqx.Module):

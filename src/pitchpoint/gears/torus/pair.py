@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.factored import Numbers
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.gears.torus.face import TorusFace, least
@@ -69,6 +70,20 @@ class TorusPair(InvolutePair):
         own = jnp.abs(jnp.stack([self.place, self.place - self.axial_offset]))
         return jnp.min(ends - own)
 
+    def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
+        """Inclination, of whichever sense, at which a contact reaches an end of a face [rad].
+
+        Args:
+            semi_axis: of the contact across the rolling direction [m].
+
+        From the place at which flanks touch, where their slopes across the face and the inclination cancel.
+        """
+        low = jnp.maximum(-self.widths[0] / 2.0, self.axial_offset - self.widths[1] / 2.0)
+        high = jnp.minimum(self.widths[0] / 2.0, self.axial_offset + self.widths[1] / 2.0)
+        ends = jnp.stack([low + semi_axis, high - semi_axis])
+        leaning = self.faces[0].slope(ends) + self.faces[1].slope(ends - self.axial_offset)
+        return jnp.maximum(jnp.min(jnp.abs(leaning), axis=0), 0.0) * (ends[0] < ends[1])
+
     @property
     def transverse_radius(self) -> Float[Array, ""]:
         """Relative radius of curvature across the profile R_y [m].
@@ -113,6 +128,25 @@ class TorusPair(InvolutePair):
             tilt=jnp.arctan(self.faces[0].slope(self.place)),
             across=self._bends,
         )
+
+    def flank_points(
+        self, member: int, radius: Float[Numbers, "*#b"], across: Float[Numbers, "*#b"]
+    ) -> Float[Array, "3 *b"]:
+        """Points of the flank of one tooth whose axis is y, in the frame of its gear [m].
+
+        Args:
+            member: 0 or 1.
+            radius: of each point about the gear's axis, above that of the base circle [m].
+            across: of each point from the middle plane of the gear [m].
+
+        Source: ISO 21771:2007, tooth thickness, with the profile shift at each place across the face.
+        """
+        shift = self.middle_shift[member] + self.faces[member].shift(across) / self.module
+        gear = dataclasses.replace(self.gears[member], profile_shift=jnp.zeros(()))
+        lean = 2.0 * shift * jnp.tan(self.pressure_angle) / self.teeth[member]
+        angle = gear.half_thickness_angle(jnp.asarray(radius)) + lean
+        given = radius * jnp.sin(angle), radius * jnp.cos(angle), jnp.asarray(across)
+        return jnp.stack(jnp.broadcast_arrays(*given))
 
     @property
     def standardised(self) -> bool:

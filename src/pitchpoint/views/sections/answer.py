@@ -21,13 +21,14 @@ from pitchpoint.runs.run import MEETINGS, Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
 from pitchpoint.views.inputs import set_for_run, words
+from pitchpoint.views.point import operating_point
 from pitchpoint.views.screen import cell, efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, Page, Printed, Section
-from pitchpoint.views.sections.back_driving import back_driving, jamming
+from pitchpoint.views.sections.back_driving import back_driving, jamming, locks_from
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
 
-__all__ = ["ANSWER", "bearing_rows", "summary"]
+__all__ = ["ANSWER", "bearing_rows", "summary", "teeth_rows"]
 
 AVERAGES = {
     "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
@@ -133,6 +134,7 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
             (VARIABLES[name].long_name, show.quantity(name, value(name), of=data))
             for name in _at_contact(data)
         ],
+        "borne": list(_borne(outcome, position)),
         "drag": _drag(data, position),
         "bearings": _bearings(outcome, position),
         "more": [row for section in page.sections for row in section.card(outcome, law)],
@@ -175,7 +177,7 @@ def _bearings(outcome: Outcome, law: int) -> list[tuple[str, str]]:
     if "bearing_load" in data:
         loads = zip(data["place"].values, data["bearing_load"].values[law, 0], strict=True)
         found += [
-            (f"load on {place}", show.quantity("bearing_load", load))
+            (f"load on {place}".replace("_", " "), show.quantity("bearing_load", load))
             for place, load in loads
             if load > 0.0
         ]
@@ -213,6 +215,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     yield Printed(line=_oil(outcome))
     if "operation" in outcome.parts:
         yield summary(outcome)
+        yield Printed(rows=teeth_rows(outcome))
         yield Printed(rows=bearing_rows(outcome))
 
 
@@ -245,10 +248,37 @@ def _of_power(outcome: Outcome, position: int) -> dict[str, str]:
     locked = bool(back["locked"].values[position, 0])
     return {
         **efficiency_of(data),
-        _LOCKS: cell(data, "jamming_coefficient", position),
+        _LOCKS: _locks(data, position),
         "back-driving": "locked" if locked else cell(back, "mean_efficiency", position),
-        f"back-driving {_LOCKS}": cell(back, "jamming_coefficient", position),
+        f"back-driving {_LOCKS}": _locks(back, position),
     }
+
+
+def _locks(data: xr.Dataset, position: int) -> str:
+    limit = float(data["jamming_coefficient"].values[position, 0])
+    told = cell(data, "jamming_coefficient", position)
+    return locks_from(limit, told) if np.isfinite(limit) else told
+
+
+def teeth_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """What flanks bear at the operating point by law; none where nothing is known of it."""
+    rows = [
+        {"friction law": law} | {words: told for words, told in _borne(outcome, k)}
+        for k, law in enumerate(laws(outcome.parts["operation"]))
+    ]
+    return rows if len(rows[0]) > 1 else []
+
+
+def _borne(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
+    """Largest Hertz pressure over the mesh cycle, and the part of the load on edges where there are any."""
+    cycle, torsion = (outcome.parts.get(name) for name in ("cycle", "torsion"))
+    if cycle is not None:
+        largest = float(cycle["pressure"].values[law].max())
+        yield VARIABLES["pressure"].long_name, show.quantity("pressure", largest)
+    if torsion is not None and "edge_share" in torsion:
+        at = operating_point(outcome).torque
+        share = float(np.interp(at, torsion["torque"], torsion["edge_share"]))
+        yield VARIABLES["edge_share"].long_name, show.quantity("edge_share", share)
 
 
 def bearing_rows(outcome: Outcome) -> list[dict[str, str]]:

@@ -9,7 +9,10 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
 
-__all__ = ["back_driving", "jamming"]
+__all__ = ["back_driving", "jamming", "locks_from"]
+
+ROUGHEST = 1.0
+"""Friction coefficient that no lubricated flank reaches: where a mesh locks beyond it is no figure."""
 
 
 def back_driving(outcome: Outcome, law: str) -> str:
@@ -26,13 +29,39 @@ def back_driving(outcome: Outcome, law: str) -> str:
     if not np.isfinite(value):
         return "undefined, no power"
     told = f"{show.quantity('mean_efficiency', value)}, friction does not lock the mesh"
-    locks = jamming(data, position)
-    return f"{told} (it would from μ = {locks} on)" if locks else told
+    limit = _limit(data, position)
+    if not np.isfinite(limit):
+        return told
+    return f"{told} ({_would(limit)})"
+
+
+def _would(limit: float) -> str:
+    if limit > ROUGHEST:
+        return f"nor would it below μ = {ROUGHEST:g}"
+    return f"it would from μ = {show.number(limit, 3)} on"
 
 
 def jamming(data: Any, position: int) -> str:
     """Friction coefficient at which the mesh locks; empty where none does."""
+    limit = _limit(data, position)
+    return locks_from(limit, show.number(limit, 3)) if np.isfinite(limit) else ""
+
+
+def locks_from(limit: float, shown: str) -> str:
+    """Friction coefficient from which on a mesh locks, in words.
+
+    Args:
+        limit: the coefficient.
+        shown: it as a number is shown there.
+
+    Example:
+        >>> locks_from(0.45, "0.4500"), locks_from(4.9, "4.9000")
+        ('0.4500', 'not below 1')
+    """
+    return shown if limit <= ROUGHEST else f"not below {ROUGHEST:g}"
+
+
+def _limit(data: Any, position: int) -> float:
     if "jamming_coefficient" not in data:
-        return ""
-    limit = float(data["jamming_coefficient"].values[position, 0])
-    return show.number(limit, 3) if np.isfinite(limit) else ""
+        return np.inf
+    return float(data["jamming_coefficient"].values[position, 0])

@@ -31,7 +31,7 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Printed, Section, reason
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, reason
 
 __all__ = ["BESIDE", "drag_panel", "loss_split", "running_rows", "starting_answer"]
 
@@ -45,7 +45,8 @@ def drag_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     seen = list(_running(outcomes, known))
     figures = [_shares(list(_split(outcomes, known)))] if split else []
     if seen:
-        figures.append(_no_load("speed", "temperature", seen))
+        if any(data.sizes["speed"] > 1 for _, data, *_ in seen):
+            figures.append(_no_load("speed", "temperature", seen))
         if any(data.sizes["temperature"] > 1 for _, data, *_ in seen):
             figures += [_no_load("temperature", "speed", seen), _starting("starting_torque", seen)]
             figures.append(_starting("back_driving_torque", seen))
@@ -65,7 +66,7 @@ def starting_answer(outcome: Outcome, law: str) -> list[tuple[str, str]]:
     return [
         (words.format(_load(data, name)), _held(data, name, float(there[name])))
         for words, name in (
-            ("{} without load", "no_load_torque"),
+            (f"{{}} without load at {level('speed', at.speed, data)}", "no_load_torque"),
             ("starting {}", "starting_torque"),
             ("back-driving {}", "back_driving_torque"),
         )
@@ -86,10 +87,15 @@ def running_rows(outcome: Outcome) -> list[dict[str, str]]:
     data = outcome.parts.get("running")
     if data is None:
         return []
-    there = data.sel(speed=operating_point(outcome).speed, method="nearest")
+    speed = operating_point(outcome).speed
+    there = data.sel(speed=speed, method="nearest")
+    heads = {name: head(name, data) for name in TORQUES}
+    symbol = show.described("no_load_torque", data).symbol
+    at = f"{symbol} at {shown('speed', speed, data)} {show.unit_of('speed', data)}"
+    heads["no_load_torque"] = heads["no_load_torque"].replace(symbol, at, 1)
     return [
         {"friction law": law, head("temperature"): shown("temperature", float(degree))}
-        | {head(n, data): _screened(data, n, float(there[n].values[k, place])) for n in TORQUES}
+        | {heads[n]: _screened(data, n, float(there[n].values[k, place])) for n in TORQUES}
         for k, law in enumerate(laws(data))
         for place, degree in enumerate(data["temperature"].values)
     ]
@@ -226,7 +232,8 @@ def _chosen(axes: list[np.ndarray]) -> list[float]:
 
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     if rows := running_rows(outcome):
-        yield Printed("Without load: running, and from rest either way", rows)
+        told = str(outcome.parts["running"].attrs.get("fitted", ""))
+        yield Printed("Without load: running, and from rest either way", rows, told)
 
 
 def _lacks(page: Page) -> str | None:
@@ -236,6 +243,9 @@ def _lacks(page: Page) -> str | None:
 
 def _blocks(page: Page) -> Iterator[Block]:
     yield drag_panel(page.outcomes, page.curves)
+    attributes = (one.parts["running"].attrs for one in page.having("running").values())
+    for told in dict.fromkeys(str(one.get("fitted", "")) for one in attributes):
+        yield from [Paragraph(show.pretty(told), "note")] if told else []
 
 
 BESIDE = Section(

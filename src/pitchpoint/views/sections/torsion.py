@@ -86,10 +86,10 @@ def _carrying(pairs: str) -> str:
 
 def _free(data: xr.Dataset) -> str:
     """Play between the flanks in words; empty without any."""
-    if not data["lost_motion"] > _PLAY * data["wind_up"].max():
+    if not data["kinematic_play"] > _PLAY * data["wind_up"].max():
         return ""
-    free = level("lost_motion", float(data["lost_motion"]), data)
-    return f"; without load it is free to {_words(data).moves} by {free} between its flanks"
+    free = level("kinematic_play", float(data["kinematic_play"]), data)
+    return f"; without load its flanks let it {_words(data).moves} freely by a kinematic play of {free}"
 
 
 def _panel(name: str, variant: str, several: bool, outcome: Outcome, known: Curves) -> Panel:
@@ -339,10 +339,11 @@ def part_rows(outcome: Outcome) -> list[dict[str, str]]:
     at = operating_point(outcome).torque
     each = [float(np.interp(at, data["torque"], values)) for values in data["wind_up_part"].values]
     order = sorted(range(len(each)), key=lambda k: -each[k])
+    words = f"at {level('torque', at, data)} [{show.unit_of('wind_up_part')}]"
     return [
         {
             "part of the wind-up": str(data["part"].values[k]),
-            head("wind_up_part"): shown("wind_up_part", each[k]),
+            words: shown("wind_up_part", each[k]),
             "share [%]": f"{100.0 * each[k] / sum(each):.1f}",
         }
         for k in order
@@ -369,7 +370,7 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
         | {
             words: shown(name, float(data[name].values[k]))
             for words, name in (
-                ("lost motion at ±4 % [arcmin]", "catalogue_lost_motion"),
+                ("lost motion at ±4 % of the torque [arcmin]", "catalogue_lost_motion"),
                 ("hysteresis loss [arcmin]", "hysteresis_loss"),
             )
         }
@@ -383,12 +384,18 @@ def _table(rows: list[dict[str, str]]) -> Iterator[Block]:
         yield Table([*rows[0]], [[*row.values()] for row in rows])
 
 
+def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:
+    """Columns as rows, so that a narrow page holds them: a column for each name in the first one."""
+    names = [*rows[0]] if rows else []
+    return [{names[0]: name} | {row[names[0]]: row[name] for row in rows} for name in names[1:]]
+
+
 def _blocks(page: Page) -> Iterator[Block]:
     panels = torsion_panels(page.outcomes, page.curves)
     for it, outcome in zip(panels, page.having("torsion").values(), strict=True):
         if it.title:
             yield Heading(it.title)
-        note = f"In it: {it.note}." if it.note else ""
+        note = f"{it.note[0].upper()}{it.note[1:]}." if it.note else ""
         data = outcome.parts["torsion"]
         held = (
             "with the other members held, mean over the mesh cycle"
@@ -397,7 +404,9 @@ def _blocks(page: Page) -> Iterator[Block]:
             "each the mean over its mesh cycle"
         )
         yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
-        yield from _table(slope_rows(outcome))
+        if left_out := str(data.attrs.get("left_out", "")):
+            yield Paragraph(left_out, "note")
+        yield from _table(_down(slope_rows(outcome)))
         yield from _table(part_rows(outcome))
         if "hysteresis_loss" in data:
             yield Paragraph(_NO_LOOP, "note")
@@ -410,11 +419,13 @@ def _answer(outcome: Outcome) -> list[tuple[str, str]]:
 
 
 def _screen(outcome: Outcome) -> list[Printed]:
-    slopes, note = slope_rows(outcome), str(outcome.parts["torsion"].attrs.get("note", ""))
-    rows = [Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else "")]
-    if not slopes:
-        return rows
-    return [*rows, Printed(rows=slopes, line=_NO_LOOP), Printed(rows=part_rows(outcome))]
+    slopes, attrs = slope_rows(outcome), outcome.parts["torsion"].attrs
+    note, left_out = (str(attrs.get(name, "")) for name in ("note", "left_out"))
+    return [
+        Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else ""),
+        Printed(rows=slopes, line=_NO_LOOP if slopes else left_out),
+        Printed(rows=part_rows(outcome)),
+    ]
 
 
 TORSION = Section(

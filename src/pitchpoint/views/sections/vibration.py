@@ -1,7 +1,7 @@
 """Vibration of the mesh: transmission error, dynamic factors, orders, and speeds through resonance."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -27,6 +27,7 @@ from pitchpoint.views.figures import (
     rounded,
     short_axis,
     text,
+    verticals,
 )
 from pitchpoint.views.inputs import words
 from pitchpoint.views.point import period_of
@@ -298,7 +299,7 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
         f"{title[0].upper()}{title[1:]} against speed",
         traces,
         layout(show.axis_title("speed", data), short_axis(variable), yaxis={"rangemode": "tozero"})
-        | _verticals(marks),
+        | verticals(marks),
         note,
         tuple(keys),
         NONE,
@@ -324,21 +325,6 @@ def _resonances(outcome: Outcome, speed: np.ndarray) -> list[tuple[str, float]]:
         if speed.min() <= there <= speed.max() and not near:
             found.append(("f_n" if part == 1 else f"f_n/{part}", there))
     return found
-
-
-def _verticals(marks: Sequence[tuple[str, float]]) -> dict[str, Any]:
-    return {
-        "shapes": [
-            {"type": "line", "x0": x, "x1": x, "yref": "paper", "y0": 0, "y1": 1, "layer": "below"}
-            | {"line": {"color": "#9aa5ad", "width": 1, "dash": "dot"}}
-            for _, x in marks
-        ],
-        "annotations": [
-            {"text": label, "x": x, "yref": "paper", "y": 1, "yanchor": "bottom"}
-            | {"showarrow": False, "font": {"size": 12}}
-            for label, x in marks
-        ],
-    }
 
 
 def _gaps(data: xr.Dataset) -> Iterator[str]:

@@ -113,7 +113,9 @@
         dots[lane].setAttribute("cx", half[0]);
         dots[lane].setAttribute("cy", half[1]);
         const part = (share) => found[0] + (found[1] - found[0]) * share;
-        const [x, y] = at(Math.abs(part(0.2) - 0.5) < 0.05 ? part(0.8) : part(0.2));
+        const beside = found[1] - found[0] < 0.1 && !zone.beta;
+        const inside = Math.abs(part(0.2) - 0.5) < 0.05 ? part(0.8) : part(0.2);
+        const [x, y] = at(beside ? found[1] + 0.04 : inside);
         names[lane].setAttribute("x", x);
         names[lane].setAttribute("y", y);
         names[lane].setAttribute("dy", ".35em");

@@ -1,0 +1,261 @@
+"""Torsional vibration of a joint: natural frequencies, critical speeds, amplitudes against speed."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    display,
+    layout,
+    plain,
+    short_axis,
+    verticals,
+)
+from pitchpoint.views.inputs import words
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section, Table
+
+__all__ = ["JOINT", "critical_rows", "joint_answer", "joint_panel"]
+
+_OWN = ("natural_frequency", "joint_damping_ratio", "reduced_inertia", "torsional_stiffness")
+_CURVE = {
+    "course_speed": "driver speed",
+    "course_torque": "amplitude of the torque",
+    "linear_torque": "by the tangent",
+    "course_smallest_torque": "smallest torque",
+}
+_PLAY = 1e-6
+"""Play that is worth a word [rad]."""
+
+_APART = 0.1
+"""Part of the axis by which marks of critical speeds stand apart."""
+
+
+def joint_answer(outcome: Outcome) -> str:
+    """Natural frequencies and the critical speed of the strongest wave in words."""
+    data = outcome.parts["joint"]
+    held, free = (
+        show.quantity("natural_frequency", float(value), of=data)
+        for value in data["natural_frequency"].values
+    )
+    strongest = int(np.argmax(data["wave_amplitude"].values))
+    speed, other = (
+        show.quantity("critical_speed", float(value), of=data)
+        for value in data["critical_speed"].values[:, strongest]
+    )
+    return (
+        f"{held} on a motor that holds its speed, {free} on one that runs free; the strongest wave of the "
+        f"error, {data.attrs['strongest']}, meets them at {speed} and {other}"
+    )
+
+
+def critical_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Each wave of the error with its critical speeds, and the largest amplitudes at the speeds shown."""
+    data = outcome.parts["joint"]
+    largest = data["torque_amplitude"].max("speed").values
+    return [
+        {"wave of the error": str(name)}
+        | {head("wave_amplitude", data): shown("wave_amplitude", float(data["wave_amplitude"][k]))}
+        | {
+            f"{head(variable, data)}, {motor}": shown(variable, float(values[m, k]), data)
+            for variable, values in (
+                ("critical_speed", data["critical_speed"].values),
+                ("torque_amplitude", largest),
+            )
+            for m, motor in enumerate(("held", "free"))
+        }
+        for k, name in enumerate(data["excitation"].values)
+    ]
+
+
+def joint_panel(name: str, title: str, outcome: Outcome) -> Panel:
+    """Amplitudes against speed and the diagram of Campbell."""
+    data = outcome.parts["joint"]
+    figures = [
+        _amplitudes(f"{name}_torque", data, "torque_amplitude", (0, 1)),
+        _amplitudes(f"{name}_output", data, "output_amplitude", (0,)),
+        _campbell(f"{name}_campbell", data),
+    ]
+    return Panel(title, figures)
+
+
+def _keys(data: xr.Dataset) -> list[Key]:
+    return [
+        Key(str(name), PALETTE[k % len(PALETTE)])
+        for k, name in enumerate(data["excitation"].values)
+    ]
+
+
+def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, ...]) -> Figure:
+    """Amplitude by each wave against speed, by the tangent of the wind-up."""
+    speed, unit = display("speed", data["speed"], data), show.unit_of(variable, data)
+    values = display(variable, data[variable].values, data)
+    traces = [
+        plain(
+            Key(f"{key.label}, {data['motor'].values[m]}", key.colour, "dash" if m else "solid"),
+            speed,
+            values[m, k],
+            unit,
+        )
+        for m in motors
+        for k, key in enumerate(_keys(data))
+    ]
+    keys = _keys(data)
+    if len(motors) > 1:
+        keys += [Key("motor holds its speed", GREY), Key("motor runs free", GREY, "dash")]
+    whole = show.described(variable, data).long_name
+    held = "" if len(motors) > 1 else " Motor holds its speed."
+    return Figure(
+        name,
+        f"{whole[0].upper()}{whole[1:]} against driver speed",
+        traces,
+        layout(
+            show.axis_title("speed", data),
+            short_axis(variable, data),
+            yaxis={"rangemode": "tozero"},
+        )
+        | verticals(_marks(data, speed, motors)),
+        f"Each wave by itself. Dotted: critical speeds.{held}",
+        tuple(keys),
+    )
+
+
+def _marks(data: xr.Dataset, speed: np.ndarray, motors: tuple[int, ...]) -> list[tuple[str, float]]:
+    """Critical speeds inside the figure that stand apart, the strongest waves first, by their order."""
+    found: list[tuple[str, float]] = []
+    critical = display("critical_speed", data["critical_speed"].values, data)
+    for m in motors:
+        for k, order in enumerate(data["wave_order"].values):
+            there = float(critical[m, k])
+            near = any(abs(there - other) < _APART * np.ptp(speed) for _, other in found)
+            if speed.min() <= there <= speed.max() and not near:
+                found.append((f"{order:.4g}", there))
+    return found
+
+
+def _campbell(name: str, data: xr.Dataset) -> Figure:
+    """Frequencies of the waves over speed, with the natural frequencies."""
+    ends = np.array([0.0, float(data["speed"].values[-1])])
+    speed, most = display("speed", ends, data), 2.0 * float(data["natural_frequency"].max())
+    traces = []
+    for key, order in zip(_keys(data), data["wave_order"].values, strict=True):
+        last = min(ends[1], most * 2.0 * np.pi / order)
+        line = np.array([0.0, last])
+        traces.append(plain(key, display("speed", line, data), order * line / (2.0 * np.pi), "Hz"))
+    levels = (
+        Key("natural frequency, motor holds its speed", GREY),
+        Key("natural frequency, motor runs free", GREY, "dash"),
+    )
+    for key, value in zip(levels, data["natural_frequency"].values, strict=True):
+        traces.append(plain(key, speed, np.full(2, value), "Hz"))
+    return Figure(
+        name,
+        "Frequencies of the waves against driver speed",
+        traces,
+        layout(
+            show.axis_title("speed", data),
+            "frequency [Hz]",
+            xaxis={"range": [0.0, float(speed[1])]},
+            yaxis={"range": [0.0, most]},
+        ),
+        "Where a wave crosses a natural frequency lies a critical speed (Campbell's diagram).",
+        (*_keys(data), *levels),
+    )
+
+
+def _title(name: str, data: xr.Dataset) -> str:
+    return f"{show.described(name, data).long_name} {head(name, data)}"
+
+
+def _own_table(outcome: Outcome) -> Table:
+    data = outcome.parts["joint"]
+    rows = [
+        (_title(name, data), *(shown(name, float(value), data) for value in data[name].values))
+        for name in _OWN
+    ]
+    return Table(["", *(str(motor) for motor in data["motor"].values)], rows, compact=True)
+
+
+def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Steady vibration by the strongest wave with the whole curve of the wind-up, and by its tangent."""
+    data = outcome.parts["joint"]
+    return [
+        {"at the": str(name)}
+        | {
+            f"{told} [{show.unit_of(one, data)}]": shown(one, float(data[one].values[k]), data)
+            for one, told in _CURVE.items()
+        }
+        for k, name in enumerate(data["course"].values)
+    ]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    for position, title, outcome in page.each("joint"):
+        data = outcome.parts["joint"]
+        if title:
+            yield Heading(title)
+        yield Paragraph(
+            "Motor and load on both sides of the drive, with its error between them: small vibrations by the "
+            "tangent of the wind-up at the operating torque. The damping ratio, "
+            f"{words(outcome, 'dynamics', 'damping_ratio')}, is that of the free joint, assumed where the "
+            "case gives none."
+        )
+        yield _own_table(outcome)
+        rows = critical_rows(outcome)
+        yield Table([*rows[0]], [[*row.values()] for row in rows])
+        yield joint_panel(f"joint{position}", "", outcome)
+        rows = _curve_rows(outcome)
+        yield Paragraph(_whole(data))
+        yield Table([*rows[0]], [[*row.values()] for row in rows])
+        yield Paragraph(f"{_friction(data)} {data.attrs['note']}", "note")
+
+
+def _whole(data: xr.Dataset) -> str:
+    """What the integration in time adds."""
+    play = float(data["kinematic_play"])
+    told = (
+        f"its play of {show.quantity('kinematic_play', play, of=data)}"
+        if play > _PLAY
+        else "no play"
+    )
+    return (
+        f"With the whole curve of the wind-up, {told} and both flanks, integrated in time until steady: the "
+        f"strongest wave, {data.attrs['strongest']}, on a motor that holds its speed."
+    )
+
+
+def _friction(data: xr.Dataset) -> str:
+    """What friction of the flanks adds to the damping."""
+    most = float(data["flank_damping_ratio"].max())
+    return (
+        f"Friction of the flanks adds up to {show.number(most)} to the damping ratio: the drive has them "
+        "sliding, and friction opposes a vibration only where that turns the sliding back. The loop of "
+        "torque over wind-up is that of a drive at rest."
+    )
+
+
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    if "joint" in outcome.parts:
+        yield Printed(
+            "Torsional vibration of the joint", critical_rows(outcome), f"{joint_answer(outcome)}."
+        )
+
+
+JOINT = Section(
+    name="joint",
+    title="Torsional vibration of the joint",
+    short="Joint",
+    order=320.0,
+    parts=("joint",),
+    blocks=_blocks,
+    answer=lambda one: [("Joint resonance", joint_answer(one))] if "joint" in one.parts else [],
+    screen=_screen,
+)
