@@ -377,7 +377,9 @@ class _Turning:
         self.held = jnp.isinf(jnp.sum(jnp.where(self.driver > 0.0, moving.mass, 0.0)))
         self.size = 2 * moving.mass.shape[0]
         self.nominal = self.motion * speed
-        self.place, self.rate, self.energy, self.push = _units(moving)
+        # Units carry no derivative: the root of a rate unit that is zero would have none.
+        units = jax.lax.stop_gradient(_units(moving))
+        self.place, self.rate, self.energy, self.push = units
 
     @property
     def first(self) -> State:
