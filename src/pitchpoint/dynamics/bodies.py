@@ -8,10 +8,21 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.materials._leaves import as_array
 
-__all__ = ["Body", "Support", "across", "damping", "masses", "on_all_coordinates", "stiffness"]
+__all__ = [
+    "Body",
+    "Support",
+    "across",
+    "damping",
+    "masses",
+    "motor",
+    "moved_masses",
+    "on_all_coordinates",
+    "stiffness",
+]
 
 Matrix = Float[Array, "coordinate coordinate"]
 
@@ -37,7 +48,8 @@ class Body(eqx.Module):
     """What moves with one coordinate of a mesh.
 
     Attributes:
-        inertia: about its axis [kg m2], or mass of a body that travels [kg].
+        inertia: about its axis [kg m2], or mass of a body that travels [kg]; infinite for one whose speed
+            is prescribed: it keeps the rate that it starts with, and the torque for that is a result.
         torque: external one, or those at the knots of time, straight between them and constant beyond
             [N m or N].
         resistance: torque against its motion, the same at every speed but for slow ones [N m or N].
@@ -56,6 +68,30 @@ class Body(eqx.Module):
     support: Support | None = None
 
 
+def motor(*, stall_torque: float, no_load_speed: float, inertia: float) -> Body:
+    """A motor whose torque falls in proportion to its speed, from stall to none at the no-load speed.
+
+    What its torque falls short of that at stall counts as drag in the energy.
+
+    Args:
+        stall_torque: at rest, with the sign of its motion [N m].
+        no_load_speed: without sign, positive [rad/s].
+        inertia: of all that turns with it [kg m2].
+
+    Raises:
+        InputError: the no-load speed is not positive.
+
+    Example:
+        >>> body = motor(stall_torque=-6.0, no_load_speed=300.0, inertia=1e-3)
+        >>> float(body.torque[0]), float(body.viscous)
+        (-6.0, 0.02)
+    """
+    if not no_load_speed > 0.0:
+        raise InputError(f"no-load speed of a motor is above 0 rad/s, got {no_load_speed:g}")
+    viscous = abs(stall_torque) / no_load_speed
+    return Body(as_array(inertia), as_array([stall_torque]), viscous=as_array(viscous))
+
+
 def across(mass: float, stiffness: float, damping: float = 0.0) -> Support:
     """Bearings of a gear that yield alike in all directions across its axis.
 
@@ -72,6 +108,12 @@ def masses(bodies: Sequence[Body]) -> Float[Array, " coordinate"]:
     """Inertia or mass on every coordinate, M: those of the mesh, then translations body by body."""
     moved = [jnp.full(held.ways.shape[0], held.mass) for _, held in _supports(bodies)]
     return jnp.concatenate([jnp.stack([body.inertia for body in bodies]), *moved])
+
+
+def moved_masses(bodies: Sequence[Body]) -> Float[Array, " coordinate"]:
+    """The same, zero where the speed is prescribed: what has kinetic energy that may change."""
+    every = masses(bodies)
+    return jnp.where(jnp.isinf(every), 0.0, every)
 
 
 def stiffness(bodies: Sequence[Body]) -> Matrix:

@@ -52,11 +52,13 @@ class Account(eqx.Module):
         kinetic: of all bodies.
         contacts: elastic energy of the contacts.
         bearings: elastic energy of the bearings.
-        put_in: by the external torques.
-        friction: lost in the contacts.
-        damping: lost to damping of contacts and bearings.
+        put_in: by the external torques, those that hold prescribed speeds among them.
+        error: put in by the error that moves the flanks apart.
+        friction: lost to sliding in the contacts.
+        rolling: lost to rolling resistance.
+        damping: lost to damping of contacts, mesh and bearings.
         drag: lost to resistance and viscous torques of the bodies.
-        pressed: what the bodies did on the springs of the contacts.
+        pressed: what bodies and error did on the springs of the contacts.
 
     From work and energy: what is put in is spent or stored.
     """
@@ -65,14 +67,16 @@ class Account(eqx.Module):
     contacts: Times
     bearings: Times
     put_in: Times
+    error: Times
     friction: Times
+    rolling: Times
     damping: Times
     drag: Times
     pressed: Times
 
     @property
     def mesh(self) -> Times:
-        """Parametric work: what phase adds to the springs beside what the bodies do on them.
+        """Parametric work: what phase adds to the springs beside what bodies and error do on them.
 
         Springs that stiffen or enter pressed bring energy in, those that soften or leave take it out.
         """
@@ -82,8 +86,8 @@ class Account(eqx.Module):
     def sum(self) -> Times:
         """What is left; zero where the equations of motion are solved."""
         stored = self.kinetic + self.bearings
-        spent = self.friction + self.damping + self.drag + self.pressed
-        return self.put_in - spent - (stored - stored[0])
+        spent = self.friction + self.rolling + self.damping + self.drag + self.pressed
+        return self.put_in + self.error - spent - (stored - stored[0])
 
     @property
     def closure(self) -> Each:

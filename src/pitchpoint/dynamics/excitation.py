@@ -7,8 +7,9 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.gears.period import lobatto
+from pitchpoint.materials._leaves import as_array
 
-__all__ = ["Course", "Excitation"]
+__all__ = ["Course", "Excitation", "Waves"]
 
 Pairs = Float[Array, "pair element node"]
 
@@ -50,6 +51,32 @@ class Excitation(eqx.Module):
             return jnp.einsum("...em,epm->...ep", modes[..., segment, :], basis)
 
         return Course(bounds, phase, read(self.stiffness), read(self.arm), read(self.error), grid)
+
+
+class Waves(eqx.Module):
+    """An error as a sum of orders of the mesh: sum of A cos(2 pi order phase + angle).
+
+    Attributes:
+        amplitude: of each order, positive where flanks part [m].
+        order: of the mesh frequency, whole or not.
+        angle: of each order at phase zero of the mesh [rad].
+    """
+
+    amplitude: Float[Array, " order"] = eqx.field(converter=as_array)
+    order: Float[Array, " order"] = eqx.field(converter=as_array)
+    angle: Float[Array, " order"] = eqx.field(converter=as_array)
+
+    def at(self, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        """Separation at a phase of the mesh, counted on beyond a period [m]."""
+        return jnp.sum(self.amplitude * jnp.cos(self._angles(phase)), axis=-1)
+
+    def slope(self, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        """Its derivative by the phase [m]."""
+        each = -2.0 * jnp.pi * self.order * self.amplitude * jnp.sin(self._angles(phase))
+        return jnp.sum(each, axis=-1)
+
+    def _angles(self, phase: Float[Array, "*b"]) -> Float[Array, "*b order"]:
+        return 2.0 * jnp.pi * self.order * phase[..., None] + self.angle
 
 
 class Course(eqx.Module):

@@ -10,7 +10,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.contact_law import ContactLaw
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import Course
-from pitchpoint.dynamics.maps import identity, product
+from pitchpoint.dynamics.maps import horner, identity, product
 
 __all__ = ["Pieces", "by_steps", "pieces", "travel"]
 
@@ -53,8 +53,8 @@ def by_steps(
 
     def rate(time: Array, state: tuple[Array, Array], _: None) -> tuple[Array, Array]:
         place, speed = state
-        force = product(_horner(stiffness, time), place) + product(damping, speed)
-        driven = -force[:, -1] + _horner(load, time)
+        force = product(horner(stiffness, time), place) + product(damping, speed)
+        driven = -force[:, -1] + horner(load, time)
         return half * speed, half * jnp.concatenate([-force[:, :-1], driven[:, None]], axis=1)
 
     start = identity(size, half.shape)
@@ -143,7 +143,7 @@ def _rate(
     def rate(time: Array, state: tuple[Array, Array], _: None) -> tuple[Array, Array]:
         place, speed = state
         stiffness, arm, error = (
-            _horner(value, time) for value in (piece.stiffness, piece.arm, piece.error)
+            horner(value, time) for value in (piece.stiffness, piece.arm, piece.error)
         )
         stretch = arm.T @ place
         force, slope = law.function(stretch[:, -1] - error, backlash)
@@ -188,10 +188,3 @@ def _largest(error: tuple[Array, Array]) -> Array:
 def _largest_of_last(error: tuple[Array, Array]) -> Array:
     # Derivatives jump where teeth part, which would take many short steps for digits that nothing needs.
     return jnp.max(jnp.abs(jnp.stack(error)[..., -1]))
-
-
-def _horner(coefficients: Float[Array, "degree *b"], at: Array) -> Float[Array, "*b"]:
-    value = coefficients[-1]
-    for power in range(coefficients.shape[0] - 2, -1, -1):
-        value = value * at + coefficients[power]
-    return value

@@ -8,7 +8,17 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["Chain", "Map", "chain", "compose", "identity", "inverse_matrix", "on_last", "product"]
+__all__ = [
+    "Chain",
+    "Map",
+    "chain",
+    "compose",
+    "horner",
+    "identity",
+    "inverse_matrix",
+    "on_last",
+    "product",
+]
 
 Map: TypeAlias = Float[Array, "state state+1 *b"]
 
@@ -88,3 +98,11 @@ def identity(size: int, batch: tuple[int, ...]) -> Map:
     """The map that changes nothing, for so many coordinates."""
     eye = jnp.eye(2 * size, 2 * size + 1)
     return jnp.broadcast_to(eye.reshape(*eye.shape, *(1 for _ in batch)), (*eye.shape, *batch))
+
+
+def horner(coefficients: Float[Array, "power *b"], at: Float[Array, "..."]) -> Float[Array, "*b"]:
+    """Polynomial with the lowest power first."""
+    value = coefficients[-1]
+    for power in range(coefficients.shape[0] - 2, -1, -1):
+        value = value * at + coefficients[power]
+    return value

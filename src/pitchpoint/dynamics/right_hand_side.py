@@ -7,20 +7,34 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, total
-from pitchpoint.dynamics.bodies import Body, damping, masses, on_all_coordinates, stiffness
-from pitchpoint.dynamics.contact_law import separating
+from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.dynamics.bodies import (
+    Body,
+    damping,
+    masses,
+    moved_masses,
+    on_all_coordinates,
+    stiffness,
+)
+from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
+from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.passage import Passage, springs_of_teeth
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.loading.compliance import compliance
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.conditions import Conditions, evaluate
 
 __all__ = [
+    "WORKS",
     "ContactForces",
     "Moving",
     "acceleration",
     "contact_forces",
-    "external",
+    "forces_beside",
+    "kinetic",
     "powers",
     "relaxation_time",
+    "torques",
+    "torques_beside_contacts",
 ]
 
 Lanes = Float[Array, "pair slice *b"]
@@ -29,6 +43,10 @@ Coordinates = Float[Array, "coordinate *b"]
 
 STANDSTILL = 1e-12
 """Speed of the driver below which laws of friction are told this one [rad/s]."""
+
+
+WORKS = ("put_in", "error", "friction", "rolling", "damping", "drag", "pressed")
+"""What `powers` tells, in its order; the names are those of `energy.Account`."""
 
 
 class Moving(eqx.Module):
@@ -48,6 +66,15 @@ class Moving(eqx.Module):
         creep: sliding speed at which 76 % of the friction is reached, mu F tanh(sliding/creep) [m/s].
         relaxation: damping over stiffness of each contact [s], see `relaxation_time`.
         stiffness: of each contact [N/m]; that of the teeth if None.
+        passage: contacts and their stiffness read from polynomials, which is quicker and takes the place
+            of `stiffness`; those of the design if None.
+        law: of the contact, with or without separation; static.
+        backlash: free motion along the normal before back flanks meet [m]; infinite if never. These
+            push through the same arms, without friction.
+        error: moves the flanks apart, along the line of action of a family that has one and else along
+            the normal; None without.
+        mesh_damping: a damper along the line of action (else along the normal), whether flanks touch or
+            not, which does not feel the error [N s/m].
 
     From Coulomb's friction, made smooth about rest by tanh.
     """
@@ -61,10 +88,15 @@ class Moving(eqx.Module):
     creep: Float[Array, ""]
     relaxation: Float[Array, ""]
     stiffness: Float[Array, ""] | None = None
+    passage: Passage | None = None
+    law: ContactLaw = eqx.field(static=True, default=CONTACT_LAWS["separating"])
+    backlash: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(jnp.inf))
+    error: Waves | None = None
+    mesh_damping: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(0.0))
 
     @property
     def mass(self) -> Float[Array, " coordinate"]:
-        """M, diagonal [kg m2 or kg]."""
+        """M, diagonal [kg m2 or kg]; infinite of what a prescribed speed holds."""
         return masses(self.bodies)
 
     def padded(self, values: Float[Array, " dof"]) -> Float[Array, " coordinate"]:
@@ -80,10 +112,18 @@ class ContactForces(eqx.Module):
         stiffness: of each slice along its normal [N/m]; zero out of contact.
         stretch: how far the flanks are pressed together; negative where they part [m].
         elastic: part of the normal force that is stiffness times stretch [N].
-        force: normal force [N].
+        force: normal force [N]; negative where a linear contact pulls or back flanks push.
         friction: coefficient.
         drawn: friction force on member 1 along the tangent [N].
-        closing, slip: velocities of the members against each other [m/s].
+        rolled: rolling resistance on each surface [N].
+        closing: velocity at which the flanks approach, the error counted [m/s].
+        moved: what the error adds to that [m/s].
+        slip, roll: difference and sum of the surface velocities [m/s], the latter by the coordinates of the
+            mesh alone.
+        roll_arm: sum of the surface velocities for a unit rate of each of these: rolling resistance is a
+            couple on each body, whose forces the pressure of the film balances.
+        line: closing along the line of action, or along the normal, for a unit rate of each coordinate.
+        damped: force of the damper along it [N].
         phase: of the mesh, counted on beyond a period [periods].
     """
 
@@ -94,26 +134,39 @@ class ContactForces(eqx.Module):
     force: Lanes
     friction: Lanes
     drawn: Lanes
+    rolled: Lanes
     closing: Lanes
+    moved: Lanes
     slip: Lanes
+    roll: Lanes
+    roll_arm: Float[Array, "coordinate pair slice *b"]
+    line: Coordinates
+    damped: Each
     phase: Each
 
     @property
     def energy(self) -> Each:
         """Elastic energy of the contacts [J].
 
-        From the work that stretches a spring.
+        From the work that stretches a spring; of back flanks behind the backlash.
         """
-        return total(self.elastic * self.stretch) / 2.0
+        springs = jnp.where(self.stiffness > 0.0, self.stiffness, 1.0)
+        return total(self.elastic**2 / springs) / 2.0
 
     @property
     def on_coordinates(self) -> Coordinates:
         """Sum of F normal + mu F tangent: what holds the contacts on every coordinate [N m or N].
 
-        From virtual work.
+        Rolling resistance and the damper along the line of action count as well. From virtual work.
         """
-        arms = self.contacts.normal, self.contacts.slip_arm
-        return jnp.sum(self.force * arms[0] + self.drawn * arms[1], axis=(1, 2))
+        contacts = self.contacts
+        pairs = (
+            (self.force, contacts.normal),
+            (self.drawn, contacts.slip_arm),
+            (self.rolled, self.roll_arm),
+        )
+        of_contacts = sum((force * arm for force, arm in pairs), jnp.zeros(()))
+        return jnp.sum(of_contacts, axis=(1, 2)) + self.damped * self.line
 
 
 def relaxation_time(ratio: ArrayLike, mass: ArrayLike, stiffness: ArrayLike) -> Float[Array, "..."]:
@@ -136,31 +189,58 @@ def relaxation_time(ratio: ArrayLike, mass: ArrayLike, stiffness: ArrayLike) -> 
 
 
 def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> ContactForces:
-    """Forces at the contacts in given places and at given rates.
-
-    The stretch is that of the way by which the bodies lie beside their nominal motion, which closes
-    nothing; exact for involutes, whose arms along the normal are constant. A contact pushes with
-    stiffness times (stretch + relaxation time times closing), never pulls, and draws by the friction law
-    at its own force and speeds. Laws for a whole mesh are told the force with friction.
+    """Forces at the contacts in given places and at given rates; see `forces_beside`.
 
     Args:
         moving: mesh and bodies.
         place, rate: of all coordinates.
+    """
+    mesh = moving.design.mesh
+    turned = _driving(moving, place)
+    phase = moving.phase + mesh.onward / mesh.period * turned
+    beside = place - _column(moving.padded(mesh.motion), place) * turned
+    return forces_beside(moving, _engaged(moving, phase), phase, beside, rate)
+
+
+def forces_beside(
+    moving: Moving,
+    engaged: tuple[Contacts, Lanes],
+    phase: Each,
+    beside: Coordinates,
+    rate: Coordinates,
+) -> ContactForces:
+    """Forces at contacts that are known.
+
+    The stretch is that of the way by which the bodies lie beside their nominal motion, which closes
+    nothing; exact for involutes, whose arms along the normal are constant. A contact pushes with
+    stiffness times (stretch + relaxation time times closing), and one that may part never pulls. Where
+    it pushes on the front flanks it draws by the friction law at its own force and speeds, and brakes
+    both surfaces by the rolling resistance. Laws for a whole mesh are told the force with friction.
+
+    Args:
+        moving: mesh and bodies.
+        engaged: contacts on the coordinates of the mesh, and their stiffness.
+        phase: of the mesh [periods].
+        beside: place of all coordinates less that of the nominal motion.
+        rate: of all coordinates.
 
     From a spring and a damper side by side, cut where together they would pull.
     """
-    mesh = moving.design.mesh
-    turned = jnp.tensordot(moving.padded(mesh.driver), place, axes=1) * (mesh.driver @ mesh.motion)
-    phase = moving.phase + mesh.onward / mesh.period * turned
-    own = mesh.contacts(phase)
+    (own, springs), mesh = engaged, moving.design.mesh
     contacts = on_all_coordinates(own, mesh.coordinates, moving.bodies)
-    springs = _springs(moving, own)
-    beside = place - _column(moving.padded(mesh.motion), place) * turned
-    stretch = _lanes(contacts.normal, beside) - contacts.gap
-    closing, slip = _lanes(contacts.normal, rate), _lanes(contacts.slip_arm, rate)
-    pressed, touching = separating(stretch, jnp.asarray(jnp.inf))
-    force = jnp.maximum(springs * (pressed + touching * moving.relaxation * closing), 0.0)
-    friction = _friction(moving, contacts, force, rate)
+    leaning = _leaning(mesh, own)
+    pace = mesh.onward / mesh.period * _driving(moving, rate)
+    apart, parting = (leaning * value for value in _error(moving, phase, pace))
+    stretch = _lanes(contacts.normal, beside) - contacts.gap - apart
+    roll_arm = _on_mesh(own.roll_arm, contacts)
+    closing, slip, roll = (
+        _lanes(arm, rate) for arm in (contacts.normal, contacts.slip_arm, roll_arm)
+    )
+    pressed, force = _normal(moving, springs, stretch, closing - parting)
+    conditions = _conditions(moving, contacts, force, rate)
+    friction = jnp.where(force > 0.0, moving.models.coefficient(conditions), 0.0)
+    rolling = evaluate(moving.models.rolling, conditions) * contacts.weight
+    line = contacts.normal[:, 0, 0] / leaning[0, 0]
     return ContactForces(
         contacts=contacts,
         stiffness=springs,
@@ -169,19 +249,38 @@ def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> Con
         force=force,
         friction=friction,
         drawn=friction * force * jnp.tanh(slip / moving.creep),
-        closing=closing,
+        rolled=jnp.where(force > 0.0, rolling, 0.0) * jnp.tanh(roll / moving.creep),
+        closing=closing - parting,
+        moved=-parting,
         slip=slip,
+        roll=roll,
+        roll_arm=roll_arm,
+        line=line,
+        damped=moving.mesh_damping * jnp.sum(line * rate, axis=0),
         phase=phase,
     )
 
 
-def external(moving: Moving, time: Each) -> Coordinates:
-    """External torques and forces Q at a time [N m or N]."""
-    knots = moving.knots
-    torques = [jnp.broadcast_to(body.torque, knots.shape) for body in moving.bodies]
-    given = [jnp.interp(time, knots, torque) for torque in torques]
-    still = [jnp.zeros_like(given[0])] * (moving.mass.shape[0] - len(given))
-    return jnp.stack([*given, *still])
+def torques(
+    moving: Moving, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
+) -> Coordinates:
+    """External torques and forces Q [N m or N], those that hold prescribed speeds among them.
+
+    Arguments are those of `acceleration`.
+    """
+    external = _external(moving, time)
+    missing = -_push(moving, external, place, rate, found)
+    return external + jnp.where(jnp.isinf(_column(moving.mass, missing)), missing, 0.0)
+
+
+def torques_beside_contacts(moving: Moving, rate: Coordinates) -> Coordinates:
+    """External torques as given at the first knot, less the drag of the bodies [N m or N].
+
+    Args:
+        moving: mesh and bodies.
+        rate: of all coordinates.
+    """
+    return _external(moving, moving.knots[0]) - _drag(moving, rate)
 
 
 def acceleration(
@@ -197,33 +296,116 @@ def acceleration(
 
     From Newton's law on every coordinate, see the equation at the head of this module.
     """
-    bodies = moving.bodies
-    held = stiffness(bodies) @ place + damping(bodies) @ rate + _drag(moving, rate)
-    push = external(moving, time) - held - found.on_coordinates
+    push = _push(moving, _external(moving, time), place, rate, found)
     return push / _column(moving.mass, push)
 
 
 def powers(
-    moving: Moving, time: Each, rate: Coordinates, found: ContactForces
-) -> Float[Array, "5 *b"]:
-    """Powers [W] put in by the torques; lost to friction, to damping and to drag; stored in contacts.
+    moving: Moving, time: Each, place: Coordinates, rate: Coordinates, found: ContactForces
+) -> Float[Array, "7 *b"]:
+    """Powers [W] of `WORKS`: put in by torques and by the error; lost; stored in contacts.
 
-    Arguments are those of `acceleration`. The last one is what the bodies do on the springs of the
-    contacts.
+    Arguments are those of `acceleration`. Lost is what friction, rolling resistance, damping and drag
+    take. The last one is what the bodies and the error do on the springs of the contacts.
 
     From force times velocity wherever a force acts.
     """
-    held = damping(moving.bodies) @ rate
-    damped = total((found.force - found.elastic) * found.closing)
+    held = jnp.tensordot(damping(moving.bodies), rate, 1)
+    along_line = found.damped * jnp.sum(found.line * rate, axis=0)
+    damped = total((found.force - found.elastic) * found.closing) + along_line
     return jnp.stack(
         [
-            jnp.sum(external(moving, time) * rate, axis=0),
+            jnp.sum(torques(moving, time, place, rate, found) * rate, axis=0),
+            total(found.force * found.moved),
             total(found.drawn * found.slip),
+            total(found.rolled * found.roll),
             damped + jnp.sum(held * rate, axis=0),
             jnp.sum(_drag(moving, rate) * rate, axis=0),
             total(found.elastic * found.closing),
         ]
     )
+
+
+def kinetic(moving: Moving, rate: Coordinates) -> Each:
+    """Kinetic energy of all bodies whose speed is not prescribed [J].
+
+    From m v^2/2.
+    """
+    energy: Each = jnp.tensordot(moved_masses(moving.bodies), rate**2, axes=1) / 2.0
+    return energy
+
+
+def _driving(moving: Moving, values: Coordinates) -> Each:
+    """That of the driver, in its nominal sense."""
+    mesh = moving.design.mesh
+    own: Each = jnp.tensordot(moving.padded(mesh.driver), values, axes=1)
+    return own * (mesh.driver @ mesh.motion)
+
+
+def _engaged(moving: Moving, phase: Each) -> tuple[Contacts, Lanes]:
+    """Contacts of the mesh, and stiffness of each slice along its normal, zero out of contact [N/m]."""
+    if moving.passage is not None:
+        return moving.passage.at(phase)
+    contacts = moving.design.mesh.contacts(phase)
+    if moving.stiffness is not None:
+        return contacts, jnp.where(contacts.active, moving.stiffness, 0.0)
+    teeth = springs_of_teeth(
+        moving.design, contacts, moving.models.compliance, moving.operation.load
+    )
+    return contacts, teeth
+
+
+def _leaning(mesh: Mesh, contacts: Contacts) -> Lanes:
+    """Closing along the normal for a unit of closing along the line of action."""
+    if not mesh.along_action:
+        return jnp.ones_like(contacts.gap)
+    action = mesh.line_of_action
+    return along(contacts.normal, action) / jnp.sum(action**2)
+
+
+def _on_mesh(arms: Float[Array, "dof pair slice *b"], contacts: Contacts) -> Array:
+    """Arms on all coordinates, zero on the translations of bodies."""
+    more = contacts.normal.shape[0] - arms.shape[0]
+    return jnp.pad(arms, ((0, more), *((0, 0) for _ in arms.shape[1:])))
+
+
+def _error(moving: Moving, phase: Each, pace: Each) -> tuple[Each, Each]:
+    """Separation by the error, and its rate."""
+    if moving.error is None:
+        return jnp.zeros_like(phase), jnp.zeros_like(phase)
+    return moving.error.at(phase), moving.error.slope(phase) * pace
+
+
+def _normal(moving: Moving, springs: Lanes, stretch: Lanes, closing: Lanes) -> tuple[Lanes, Lanes]:
+    """Compression of the springs, and normal force."""
+    pressed, touching = moving.law.function(stretch, moving.backlash)
+    force = springs * (pressed + touching * moving.relaxation * closing)
+    if moving.law.linear:
+        return pressed, force
+    pushes = jnp.where(pressed > 0.0, jnp.maximum(force, 0.0), jnp.minimum(force, 0.0))
+    return pressed, pushes
+
+
+def _external(moving: Moving, time: Each) -> Coordinates:
+    """External torques and forces at a time, as given."""
+    knots = moving.knots
+    every = [jnp.broadcast_to(body.torque, knots.shape) for body in moving.bodies]
+    given = [jnp.interp(time, knots, torque) for torque in every]
+    still = [jnp.zeros_like(given[0])] * (moving.mass.shape[0] - len(given))
+    return jnp.stack([*given, *still])
+
+
+def _push(
+    moving: Moving,
+    external: Coordinates,
+    place: Coordinates,
+    rate: Coordinates,
+    found: ContactForces,
+) -> Coordinates:
+    """What is left of the external torques to accelerate the bodies."""
+    bodies = moving.bodies
+    held = jnp.tensordot(stiffness(bodies), place, 1) + jnp.tensordot(damping(bodies), rate, 1)
+    return external - held - _drag(moving, rate) - found.on_coordinates
 
 
 def _drag(moving: Moving, rate: Coordinates) -> Coordinates:
@@ -236,24 +418,13 @@ def _drag(moving: Moving, rate: Coordinates) -> Coordinates:
     return jnp.stack([*every, *still])
 
 
-def _springs(moving: Moving, contacts: Contacts) -> Lanes:
-    """Stiffness of each slice along its normal, zero out of contact [N/m]."""
-    if moving.stiffness is not None:
-        return jnp.where(contacts.active, moving.stiffness, 0.0)
-    design, load = moving.design, moving.operation.load
-    yields = compliance(design.mesh, contacts, design.solids, moving.models.compliance, load)
-    return jnp.where(contacts.active, 1.0 / yields.of_teeth(contacts), 0.0)
-
-
-def _friction(moving: Moving, contacts: Contacts, force: Lanes, rate: Coordinates) -> Lanes:
-    """Friction coefficient of each slice by the law, at the forces and rates of the moment."""
-    driving = jnp.abs(jnp.tensordot(moving.padded(moving.design.mesh.driver), rate, axes=1))
+def _conditions(moving: Moving, contacts: Contacts, force: Lanes, rate: Coordinates) -> Conditions:
+    """What laws of friction and rolling are told, at the forces and rates of the moment."""
+    driving = jnp.abs(_driving(moving, rate))
     point = replace(moving.operation, speed=jnp.maximum(driving, STANDSTILL))
-    carries = force > 0.0
-    conditions = moving.design.conditions(
+    return moving.design.conditions(
         contacts, point, load=_or_one(force), nominal_load=_or_one(total(force)), rates=rate
     )
-    return jnp.where(carries, moving.models.coefficient(conditions), 0.0)
 
 
 def _or_one(force: Float[Array, "..."]) -> Float[Array, "..."]:

@@ -1,5 +1,7 @@
 """Periodic motion of teeth that part: Newton shooting, and marching where it leads nowhere."""
 
+from collections.abc import Callable
+
 import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
@@ -9,7 +11,7 @@ from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.floquet import STABLE, multipliers
 from pitchpoint.dynamics.integration import Pieces, travel
 
-__all__ = ["PERIODS", "Shot", "shoot"]
+__all__ = ["PERIODS", "Shot", "search", "shoot"]
 
 CLOSED = 1e-8
 """Largest distance of the end of a period from its start, of states of order one."""
@@ -64,6 +66,12 @@ class Shot(eqx.Module):
         return jnp.moveaxis(jnp.concatenate([first, inner], axis=1), -1, 0)
 
 
+Period = Callable[
+    [Float[Array, " state"]],
+    tuple[Float[Array, "interval state"], Float[Array, "state state"], Bool[Array, ""]],
+]
+
+
 def shoot(
     equations: Equations,
     pieces: Pieces,
@@ -71,6 +79,22 @@ def shoot(
     backlash: Float[Array, ""],
     start: Float[Array, " state"],
 ) -> Shot:
+    """Periodic motion reached from a state, see `search`.
+
+    Args:
+        equations, pieces: of the motion.
+        law: force between the teeth.
+        backlash: free motion in units of stretch.
+        start: displacement and velocity without dimensions.
+    """
+
+    def period(state: Float[Array, " state"]) -> tuple[Array, Array, Array]:
+        return travel(equations, pieces, law, backlash, state)
+
+    return search(period, start, pieces.half.shape[0])
+
+
+def search(period: Period, start: Float[Array, " state"], intervals: int) -> Shot:
     """Periodic motion reached from a state.
 
     Newton's method looks for a stable periodic motion near the state. If its residual stops falling,
@@ -78,16 +102,16 @@ def shoot(
     is nearly periodic, and Newton's method finishes. So a branch is followed as long as it is stable.
 
     Args:
-        equations, pieces: of the motion.
-        law: force between the teeth.
-        backlash: free motion in units of stretch.
-        start: displacement and velocity without dimensions.
+        period: from a state to those after each interval of a period, the derivative of the last one, and
+            whether they were found.
+        start: without dimensions.
+        intervals: of the period whose states are kept.
 
     Source: Nayfeh and Balachandran (1995), chapter 6, shooting.
     """
 
-    def period(shot: Shot) -> Shot:
-        states, monodromy, fine = travel(equations, pieces, law, backlash, shot.start)
+    def once(shot: Shot) -> Shot:
+        states, monodromy, fine = period(shot.start)
         size = 1.0 + jnp.max(jnp.abs(shot.start))
         residual = jnp.max(jnp.abs(states[-1] - shot.start)) / size
         values = (states, monodromy, residual)
@@ -97,7 +121,7 @@ def shoot(
     def unfinished(shot: Shot) -> Bool[Array, ""]:
         return ~(shot.found | shot.lost)
 
-    return jax.lax.while_loop(unfinished, period, _begin(start, pieces.half.shape[0]))
+    return jax.lax.while_loop(unfinished, once, _begin(start, intervals))
 
 
 def _begin(start: Float[Array, " state"], intervals: int) -> Shot:

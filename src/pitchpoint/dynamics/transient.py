@@ -1,5 +1,6 @@
 """Transients of a mesh with friction, such as a start from rest, by diffrax."""
 
+import math
 from collections.abc import Callable, Sequence
 
 import diffrax
@@ -9,21 +10,23 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body, Support, stiffness
+from pitchpoint.dynamics.bodies import Body, Support, moved_masses, stiffness
 from pitchpoint.dynamics.energy import Account
 from pitchpoint.dynamics.right_hand_side import (
+    WORKS,
     ContactForces,
     Moving,
     acceleration,
     contact_forces,
-    external,
+    kinetic,
     powers,
+    torques,
 )
 from pitchpoint.errors import InputError
-from pitchpoint.programs import fast_program
+from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code, Status
 
-__all__ = ["Transient", "transient"]
+__all__ = ["Transient", "demand_bodies", "demand_effects", "transient"]
 
 Vector = Float[Array, " coordinate"]
 States = Float[Array, "coordinate time"]
@@ -47,8 +50,11 @@ CLOSED = 1e-6
 UNIT = 1e-9
 """How far ways of a support may be from unit vectors at right angles."""
 
-_WORKS = 5
-"""Integrals of powers, see `right_hand_side.powers`."""
+MOST_HAND_OVERS = 4096
+"""Events beyond which a transient finds the hand-overs by its steps."""
+
+BUCKET = 64
+"""Smallest number of events that a program is made for; it doubles, so that few programs serve all."""
 
 
 class Transient(eqx.Module):
@@ -59,7 +65,8 @@ class Transient(eqx.Module):
         place, rate: of all coordinates [rad or m, rad/s or m/s]: those of the mesh, then the
             translations of bodies.
         found: forces at the contacts.
-        torque: external ones on all coordinates [N m or N].
+        torque: external ones on all coordinates [N m or N], those that hold prescribed speeds among
+            them.
         energy: where it is and where it went.
         status: the residual is the closure of the energy, at most `CLOSED` if solved; iterations are
             steps.
@@ -84,14 +91,15 @@ def transient(
     """Motion from a given state, from rest by default, under torques, friction and drag.
 
     Integrated by an explicit method of order eight with steps that its error sets: where pairs enter or
-    leave, teeth part and sliding changes its sense, it finds the place by itself. The works of all
+    leave, teeth part and sliding changes its sense, it finds the place by itself; where the speed of the
+    driver is prescribed, pairs enter and leave at steps' ends. The works of all
     forces are integrated beside the motion, so that the balance of energy says how well both are known.
     Friction needs speed: at rest nothing sticks, and bodies under it creep at a speed of the order of
-    `Moving.creep`. Back flanks are left out.
+    `Moving.creep`. Nothing is kept between the times, so that a run may be long and its end be kept.
 
     Args:
         moving: mesh and bodies.
-        times: at which the motion is kept, growing; the first is the start [s].
+        times: at which the motion is kept, growing, evenly or not; the first is the start [s].
         place, rate: of all coordinates at the start.
 
     Raises:
@@ -101,9 +109,44 @@ def transient(
     """
     asked = np.asarray(times, float)
     _check(moving, asked)
-    start = [_start(moving, *one) for one in (("place", place), ("rate", rate))]
-    found: Transient = _travel(moving, array(asked), *start)
+    places, rates = (_start(moving, *one) for one in (("place", place), ("rate", rate)))
+    events = _hand_overs(moving, asked, places, rates)
+    found: Transient = _travel(moving, array(asked), places, rates, events)
     return found
+
+
+def _hand_overs(
+    moving: Moving, times: np.ndarray, place: Vector, rate: Vector
+) -> Float[Array, " event"] | None:
+    """Times at which pairs enter or leave, where they are known; put behind the end to fill a bucket."""
+    phase, pace, held, edges = (np.asarray(one) for one in _course(moving, place, rate))
+    whole = abs(pace) * (times[-1] - times[0])
+    if not held or pace == 0.0 or whole * edges.size > MOST_HAND_OVERS:
+        return None
+    turns = np.arange(math.floor(-whole) - 1, math.ceil(whole) + 2)
+    every = times[0] + (np.add.outer(turns, edges - phase % 1.0) / pace).ravel()
+    inside = np.unique(every[(every > times[0]) & (every < times[-1])])
+    size = BUCKET
+    while size < inside.size:
+        size *= 2
+    return jnp.asarray(np.pad(inside, (0, size - inside.size), constant_values=times[-1] + 1.0))
+
+
+@program
+def _course(moving: Moving, place: Vector, rate: Vector) -> tuple[Array, Array, Array, Array]:
+    """Phase at the start, periods in a second, whether these are prescribed, and phases of the events."""
+    mesh = moving.design.mesh
+    found = contact_forces(moving, place, rate)
+    driver = moving.padded(mesh.driver)
+    pace = mesh.onward / mesh.period * (driver @ rate) * (mesh.driver @ mesh.motion)
+    held = jnp.isinf(driver @ jnp.where(driver > 0.0, moving.mass, 0.0))
+    return found.phase, pace, held, _edges(moving)
+
+
+def _edges(moving: Moving) -> Float[Array, " edge"]:
+    if moving.passage is not None:
+        return moving.passage.edges[:-1]
+    return moving.design.mesh.events()
 
 
 def _start(moving: Moving, name: str, given: ArrayLike | Sequence[float]) -> Vector:
@@ -119,22 +162,28 @@ def _start(moving: Moving, name: str, given: ArrayLike | Sequence[float]) -> Vec
 
 def _check(moving: Moving, times: np.ndarray) -> None:
     """InputError in one sentence."""
-    names = [one.body for one in moving.design.mesh.coordinates]
-    if len(moving.bodies) != len(names):
-        told = f"{', '.join(names)}; {len(moving.bodies)} bodies are given"
-        raise InputError(f"a transient asks for one body for each of {told}")
-    for name, body in zip(names, moving.bodies, strict=True):
-        _check_body(name, body, moving.knots.size)
+    demand_bodies(moving, "a transient")
     if times.size < 2 or not np.all(np.diff(times) > 0.0):
         raise InputError("times of a transient grow from its start on, at least two of them")
     if not np.all(np.diff(moving.knots) > 0.0):
         told = ", ".join(f"{time:g}" for time in np.asarray(moving.knots))
         raise InputError(f"knots of the external torques grow with time, got {told} s")
-    if not float(moving.creep) > 0.0:
-        raise InputError(
-            f"creep of the contacts is a sliding speed above 0 m/s, got {float(moving.creep):g}"
-        )
-    _check_effects(moving)
+    demand_effects(moving, "a transient")
+
+
+def demand_bodies(moving: Moving, what: str) -> None:
+    """InputError if the bodies do not suit the mesh or themselves.
+
+    Args:
+        moving: mesh and bodies.
+        what: asks for them.
+    """
+    names = [one.body for one in moving.design.mesh.coordinates]
+    if len(moving.bodies) != len(names):
+        told = f"{', '.join(names)}; {len(moving.bodies)} bodies are given"
+        raise InputError(f"{what} asks for one body for each of {told}")
+    for name, body in zip(names, moving.bodies, strict=True):
+        _check_body(name, body, moving.knots.size)
 
 
 def _check_body(name: str, body: Body, knots: int) -> None:
@@ -163,25 +212,36 @@ def _check_support(name: str, support: Support) -> None:
         )
 
 
-def _check_effects(moving: Moving) -> None:
+def demand_effects(moving: Moving, what: str) -> None:
+    """InputError for effects that a motion with friction leaves out.
+
+    Args:
+        moving: mesh and bodies.
+        what: leaves them out.
+    """
     mesh = moving.design.mesh
-    if mesh.couples:
+    if not float(moving.creep) > 0.0:
         raise InputError(
-            "a transient takes each pair of teeth as a spring, and a ring couples these"
+            f"creep of the contacts is a sliding speed above 0 m/s, got {float(moving.creep):g}"
         )
-    if moving.stiffness is None and not mesh.toothed:
-        raise InputError("bodies without teeth need the stiffness of their contact in a transient")
-    if moving.models.rolling.name != "none" or moving.design.drag:
+    if mesh.couples:
+        raise InputError(f"{what} takes each pair of teeth as a spring, and a ring couples these")
+    if moving.stiffness is None and moving.passage is None and not mesh.toothed:
+        raise InputError(f"bodies without teeth need the stiffness of their contact in {what}")
+    if moving.design.drag:
         raise InputError(
-            "a transient leaves out rolling resistance and the losses of a design beside its teeth; "
+            f"{what} leaves out the losses of a design beside its teeth; "
             "give them as resistance and viscous torque of the bodies"
         )
 
 
 @fast_program
-def _travel(moving: Moving, times: Array, place: Vector, rate: Vector) -> Transient:
+def _travel(
+    moving: Moving, times: Array, place: Vector, rate: Vector, events: Array | None
+) -> Transient:
     scale = _Scale(moving, times, place, rate)
-    states, reached, steps = _integrated(moving, times, scale, scale.scaled(place, rate))
+    start = scale.scaled(place, rate)
+    states, reached, steps = _integrated(moving, times, scale, start, events)
     given = scale.parts(jnp.where(jnp.isfinite(states), states, jnp.nan).T)
     return _described(moving, times, given, reached, steps)
 
@@ -200,20 +260,21 @@ class _Scale:
         stiff = jnp.max((jnp.diag(held) + jnp.sum(pushed, axis=(1, 2))) / mass)
         frequency = jnp.where(stiff > 0.0, jnp.sqrt(stiff), 1.0 / (times[-1] - times[0]))
         kicked = jnp.sum(_pushes(moving) ** 2 / mass) / frequency**2
-        there = mass @ rate**2 + place @ held @ place
+        there = moved_masses(moving.bodies) @ rate**2 + place @ held @ place
         energy = (kicked + there) / 2.0 + found.energy
         self.energy = jnp.where(energy > 0.0, energy, 1.0)
-        self.rate = jnp.sqrt(2.0 * self.energy / mass)
+        own = jnp.sqrt(2.0 * self.energy / mass)
+        self.rate = jnp.where(jnp.isinf(mass), jnp.max(own), own)
         self.place = self.rate / frequency
 
     def scaled(self, place: Vector, rate: Vector) -> Float[Array, " state"]:
         """State without dimensions, no work done."""
-        return jnp.concatenate([place / self.place, rate / self.rate, jnp.zeros(_WORKS)])
+        return jnp.concatenate([place / self.place, rate / self.rate, jnp.zeros(len(WORKS))])
 
     def parts(self, state: Float[Array, "state *b"]) -> tuple[Array, Array, Array]:
         """Places, rates and works of states without dimensions."""
         size = self.place.shape[0]
-        units = jnp.concatenate([self.place, self.rate, jnp.full(_WORKS, self.energy)])
+        units = jnp.concatenate([self.place, self.rate, jnp.full(len(WORKS), self.energy)])
         whole = units.reshape(-1, *[1] * (state.ndim - 1)) * state
         return whole[:size], whole[size : 2 * size], whole[2 * size :]
 
@@ -229,7 +290,7 @@ def _pushes(moving: Moving) -> Vector:
 
 
 def _integrated(
-    moving: Moving, times: Array, scale: _Scale, start: Array
+    moving: Moving, times: Array, scale: _Scale, start: Array, events: Array | None
 ) -> tuple[Float[Array, "time state"], Bool[Array, ""], Int[Array, ""]]:
     """States without dimensions at all times, whether all were reached, and the steps taken."""
     shortest = SHORTEST * (times[-1] - times[0])
@@ -245,7 +306,7 @@ def _integrated(
         y0=start,
         saveat=diffrax.SaveAt(ts=times),
         stepsize_controller=diffrax.ClipStepSizeController(
-            control, step_ts=times[1:], jump_ts=_bends(moving.knots, times)
+            control, step_ts=times[1:], jump_ts=_bends(moving.knots, times, events)
         ),
         adjoint=diffrax.ForwardMode(),
         max_steps=MOST_STEPS,
@@ -256,9 +317,14 @@ def _integrated(
     return solution.ys, reached, solution.stats["num_steps"]
 
 
-def _bends(knots: Array, times: Array) -> Array | None:
-    """Times between which the torques are straight; those up to the start are put behind the end."""
-    return None if knots.size == 1 else jnp.where(knots > times[0], knots, times[-1] + 1.0)
+def _bends(knots: Array, times: Array, events: Array | None) -> Array | None:
+    """Hand-overs that are known, and times between which the torques are straight.
+
+    Those up to the start are put behind the end.
+    """
+    bends = [] if knots.size == 1 else [jnp.where(knots > times[0], knots, times[-1] + 1.0)]
+    every = [*bends, *([] if events is None else [events])]
+    return jnp.sort(jnp.concatenate(every)) if every else None
 
 
 def _rate(moving: Moving, scale: _Scale) -> Callable[..., Array]:
@@ -266,7 +332,7 @@ def _rate(moving: Moving, scale: _Scale) -> Callable[..., Array]:
         place, moved, _works = scale.parts(state)
         found = contact_forces(moving, place, moved)
         faster = acceleration(moving, time, place, moved, found)
-        return scale.changes(moved, faster, powers(moving, time, moved, found))
+        return scale.changes(moved, faster, powers(moving, time, place, moved, found))
 
     return rate
 
@@ -282,17 +348,13 @@ def _described(
     place, rate, works = states
     found = contact_forces(moving, place, rate)
     account = Account(
-        kinetic=moving.mass @ rate**2 / 2.0,
+        kinetic=kinetic(moving, rate),
         contacts=found.energy,
         bearings=jnp.sum(place * (stiffness(moving.bodies) @ place), axis=0) / 2.0,
-        put_in=works[0],
-        friction=works[1],
-        damping=works[2],
-        drag=works[3],
-        pressed=works[4],
+        **dict(zip(WORKS, works, strict=True)),
     )
     status = Status(_code(reached, account.closure), account.closure, steps)
-    given = place, rate, found, external(moving, times), account
+    given = place, rate, found, torques(moving, times, place, rate, found), account
     return Transient(times, *_where(_known(states, account.closure), given), status)
 
 

@@ -1,0 +1,213 @@
+"""Pairs of teeth on their way through the mesh, read from polynomials between events."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+
+import equinox as eqx
+import numpy as np
+from jax.typing import ArrayLike
+from jaxtyping import Array, Float, Int
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.dynamics.maps import horner
+from pitchpoint.efficiency.quasi_static import Design, Operation
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.period import edges, lobatto, nodes
+from pitchpoint.loading.compliance import compliance
+from pitchpoint.loading.tooth_compliance import Terms
+from pitchpoint.programs import program
+
+__all__ = ["Passage", "PathStiffness", "passage", "polynomial", "springs_of_teeth", "tabulated"]
+
+NODES = 14
+"""Nodes of each segment: polynomials of a degree less."""
+
+Lanes = Float[Array, "pair slice *b"]
+
+
+class Passage(eqx.Module):
+    """Contacts of a mesh and their stiffness over one period.
+
+    Attributes:
+        edges: phases between which everything is smooth [periods]; the last is the first plus one.
+        contacts: every value as coefficients [power ... segment] of polynomials on [-1, 1].
+        stiffness: of each slice along its normal likewise, zero out of contact [N/m].
+    """
+
+    edges: Float[Array, " edge"]
+    contacts: Contacts
+    stiffness: Float[Array, "power pair slice segment"]
+
+    def at(self, phase: Float[Array, "*b"]) -> tuple[Contacts, Lanes]:
+        """Contacts at any phase [periods], and the stiffness of each slice [N/m]."""
+        first = self.edges[0]
+        return self.within(self.segment(phase), first + jnp.mod(phase - first, 1.0))
+
+    def segment(self, phase: Float[Array, "*b"]) -> Int[Array, "*b"]:
+        """Number of the segment that holds a phase."""
+        first = self.edges[0]
+        place = first + jnp.mod(phase - first, 1.0)
+        lengths = jnp.diff(self.edges)
+        last = jnp.max(jnp.where(lengths > 0.0, jnp.arange(lengths.shape[0]), 0))
+        return jnp.clip(jnp.searchsorted(self.edges, place, side="right") - 1, 0, last)
+
+    def within(
+        self, segment: Int[Array, "*b"], phase: Float[Array, "*b"]
+    ) -> tuple[Contacts, Lanes]:
+        """The same where the segment is known; phases at its ends are taken as inside it."""
+        start, length = self.edges[:-1][segment], jnp.diff(self.edges)[segment]
+        x = 2.0 * (phase - start) / jnp.where(length > 0.0, length, 1.0) - 1.0
+
+        def read(values: Float[Array, "power ... segment"]) -> Array:
+            return horner(values[..., segment], x)
+
+        contacts, springs = jax.tree.map(read, (self.contacts, self.stiffness))
+        return replace(contacts, active=contacts.active > 0.5), springs
+
+
+class PathStiffness(eqx.Module):
+    """Stiffness of one pair of teeth over its path, polynomials between places.
+
+    Attributes:
+        places: from the entry of the pair on; ends of the polynomials, in the unit of `Contacts.path`.
+        coefficients: of powers of the way from the start of each.
+    """
+
+    places: Float[Array, " place"]
+    coefficients: Float[Array, "power part"]
+
+    def at(self, path: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        """Stiffness at a place [N/m]; beyond the ends the polynomials go on."""
+        last = self.coefficients.shape[1] - 1
+        part = jnp.clip(jnp.searchsorted(self.places, path, side="right") - 1, 0, last)
+        return horner(self.coefficients[:, part], path - self.places[part])
+
+
+def tabulated(
+    place: ArrayLike | Sequence[float], stiffness: ArrayLike | Sequence[float]
+) -> PathStiffness:
+    """Stiffness of a pair from a table, straight between its places.
+
+    Args:
+        place: growing, in the unit of `Contacts.path` from the entry of a pair [base pitches].
+        stiffness: of one pair [N/m].
+
+    Raises:
+        InputError: the places do not grow, or there are not as many of both.
+    """
+    at, values = np.asarray(place, float), np.asarray(stiffness, float)
+    if at.ndim != 1 or at.shape != values.shape or at.size < 2 or not np.all(np.diff(at) > 0.0):
+        raise InputError(
+            "a table of stiffness has as many values as places, at least two, and the places grow"
+        )
+    return PathStiffness(
+        jnp.asarray(at), jnp.asarray(np.stack([values[:-1], np.diff(values) / np.diff(at)]))
+    )
+
+
+def polynomial(coefficients: ArrayLike | Sequence[float]) -> PathStiffness:
+    """Stiffness of a pair as a polynomial of its path, the lowest power first [N/m].
+
+    Args:
+        coefficients: of powers of `Contacts.path`, which is zero where a pair enters.
+    """
+    every = np.atleast_1d(np.asarray(coefficients, float))
+    return PathStiffness(jnp.zeros(1), jnp.asarray(every[:, None]))
+
+
+def passage(
+    design: Design,
+    operation: Operation,
+    terms: Terms,
+    stiffness: PathStiffness | float | None = None,
+) -> Passage:
+    """Contacts of a design and their stiffness, sampled once.
+
+    Slices of a contact line share the stiffness of a pair by their length.
+
+    Args:
+        design: mesh and materials; its flanks are the same on all teeth.
+        operation: the load at which teeth yield.
+        terms: of the model by which they yield.
+        stiffness: of a pair over its path, or the same everywhere [N/m]; by default that of the teeth.
+
+    Raises:
+        InputError: the stiffness is negative somewhere, or bodies without teeth have none.
+    """
+    mesh = design.mesh
+    if stiffness is None and not mesh.toothed:
+        raise InputError("bodies without teeth need the stiffness of their contact")
+    curve = polynomial(stiffness) if isinstance(stiffness, int | float) else stiffness
+    found, lowest, place = _sampled(design, operation, terms, curve)
+    if not float(lowest) >= 0.0:
+        raise InputError(
+            f"the stiffness of a pair of teeth is never negative, got {float(lowest):.3g} N/m at "
+            f"{float(place):.3g} on its path from where it enters"
+        )
+    return found
+
+
+def springs_of_teeth(
+    design: Design, contacts: Contacts, terms: Terms, load: Float[Array, ""]
+) -> Lanes:
+    """Stiffness of each slice along its normal, zero out of contact [N/m].
+
+    Args:
+        design: mesh and materials.
+        contacts: of the mesh.
+        terms: of the model by which teeth yield.
+        load: that the driven coordinate carries [N m or N].
+    """
+    yields = compliance(design.mesh, contacts, design.solids, terms, load)
+    return jnp.where(contacts.active, 1.0 / yields.of_teeth(contacts), 0.0)
+
+
+@program
+def _sampled(
+    design: Design, operation: Operation, terms: Terms, curve: PathStiffness | None
+) -> tuple[Passage, Float[Array, ""], Float[Array, ""]]:
+    """The passage, and the least stiffness with its place."""
+    events = _breaks(design.mesh, curve)
+    phase, _ = nodes(events, NODES)
+    contacts = design.mesh.contacts(phase)
+    springs: Callable[[], Lanes] = (
+        (lambda: springs_of_teeth(design, contacts, terms, operation.load))
+        if curve is None
+        else (lambda: _along_path(contacts, curve))
+    )
+    stiffness = springs()
+    found = Passage(
+        edges=edges(events),
+        contacts=jax.tree.map(lambda values: _powers(jnp.asarray(values, float)), contacts),
+        stiffness=_powers(stiffness),
+    )
+    softest = jnp.argmin(jnp.where(contacts.active, stiffness, jnp.inf))
+    return found, stiffness.ravel()[softest], contacts.path.ravel()[softest]
+
+
+def _breaks(mesh: Mesh, curve: PathStiffness | None) -> Float[Array, " event"]:
+    """Events of the mesh, and phases at which a pair passes from one polynomial to the next."""
+    places = jnp.zeros(0) if curve is None else curve.places[1:-1]
+    return jnp.sort(jnp.concatenate([mesh.events(), jnp.mod(places, 1.0)]))
+
+
+def _along_path(contacts: Contacts, curve: PathStiffness) -> Lanes:
+    """Stiffness of a pair shared by its slices."""
+    length = jnp.where(contacts.active, contacts.weight, 0.0)
+    whole = jnp.sum(length, axis=1, keepdims=True)
+    share = length / jnp.where(whole > 0.0, whole, 1.0)
+    return curve.at(contacts.path) * share
+
+
+def _powers(values: Float[Array, "... segment node"]) -> Float[Array, "power ... segment"]:
+    """Coefficients of the polynomials through the nodes of each segment."""
+    return jnp.moveaxis(values @ _to_powers(), -1, 0)
+
+
+@cache
+def _to_powers() -> np.ndarray:
+    """Matrix from values at the nodes to coefficients on [-1, 1]."""
+    return np.linalg.inv(np.vander(2.0 * lobatto(NODES)[0] - 1.0, increasing=True)).T
