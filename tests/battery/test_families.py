@@ -569,13 +569,20 @@ def leaves_of(found):
 ROUNDING = 1e-10
 """Nearest points of flanks that are almost parallel are less certain than places on an involute."""
 
+FELT = 1e-9
+"""A contact's width is where the gap has grown by 30 nm, a difference of places 30 mm from the axis."""
+
+
+def nearness(name, usual):
+    return max(usual, FELT) if name == "felt" else usual
+
 
 @pytest.mark.parametrize("turns", [-1.0, 1.0, 6.0])
 def test_one_period_later_all_is_the_same(family, turns):
     here = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE)))
     there = leaves_of(contacts_of(family.mesh, jnp.asarray(INSIDE + turns)))
     for name, values in here.items():
-        rtol = ROUNDING if not family.mesh.touching else 1e-12
+        rtol = nearness(name, ROUNDING if not family.mesh.touching else 1e-12)
         np.testing.assert_allclose(there[name], values, rtol=rtol, atol=1e-15, err_msg=name)
 
 
@@ -624,6 +631,7 @@ def test_batch_equals_loop(family):
     rounded["weight"] = 0.0 if family.mesh.touching else 1e-10 * family.at.weight.max()
     for name, values in leaves_of(family.at).items():
         near = close | {"atol": max(close["atol"], rounded.get(name, 0.0)), "err_msg": name}
+        near["rtol"] = nearness(name, close["rtol"])
         for other in (alone, mapped):
             found = np.moveaxis(getattr(other, name), 0, -1)
             np.testing.assert_allclose(found, values, **near)
