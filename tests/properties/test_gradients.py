@@ -128,7 +128,8 @@ def check_gradients(inputs, choice):
     np.testing.assert_array_less(
         np.abs(found - expected), 1e-6 * np.abs(expected) + rounding, err_msg=str(names(inputs))
     )
-    most = 9 if choice == 2 else 12  # oil and roughness do not enter constant friction
+    # Oil and roughness do not enter constant friction, nor does the module the ripple under it.
+    most = 8 if choice == 2 else 12
     assert np.all(np.sum(np.abs(found) > 0.0, axis=1) >= most), "most inputs must matter"
 
 

@@ -15,7 +15,7 @@ __all__ = ["FORMULAS"]
 
 
 def _beside(page: Page) -> Beside | None:
-    source = page.first["source"]
+    source = page.first.get("source", "")
     return PUBLICATIONS[source].beside if source in PUBLICATIONS else None
 
 
