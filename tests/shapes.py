@@ -26,7 +26,8 @@ check = beartype(conf=CHECKED)
 def rooms() -> list[str]:
     """All folders that compute."""
     (package,) = find_spec("pitchpoint").submodule_search_locations
-    names = {path.stem for path in Path(package).iterdir() if path.suffix in ("", ".py")}
+    every = [path for path in Path(package).iterdir() if path.name != "__pycache__"]
+    names = {path.stem for path in every if path.suffix in ("", ".py")}
     return [f"pitchpoint.{name}" for name in sorted(names - WORDS)]
 
 

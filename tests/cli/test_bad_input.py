@@ -42,7 +42,7 @@ from pitchpoint.runs.jobs import jobs
 BASE = tomllib.loads("""
 title = "a title"
 summary = "a summary"
-source = "liu_xiong_torus"
+source = "liu_xiong_2017"
 
 [gears]
 family = "cylindrical"

@@ -163,13 +163,16 @@ LINE = "holds for line contacts, and these touch in an ellipse; choose one of"
 BAD: dict[str, tuple[object, str]] = {
     "models.film_thickness": (
         "dowson_higginson_1959",
-        f"'dowson_higginson_1959' {LINE} hamrock_dowson_1977",
+        f"'dowson_higginson_1959' {LINE} hamrock_dowson_1977, hamrock_dowson_1977_central",
     ),
     "models.friction": (
         "iso_tr_14179_2",
         f"'iso_tr_14179_2' {LINE} constant, frictionless, xu_2007",
     ),
-    "models.rolling_resistance": ("wu_cheng_1991", f"'wu_cheng_1991' {LINE} none"),
+    "models.rolling_resistance": (
+        "wu_cheng_1991",
+        f"'wu_cheng_1991' {LINE} none, wu_cheng_1991_strips",
+    ),
     "operation.torque": (
         "5 N m",
         "a test rig is loaded by a normal force; give force in place of torque",

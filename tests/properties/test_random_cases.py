@@ -43,7 +43,8 @@ SEED = 1
 
 # Each sharing and each rolling resistance, in as few compiled programs as that takes.
 SHARINGS = [name for name, model in LOAD_SHARING.items() if model.flanks != "apart"]
-PAIRED = list(zip(SHARINGS, itertools.cycle(ROLLING_RESISTANCE)))
+OF_LINES = [name for name, one in ROLLING_RESISTANCE.items() if one.shape != "ellipse"]
+PAIRED = list(zip(SHARINGS, itertools.cycle(OF_LINES)))
 
 # Read before anything is drawn: checks of types look at random entries, which strategies must not.
 OILS, BASE_OILS = list(lubricants.catalogue()), list(lubricants.base_oils())

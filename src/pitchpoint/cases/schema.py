@@ -908,10 +908,10 @@ def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
 
 def _check_formulas(case: Case) -> None:
     """InputError if inputs of formulas are given to a case whose source has none."""
-    if case.formulas is not None and case.source != "liu_xiong_torus":
+    if case.formulas is not None and case.source != "liu_xiong_2017":
         raise InputError(
             "these are inputs of the equations of one paper; they belong to a case with its source, "
-            'source = "liu_xiong_torus"',
+            'source = "liu_xiong_2017"',
             key="formulas",
         )
 

@@ -98,7 +98,7 @@ class TorusGears(GearsTable):
     @property
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography for what is given."""
-        return ("liu_xiong_torus",)
+        return ("liu_xiong_2017",)
 
     @property
     def load_sharing(self) -> str:

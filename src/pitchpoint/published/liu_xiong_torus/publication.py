@@ -114,7 +114,7 @@ _SIDE_BY_SIDE = Beside(
 )
 
 PUBLICATION = Publication(
-    name="liu_xiong_torus",
+    name="liu_xiong_2017",
     readings=(printed.readings,),
     variables={**_GEOMETRY, **_AT_PITCH, **_BESIDE, **_of("torus"), **_of("standard")},
     beside=_SIDE_BY_SIDE,
