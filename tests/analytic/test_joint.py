@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.joint import Excitation, Joint, Sliding, respond
+from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.joint import Joint, Sliding, respond
 from pitchpoint.dynamics.joint_course import Drive, course, fading, settled
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.programs import program
@@ -163,8 +164,8 @@ def test_energy_is_the_integral_of_the_torque(play: float) -> None:
 # ---- in time
 
 TIMES = np.linspace(0.0, 0.2, 41)
-NONE = Excitation(array([2.0]), array([0.0]), array([0.0]))
-WAVE = Excitation(array([2.0]), array([ERROR]), array([0.3]))
+NONE = Waves(array([0.0]), array([2.0]), array([0.0]))
+WAVE = Waves(array([ERROR]), array([2.0]), array([0.3]))
 
 
 @pytest.mark.parametrize("motor", [np.inf, MOTOR])
@@ -238,7 +239,7 @@ def test_a_free_motor_vibrates_as_the_tangent_says() -> None:
     rest = float(own(made)[3])
     # The wind-up of the state counts with the error, whose rate is zero at its crest.
     start = [swing["motor"][0], rates["motor"], rest + swing["wind_up"][0] + small]
-    wave = Excitation(array([2.0]), array([small]), array([0.0]))
+    wave = Waves(array([small]), array([2.0]), array([0.0]))
     there = course(made, wave, Drive.steady(speed), array(TIMES), array([*start, rates["wind_up"]]))
     size = np.ptp(swing["wind_up"])
     np.testing.assert_allclose(there.wind_up - rest, swing["wind_up"], atol=1e-4 * size)

@@ -24,9 +24,6 @@ __all__ = [
 
 Each = Float[Numbers, "*#b"]
 
-_STEPS = 5
-"""Newton's steps to the ratio of the axes: three suffice up to a hundred radii, five up to a million."""
-
 _DEEPEST = 3.0
 """The largest shear lies less than so many of the shorter semi-axis below the surface."""
 
@@ -129,20 +126,14 @@ def _ellipse(
 
 
 def _ratio_of_axes(radii: Float[Array, "*b"]) -> Float[Array, "*b"]:
-    """Semi-axis across over that along for a ratio R_y/R_x; the last step carries the derivative."""
-    wanted = jnp.log(radii)
+    """Semi-axis across over that along for a ratio R_y/R_x."""
 
-    def missing(at: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        _, cosine, sine = complete(jnp.exp(-2.0 * at))
-        return 2.0 * at + jnp.log(cosine / sine) - wanted
+    def missing(ratio: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        _, cosine, sine = complete(ratio**-2)
+        return jnp.log(ratio**2 * cosine / (sine * radii))
 
-    def step(at: Float[Array, "*b"], _: None) -> tuple[Float[Array, "*b"], None]:
-        value, slope = jax.jvp(missing, (at,), (jnp.ones_like(at),))
-        return at - value / jax.lax.stop_gradient(slope), None
-
-    at, _ = jax.lax.scan(step, 2.0 / jnp.pi * wanted, None, _STEPS - 1)
-    at, _ = step(jax.lax.stop_gradient(at), None)
-    return jnp.exp(at)
+    found, _ = root(missing, radii ** (2.0 / jnp.pi), 2.0 * jnp.maximum(radii, 1.0))
+    return found
 
 
 def largest_shear(contact: Ellipse, poisson: Each) -> tuple[Float[Array, "*b"], Float[Array, "*b"]]:

@@ -54,12 +54,15 @@ class Excitation(eqx.Module):
 
 
 class Waves(eqx.Module):
-    """An error as a sum of orders of the mesh: sum of A cos(2 pi order phase + angle).
+    """An error as a sum of orders: sum of A cos(2 pi order phase + angle).
+
+    Of a mesh the phase is that of the mesh and an error parts the flanks, of a joint the phase counts turns
+    of the driver and the output lags.
 
     Attributes:
-        amplitude: of each order, positive where flanks part [m].
-        order: of the mesh frequency, whole or not.
-        angle: of each order at phase zero of the mesh [rad].
+        amplitude: of each order [m or rad].
+        order: in a unit of the phase, whole or not.
+        angle: of each order at phase zero [rad].
     """
 
     amplitude: Float[Array, " order"] = eqx.field(converter=as_array)
@@ -67,11 +70,11 @@ class Waves(eqx.Module):
     angle: Float[Array, " order"] = eqx.field(converter=as_array)
 
     def at(self, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        """Separation at a phase of the mesh, counted on beyond a period [m]."""
+        """Error at a phase, counted on beyond one [m or rad]."""
         return jnp.sum(self.amplitude * jnp.cos(self._angles(phase)), axis=-1)
 
     def slope(self, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        """Its derivative by the phase [m]."""
+        """Its derivative by the phase [m or rad]."""
         each = -2.0 * jnp.pi * self.order * self.amplitude * jnp.sin(self._angles(phase))
         return jnp.sum(each, axis=-1)
 

@@ -9,7 +9,7 @@ from pitchpoint.factored import Arrays
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.roots import root
 
-__all__ = ["Excitation", "Joint", "JointResponse", "Sliding", "respond"]
+__all__ = ["Joint", "JointResponse", "Sliding", "respond"]
 
 Each = Float[Arrays, "*#b"]
 One = Float[Arrays, ""]
@@ -55,30 +55,6 @@ class Sliding(eqx.Module):
         return 4.0 / jnp.pi * total
 
 
-class Excitation(eqx.Module):
-    """Error of a drive as waves: by how much its output lags, over the rotation of the driver.
-
-    Attributes:
-        order: waves in a turn of the driver; any positive numbers.
-        amplitude: [rad].
-        phase: of each wave where the driver starts [rad].
-    """
-
-    order: Float[Arrays, " wave"]
-    amplitude: Float[Arrays, " wave"]
-    phase: Float[Arrays, " wave"]
-
-    def at(self, turned: One) -> tuple[Float[Array, ""], Float[Array, ""]]:
-        """Error [rad] and its slope over the rotation of the driver [1].
-
-        Args:
-            turned: rotation of the driver [rad].
-        """
-        angle = self.order * turned + self.phase
-        error = jnp.sum(self.amplitude * jnp.cos(angle))
-        return error, -jnp.sum(self.order * self.amplitude * jnp.sin(angle))
-
-
 class Joint(eqx.Module):
     """Motor and load with a drive between them; everything is counted at the output.
 
@@ -114,17 +90,14 @@ class Joint(eqx.Module):
     @property
     def wind_up(self) -> Float[Array, ""]:
         """Wind-up under the constant torque, from the middle of the play [rad]."""
-        curve = self.curve
-        inside = jnp.interp(self.torque, curve.torque, curve.wind_up)
-        beyond = jnp.maximum(self.torque - curve.torque[-1], 0.0) / curve.stiffness[-1]
-
-        def near(at: Array, _: None) -> tuple[Array, None]:
-            return at + (self.torque - curve.torque_at(at)) / curve.slope_at(at), None
-
+        curve, loaded = self.curve, self.torque > 0.0
+        asked = jnp.where(loaded, self.torque, curve.torque[-1])
+        inside = jnp.interp(asked, curve.torque, curve.wind_up)
+        beyond = jnp.maximum(asked - curve.torque[-1], 0.0) / curve.stiffness[-1]
         touch = jnp.maximum(jnp.asarray(curve.play), 0.0) / 2.0
         guess = touch + inside + beyond
-        found, _ = jax.lax.scan(near, guess, length=8)
-        return jnp.where(self.torque > 0.0, found, touch)
+        found, _ = root(lambda at: curve.torque_at(at) / asked - 1.0, guess, 4.0 * guess)
+        return jnp.where(loaded, found, touch)
 
     @property
     def stiffness(self) -> Float[Array, ""]:

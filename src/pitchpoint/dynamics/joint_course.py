@@ -9,7 +9,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.joint import Excitation, Joint, respond
+from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.joint import Joint, respond
 from pitchpoint.factored import Arrays
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
@@ -38,6 +39,9 @@ POINTS = 256
 
 CREEP = 1e-3
 """Rate of the wind-up, over its scale, at which 76 % of the friction of a flank acts."""
+
+TURN = 2.0 * np.pi
+"""Rotation of the driver in which an error repeats [rad]."""
 
 _WORKS = 3
 
@@ -140,7 +144,7 @@ class Settled(eqx.Module):
 @program
 def course(
     joint: Joint,
-    excitation: Excitation,
+    excitation: Waves,
     drive: Drive,
     times: Float[Arrays, " time"],
     start: Float[Arrays, "4"],
@@ -149,7 +153,7 @@ def course(
 
     Args:
         joint: what moves.
-        excitation: error of its drive.
+        excitation: error of its drive, by how much its output lags [rad], over the turns of the driver.
         drive: how the motor runs.
         times: at which the motion is kept, rising; the first one is the start [s].
         start: rotation of the motor beyond the even one and its rate, wind-up with the error and its rate
@@ -192,7 +196,7 @@ def _judged(found: Course, reached: Bool[Array, ""], steps: Int[Array, ""]) -> C
     return replace(found, status=Status(code, found.closure, steps))
 
 
-def _length(joint: Joint, excitation: Excitation, drive: Drive, start: Array) -> Array:
+def _length(joint: Joint, excitation: Waves, drive: Drive, start: Array) -> Array:
     """Scale of the vibration [rad]: error, start, and what the torque that speeds up the load winds up."""
     gain = jnp.abs(drive.stop - drive.start) / drive.duration / joint.ratio
     parts = [
@@ -208,7 +212,7 @@ class _Motion(eqx.Module):
     """Equations of motion of the state: motor, wind-up with the error, the rates of both, and works."""
 
     joint: Joint
-    excitation: Excitation
+    excitation: Waves
     drive: Drive
     length: Array
 
@@ -252,8 +256,8 @@ class _Motion(eqx.Module):
     def _at(self, time: Array, state: Array) -> "_State":
         joint, drive = self.joint, self.drive
         motor_rate = drive.rate(time) / joint.ratio + state[1]
-        error, slope = self.excitation.at(drive.turned(time) + joint.ratio * state[0])
-        slope = joint.ratio * slope
+        turns = (drive.turned(time) + joint.ratio * state[0]) / TURN
+        error, slope = self.excitation.at(turns), joint.ratio / TURN * self.excitation.slope(turns)
         wind_up, rate = state[2] - error, state[3] - slope * motor_rate
         friction = self._friction(rate, drive.rate(time))
         torque = joint.curve.torque_at(wind_up) + joint.damping * rate + friction
@@ -316,18 +320,17 @@ def settled(
     place, rate = jnp.real(linear.wind_up), jnp.real(1j * frequency * linear.wind_up)
     start = jnp.stack([jnp.zeros(()), jnp.zeros(()), joint.wind_up + place + amplitude, rate])
     last = period * (periods + jnp.linspace(0.0, 2.0, 2 * POINTS + 1))
-    wave = Excitation(*(jnp.reshape(value, 1) for value in (order, amplitude, jnp.zeros(()))))
+    wave = Waves(*(jnp.reshape(value, 1) for value in (amplitude, order, jnp.zeros(()))))
     times = jnp.concatenate([jnp.zeros(1), last])
     found = course(joint, wave, Drive.steady(speed), times, start)
     return _settled(joint, wave, found, speed)
 
 
-def _settled(joint: Joint, wave: Excitation, found: Course, speed: One) -> Settled:
+def _settled(joint: Joint, wave: Waves, found: Course, speed: One) -> Settled:
     before, after = found.wind_up[1 : POINTS + 2], found.wind_up[POINTS + 1 :]
     swing = jnp.ptp(after) / 2.0
     changed = jnp.max(jnp.abs(after - before)) / jnp.where(swing > 0.0, swing, 1.0)
-    turned = jnp.asarray(speed) * found.time[POINTS + 1 :]
-    error, _ = jax.vmap(wave.at)(turned)
+    error = wave.at(jnp.asarray(speed) / TURN * found.time[POINTS + 1 :])
     torque = found.torque[POINTS + 1 :]
     alike = jnp.where(changed <= REPEATS, int(Code.SOLVED), int(Code.NOT_SETTLED))
     code = jnp.where(found.status.code == int(Code.SOLVED), alike, found.status.code)

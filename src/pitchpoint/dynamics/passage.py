@@ -43,13 +43,19 @@ class Passage(eqx.Module):
 
     def at(self, phase: Float[Array, "*b"]) -> tuple[Contacts, Lanes]:
         """Contacts at any phase [periods], and the stiffness of each slice [N/m]."""
-        first = self.edges[0]
-        return self.within(self.segment(phase), first + jnp.mod(phase - first, 1.0))
+        place = self._place(phase)
+        return self.within(self._holding(place), place)
 
     def segment(self, phase: Float[Array, "*b"]) -> Int[Array, "*b"]:
         """Number of the segment that holds a phase."""
-        first = self.edges[0]
-        place = first + jnp.mod(phase - first, 1.0)
+        return self._holding(self._place(phase))
+
+    def _place(self, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
+        """The same phase in the period that the edges bound."""
+        return self.edges[0] + jnp.mod(phase - self.edges[0], 1.0)
+
+    def _holding(self, place: Float[Array, "*b"]) -> Int[Array, "*b"]:
+        """Number of the segment that holds a place in the period."""
         lengths = jnp.diff(self.edges)
         last = jnp.max(jnp.where(lengths > 0.0, jnp.arange(lengths.shape[0]), 0))
         return jnp.clip(jnp.searchsorted(self.edges, place, side="right") - 1, 0, last)

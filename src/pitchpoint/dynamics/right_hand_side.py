@@ -28,6 +28,8 @@ __all__ = [
     "ContactForces",
     "Moving",
     "acceleration",
+    "column",
+    "conditions_at",
     "contact_forces",
     "forces_beside",
     "kinetic",
@@ -198,7 +200,7 @@ def contact_forces(moving: Moving, place: Coordinates, rate: Coordinates) -> Con
     mesh = moving.design.mesh
     turned = _driving(moving, place)
     phase = moving.phase + mesh.onward / mesh.period * turned
-    beside = place - _column(moving.padded(mesh.motion), place) * turned
+    beside = place - column(moving.padded(mesh.motion), place) * turned
     return forces_beside(moving, _engaged(moving, phase), phase, beside, rate)
 
 
@@ -237,7 +239,7 @@ def forces_beside(
         _lanes(arm, rate) for arm in (contacts.normal, contacts.slip_arm, roll_arm)
     )
     pressed, force = _normal(moving, springs, stretch, closing - parting)
-    conditions = _conditions(moving, contacts, force, rate)
+    conditions = conditions_at(moving, contacts, force, rate)
     friction = jnp.where(force > 0.0, moving.models.coefficient(conditions), 0.0)
     rolling = evaluate(moving.models.rolling, conditions) * contacts.weight
     line = contacts.normal[:, 0, 0] / leaning[0, 0]
@@ -270,7 +272,7 @@ def torques(
     """
     external = _external(moving, time)
     missing = -_push(moving, external, place, rate, found)
-    return external + jnp.where(jnp.isinf(_column(moving.mass, missing)), missing, 0.0)
+    return external + jnp.where(jnp.isinf(column(moving.mass, missing)), missing, 0.0)
 
 
 def torques_beside_contacts(moving: Moving, rate: Coordinates) -> Coordinates:
@@ -297,7 +299,7 @@ def acceleration(
     From Newton's law on every coordinate, see the equation at the head of this module.
     """
     push = _push(moving, _external(moving, time), place, rate, found)
-    return push / _column(moving.mass, push)
+    return push / column(moving.mass, push)
 
 
 def powers(
@@ -418,8 +420,17 @@ def _drag(moving: Moving, rate: Coordinates) -> Coordinates:
     return jnp.stack([*every, *still])
 
 
-def _conditions(moving: Moving, contacts: Contacts, force: Lanes, rate: Coordinates) -> Conditions:
-    """What laws of friction and rolling are told, at the forces and rates of the moment."""
+def conditions_at(
+    moving: Moving, contacts: Contacts, force: Lanes, rate: Coordinates
+) -> Conditions:
+    """What laws of friction, rolling and film are told, at the forces and rates of the moment.
+
+    Args:
+        moving: mesh and bodies.
+        contacts: with arms on all coordinates.
+        force: normal force of each slice [N]; laws are told 1 N where nothing carries.
+        rate: of all coordinates.
+    """
     driving = jnp.abs(_driving(moving, rate))
     point = replace(moving.operation, speed=jnp.maximum(driving, STANDSTILL))
     return moving.design.conditions(
@@ -437,8 +448,11 @@ def _lanes(arms: Float[Array, "coordinate pair slice *b"], values: Coordinates) 
     return jnp.sum(arms * values[:, None, None], axis=0)
 
 
-def _column(
-    values: Float[Array, " coordinate"], like: Coordinates
-) -> Float[Array, "coordinate ..."]:
-    """Values along the first axis of others, to go with all of these."""
+def column(values: Float[Array, " coordinate"], like: Float[Array, "..."]) -> Float[Array, "..."]:
+    """Values along the first axis of others, to go with all of these.
+
+    Args:
+        values: of the coordinates.
+        like: with the same number of axes behind its first one.
+    """
     return values.reshape(-1, *[1] * (like.ndim - 1))

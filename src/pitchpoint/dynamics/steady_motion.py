@@ -22,6 +22,8 @@ from pitchpoint.dynamics.right_hand_side import (
     ContactForces,
     Moving,
     acceleration,
+    column,
+    conditions_at,
     forces_beside,
     kinetic,
     powers,
@@ -29,7 +31,7 @@ from pitchpoint.dynamics.right_hand_side import (
     torques_beside_contacts,
 )
 from pitchpoint.dynamics.shooting import Shot, search
-from pitchpoint.dynamics.transient import demand_bodies, demand_effects
+from pitchpoint.dynamics.transient import CLOSED, demand_bodies, demand_effects, where_known
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.conditions import evaluate
@@ -41,9 +43,6 @@ __all__ = ["Motion", "film", "periodic_motion", "steady_motion", "steady_motions
 
 TOLERANCE = 1e-10
 """Largest estimated error of a step, of states of order one."""
-
-CLOSED = 1e-6
-"""Largest closure of the energy of a period that counts as found."""
 
 MOST_STEPS = 100_000
 """Steps between two events after which a period is given up."""
@@ -181,13 +180,8 @@ def film(
         law: of the film.
     """
     force = motion.found.force
-    carries = force > 0.0
-    point = replace(moving.operation, speed=jnp.abs(jnp.tensordot(_driver(moving), motion.rate, 1)))
-    load = jnp.where(carries, force, 1.0)
-    conditions = moving.design.conditions(
-        motion.found.contacts, point, load=load, nominal_load=total(load), rates=motion.rate
-    )
-    return jnp.where(carries, evaluate(law, conditions), jnp.nan)
+    conditions = conditions_at(moving, motion.found.contacts, force, motion.rate)
+    return jnp.where(force > 0.0, evaluate(law, conditions), jnp.nan)
 
 
 def steady_motion(
@@ -438,9 +432,9 @@ class _Turning:
     def parts(self, state: Float[Array, "state *b"]) -> tuple[Array, Array, Array]:
         """Places beside the nominal motion, rates, and time lag of a scaled state."""
         half = self.size // 2
-        own = _column(self.place, state) * state[:half]
-        rate = _column(self.rate, state) * state[half : self.size] + _column(self.nominal, state)
-        driver = _column(self.driver, state)
+        own = column(self.place, state) * state[:half]
+        rate = column(self.rate, state) * state[half : self.size] + column(self.nominal, state)
+        driver = column(self.driver, state)
         lag = jnp.sum(driver * own, axis=0) / self.speed
         return own * (1.0 - driver), rate, lag
 
@@ -629,7 +623,7 @@ def _described(
     status = _status(turning, shot, fine, account.closure, values, grid)
     lost = (Code.NOT_FINITE, Code.NOT_PERIODIC, Code.NOT_CONVERGED)
     known = jnp.all(status.code != jnp.array([int(code) for code in lost]))
-    kept = {name: _where(known, value) for name, value in values.items()}
+    kept = {name: where_known(known, value) for name, value in values.items()}
     return Motion(bounds=bounds, status=status, elements=grid.elements, nodes=grid.nodes, **kept)
 
 
@@ -693,15 +687,6 @@ def _finite(moving: Moving) -> Bool[Array, ""]:
     return jnp.all(jnp.stack([jnp.all(jnp.isfinite(leaf)) for leaf in leaves]))
 
 
-def _where(known: Bool[Array, ""], value: Any) -> Any:
-    """A value if it is known, else not a number and no contact."""
-
-    def kept(leaf: Array) -> Array:
-        return jnp.where(known, leaf, False if leaf.dtype == bool else jnp.nan)
-
-    return jax.tree.map(kept, value)
-
-
 def _arrays(moving: Moving) -> Moving:
     found: Moving = eqx.filter(moving, eqx.is_inexact_array)
     return found
@@ -714,7 +699,3 @@ def _driver(moving: Moving) -> Float[Array, " coordinate"]:
 def _ratio(out: Array, put_in: Array) -> Array:
     some = (out > 0.0) & (put_in > 0.0)
     return jnp.where(some, out / jnp.where(some, put_in, 1.0), jnp.nan)
-
-
-def _column(values: Float[Array, " coordinate"], like: Array) -> Array:
-    return values.reshape(-1, *[1] * (like.ndim - 1))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import diffrax
 import equinox as eqx
@@ -26,11 +27,11 @@ from pitchpoint.errors import InputError
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code, Status
 
-__all__ = ["Transient", "demand_bodies", "demand_effects", "transient"]
+__all__ = ["Transient", "demand_bodies", "demand_effects", "transient", "where_known"]
 
 Vector = Float[Array, " coordinate"]
 States = Float[Array, "coordinate time"]
-Kept = tuple[States, States, ContactForces, States, Account]
+Found = TypeVar("Found")
 
 TOLERANCE = 1e-10
 """Largest estimated error of a step over the amplitude at which the external torques swing."""
@@ -355,7 +356,7 @@ def _described(
     )
     status = Status(_code(reached, account.closure), account.closure, steps)
     given = place, rate, found, torques(moving, times, place, rate, found), account
-    return Transient(times, *_where(_known(states, account.closure), given), status)
+    return Transient(times, *where_known(_known(states, account.closure), given), status)
 
 
 def _code(reached: Bool[Array, ""], closure: Float[Array, ""]) -> Int[Array, ""]:
@@ -369,12 +370,16 @@ def _known(states: tuple[Array, ...], closure: Float[Array, ""]) -> Bool[Array, 
     return jnp.all(jnp.isfinite(jnp.concatenate(states)), axis=0) & ~(closure > CLOSED)
 
 
-def _where(known: Bool[Array, " time"], values: Kept) -> Kept:
-    """Values of the times that are known; NaN, and no contact, at others."""
+def where_known(known: Bool[Array, "*b"], values: Found) -> Found:
+    """Values where they are known; NaN, and no contact, elsewhere.
+
+    Args:
+        known: for each place along the last axes of the values.
+        values: arrays of numbers and of truth, in any structure.
+    """
 
     def kept(value: Array) -> Array:
-        nothing = False if value.dtype == bool else jnp.nan
-        return jnp.where(known, value, nothing)
+        return jnp.where(known, value, False if value.dtype == bool else jnp.nan)
 
-    found: Kept = jax.tree.map(kept, values)
+    found: Found = jax.tree.map(kept, values)
     return found

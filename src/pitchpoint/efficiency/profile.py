@@ -112,9 +112,10 @@ def _profile(
         "radius": contacts.radius,
     }
     if contacts.shape == "ellipse":
-        each |= {"semi_axis_along": at.semi_axis_along, "semi_axis_across": at.semi_axis_across}
+        ellipse = at.ellipse
+        each |= {"semi_axis_along": ellipse.along, "semi_axis_across": ellipse.across}
+        longest = jnp.max(jnp.where(contacts.active, ellipse.across, 0.0), axis=(0, 1))
         mesh["contact_room"] = design.mesh.contact_room
-        longest = jnp.max(jnp.where(contacts.active, at.semi_axis_across, 0.0), axis=(0, 1))
         mesh["largest_inclination"] = design.mesh.largest_inclination(longest)
     if design.drag:
         mesh["drag_loss"] = state.drag_loss

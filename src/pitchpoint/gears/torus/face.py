@@ -3,13 +3,11 @@
 import equinox as eqx
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers
+from pitchpoint.roots import root
 
 __all__ = ["TorusFace", "least"]
-
-_STEPS = 8
-"""Newton's steps to the lowest point of a separation that is a parabola but for a percent."""
 
 _FARTHEST = 0.9
 """Part of the smaller radius beyond which no place is looked for: no face is that wide."""
@@ -83,15 +81,11 @@ def least(
 
     For small angles z = -(gamma + d/R_y2) R_y with 1/R_y = sin(alpha) (1/R_1 + 1/R_2).
     """
-
-    def slope(place: Float[Array, ""]) -> Float[Array, ""]:
-        return first.slope(place) + second.slope(place - axial_offset) + inclination
-
     farthest = _FARTHEST * jnp.minimum(jnp.abs(first.radius), jnp.abs(second.radius))
-    at = jnp.zeros(())
-    for _ in range(_STEPS):
-        at = jnp.clip(jax.lax.stop_gradient(at), -farthest, farthest)
-        bend = first.curvature(at) + second.curvature(at - axial_offset)
-        at = at - slope(at) / jax.lax.stop_gradient(bend)
-    apart = first.missing(at) + second.missing(at - axial_offset) + inclination * at
-    return at, apart
+
+    def parting(way: Float[Array, ""]) -> Float[Array, ""]:
+        at = way - farthest
+        return first.slope(at) + second.slope(at - axial_offset) + inclination
+
+    at = root(parting, farthest, 2.0 * farthest)[0] - farthest
+    return at, first.missing(at) + second.missing(at - axial_offset) + inclination * at
