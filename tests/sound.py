@@ -20,6 +20,23 @@ temperature = "60 degC"
 """
 """The shortest case file of a pair."""
 
+WAVE = """
+[gears]
+family = "strain_wave"
+teeth = [200, 202]
+module = "0.3 mm"
+face_width = "10 mm"
+[lubricant]
+name = "pao-vg-100"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "67 N m"
+speed = "2000 rpm"
+temperature = "40 degC"
+"""
+"""That of a strain wave gear."""
+
 
 def pair(teeth, degrees=0.0, module=3e-3, width=20e-3, **options):
     """A cylindrical pair of 20 deg by teeth, helix [deg], module and face width [m]."""

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sound import WAVE
 
 from pitchpoint.analyses.joint import JOINT, RATED, TORQUES, _found, joint_part
 from pitchpoint.analyses.registry import ANALYSES
@@ -17,25 +18,12 @@ from pitchpoint.views.report import render
 from pitchpoint.views.sections.joint import JOINT as SECTION
 from pitchpoint.views.sections.joint import critical_rows
 
-DRIVE = """
-[gears]
-family = "strain_wave"
-teeth = [200, 202]
-module = "0.3 mm"
-face_width = "10 mm"
-[lubricant]
-name = "pao-vg-100"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "67 N m"
-speed = "2000 rpm"
-temperature = "40 degC"
+DRIVE = f"""{WAVE}
 [models]
-friction = { name = "constant", coefficient = 0.08 }
+friction = {{ name = "constant", coefficient = 0.08 }}
 [dynamics]
 inertia = ["0.6 kg cm2", "1 kg m2"]
-speeds = { start = "100 rpm", stop = "2000 rpm", count = 20 }
+speeds = {{ start = "100 rpm", stop = "2000 rpm", count = 20 }}
 """
 DEVIATING = {
     "gears.deviations.flexspline": [{"order": 2, "amplitude": "1 um"}],

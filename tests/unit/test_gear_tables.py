@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sound import WAVE
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.caveats import proportions_words
@@ -27,21 +28,7 @@ from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.views.inputs import input_rows
 
-DRIVE = tomllib.loads("""
-[gears]
-family = "strain_wave"
-teeth = [200, 202]
-module = "0.3 mm"
-face_width = "10 mm"
-[lubricant]
-name = "pao-vg-100"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "67 N m"
-speed = "2000 rpm"
-temperature = "40 degC"
-""")
+DRIVE = tomllib.loads(WAVE)
 PAIR = {**DRIVE, "gears": {"teeth": [23, 61], "module": "2 mm", "face_width": "20 mm"}}
 
 

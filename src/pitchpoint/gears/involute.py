@@ -21,6 +21,7 @@ __all__ = [
     "inverse_involute",
     "involute",
     "transverse_angle",
+    "usual_depths",
     "usual_fillet",
 ]
 
@@ -41,6 +42,25 @@ def usual_fillet(dedendum: float, angle: float) -> float:
     """
     largest = (math.pi / 4 - dedendum * math.tan(angle)) * math.cos(angle) / (1.0 - math.sin(angle))
     return min(_AVAILABLE_FILLET, max(largest, 0.0))
+
+
+def usual_depths(
+    addendum: tuple[float, float],
+    dedendum: tuple[float, float] | None,
+    fillet: tuple[float, float] | None,
+    angle: float,
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Dedenda and fillet radii of two basic racks in modules, the usual ones where none are given.
+
+    Args:
+        addendum: of both racks, in modules.
+        dedendum, fillet: as given; None where left open.
+        angle: normal pressure angle [rad].
+
+    Source: ISO 53:1998, profile A.
+    """
+    depth = dedendum or (addendum[0] + 0.25, addendum[1] + 0.25)
+    return depth, fillet or (usual_fillet(depth[0], angle), usual_fillet(depth[1], angle))
 
 
 def involute(angle: Float[Array, "*b"]) -> Float[Array, "*b"]:

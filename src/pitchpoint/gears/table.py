@@ -23,6 +23,7 @@ __all__ = [
     "WIDTH",
     "Deviation",
     "GearsTable",
+    "PairDeviations",
     "WavesAround",
     "check_waves",
 ]
@@ -118,6 +119,28 @@ class Deviation(Table):
 
 
 WavesAround = Annotated[tuple[Deviation, ...], Field(max_length=200)]
+
+
+class PairDeviations(Table):
+    """How far flanks lie behind their places, as waves around each gear; they make the kinematic error."""
+
+    gear_1: WavesAround = ()
+    gear_2: WavesAround = ()
+
+    @property
+    def each(self) -> dict[str, tuple[Deviation, ...]]:
+        """Waves by key of the gear."""
+        return {"gear_1": self.gear_1, "gear_2": self.gear_2}
+
+    def check(self, teeth: tuple[float, float], module: float) -> None:
+        """InputError for waves that the teeth are too few to tell, or as high as the teeth.
+
+        Args:
+            teeth: of both gears, without sign.
+            module: normal module [m].
+        """
+        for (key, waves), number in zip(self.each.items(), teeth, strict=True):
+            check_waves(waves, key, number, module)
 
 
 def check_waves(waves: tuple[Deviation, ...], key: str, teeth: float, module: float) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, lanes_for
 from pitchpoint.gears.cylindrical.checks import cannot_run, check_cylindrical
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
@@ -21,6 +22,7 @@ __all__ = [
     "build_cylindrical_pair",
     "build_cylindrical_pairs",
     "designed",
+    "with_bores",
 ]
 
 RIM_RATIO = 1.0 / 0.3
@@ -97,6 +99,33 @@ def build_cylindrical_pair(
     if not _in_reach(ratio):
         check_cylindrical(pair)  # says why, in gear words
     return dataclasses.replace(pair, lanes=lanes_for(ratio, helical=helical))
+
+
+def with_bores(pair: CylindricalPair, bores: tuple[float, float] | None) -> CylindricalPair:
+    """The pair with the bodies under its teeth as bored; of a ring it is its outer diameter.
+
+    Args:
+        pair: of gears.
+        bores: diameters of both [m]; as usual if None.
+
+    Raises:
+        InputError: a bore that leaves no body.
+    """
+    if bores is None:
+        return pair
+    found = []
+    for number, (gear, bore) in enumerate(zip(pair.gears, bores, strict=True), 1):
+        root = 2.0 * abs(float(gear.root_radius))
+        ratio = bore / root if gear.internal else root / bore
+        if ratio <= 1.0:
+            side = "larger" if gear.internal else "smaller"
+            raise InputError(
+                f"the bore diameter of gear {number} is {1e3 * bore:.6g} mm; it must be {side} than "
+                f"its root circle, {1e3 * root:.6g} mm",
+                key="bore_diameter",
+            )
+        found.append(ratio)
+    return dataclasses.replace(pair, rim_ratio=jnp.asarray(found))
 
 
 def build_cylindrical_pairs(**values: Any) -> Designs[CylindricalPair]:

@@ -3,12 +3,10 @@
 from dataclasses import replace
 from typing import Any
 
-from pitchpoint._jax import jnp
 from pitchpoint.contact.surface import Surfaces
-from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
-from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, with_bores
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,
     class_deviations,
@@ -18,7 +16,7 @@ from pitchpoint.gears.cylindrical.modified import (
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.family import Family, waves
-from pitchpoint.gears.involute import usual_fillet
+from pitchpoint.gears.involute import usual_depths
 from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
 
@@ -90,10 +88,9 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
 
 
 def _pair(gears: CylindricalGears, driver: int, slices: int) -> CylindricalPair:
-    dedendum = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
+    dedendum, usual = usual_depths(gears.addendum, gears.dedendum, None, gears.pressure_angle)
     fillet = gears.fillet_radius or tuple(
-        _RING_FILLET if teeth < 0 else usual_fillet(depth, gears.pressure_angle)
-        for teeth, depth in zip(gears.teeth, dedendum, strict=True)
+        _RING_FILLET if teeth < 0 else each for teeth, each in zip(gears.teeth, usual, strict=True)
     )
     pair = build_cylindrical_pair(
         teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
@@ -112,26 +109,7 @@ def _pair(gears: CylindricalGears, driver: int, slices: int) -> CylindricalPair:
         right_flank=gears.flank == "right",
         slices=slices,
     )
-    if gears.bore_diameter is None:
-        return pair
-    return replace(pair, rim_ratio=jnp.asarray(_rim_ratios(pair, gears.bore_diameter)))
-
-
-def _rim_ratios(pair: CylindricalPair, bores: tuple[float, float]) -> list[float]:
-    """Root over bore radius of each gear; of a ring its outer radius over the root radius."""
-    found = []
-    for number, (gear, bore) in enumerate(zip(pair.gears, bores, strict=True), 1):
-        root = 2.0 * abs(float(gear.root_radius))
-        ratio = bore / root if gear.internal else root / bore
-        if ratio <= 1.0:
-            side = "larger" if gear.internal else "smaller"
-            raise InputError(
-                f"the bore diameter of gear {number} is {1e3 * bore:.6g} mm; it must be {side} than "
-                f"its root circle, {1e3 * root:.6g} mm",
-                key="bore_diameter",
-            )
-        found.append(ratio)
-    return found
+    return with_bores(pair, gears.bore_diameter)
 
 
 _FOLLOWING = {

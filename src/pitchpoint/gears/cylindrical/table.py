@@ -17,10 +17,8 @@ from pitchpoint.gears.table import (
     RACK,
     SHIFT,
     WIDTH,
-    Deviation,
     GearsTable,
-    WavesAround,
-    check_waves,
+    PairDeviations,
 )
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table
@@ -91,22 +89,15 @@ class FlankModifications(Table):
         return self
 
 
-class GearDeviations(Table):
+class GearDeviations(PairDeviations):
     """How far flanks lie behind their places, differently from tooth to tooth.
 
     As waves around each gear, and as gears at the limits of a class of ISO 1328-1 that a seed draws at
     random. They make the kinematic error; loads, losses and stiffness are those of teeth without them.
     """
 
-    gear_1: WavesAround = ()
-    gear_2: WavesAround = ()
     iso_class: Annotated[tuple[float, float], Pair(TOLERANCE_CLASS)] | None = None
     seed: Annotated[float, SEED] = 1.0
-
-    @property
-    def each(self) -> dict[str, tuple[Deviation, ...]]:
-        """Waves by key of the gear."""
-        return {"gear_1": self.gear_1, "gear_2": self.gear_2}
 
 
 class CylindricalGears(GearsTable):
@@ -179,9 +170,8 @@ class CylindricalGears(GearsTable):
                     f"{RELIEF.show(self.module / 2.0)}",
                     key=key,
                 )
-        waves = self.deviations.each if self.deviations is not None else {}
-        for (key, each), teeth in zip(waves.items(), self.teeth, strict=False):
-            check_waves(each, key, abs(teeth), self.module)
+        if self.deviations is not None:
+            self.deviations.check(self.tooth_numbers, self.module)
         return self
 
     @model_validator(mode="after")

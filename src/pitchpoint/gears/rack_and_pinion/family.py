@@ -10,7 +10,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import lanes_for
 from pitchpoint.gears.family import Family
-from pitchpoint.gears.involute import InvoluteGear, usual_fillet
+from pitchpoint.gears.involute import InvoluteGear, usual_depths
 from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rack_and_pinion import MEMBERS
@@ -76,11 +76,9 @@ def _racks(gears: RackAndPinionGears) -> list[dict[str, jax.Array]]:
     ]
 
 
-def _depths(gears: RackAndPinionGears) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Dedenda and fillet radii in modules, the usual ones where none are given."""
-    depth = gears.dedendum or tuple(each + 0.25 for each in gears.addendum)
-    usual = tuple(usual_fillet(each, gears.pressure_angle) for each in depth)
-    return depth, gears.fillet_radius or usual
+def _depths(gears: RackAndPinionGears) -> tuple[tuple[float, float], tuple[float, float]]:
+    given = gears.addendum, gears.dedendum, gears.fillet_radius
+    return usual_depths(*given, gears.pressure_angle)
 
 
 @program

@@ -10,11 +10,11 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
-from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, with_bores
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.family import Family, waves
-from pitchpoint.gears.involute import usual_fillet
+from pitchpoint.gears.involute import usual_depths
 from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.torus import MEMBERS
@@ -81,25 +81,12 @@ def _middle(gears: TorusGears, driver: str) -> CylindricalPair:
         driver=2 if driver == MEMBERS[1] else 1,
         right_flank=gears.flank == "right",
     )
-    if gears.bore_diameter is None:
-        return pair
-    roots = [2.0 * float(gear.root_radius) for gear in pair.gears]
-    for number, (bore, root) in enumerate(zip(gears.bore_diameter, roots, strict=True), 1):
-        if bore >= root:
-            raise InputError(
-                f"the bore diameter of gear {number} is {1e3 * bore:.6g} mm; it must be smaller than its "
-                f"root circle, {1e3 * root:.6g} mm",
-                key="bore_diameter",
-            )
-    ratios = [root / bore for root, bore in zip(roots, gears.bore_diameter, strict=True)]
-    return replace(pair, rim_ratio=jnp.asarray(ratios))
+    return with_bores(pair, gears.bore_diameter)
 
 
 def _depths(gears: TorusGears) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Dedenda and fillet radii in modules, the usual ones where none are given."""
-    depth = gears.dedendum or (gears.addendum[0] + 0.25, gears.addendum[1] + 0.25)
-    first, second = (usual_fillet(each, gears.pressure_angle) for each in depth)
-    return depth, gears.fillet_radius or (first, second)
+    given = gears.addendum, gears.dedendum, gears.fillet_radius
+    return usual_depths(*given, gears.pressure_angle)
 
 
 def _check_place(gears: TorusGears, pair: TorusPair) -> None:

@@ -15,16 +15,13 @@ from pitchpoint.gears.table import (
     RACK,
     SHIFT,
     WIDTH,
-    Deviation,
     GearsTable,
-    WavesAround,
-    check_waves,
+    PairDeviations,
 )
 from pitchpoint.gears.torus import MEMBERS
 from pitchpoint.input.quantities import Pair, Quantity
-from pitchpoint.input.tables import Table
 
-__all__ = ["TorusDeviations", "TorusGears"]
+__all__ = ["TorusGears"]
 
 TEETH = Quantity("dimensionless", 5, 10_000, whole=True)
 RADIUS = Quantity("length", 1e-4, 100.0, "mm")
@@ -33,18 +30,6 @@ SLIDE = Quantity("length", -0.1, 0.1, "mm")
 INCLINATION = Quantity("angle", -0.1, 0.1, "mrad")
 
 _ROUNDED_SHIFT = 1e-6
-
-
-class TorusDeviations(Table):
-    """How far flanks lie behind their places, as waves around each gear; they make the kinematic error."""
-
-    gear_1: WavesAround = ()
-    gear_2: WavesAround = ()
-
-    @property
-    def each(self) -> dict[str, tuple[Deviation, ...]]:
-        """Waves by key of the gear."""
-        return {"gear_1": self.gear_1, "gear_2": self.gear_2}
 
 
 class TorusGears(GearsTable):
@@ -77,7 +62,7 @@ class TorusGears(GearsTable):
     flank: Literal["left", "right"] = "left"
     axial_offset: Annotated[float, SLIDE] = 0.0
     inclination: Annotated[float, INCLINATION] = 0.0
-    deviations: TorusDeviations | None = None
+    deviations: PairDeviations | None = None
 
     @property
     def opposed(self) -> "TorusGears":
@@ -146,7 +131,8 @@ class TorusGears(GearsTable):
                 key="torus_offset",
             )
         self._check_radii()
-        self._check_waves()
+        if self.deviations is not None:
+            self.deviations.check(self.teeth, self.module)
         return self
 
     def _check_shifts(self) -> None:
@@ -185,8 +171,3 @@ class TorusGears(GearsTable):
                     f"the middle of its face; allowed are {SHIFT.low:g} to {SHIFT.high:g}",
                     key="torus_offset",
                 )
-
-    def _check_waves(self) -> None:
-        waves = self.deviations.each if self.deviations is not None else {}
-        for (key, each), teeth in zip(waves.items(), self.teeth, strict=False):
-            check_waves(each, key, teeth, self.module)
