@@ -140,7 +140,7 @@ def test_loss_of_an_involute_drive_by_its_friction(runs, torque):
 
 @pytest.mark.xfail(
     strict=True,
-    reason="5.5 since contacts beside joints are as wide, and as stiff, as half-planes there",
+    reason="5.5: at one end of the wave two or three; 5.9 if contacts had no width, 6 from 6 N m on",
 )
 def test_pairs_of_an_involute_drive_at_a_tenth_of_its_torque(runs):
     at = runs["involute", 4.7]
