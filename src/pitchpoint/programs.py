@@ -128,8 +128,11 @@ class Program(Generic[P, R]):
             return None
         except Exception as error:  # what is wrong with the function itself shows when it is traced
             _LOG.info("%s is not kept: %s", self.function.__qualname__, error)
-            # What has no portable form, as a call of the host from a library, was traced by now all the same.
-            return None if flat.outline is None else lambda *leaves: flat.rebuilt(traced(*leaves))
+            # What has no portable form, as a call of the host from a library, was traced by now all the same:
+            # for arrays of such types, which those of NumPy are.
+            if flat.outline is None:
+                return None
+            return lambda *leaves: flat.rebuilt(traced(*map(np.asarray, leaves)))
         call = jax.jit(found.call, compiler_options=self.options)
         return lambda *leaves: _rebuilt(outline, iter(call(*leaves)))
 
