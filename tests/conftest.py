@@ -29,8 +29,10 @@ install()  # before anything of the package is imported
 
 from pitchpoint import programs  # noqa: E402
 
-MOST_MAPS = 20_000
+MOST_MAPS = 30_000
 """Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
+
+programs.MOST_PROGRAMS = 10**9  # here their maps are counted, and programs shared across a thousand
 
 METER = Meter()
 SPENT: dict[str, Spent] = defaultdict(Spent)

@@ -8,30 +8,18 @@ from types import SimpleNamespace
 import equinox as eqx
 import numpy as np
 import pytest
+from loaded_strain_wave import WEBER, design, passing, wound, yielding
 from strain_wave_positions import drive
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
-from pitchpoint.efficiency.quasi_static import (
-    Design,
-    Models,
-    Operation,
-    coupling,
-    cycle,
-    engagement,
-)
-from pitchpoint.efficiency.quasi_static import _contacts as contacts_at
+from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagement
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
-from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
 
-STEEL = solids.find("steel").build()
-OIL = lubricants.find("pao-vg-220").build()
 CONSTANT = next(law for law in LAWS if law.name == "constant")
 FRICTION = 0.1
 MODELS = Models(
@@ -50,6 +38,7 @@ LINEAR = TOOTH_COMPLIANCE["beam_hertz"].terms
 TORQUES = (4.7, 47.0, 94.0)
 RATED = TORQUES[1]
 NODES = (24, 48)
+PHASES = 90
 RIM = 0.7e-3
 
 
@@ -59,10 +48,6 @@ def build(form, **options):
     return build_strain_wave(
         teeth=(200, 202), module=0.3e-3, face_width=0.01, form=tooth, **options
     )
-
-
-def design(mesh):
-    return Design(mesh, (STEEL, STEEL), OIL, Roughness.from_composite_rq(0.4e-6))
 
 
 def at_rated(mesh, nodes=NODES[0]):
@@ -81,13 +66,12 @@ def passed(mesh, torque, like):
 def run(mesh, torque, like):
     """Path, forces and input torque over one pitch, and the efficiency with friction."""
     engaged, found = passed(mesh, torque, like)
-    given = MODELS.compliance, jnp.asarray(torque), engaged.contacts, engaged.body
-    wound = wound_up(mesh, (STEEL, STEEL), *given)
+    carried = wound(mesh, (engaged.contacts, engaged.body), torque)
     return SimpleNamespace(
         contacts=jax.tree.map(np.asarray, engaged.contacts),
         body=engaged.body,
         weight=np.asarray(engaged.weight),
-        wound=jax.tree.map(np.asarray, wound),
+        wound=jax.tree.map(np.asarray, carried),
         torque=np.asarray(found.state.input_torque),
         efficiency=float(found.mean_efficiency),
     )
@@ -107,16 +91,6 @@ def engaged(drives):
 def runs(drives, engaged):
     few = NODES[0]
     return {(f, t): run(drives[f], t, engaged[f, few]) for f in FORMS for t in TORQUES}
-
-
-@eqx.filter_jit
-def yielding(mesh, contacts, body, load, force):
-    """How far tooth and body yield at each contact to the forces."""
-    yields = compliance(mesh, contacts, (STEEL, STEEL), MODELS.compliance, load, body)
-    each = force[:, 0]
-    return (
-        jnp.einsum("ij...,j...->i...", yields.body, each) + yields.of_teeth(contacts)[:, 0] * each
-    )
 
 
 @pytest.mark.parametrize("torque", TORQUES)
@@ -176,7 +150,8 @@ def test_pairs_of_an_involute_drive_at_a_tenth_of_its_torque(runs):
 @pytest.mark.parametrize("form", FORMS)
 def test_no_force_jumps_as_teeth_pass(drives, form):
     """Where contacts yield in proportion, the largest step of a force shrinks with that of the phase."""
-    force = forces(drives[form], passing(drives[form], 240), LINEAR, RATED)
+    mesh, phases = drives[form], np.linspace(0.0, 1.0, 240, endpoint=False)
+    force = forces(mesh, passing(mesh, phases), LINEAR, RATED)
     few, many = (largest_step(force[:, ::every]) for every in (4, 1))
     assert many < 0.27 * few
 
@@ -184,14 +159,15 @@ def test_no_force_jumps_as_teeth_pass(drives, form):
 @pytest.fixture(scope="module")
 def finely(drives):
     """Contacts every 0.02 degrees of the wave."""
-    return {form: passing(mesh, 90) for form, mesh in drives.items()}
+    phases = np.linspace(0.0, 1.0, PHASES, endpoint=False)
+    return {form: passing(mesh, phases) for form, mesh in drives.items()}
 
 
 @pytest.mark.parametrize("torque", TORQUES)
 @pytest.mark.parametrize("form", FORMS)
 def test_forces_by_webers_law_hardly_step(drives, finely, form, torque):
     """In 0.02 degrees of the wave: a contact sees a joint of its flank from afar."""
-    force = forces(drives[form], finely[form], MODELS.compliance, torque)
+    force = forces(drives[form], finely[form], WEBER, torque)[:, :PHASES]
     assert largest_step(force) < 0.05 * np.max(force)
 
 
@@ -200,23 +176,10 @@ def largest_step(force):
     return np.max(np.abs(np.diff(force, axis=1)))
 
 
-def passing(mesh, count):
-    """Contacts and what couples them at so many phases, as many at a time as the cycles have nodes.
-
-    So their programs serve; the last ones begin anew.
-    """
-    phases = np.linspace(0.0, 1.0, count, endpoint=False)
-    rows = np.resize(phases, (-(-count // NODES[0]), NODES[0]))
-    parts = [contacts_at(mesh, jnp.asarray(row)) for row in rows]
-    return count, [(part, coupling(design(mesh), part)) for part in parts]
-
-
-def forces(mesh, passed_by, terms, torque):
-    """Of each pair at all phases."""
-    count, parts = passed_by
-    given = mesh, (STEEL, STEEL), terms, jnp.asarray(torque)
-    each = [np.asarray(in_pairs(mesh, wound_up(*given, *part).force)) for part in parts]
-    return np.concatenate(each, axis=1)[:, :count]
+def forces(mesh, parts, terms, torque):
+    """Of each pair at all phases of the parts."""
+    each = [np.asarray(in_pairs(mesh, wound(mesh, part, torque, terms).force)) for part in parts]
+    return np.concatenate(each, axis=1)
 
 
 @eqx.filter_jit
