@@ -27,7 +27,14 @@ from pitchpoint.errors import InputError
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code, Status
 
-__all__ = ["Transient", "demand_bodies", "demand_effects", "transient", "where_known"]
+__all__ = [
+    "Transient",
+    "demand_bodies",
+    "demand_effects",
+    "transient",
+    "transient_motion",
+    "where_known",
+]
 
 Vector = Float[Array, " coordinate"]
 States = Float[Array, "coordinate time"]
@@ -240,6 +247,22 @@ def demand_effects(moving: Moving, what: str) -> None:
 def _travel(
     moving: Moving, times: Array, place: Vector, rate: Vector, events: Array | None
 ) -> Transient:
+    return transient_motion(moving, times, place, rate, events)
+
+
+def transient_motion(
+    moving: Moving,
+    times: Float[Array, " time"],
+    place: Vector,
+    rate: Vector,
+    events: Float[Array, " event"] | None = None,
+) -> Transient:
+    """The same without checks, for programs and batches of one's own.
+
+    Args:
+        moving, times, place, rate: as in `transient`, a number for each coordinate.
+        events: times at which pairs enter or leave, where they are known; found by the steps if not.
+    """
     scale = _Scale(moving, times, place, rate)
     start = scale.scaled(place, rate)
     states, reached, steps = _integrated(moving, times, scale, start, events)
