@@ -267,6 +267,15 @@ def test_solved_asks_that_the_end_is_reached_and_the_energy_closes(reached, clos
     assert int(_code(jnp.asarray(reached), array(closure))) == code
 
 
+def test_times_may_lie_where_pairs_enter():
+    """Rounding puts the same moment at two numbers, between which no step fits."""
+    end = 4.0 * float(PAIR.mesh.period) / 100.0
+    bodies = gear(np.inf), gear(6e-3, [100.0] * 2)
+    rate = np.pad(100.0 * np.asarray(PAIR.mesh.motion), (0, 4))
+    found = transient(moving(bodies, phase=0.9), np.linspace(0.0, end, COUNT), rate=rate)
+    assert found.status.code == Code.SOLVED
+
+
 # ---- the load of the whole mesh
 
 

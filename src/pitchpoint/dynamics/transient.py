@@ -58,6 +58,9 @@ CLOSED = 1e-6
 UNIT = 1e-9
 """How far ways of a support may be from unit vectors at right angles."""
 
+TOGETHER = 1e-12
+"""Share of the whole duration within which two events are one, as rounding may part them."""
+
 MOST_HAND_OVERS = 4096
 """Events beyond which a transient finds the hand-overs by its steps."""
 
@@ -133,11 +136,23 @@ def _hand_overs(
         return None
     turns = np.arange(math.floor(-whole) - 1, math.ceil(whole) + 2)
     every = times[0] + (np.add.outer(turns, edges - phase % 1.0) / pace).ravel()
-    inside = np.unique(every[(every > times[0]) & (every < times[-1])])
+    known = np.concatenate([times, np.asarray(moving.knots)])
+    inside = _apart(every, known, TOGETHER * (times[-1] - times[0]))
+    inside = inside[(inside > times[0]) & (inside < times[-1])]
     size = BUCKET
     while size < inside.size:
         size *= 2
     return jnp.asarray(np.pad(inside, (0, size - inside.size), constant_values=times[-1] + 1.0))
+
+
+def _apart(events: np.ndarray, known: np.ndarray, nearest: float) -> np.ndarray:
+    """Events, each once; those next to a known time are put at it: no step fits between the two."""
+    known, events = np.sort(known), np.sort(events)
+    after = np.clip(np.searchsorted(known, events), 1, known.size - 1)
+    low, high = known[after - 1], known[after]
+    close = np.where(events - low < high - events, low, high)
+    events = np.unique(np.where(np.abs(events - close) < nearest, close, events))
+    return events[np.diff(events, prepend=-np.inf) > nearest]
 
 
 @program
