@@ -5,7 +5,7 @@ the tangent, which for bearings that are alike in all directions is as good as a
 spring, a polynomial of its path in base pitches, with a damper, and pushes only; it draws by the law of Xu et
 al. (2007) at its own force and speeds, made smooth about no sliding by tanh. External torques are constant.
 
-`solved` is the rival: DOP853 and a right-hand side in NumPy, both pairs of teeth in one array, everything that
+`solved` is the rival: DOP853 and a right-hand side in NumPy, both pairs of teeth in one array, and what
 does not change computed before. `loop` is the other one: the same equations in plain numbers, and
 Prince and Dormand's method of order eight with its own steps, compiled by numba where that is installed.
 """
