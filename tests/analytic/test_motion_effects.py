@@ -5,18 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pitchpoint._jax import array, jax
-from pitchpoint.dynamics.bodies import Body, across
+from pitchpoint._jax import array
+from pitchpoint.dynamics.bodies import Body
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.passage import passage
 from pitchpoint.dynamics.right_hand_side import Moving
-from pitchpoint.dynamics.steady_motion import film, steady_motion, steady_motions
+from pitchpoint.dynamics.steady_motion import steady_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import Roughness, lubricants, solids
@@ -123,54 +122,3 @@ def test_the_error_of_a_motion_falls_with_its_tolerance(alone):
     assert errors[2] < errors[1] / 10.0
     assert relative(found_at(tolerance=1e-7).transmission_error, exact) < 1e-6
     assert relative(alone.transmission_error, exact) < 1e-8
-
-
-def test_motions_at_once_are_the_single_ones(alone):
-    """A batch takes the same steps and rounds otherwise, which the search leaves at its 1e-8."""
-    speeds = [0.9 * SPEED, SPEED]
-    every = steady_motions(moving(gears()), speeds, GRID, cycles=2)
-    assert all(Code(int(code)) in FOUND for code in every.status.code)
-    second = jax.tree.map(lambda part: part[1], every)
-    assert relative(second.transmission_error, alone.transmission_error) < 1e-8
-    assert float(second.efficiency) == pytest.approx(float(alone.efficiency), abs=1e-9)
-    first = found_at(speeds[0])
-    assert relative(every.transmission_error[0], first.transmission_error) < 1e-8
-
-
-def test_the_second_gear_may_drive():
-    """With the speed of gear 1 the same the mesh meets as often; friction acts in the other sense."""
-    bodies = Body(INERTIA[0], [LOAD / 2.0]), Body(np.inf)
-    own = moving(bodies, driver=2)
-    found = steady_motion(own, SPEED / 2.0, GRID, cycles=2)
-    assert found.status.code in FOUND
-    assert float(found.energy.closure) < 1e-8
-    assert 0.97 < float(found.efficiency) < 1.0
-    assert np.ptp(found.rate[1]) == 0.0
-    np.testing.assert_allclose(np.abs(found.mean(found.rate)), [SPEED, SPEED / 2.0], rtol=1e-9)
-    assert np.all(np.diff(found.found.phase.ravel()) * own.design.mesh.onward >= 0.0)
-
-
-def test_bearings_carry_the_teeth_in_a_steady_motion():
-    bodies = (
-        Body(INERTIA[0], support=across(2.0, 2e8, 4e3)),
-        Body(INERTIA[1], [LOAD], support=across(4.0, 2e8, 4e3)),
-    )
-    own = moving(bodies, error=waves(0.0, 1e-6))
-    found = steady_motion(own, SPEED, GRID)
-    assert found.status.code in FOUND
-    assert float(found.energy.closure) < 1e-8
-    for part in (found.energy.friction, found.energy.rolling, found.energy.damping):
-        assert float(part[-1]) > 0.0
-    contacts, drawn = found.found.contacts, found.found.drawn
-    pushed = np.sum(found.found.force * contacts.direction + drawn * contacts.tangent, axis=(1, 2))
-    for member, sense in enumerate((-1.0, 1.0)):
-        shift = np.s_[2 + 2 * member : 4 + 2 * member]
-        expected = sense * found.mean(pushed[:2])
-        # No bearing takes momentum out of a period: the mean of each is that of the teeth.
-        np.testing.assert_allclose(
-            found.mean(found.bearing[shift]), expected, atol=1e-7 * np.max(np.abs(expected))
-        )
-    assert np.all(np.asarray(found.bearing[:2]) == 0.0)
-    thick = np.asarray(film(own, found, FILM_THICKNESS["dowson_higginson_1959"]))
-    assert np.array_equal(np.isfinite(thick), np.asarray(found.found.force) > 0.0)
-    assert 1e-8 < np.nanmin(thick) < np.nanmax(thick) < 1e-5

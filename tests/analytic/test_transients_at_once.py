@@ -16,6 +16,7 @@ from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.steady_motion import steady_motion
 from pitchpoint.dynamics.transient import transient, transient_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
@@ -120,17 +121,24 @@ def test_transients_at_once_are_the_single_ones():
         np.testing.assert_allclose(every.place[number], single.place, rtol=1e-8, atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"mesh_damping": array(-3e4)},
-        {"relaxation": array(-1e-2)},
-        {"mesh_damping": array(1e16)},
-        {"mesh_damping": array(np.nan)},
-    ],
-)
-def test_a_transient_that_diverges_says_so_and_is_no_number(changes):
-    found = transient(free(**changes), TIMES, rate=RATE)
+def test_a_transient_of_no_numbers_says_so_and_is_no_number():
+    found = transient(free(mesh_damping=array(np.nan)), TIMES, rate=RATE)
     assert found.status.code == Code.NOT_CONVERGED
     assert np.all(np.isnan(np.asarray(found.rate)[:, -1]))
     assert np.all(np.isnan(np.asarray(found.energy.kinetic)[-1:]))
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"mesh_damping": array(-3e4)}, "damping of the mesh is not negative, got -30000"),
+        (
+            {"relaxation": array(-1e-2)},
+            "relaxation time of the contacts is not negative, got -0.01",
+        ),
+    ],
+)
+def test_damping_that_drives_is_refused(changes, told):
+    """It grew to 1e138 rad/s, energy balanced, as a solution that was found."""
+    with pytest.raises(InputError, match=told):
+        transient(free(**changes), TIMES, rate=RATE)

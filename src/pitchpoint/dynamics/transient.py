@@ -247,6 +247,12 @@ def demand_effects(moving: Moving, what: str) -> None:
         raise InputError(
             f"creep of the contacts is a sliding speed above 0 m/s, got {float(moving.creep):g}"
         )
+    for told, value in (
+        ("relaxation time of the contacts", moving.relaxation),
+        ("damping of the mesh", moving.mesh_damping),
+    ):
+        if float(value) < 0.0:
+            raise InputError(f"{told} is not negative, got {float(value):g}")
     if mesh.couples:
         raise InputError(f"{what} takes each pair of teeth as a spring, and a ring couples these")
     if moving.stiffness is None and moving.passage is None and not mesh.toothed:
