@@ -60,7 +60,7 @@ def moving(bodies, driver=1, **given):
     values = {
         "knots": array([0.0]),
         "phase": array(0.0),
-        "creep": array(1e-2),
+        "creep": array(1e-3),
         "relaxation": array(1e-6),
         "passage": WAYS[driver],
         "law": CONTACT_LAWS["separating"],
