@@ -159,7 +159,9 @@ def test_the_friction_law_is_asked_at_the_speed_and_force_of_the_moment(started)
 def test_energy_of_a_start_from_rest_closes(started):
     energy = started.energy
     assert energy.closure < 1e-8
-    assert started.status.residual == pytest.approx(energy.closure, abs=1e-13)  # of rounding
+    assert float(started.status.residual) == pytest.approx(
+        float(energy.closure), abs=1e-13
+    )  # of rounding
     for part in (energy.friction, energy.damping, energy.drag):
         assert part[-1] > 1e-4 * energy.put_in[-1]
     # The balance says that it is none without any one of its parts.
