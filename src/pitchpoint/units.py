@@ -216,6 +216,15 @@ _KINDS: dict[str, _Kind] = {
             "kN/mm": "kilonewton/millimeter",
         },
     ),
+    "viscous damping": _Kind(
+        "a viscous damping",
+        "1000 N s/m",
+        {
+            "N s/m": "newton*second/meter",
+            "kN s/m": "kilonewton*second/meter",
+            "N s/mm": "newton*second/millimeter",
+        },
+    ),
     "torsional stiffness": _Kind(
         "a torsional stiffness",
         "10 kN m/rad",
@@ -264,6 +273,11 @@ _KINDS: dict[str, _Kind] = {
         },
     ),
     "power": _Kind("a power", "25 kW", {"W": "watt", "kW": "kilowatt", "hp": "horsepower"}),
+    "energy": _Kind(
+        "an energy",
+        "25 J",
+        {"J": "joule", "mJ": "millijoule", "kJ": "kilojoule", "Wh": "watt*hour"},
+    ),
     "time": _Kind(
         "a time",
         "3 s",

@@ -1,16 +1,17 @@
-"""Mesh stiffness and vibration, along the line of action; imported in full when asked for."""
+"""Mesh stiffness, vibration and motion, along the line of action; imported in full when asked for."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.analyses.figures import VIBRATION, by_torque
+from pitchpoint.analyses.figures import OF_MOTION, VIBRATION, by_torque, numbers
 from pitchpoint.analyses.torsion import rigid
 from pitchpoint.cases.build import Built
 
-__all__ = ["RESONANCE", "STIFFNESS", "VIBRATIONS"]
+__all__ = ["MOTION", "MOTIONS", "RESONANCE", "START_UP", "STIFFNESS", "VIBRATIONS"]
 
 
 def _stiffness(built: Built, _: Piece, __: Progress) -> xr.Dataset:
@@ -29,6 +30,36 @@ def _resonance(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     from pitchpoint.analyses.vibration import resonance_part
 
     return resonance_part(built)
+
+
+def _motion(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    from pitchpoint.analyses.motion import motion_part
+
+    return motion_part(built)
+
+
+def _motions(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+    from pitchpoint.analyses.motion import against_speed_part
+
+    return against_speed_part(built, progress)
+
+
+def _further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+    from pitchpoint.analyses.motion import next_speeds
+
+    return next_speeds(built, last, progress)
+
+
+def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    from pitchpoint.analyses.motion import joined
+
+    return joined(built, parts)
+
+
+def _start_up(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    from pitchpoint.analyses.motion import start_up_part
+
+    return start_up_part(built)
 
 
 def _no_line(built: Built) -> str | None:
@@ -53,8 +84,38 @@ def _one_speed(built: Built) -> str | None:
     return _still(built) or (Unasked("[dynamics] gives no speeds") if alone else None)
 
 
+def _unmoved(built: Built) -> str | None:
+    asked = built.case.dynamics
+    alone = asked is not None and asked.motion is None
+    return _still(built) or (Unasked("the case has no [dynamics.motion]") if alone else None)
+
+
+def _one_motion(built: Built) -> str | None:
+    return _unmoved(built) or _one_speed(built)
+
+
+def _no_start(built: Built) -> str | None:
+    told = _unmoved(built)
+    if told is not None:
+        return told
+    asked = built.case.dynamics
+    assert asked is not None
+    assert asked.motion is not None
+    return Unasked("[dynamics.motion] has no start_up") if asked.motion.start_up is None else None
+
+
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     return {"vibration": by_torque(parts.get("vibration"), VIBRATION)}
+
+
+def _motion_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("motion")
+    if data is None:
+        return {"motion": {}}
+    return {
+        "motion": {name: numbers(np.atleast_1d(data[name].values)) for name in OF_MOTION}
+        | {"status": str(data.attrs["sentence"])}
+    }
 
 
 STIFFNESS = Analysis(
@@ -71,3 +132,20 @@ VIBRATIONS = Analysis(
 RESONANCE = Analysis(
     name="resonance", title="vibration against speed", lacks=_one_speed, compute=_resonance
 )
+MOTION = Analysis(
+    name="motion",
+    title="motion with friction",
+    lacks=_unmoved,
+    compute=_motion,
+    main=OF_MOTION,
+    figures=_motion_figures,
+)
+MOTIONS = Analysis(
+    name="motion_against_speed",
+    title="motion with friction against speed",
+    lacks=_one_motion,
+    compute=_motions,
+    onward=_further,
+    joined=_joined,
+)
+START_UP = Analysis(name="start_up", title="start", lacks=_no_start, compute=_start_up)

@@ -12,6 +12,7 @@ from pitchpoint.analyses.summaries import AT_CONTACT
 __all__ = [
     "CONTACT",
     "MAIN",
+    "OF_MOTION",
     "REACTIONS",
     "STAGES",
     "TEMPERATURES",
@@ -61,6 +62,21 @@ def json_figures(data: Any) -> tuple[str, ...]:
     """The same, and those of each stage of a drive."""
     return (*main_figures(data), *(name for name in STAGES if name in data))
 
+
+OF_MOTION = (
+    "mean_efficiency",
+    "quasi_static_efficiency",
+    "mean_transmission_error",
+    "transmission_error_rms",
+    "transmission_error_range",
+    "largest_mesh_force",
+    "smallest_mesh_force",
+    "largest_bearing_force",
+    "natural_frequency",
+    "mesh_frequency",
+    "energy_closure",
+)
+"""Main figures of a motion with friction."""
 
 VIBRATION = (
     "mean_stiffness",

@@ -1,6 +1,13 @@
 """All analyses, in the order in which their parts are worth having."""
 
-from pitchpoint.analyses.along_action import RESONANCE, STIFFNESS, VIBRATIONS
+from pitchpoint.analyses.along_action import (
+    MOTION,
+    MOTIONS,
+    RESONANCE,
+    START_UP,
+    STIFFNESS,
+    VIBRATIONS,
+)
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.joint import JOINT
@@ -28,6 +35,9 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     STIFFNESS,
     VIBRATIONS,
     RESONANCE,
+    MOTION,
+    MOTIONS,
+    START_UP,
     STUDIES,
     RUNNING,
     LOSS_MAP,

@@ -480,6 +480,7 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         _check_heat(case, mesh)
     if case.dynamics is not None and mesh.along_action:
         _check_masses(case, mesh)
+        _check_motion(case, mesh)
     elif case.dynamics is not None:
         _check_joint(case, case.dynamics)
 
@@ -517,6 +518,31 @@ def _check_masses(case: Case, mesh: Mesh) -> None:
         )
 
 
+def _check_motion(case: Case, mesh: Mesh) -> None:
+    """InputError for gears whose motion with friction cannot be computed."""
+    assert case.dynamics is not None
+    asked = case.dynamics.motion
+    if asked is None:
+        return
+    if mesh.couples:
+        raise InputError(
+            "motion with friction takes each pair of teeth as a spring of its own, and the rim of these "
+            "gears couples them; leave this table out",
+            key="dynamics.motion",
+        )
+    travelling = [name for name in case.gears.members if name not in case.gears.shafts]
+    if travelling and asked.bearing_stiffness is not None:
+        raise InputError(
+            f"was given, and the {travelling[0]} travels; bearings that yield are those of gears that turn",
+            key="dynamics.motion.bearing_stiffness",
+        )
+    if asked.mesh_damping == 0.0 and not any(asked.bearing_damping or ()):
+        raise InputError(
+            "0 N s/m leaves nothing that damps the vibration, so that it never becomes steady",
+            key="dynamics.motion.mesh_damping",
+        )
+
+
 def _check_joint(case: Case, asked: Dynamics) -> None:
     """InputError for what the torsional vibration of a joint does not take, or lacks."""
     if not case.gears.transmits:
@@ -540,7 +566,7 @@ def _check_joint(case: Case, asked: Dynamics) -> None:
         )
 
 
-_ALONG_ACTION = ("profile_error", "backlash", "torques", "forces")
+_ALONG_ACTION = ("profile_error", "backlash", "torques", "forces", "motion")
 _OF_JOINT = ("inertia", "damping_ratio", "speeds")
 
 

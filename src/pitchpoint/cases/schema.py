@@ -1,7 +1,7 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from itertools import count
+from itertools import count, pairwise
 from math import inf, pi
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
@@ -73,6 +73,15 @@ OVER_SQUARE = Quantity("line load", 0.0, 1e6, "N/m")
 PRELOAD_RATIO = Quantity("dimensionless", 0.0, 100.0)
 EXPONENT = Quantity("dimensionless", 0.0, 3.0, open_low=True)
 ANY = Quantity("dimensionless", -inf, inf)
+
+STIFFNESS = Quantity("stiffness", 0.0, 1e13, "N/um", open_low=True)
+DAMPING = Quantity("viscous damping", 0.0, 1e9, "N s/m")
+MASS = Quantity("mass", 0.0, 1e6, "kg", open_low=True)
+DURATION = Quantity("time", 0.0, 1e4, "s", open_low=True)
+RISE = Quantity("time", 0.0, 1e4, "s")
+CYCLES = Quantity("dimensionless", 1, 8, whole=True)
+INSTANTS = Quantity("dimensionless", 2, 20_000, whole=True)
+ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 
 TIMES = Quantity("dimensionless", 0.0, 1000.0, open_low=True)
 NOT_NEGATIVE = Quantity("dimensionless", 0.0, inf)
@@ -502,6 +511,99 @@ class Speeds(Table):
         return self
 
 
+class StartUp(Table):
+    """A start from rest, or from a speed: the load comes up over the rise, and a torque drives.
+
+    The torque is constant, or that of the motor of the same table.
+    """
+
+    duration: Annotated[float, DURATION]
+    torque: Annotated[float, TORQUE] | None = None
+    rise: Annotated[float, RISE] = 0.0
+    speed: Annotated[float, MAP_SPEED] = 0.0
+    count: Annotated[float, INSTANTS] = 2001.0
+
+    @model_validator(mode="after")
+    def _inside(self) -> "StartUp":
+        if self.rise >= self.duration:
+            told = f"{RISE.show(self.rise)} was given; it is shorter than the duration"
+            raise InputError(f"{told}, {DURATION.show(self.duration)}", key="rise")
+        return self
+
+
+class MotionTable(Table):
+    """Motion with the friction of the teeth in it, of two gears that turn and shift on their bearings.
+
+    It takes inertia, damping ratio, profile error, backlash and speeds from the table around it.
+    """
+
+    bearing_stiffness: Annotated[tuple[float, float], Pair(STIFFNESS)] | None = None
+    bearing_damping: Annotated[tuple[float, float], Pair(DAMPING)] | None = None
+    mass: Annotated[tuple[float, float], Pair(MASS)] | None = None
+    mesh_damping: Annotated[float, DAMPING] | None = None
+    pair_path: Annotated[tuple[Annotated[float, ON_PATH], ...], Field(max_length=400)] = ()
+    pair_stiffness: Annotated[tuple[Annotated[float, STIFFNESS], ...], Field(max_length=400)] = ()
+    prescribed_speed: Annotated[bool, BeforeValidator(_flag)] = False
+    stall_torque: Annotated[float, LOADED] | None = None
+    no_load_speed: Annotated[float, SPEED] | None = None
+    cycles: Annotated[float, CYCLES] = 1.0
+    start_up: StartUp | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> "MotionTable":
+        for key, needed, why in _TOGETHER:
+            if _given(self, key) and not _given(self, needed):
+                raise InputError(f"is missing; {why}", key=needed)
+        if self.prescribed_speed and self.stall_torque is not None:
+            told = "was given; a driver of prescribed speed needs no motor, leave one of them out"
+            raise InputError(told, key="stall_torque")
+        if len(self.pair_path) != len(self.pair_stiffness):
+            told = f"{len(self.pair_stiffness)} values are given for {len(self.pair_path)} places"
+            raise InputError(f"{told} of pair_path; give as many", key="pair_stiffness")
+        _check_path(self.pair_path)
+        self._check_start()
+        return self
+
+    def _check_start(self) -> None:
+        start = self.start_up
+        if start is None:
+            return
+        motor = self.stall_torque is not None
+        if motor and start.torque is not None:
+            told = "was given; the motor of stall_torque drives, leave one of them out"
+            raise InputError(told, key="start_up.torque")
+        if not motor and start.torque is None and not self.prescribed_speed:
+            told = "is missing; a start asks for a torque that drives, or for the motor of stall_torque"
+            raise InputError(told, key="start_up.torque")
+        if self.prescribed_speed and start.speed == 0.0:
+            told = "is missing; a driver of prescribed speed keeps the speed with which it starts"
+            raise InputError(told, key="start_up.speed")
+
+
+_TOGETHER = (
+    ("bearing_stiffness", "mass", "gears that shift on their bearings ask for their masses"),
+    ("bearing_damping", "bearing_stiffness", "it belongs to bearing_damping"),
+    ("mass", "bearing_stiffness", "masses move only on bearings that yield"),
+    ("stall_torque", "no_load_speed", "a motor has a torque at rest and a speed without load"),
+    ("no_load_speed", "stall_torque", "a motor has a torque at rest and a speed without load"),
+    ("pair_path", "pair_stiffness", "a table of stiffness has places and values"),
+    ("pair_stiffness", "pair_path", "a table of stiffness has places and values"),
+)
+"""Keys that ask for others, and why."""
+
+
+def _check_path(places: Sequence[float]) -> None:
+    """InputError unless the places of a table of stiffness grow from the entry of a pair on."""
+    if not places:
+        return
+    if len(places) < 2 or any(b <= a for a, b in pairwise(places)):
+        told = f"{', '.join(f'{one:g}' for one in places)} was given"
+        raise InputError(
+            f"{told}; places of a pair grow from 0, where it enters, in base pitches, at least two of them",
+            key="pair_path",
+        )
+
+
 class Dynamics(Table):
     """Vibration of a pair along its line of action, or of a joint about the axis of its drive."""
 
@@ -512,6 +614,7 @@ class Dynamics(Table):
     torques: Annotated[tuple[Annotated[float, LOADED], ...], Field(max_length=50)] = ()
     forces: Annotated[tuple[Annotated[float, PRESSED], ...], Field(max_length=50)] = ()
     speeds: Speeds | None = None
+    motion: MotionTable | None = None
 
 
 class Sweep(Table):

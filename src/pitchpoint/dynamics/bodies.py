@@ -16,6 +16,7 @@ __all__ = [
     "Body",
     "Support",
     "across",
+    "bearing_forces",
     "damping",
     "masses",
     "motor",
@@ -124,6 +125,20 @@ def stiffness(bodies: Sequence[Body]) -> Matrix:
 def damping(bodies: Sequence[Body]) -> Matrix:
     """Damping of the bearings on all coordinates, C [N s/m]."""
     return _assembled(bodies, [held.damping for _, held in _supports(bodies)])
+
+
+def bearing_forces(
+    bodies: Sequence[Body],
+    place: Float[Array, "coordinate *b"],
+    rate: Float[Array, "coordinate *b"],
+) -> Float[Array, "coordinate *b"]:
+    """Forces on bearings that yield, zero on the coordinates of the mesh [N].
+
+    Args:
+        bodies: of all coordinates.
+        place, rate: of all coordinates.
+    """
+    return jnp.tensordot(stiffness(bodies), place, 1) + jnp.tensordot(damping(bodies), rate, 1)
 
 
 def on_all_coordinates(

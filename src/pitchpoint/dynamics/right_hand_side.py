@@ -10,11 +10,11 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.dynamics.bodies import (
     Body,
+    bearing_forces,
     damping,
     masses,
     moved_masses,
     on_all_coordinates,
-    stiffness,
 )
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.excitation import Waves
@@ -406,7 +406,7 @@ def _push(
 ) -> Coordinates:
     """What is left of the external torques to accelerate the bodies."""
     bodies = moving.bodies
-    held = jnp.tensordot(stiffness(bodies), place, 1) + jnp.tensordot(damping(bodies), rate, 1)
+    held = bearing_forces(bodies, place, rate)
     return external - held - _drag(moving, rate) - found.on_coordinates
 
 

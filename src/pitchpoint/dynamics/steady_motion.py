@@ -12,10 +12,11 @@ from jaxtyping import Array, Bool, Complex, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.dynamics.bodies import damping, moved_masses, stiffness
+from pitchpoint.dynamics.bodies import bearing_forces, damping, moved_masses, stiffness
 from pitchpoint.dynamics.energy import Account
 from pitchpoint.dynamics.floquet import STABLE, multipliers
 from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.modes import mean_stiffness
 from pitchpoint.dynamics.passage import Passage, passage
 from pitchpoint.dynamics.right_hand_side import (
     WORKS,
@@ -34,6 +35,7 @@ from pitchpoint.dynamics.shooting import Shot, search
 from pitchpoint.dynamics.transient import CLOSED, demand_bodies, demand_effects, where_known
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.period import nodes
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.programs import fast_program
@@ -44,7 +46,7 @@ __all__ = ["Motion", "film", "periodic_motion", "steady_motion", "steady_motions
 TOLERANCE = 1e-10
 """Largest estimated error of a step, of states of order one."""
 
-MOST_STEPS = 100_000
+MOST_STEPS = 20_000
 """Steps between two events after which a period is given up."""
 
 SHORTEST = 1e-12
@@ -207,7 +209,7 @@ def steady_motion(
         speed: mean speed of the driver, above zero [rad/s or m/s].
         grid: static; elements and nodes at which the motion is kept.
         cycles: static; mesh cycles in a period.
-        start: `Motion.state` of a neighbour.
+        start: `Motion.state` of a neighbour; the nominal motion where it is none, or not a number.
         tolerance: largest estimated error of a step, of states of order one.
 
     Returns:
@@ -265,7 +267,10 @@ def periodic_motion(
     """
     fixed, at = jax.lax.stop_gradient((_arrays(moving), speed))
     search_in = _Turning(eqx.combine(fixed, moving), at, cycles, tolerance)
-    first = search_in.first if start is None else jax.lax.stop_gradient(start)
+    first = search_in.first
+    if start is not None:
+        known = jax.lax.stop_gradient(start)
+        first = jnp.where(jnp.all(jnp.isfinite(known)), known, first)
     shot = search(search_in.period, first, 1)
     turning = _Turning(moving, speed, cycles, tolerance)
     state = _polished(turning, shot)
@@ -295,10 +300,9 @@ def _many(
 
     def at(state: State, speed: Float[Array, ""]) -> tuple[State, Motion]:
         found = periodic_motion(moving, speed, grid, cycles, state)
-        return jnp.where(jnp.all(jnp.isfinite(found.state)), found.state, first), found
+        return found.state, found
 
-    first = _Turning(moving, speeds[0], cycles, TOLERANCE).first
-    _, motions = jax.lax.scan(at, first, speeds)
+    _, motions = jax.lax.scan(at, jnp.full(2 * moving.mass.shape[0], jnp.nan), speeds)
     return motions
 
 
@@ -377,10 +381,30 @@ class _Turning:
 
     @property
     def first(self) -> State:
-        """Nominal motion under the torque that balances the others."""
-        others = torques_beside_contacts(self.moving, self.nominal) @ self.motion
-        torque = jnp.where(self.held, 0.0, -self.sense * others / self.push)
-        return jnp.pad(self.driver * torque, (0, self.size // 2))
+        """Nominal motion, wound up by its torques; what drives balances these and the friction there."""
+        pushes = torques_beside_contacts(self.moving, self.nominal)
+        places = self._wound_up(pushes)
+        needed = self._lost(places) / self.speed - pushes @ self.motion
+        torque = jnp.where(self.held, 0.0, self.sense * needed / self.push)
+        return jnp.pad(self.driver * torque + places / self.place, (0, self.size // 2))
+
+    def _lost(self, places: Float[Array, " coordinate"]) -> Float[Array, ""]:
+        """Mean power that the nominal motion loses in its contacts [W]."""
+        phase, weight = nodes(self.passage.edges[:-1], Grid().nodes)
+
+        def at(one: Float[Array, ""]) -> Float[Array, ""]:
+            engaged = self.passage.at(one)
+            found = forces_beside(self.moving, engaged, one, places, self.nominal)
+            return total(found.drawn * found.slip + found.rolled * found.roll)
+
+        return jax.vmap(at)(phase.ravel()) @ weight.ravel()
+
+    def _wound_up(self, pushes: Float[Array, " coordinate"]) -> Float[Array, " coordinate"]:
+        """Places under the torques on mean springs, the driver held; from there little swings at first."""
+        kept = 1.0 - self.driver
+        springs = mean_stiffness(self.moving) * kept[:, None] * kept + jnp.diag(self.driver)
+        places = jnp.linalg.solve(springs, pushes * kept)
+        return jnp.where(jnp.all(jnp.isfinite(places)), places, 0.0)
 
     @property
     def length(self) -> Float[Array, ""]:
@@ -613,7 +637,7 @@ def _described(
         "rate": rate,
         "found": found,
         "torque": torque,
-        "bearing": _bearing(moving, beside, rate),
+        "bearing": bearing_forces(moving.bodies, beside, rate),
         "load_power": -jnp.tensordot(loaded, torque * rate, 1),
         "transmission_error": jnp.tensordot(action, beside[:dof], 1),
         "energy": account,
@@ -642,11 +666,6 @@ def _account(
         bearings=flat(jnp.sum(beside * held, axis=0) / 2.0),
         **dict(zip(WORKS, flat(works) * turning.energy, strict=True)),
     )
-
-
-def _bearing(moving: Moving, beside: States, rate: States) -> States:
-    held, damped = stiffness(moving.bodies), damping(moving.bodies)
-    return jnp.tensordot(held, beside, 1) + jnp.tensordot(damped, rate, 1)
 
 
 def _status(

@@ -9,6 +9,7 @@ __all__ = [
     "Variable",
     "angle",
     "deviation",
+    "energy",
     "force",
     "length",
     "percent",
@@ -72,6 +73,11 @@ def deviation(long_name: str, symbol: str) -> Variable:
 def length(long_name: str, symbol: str) -> Variable:
     """A length [m], shown in mm."""
     return Variable(long_name, symbol, "m", "mm", "length")
+
+
+def energy(long_name: str, symbol: str) -> Variable:
+    """An energy or a work [J]."""
+    return Variable(long_name, symbol, "J", "J", "energy")
 
 
 def power(long_name: str, symbol: str) -> Variable:

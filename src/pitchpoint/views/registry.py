@@ -15,6 +15,7 @@ from pitchpoint.views.sections.joint import JOINT
 from pitchpoint.views.sections.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.views.sections.loss_map import LOSS_MAP
 from pitchpoint.views.sections.models import MODELS
+from pitchpoint.views.sections.motion import MOTION
 from pitchpoint.views.sections.path import PATH
 from pitchpoint.views.sections.sources import SOURCES
 from pitchpoint.views.sections.stages import STAGES
@@ -42,6 +43,7 @@ SECTIONS: Registry[Section] = Registry(
     BESIDE,
     STIFFNESS,
     VIBRATION,
+    MOTION,
     STUDIES,
     FORMULAS,
     LOSS_MAP,

@@ -1,0 +1,509 @@
+"""Motion with the friction of the teeth in it: steady, against speed, and from a start, as datasets."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, vibrating_of
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.schema import MotionTable
+from pitchpoint.contact.contacts import along
+from pitchpoint.dynamics.bodies import Body, Support, bearing_forces, motor
+from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+from pitchpoint.dynamics.excitation import Waves
+from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.modes import along_action, mean_stiffness, natural_frequencies
+from pitchpoint.dynamics.passage import passage, tabulated
+from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.steady_motion import Motion, film, periodic_motion
+from pitchpoint.dynamics.system import modal_damping, reduced_mass
+from pitchpoint.dynamics.transient import transient
+from pitchpoint.efficiency.summary import summarise
+from pitchpoint.errors import InputError
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
+from pitchpoint.programs import fast_program, program
+from pitchpoint.results.store import dataset
+from pitchpoint.status import Code
+from pitchpoint.status import told as told_of
+
+__all__ = [
+    "against_speed_part",
+    "joined",
+    "motion_part",
+    "moving_of",
+    "next_speeds",
+    "start_up_part",
+]
+
+CREEP = 1e-3
+"""Sliding at which friction is three quarters of itself, over the fastest one: its share of the loss is
+the square."""
+
+FEW = 4
+"""Speeds of a piece, so that little is lost when a run is stopped."""
+
+ACCOUNT = ("put_in", "friction", "rolling", "damping", "drag")
+"""Energies of a period that are shown."""
+
+Nodal = Float[Array, "*b node"]
+
+
+# ---- what moves
+
+
+@lru_cache(maxsize=2)
+def moving_of(built: Built) -> tuple[Moving, np.ndarray]:
+    """Mesh and bodies of a case that asks for their motion, and natural frequencies [Hz].
+
+    Losses beside the teeth are left out. The damping along the line of action is that which gives the
+    bodies on the mean mesh stiffness the damping ratio of the case, unless it has one by value.
+
+    Args:
+        built: the case.
+
+    Raises:
+        InputError: the table of the pair's stiffness cannot be.
+    """
+    asked, design = _asked(built), replace(built.design, drag=())
+    curve = None
+    if asked.pair_stiffness:
+        curve = tabulated(asked.pair_path, asked.pair_stiffness)
+    way = passage(design, built.operation, built.terms, curve)
+    vibrating = vibrating_of(built)
+    inertia = np.array(vibrating.inertia, float)
+    if asked.prescribed_speed:
+        inertia[int(built.nominal["driver"].argmax())] = np.inf
+    moving = Moving(
+        design=design,
+        operation=built.operation,
+        models=built.models[0],
+        bodies=tuple(_bodies(built, inertia)),
+        knots=array([0.0]),
+        phase=array(0.0),
+        creep=array(1.0),
+        relaxation=array(0.0),
+        passage=way,
+        law=CONTACT_LAWS[built.case.models.tooth_contact],
+        backlash=vibrating.backlash,
+        error=Waves(vibrating.error, array([*map(float, vibrating.orders)]), vibrating.error_phase),
+    )
+    damping, fastest, frequencies = _mean(moving, vibrating.damping_ratio)
+    if asked.mesh_damping is not None:
+        damping = array(asked.mesh_damping)
+    ready = replace(moving, mesh_damping=damping, creep=CREEP * fastest)
+    return ready, np.asarray(frequencies)
+
+
+def _asked(built: Built) -> MotionTable:
+    assert built.case.dynamics is not None
+    assert built.case.dynamics.motion is not None
+    return built.case.dynamics.motion
+
+
+@program
+def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array, Array]:
+    """Damping along the line of action, the fastest sliding for a unit speed, natural frequencies."""
+    assert moving.passage is not None
+    mesh = moving.design.mesh
+    whole, line = mean_stiffness(moving), mesh.line_of_action
+    mass = reduced_mass(jnp.stack([body.inertia for body in moving.bodies]), line)
+    spring = along_action(whole, line)
+    damping = modal_damping(mass[None, None], spring[None, None], ratio)[0, 0]
+    contacts, _ = jax.vmap(moving.passage.at)(moving.passage.edges[:-1])
+    sliding = jax.vmap(lambda one: along(one.slip_arm, mesh.motion))(contacts)
+    fastest = jnp.max(jnp.where(contacts.active, jnp.abs(sliding), 0.0))
+    return damping, fastest, natural_frequencies(moving, whole)
+
+
+def _bodies(built: Built, inertia: np.ndarray) -> Iterator[Body]:
+    """Driver and loaded body with their torques, each on its bearings."""
+    asked, nominal = _asked(built), built.nominal
+    driver, loaded = (int(nominal[end].argmax()) for end in ("driver", "loaded"))
+    for number, (each, rate) in enumerate(zip(inertia, nominal["motion"], strict=True)):
+        body = Body(array(each))
+        if number == loaded:
+            body = Body(array(each), array([-np.sign(rate) * built.case.operation.load]))
+        if number == driver and asked.stall_torque is not None:
+            assert asked.no_load_speed is not None
+            body = motor(
+                stall_torque=float(np.sign(rate)) * asked.stall_torque,
+                no_load_speed=asked.no_load_speed,
+                inertia=float(each),
+            )
+        yield replace(body, support=_support(built, number))
+
+
+def _support(built: Built, number: int) -> Support | None:
+    """Bearings that yield along the line of action and across it, in the plane of the gears."""
+    asked = _asked(built)
+    if asked.bearing_stiffness is None or asked.mass is None:
+        return None
+    damping = (asked.bearing_damping or (0.0, 0.0))[number]
+    plane = np.eye(2)
+    held = array(asked.bearing_stiffness[number] * plane)
+    return Support(array(asked.mass[number]), array(_ways(built)), held, array(damping * plane))
+
+
+def _ways(built: Built) -> np.ndarray:
+    """Unit vectors along the line of action and across it."""
+    contacts = jax.device_get(_contacts(built.design))
+    (pair, piece) = np.argwhere(contacts.active)[0]
+    normal = contacts.direction[:2, pair, piece]
+    x, y = normal / np.linalg.norm(normal)
+    return np.array([[x, y, 0.0], [-y, x, 0.0]])
+
+
+@program
+def _contacts(design: Any) -> Any:
+    return design.mesh.contacts(jnp.asarray(0.0))
+
+
+def _grid(built: Built, frequencies: np.ndarray, slowest: float, key: str) -> Grid:
+    """Grid for the highest natural frequency over the mesh frequency, and for the errors."""
+    assert built.case.dynamics is not None
+    mesh_frequency = slowest / float(built.nominal["period"])
+    ratio = float(frequencies.max()) / mesh_frequency
+    if not ratio <= MOST_RATIO:
+        raise InputError(
+            f"the highest natural frequency is {ratio:.3g} times the mesh frequency, and a motion is "
+            f"resolved up to {MOST_RATIO:g} times",
+            key=key,
+        )
+    orders = [float(one.order) for one in built.case.dynamics.profile_error]
+    return Grid.resolving(max(ratio, *orders, 0.0))
+
+
+# ---- steady motion
+
+
+@fast_program
+def _steady(
+    moving: Moving,
+    speed: Float[Array, ""],
+    start: Float[Array, " state"],
+    law: FilmThickness,
+    grid: Grid,
+    cycles: int,
+) -> dict[str, Array]:
+    """Everything that is kept of a steady motion, by name."""
+    own = replace(moving, creep=moving.creep * speed)
+    found = periodic_motion(own, speed, grid, cycles, start)
+    return {**_courses(own, found, law), **_figures(own, found)}
+
+
+def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Array]:
+    """Courses over the period: nodes in the last axis."""
+    act = found.found
+    force = jnp.maximum(act.force, 0.0)
+    pressed = jnp.sum(force, axis=1)
+    drawn = jnp.sum(act.friction * force, axis=1)
+    lost = jnp.sum(act.drawn * act.slip + act.rolled * act.roll, axis=1)
+    thickness = jnp.nanmin(film(moving, found, law), axis=1)
+    size = len(moving.design.mesh.coordinates)
+    courses = {
+        "turned": found.turned,
+        "time": found.time,
+        "transmission_error": found.transmission_error,
+        "relative_speed": found.rate[:size] / found.mean(found.rate[:size])[:, None, None],
+        "load": jnp.sum(act.force, axis=1),
+        "friction": drawn / jnp.where(pressed > 0.0, pressed, jnp.nan),
+        "friction_force": jnp.sum(act.drawn, axis=1),
+        "pair_loss": lost,
+        "film_thickness": thickness,
+        "lambda_ratio": thickness / moving.design.roughness.composite_rq,
+        "efficiency": found.instantaneous_efficiency,
+        "bearing_force": found.bearing[size:],
+    }
+    nodes = found.turned.size
+    return {name: values.reshape(*values.shape[:-2], nodes) for name, values in courses.items()}
+
+
+def _figures(moving: Moving, found: Motion) -> dict[str, Array]:
+    """Figures of the whole period."""
+    size = len(moving.design.mesh.coordinates)
+    error, energy = found.transmission_error, found.energy
+    force = jnp.sum(found.found.force, axis=(0, 1))
+    # Together, so that the polynomials between the nodes are compiled once.
+    low, high = found.grid.extremes(jnp.stack([error, force]))
+    pairs = found.bearing[size:].reshape(-1, 2, *error.shape)
+    bearing = jnp.sqrt(jnp.sum(pairs**2, axis=1))
+    own = {
+        "mean_efficiency": found.efficiency,
+        "mean_transmission_error": found.mean(error),
+        "transmission_error_rms": found.rms(error),
+        "transmission_error_range": high[0] - low[0],
+        "largest_mesh_force": high[1],
+        "smallest_mesh_force": low[1],
+        "mean_loss": found.mean(found.loss),
+        "largest_bearing_force": jnp.max(bearing, initial=0.0),
+        "largest_multiplier": jnp.max(jnp.abs(found.multipliers)),
+        "energy_closure": energy.closure,
+        "vibration_status": found.status.code,
+        "spectrum": found.spectrum(error, ORDERS),
+        "state": found.state,
+    }
+    parts = {f"work_{name}": getattr(energy, name)[-1] for name in ACCOUNT}
+    return own | parts | {"work_mesh": energy.mesh[-1], "work_error": energy.error[-1]}
+
+
+def _film(built: Built) -> FilmThickness:
+    return FILM_THICKNESS[built.case.models.film_thickness]
+
+
+def quasi_static(built: Built, speeds: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Mean efficiency of the teeth without vibration, pairs sharing as they yield, at driver speeds."""
+    design = replace(built.design, drag=())
+    models = replace(built.models[0], sharing=LOAD_SHARING["from_stiffness"])
+    points = [(design, replace(built.operation, speed=array(speed))) for speed in speeds]
+    found = summarise(points, models)
+    return np.where(found["locked"], np.nan, found["mean_efficiency"])
+
+
+def motion_part(built: Built) -> xr.Dataset:
+    """Steady motion at the operating point."""
+    moving, frequencies = moving_of(built)
+    asked, speed = _asked(built), built.case.operation.speed
+    grid, cycles = _grid(built, frequencies, speed, "operation.speed"), int(asked.cycles)
+    start = jnp.full(2 * moving.mass.shape[0], jnp.nan)
+    given = moving, array(speed), start, _film(built), grid, cycles
+    found = jax.device_get(_steady(*given))
+    found.pop("state")
+    data = {name: (_dims(name, values), values) for name, values in found.items()}
+    code = Code(int(found["vibration_status"]))
+    return dataset(
+        {
+            **data,
+            "natural_frequency": (("mode",), frequencies[frequencies > 0.0]),
+            "mesh_frequency": ((), speed / float(built.nominal["period"])),
+            "quasi_static_efficiency": ((), quasi_static(built, [speed])[0]),
+            "mesh_damping": ((), float(moving.mesh_damping)),
+        },
+        _labels(built, cycles),
+        title="motion with friction",
+        travels=built.travels,
+        warnings=_told(built, np.array([code]), "Motion with friction: {sentence}."),
+        sentence=code.sentence,
+        solve=told_of(np.array(int(code)), found["energy_closure"]),
+        law=built.laws[0].title,
+        contact=CONTACT_LAWS[built.case.models.tooth_contact].title,
+        film_law=built.case.models.film_thickness,
+    )
+
+
+def _labels(built: Built, cycles: int) -> dict[str, Any]:
+    """Coordinates of a motion."""
+    names = [one.body for one in built.bodies]
+    ways = [f"{name}, {way}" for name in names for way in WAYS]
+    yields = _asked(built).bearing_stiffness is not None
+    order = np.array(ORDERS) / cycles
+    return {"body": names, "order": ("order", order)} | ({"bearing": ways} if yields else {})
+
+
+WAYS = ("along the line of action", "across it")
+
+_LANES = ("load", "friction", "friction_force", "pair_loss", "film_thickness", "lambda_ratio")
+_BODY = {
+    "relative_speed": ("body", "node"),
+    "bearing_force": ("bearing", "node"),
+    "spectrum": ("order",),
+}
+
+
+def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
+    if name in _LANES:
+        return "pair", "node"
+    return _BODY.get(name, ("node",)[: np.ndim(values)])
+
+
+def _told(built: Built, codes: np.ndarray, sentence: str) -> list[str]:
+    """What a motion leaves out, and what became of it."""
+    beside = (
+        "Motion with friction is that of the teeth alone: it leaves out the losses of [losses]."
+    )
+    return [*status_sentences(codes, sentence), *[beside] * bool(built.case.losses)]
+
+
+# ---- against speed
+
+
+def next_speeds(built: Built, last: xr.Dataset, progress: Any) -> xr.Dataset | None:
+    """Motions at the speeds after those of the last piece, each begun from its neighbour; None at the end."""
+    done, whole = int(last.attrs["done"]), _course_of_speeds(built)
+    if done >= whole[1].size:
+        return None
+    return _piece(built, done, last["state"].values, progress)
+
+
+def against_speed_part(built: Built, progress: Any) -> xr.Dataset:
+    """Motions at the first speeds of a march through them."""
+    return _piece(built, 0, None, progress)
+
+
+def _course_of_speeds(built: Built) -> tuple[np.ndarray, np.ndarray]:
+    """Directions and speeds in turn: rising, and falling where flanks may part."""
+    assert built.case.dynamics is not None
+    asked = built.case.dynamics.speeds
+    assert asked is not None
+    rising = np.linspace(asked.start, asked.stop, int(asked.count))
+    both = not CONTACT_LAWS[built.case.models.tooth_contact].linear
+    speeds = [rising, rising[::-1]] if both else [rising]
+    return np.repeat(np.arange(len(speeds)), rising.size), np.concatenate(speeds)
+
+
+KEPT = (
+    "mean_efficiency",
+    "mean_transmission_error",
+    "transmission_error_rms",
+    "transmission_error_range",
+    "largest_mesh_force",
+    "smallest_mesh_force",
+    "mean_loss",
+    "largest_bearing_force",
+    "largest_multiplier",
+    "vibration_status",
+    "spectrum",
+)
+"""Figures against speed."""
+
+
+def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> xr.Dataset:
+    """Motions at a few speeds from one of them on."""
+    moving, frequencies = moving_of(built)
+    _, speeds = _course_of_speeds(built)
+    slowest, cycles = float(speeds.min()), int(_asked(built).cycles)
+    grid = _grid(built, frequencies, slowest, "dynamics.speeds.start")
+    if state is None:
+        state = np.full(2 * moving.mass.shape[0], np.nan)
+    rows = []
+    taken = range(done, min(done + FEW, speeds.size))
+    for count, number in enumerate(taken, 1):
+        given = moving, array(speeds[number]), array(state), _film(built), grid, cycles
+        found = jax.device_get(_steady(*given))
+        state = found["state"]
+        rows.append({name: found[name] for name in KEPT})
+        progress(count)
+    data = {name: np.stack([row[name] for row in rows]) for name in KEPT}
+    return dataset(
+        {
+            **{name: (("step", "order")[: values.ndim], values) for name, values in data.items()},
+            "speed": (("step",), speeds[taken.start : taken.stop]),
+            "state": (("coordinate",), state),
+            "natural_frequency": (("mode",), frequencies[frequencies > 0.0]),
+        },
+        {"order": ("order", np.array(ORDERS) / cycles)},
+        travels=built.travels,
+        done=taken.stop,
+        warnings=[],
+    )
+
+
+def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Figures [direction, speed] of all pieces, with the efficiency without vibration beside them."""
+    directions, speeds = _course_of_speeds(built)
+    count = np.count_nonzero(directions == 0)
+    rising = speeds[:count]
+
+    def both(name: str) -> np.ndarray:
+        every = np.concatenate([part[name].values for part in parts])
+        ways = [every[:count], every[count:][::-1]]
+        return np.stack(ways[: directions[-1] + 1])
+
+    dims = ("direction", "speed", "order")
+    data = {name: both(name) for name in KEPT}
+    codes = data["vibration_status"]
+    return dataset(
+        {
+            **{name: (dims[: values.ndim], values) for name, values in data.items()},
+            "quasi_static_efficiency": (("speed",), quasi_static(built, rising)),
+            "natural_frequency": (("mode",), parts[0]["natural_frequency"].values),
+        },
+        {
+            "direction": ["rising", "falling"][: directions[-1] + 1],
+            "speed": ("speed", rising),
+            "order": ("order", parts[0]["order"].values),
+        },
+        title="motion with friction against speed",
+        travels=built.travels,
+        warnings=_told(built, codes, "Motion with friction against speed: at {points} {sentence}."),
+        sentences=[code.sentence for code in Code],
+        solve=told_of(codes.astype(int)),
+        law=built.laws[0].title,
+    )
+
+
+# ---- from a start
+
+
+def start_up_part(built: Built) -> xr.Dataset:
+    """Motion from a start under a constant torque or that of a motor, the load rising."""
+    asked = _asked(built).start_up
+    assert asked is not None
+    moving, _ = moving_of(built)
+    times = np.linspace(0.0, asked.duration, int(asked.count))
+    ready, rate = _started(built, moving)
+    found = jax.device_get(transient(ready, times, rate=rate))
+    size, rates = len(built.bodies), found.rate
+    line = np.asarray(ready.design.mesh.line_of_action)
+    act, energy = found.found, found.energy
+    code = Code(int(found.status.code))
+    lost = np.sum(act.drawn * act.slip + act.rolled * act.roll, axis=(0, 1))
+    held = np.asarray(bearing_forces(ready.bodies, found.place, rates))[size:]
+    return dataset(
+        {
+            "time": (("time",), times),
+            **_speeds(built, rates[:size]),
+            "transmission_error": (("time",), line @ found.place[:size]),
+            "load": (("pair", "time"), np.sum(act.force, axis=1)),
+            "friction_force": (("pair", "time"), np.sum(act.drawn, axis=1)),
+            "loss": (("time",), lost),
+            "bearing_force": (("bearing", "time"), held),
+            **{f"work_{name}": (("time",), getattr(energy, name)) for name in ACCOUNT},
+            "kinetic_energy": (("time",), energy.kinetic),
+            "energy_closure": ((), energy.closure),
+            "vibration_status": ((), int(code)),
+        },
+        {name: one for name, one in _labels(built, 1).items() if name != "order"},
+        title="start",
+        travels=built.travels,
+        warnings=_told(built, np.array([code]), "Start: {sentence}."),
+        sentence=code.sentence,
+        solve=told_of(np.array(int(code)), energy.closure),
+        law=built.laws[0].title,
+    )
+
+
+def _speeds(built: Built, rates: np.ndarray) -> dict[str, Any]:
+    """Speeds of the bodies, without sign; over those of the operating point where some of them travel."""
+    nominal = built.nominal["motion"][:, None]
+    if built.travels:
+        speed = built.case.operation.speed
+        return {"relative_speed": (("body", "time"), rates / nominal / speed)}
+    return {"body_speed": (("body", "time"), rates * np.sign(nominal))}
+
+
+def _started(built: Built, moving: Moving) -> tuple[Moving, np.ndarray]:
+    """What moves under the torques of the start, and the rates of all coordinates there."""
+    asked = _asked(built).start_up
+    assert asked is not None
+    nominal = built.nominal
+    driver, loaded = (int(nominal[end].argmax()) for end in ("driver", "loaded"))
+    bodies = list(moving.bodies)
+    if asked.torque is not None:
+        torque = array([float(np.sign(nominal["motion"][driver])) * asked.torque])
+        bodies[driver] = replace(bodies[driver], torque=torque)
+    knots = array([0.0])
+    if asked.rise > 0.0:
+        knots = array([0.0, asked.rise])
+        own = float(bodies[loaded].torque[0])
+        bodies[loaded] = replace(bodies[loaded], torque=array([0.0, own]))
+    speed = built.case.operation.speed
+    ready = replace(moving, bodies=tuple(bodies), knots=knots, creep=moving.creep * speed)
+    still = np.zeros(moving.mass.shape[0] - len(bodies))
+    return ready, np.concatenate([asked.speed * nominal["motion"], still])

@@ -1,0 +1,434 @@
+"""Motion with the friction of the teeth in it: one period, against speed, and from a start."""
+
+import json
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    continued,
+    display,
+    layout,
+    pair_key,
+    plain,
+    rounded,
+    short_axis,
+)
+from pitchpoint.views.point import period_of
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    Table,
+    reason,
+)
+
+__all__ = ["MOTION", "motion_answer", "motion_panel", "speeds_panel", "start_panel"]
+
+TURNED = "mesh cycles that the driver has turned"
+NONE = "No steady motion was found."
+
+_FIGURES = (
+    "mean_efficiency",
+    "quasi_static_efficiency",
+    "mean_transmission_error",
+    "transmission_error_rms",
+    "transmission_error_range",
+    "largest_mesh_force",
+    "smallest_mesh_force",
+    "largest_bearing_force",
+    "mesh_frequency",
+    "mesh_damping",
+)
+_ON_SCREEN = (
+    "mean_efficiency",
+    "quasi_static_efficiency",
+    "transmission_error_rms",
+    "transmission_error_range",
+    "largest_mesh_force",
+    "smallest_mesh_force",
+)
+_WORKS = (
+    "work_put_in",
+    "work_friction",
+    "work_rolling",
+    "work_damping",
+    "work_drag",
+    "work_mesh",
+    "work_error",
+)
+_OF_PAIRS = ("load", "friction", "friction_force", "lambda_ratio", "pair_loss")
+_AGAINST_SPEED = ("transmission_error_rms", "transmission_error_range", "largest_mesh_force")
+_ORDERS = 8
+"""Orders of the mesh frequency whose lines are drawn in the diagram of Campbell."""
+
+
+def motion_answer(outcome: Outcome) -> str:
+    """Efficiency in motion and without it, and the transmission error, in words."""
+    data = outcome.parts["motion"]
+    if not _found(data):
+        return str(data.attrs["sentence"])
+    names = ("mean_efficiency", "quasi_static_efficiency", "transmission_error_rms")
+    moving, still, error = (
+        show.quantity(name, float(data[name]), of=data) for name in (*names[:2], names[2])
+    )
+    return (
+        f"{moving} of the teeth with vibration and friction together, {still} without vibration; "
+        f"transmission error {error} rms, {_parts(data)}"
+    )
+
+
+def _parts(data: xr.Dataset) -> str:
+    """Whether teeth part, in words."""
+    least = float(data["smallest_mesh_force"])
+    return "the teeth stay in contact" if least > 0.0 else "the teeth part within the period"
+
+
+def _found(data: xr.Dataset) -> bool:
+    return bool(np.isfinite(data["mean_transmission_error"].values))
+
+
+# ---- one period
+
+
+def motion_panel(name: str, outcome: Outcome) -> Panel:
+    """Courses over the period and the orders of the transmission error."""
+    data = outcome.parts["motion"]
+    figures = [
+        _course(f"{name}_error", data, "transmission_error"),
+        _bodies(f"{name}_speed", data, data["turned"].values, TURNED),
+        *(_pairs(f"{name}_{one}", data, one, data["turned"].values, TURNED) for one in _OF_PAIRS),
+        _course(f"{name}_efficiency", data, "efficiency"),
+        _spectrum(f"{name}_spectrum", data),
+    ]
+    if "bearing_force" in data and data.sizes.get("bearing"):
+        figures.append(_bearings(f"{name}_bearing", data, data["turned"].values, TURNED))
+    return Panel("", figures)
+
+
+def _title(name: str, data: xr.Dataset) -> str:
+    words = show.described(name, data).long_name
+    return words[0].upper() + words[1:]
+
+
+def _course(name: str, data: xr.Dataset, variable: str) -> Figure:
+    """One course over the period."""
+    values = display(variable, data[variable].values, data)
+    trace = plain(
+        Key("", PALETTE[0]),
+        *continued(data["turned"].values, values),
+        show.unit_of(variable, data),
+    )
+    axes = layout(TURNED, short_axis(variable, data))
+    return Figure(name, _title(variable, data), [trace], axes, missing=NONE)
+
+
+def _pairs(name: str, data: xr.Dataset, variable: str, x: np.ndarray, along: str) -> Figure:
+    """A quantity of every pair of teeth; gaps where a pair carries nothing."""
+    carries = np.abs(data["load"].values) > 0.0
+    values = display(variable, np.where(carries, data[variable].values, np.nan), data)
+    keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
+    unit = show.unit_of(variable, data)
+    traces = [plain(key, *continued(x, y), unit) for key, y in zip(keys, values, strict=True)]
+    axes = layout(along, short_axis(variable, data))
+    return Figure(name, _title(variable, data), traces, axes, "", tuple(keys), NONE)
+
+
+def _labelled(data: xr.Dataset, axis: str) -> list[Key]:
+    return [Key(str(one), PALETTE[k % len(PALETTE)]) for k, one in enumerate(data[axis].values)]
+
+
+def _bodies(name: str, data: xr.Dataset, x: np.ndarray, along: str) -> Figure:
+    """Speed of every body, over its mean within a period."""
+    variable = "body_speed" if "body_speed" in data else "relative_speed"
+    return _by(name, data, variable, "body", x, along)
+
+
+def _bearings(name: str, data: xr.Dataset, x: np.ndarray, along: str) -> Figure:
+    """Forces on the bearings of every gear."""
+    return _by(name, data, "bearing_force", "bearing", x, along)
+
+
+def _by(name: str, data: xr.Dataset, variable: str, axis: str, x: np.ndarray, along: str) -> Figure:
+    keys, unit = _labelled(data, axis), show.unit_of(variable, data)
+    values = display(variable, data[variable].values, data)
+    traces = [plain(key, *continued(x, y), unit) for key, y in zip(keys, values, strict=True)]
+    axes = layout(along, short_axis(variable, data))
+    return Figure(name, _title(variable, data), traces, axes, "", tuple(keys), NONE)
+
+
+def _spectrum(name: str, data: xr.Dataset) -> Figure:
+    """Amplitudes of the orders of the mesh frequency; that of order zero is the mean."""
+    orders = data["order"].values
+    shown_orders = (orders > 0.0) & (orders <= 20.0)
+    bars: Trace = {
+        "type": "bar",
+        "name": "",
+        "meta": "",
+        "x": orders[shown_orders].tolist(),
+        "y": rounded(display("spectrum", data["spectrum"].values[shown_orders])),
+        "marker": {"color": PALETTE[0]},
+        "hovertemplate": "%{y:.4~g} µm<br>order %{x}",
+    }
+    axes = layout(
+        "order of the mesh frequency", short_axis("spectrum"), yaxis={"rangemode": "tozero"}
+    )
+    return Figure(name, "Orders of the transmission error", [bars], axes, missing=NONE)
+
+
+def _table(data: xr.Dataset) -> Table:
+    names = [name for name in _FIGURES if name != "largest_bearing_force" or "bearing" in data]
+    rows = [
+        (f"{_title(name, data)} {show.described(name, data).symbol}", _cell(data, name))
+        for name in names
+    ]
+    frequencies = show.unit_of("natural_frequency", data)
+    own = ", ".join(show.number(float(one)) for one in data["natural_frequency"].values)
+    rows.insert(-2, ("Natural frequencies with the mean stiffness", f"{own} {frequencies}"))
+    return Table(["", ""], rows, compact=True)
+
+
+def _cell(data: xr.Dataset, name: str) -> str:
+    value = float(data[name])
+    return show.quantity(name, value, of=data) if np.isfinite(value) else "none"
+
+
+def _works(data: xr.Dataset) -> Table:
+    """Energies of one period that are not nothing, and how well they balance."""
+    rows = [(_title(name, data), _cell(data, name)) for name in _WORKS if float(data[name])]
+    closure = float(data["energy_closure"])
+    rows.append(("What is left of their balance, of the largest", f"{closure:.0e}"))
+    return Table(["Energy of one period", ""], rows, compact=True)
+
+
+# ---- against speed
+
+
+def speeds_panel(name: str, outcome: Outcome) -> Panel:
+    """Figures against speed, the orders over speed, and the diagram of Campbell."""
+    data = outcome.parts["motion_against_speed"]
+    figures = [_against(f"{name}_{one}", data, one) for one in _AGAINST_SPEED]
+    figures.insert(2, _efficiencies(f"{name}_efficiency", data))
+    if np.nanmax(data["largest_bearing_force"].values, initial=0.0) > 0.0:
+        figures.append(_against(f"{name}_bearing", data, "largest_bearing_force"))
+    return Panel("", [*figures, _waterfall(f"{name}_waterfall", data), _campbell(name, outcome)])
+
+
+def _branches(data: xr.Dataset, variable: str, colour: str) -> tuple[list[Trace], list[Key]]:
+    speed, unit = display("speed", data["speed"].values, data), show.unit_of(variable, data)
+    traces, keys = [], []
+    looks = zip(data["direction"].values, ("solid", "dash"), strict=False)
+    for (way, dash), values in zip(looks, display(variable, _steady(data, variable)), strict=True):
+        key = Key(f"speed {way}", colour, dash)
+        dots = {"mode": "lines+markers", "marker": {"size": 4, "color": colour}}
+        traces.append(plain(key, speed, values, unit, **dots))
+        keys.append(key)
+    return traces, keys
+
+
+def _steady(data: xr.Dataset, variable: str) -> np.ndarray:
+    """Values where a motion was found that is steady."""
+    return np.where(data["vibration_status"].values == 0, data[variable].values, np.nan)
+
+
+def _against(name: str, data: xr.Dataset, variable: str) -> Figure:
+    traces, keys = _branches(data, variable, PALETTE[0])
+    axes = layout(
+        show.axis_title("speed", data), short_axis(variable, data), yaxis={"rangemode": "tozero"}
+    )
+    several = tuple(keys) if len(keys) > 1 else ()
+    return Figure(name, f"{_title(variable, data)} against speed", traces, axes, "", several, NONE)
+
+
+def _efficiencies(name: str, data: xr.Dataset) -> Figure:
+    """Mean efficiency in motion beside that without vibration."""
+    traces, keys = _branches(data, "mean_efficiency", PALETTE[0])
+    still = Key("without vibration", GREY, "dot")
+    speed = display("speed", data["speed"].values, data)
+    values = display("quasi_static_efficiency", data["quasi_static_efficiency"].values)
+    traces.append(plain(still, speed, values, "%"))
+    if len(keys) == 1:
+        keys = [Key("in motion", PALETTE[0])]
+    axes = layout(show.axis_title("speed", data), short_axis("mean_efficiency"))
+    note = "Of the teeth, pairs sharing the load as they yield."
+    title = "Mean efficiency against speed"
+    return Figure(name, title, traces, axes, note, (*keys, still), NONE)
+
+
+def _waterfall(name: str, data: xr.Dataset) -> Figure:
+    """Amplitude of every order over speed, rising."""
+    orders = data["order"].values
+    kept = (orders > 0.0) & (orders <= 12.0)
+    codes = data["vibration_status"].values[0]
+    amplitude = np.where(codes[:, None] == 0, data["spectrum"].values[0], np.nan)[:, kept]
+    heat: Trace = {
+        "type": "heatmap",
+        "x": rounded(display("speed", data["speed"].values, data)),
+        "y": orders[kept].tolist(),
+        "z": [rounded(row) for row in display("spectrum", amplitude).T],
+        "colorscale": "Cividis",
+        "hoverongaps": False,
+        "colorbar": {"title": {"text": "µm"}, "thickness": 12, "outlinewidth": 0},
+        "hovertemplate": "%{z:.4~g} µm<br>%{x:.4~g}, order %{y}<extra></extra>",
+    }
+    axes = layout(show.axis_title("speed", data), "order of the mesh frequency")
+    title = "Orders of the transmission error over speed"
+    return Figure(name, title, [heat], axes, "Speed rising.", missing=NONE)
+
+
+def _campbell(name: str, outcome: Outcome) -> Figure:
+    """Frequencies of the orders over speed, with the natural frequencies."""
+    data = outcome.parts["motion_against_speed"]
+    ends = np.array([0.0, float(data["speed"].values[-1])])
+    natural = data["natural_frequency"].values
+    most, speed = 1.15 * float(natural.max()), display("speed", ends, data)
+    cycle = period_of(outcome).angle
+    lines, keys = (
+        [],
+        [Key("orders of the mesh frequency", PALETTE[0]), Key("natural", GREY, "dash")],
+    )
+    marks = []
+    for order in range(1, _ORDERS + 1):
+        last = min(ends[1], most * cycle / order)
+        x = display("speed", np.array([0.0, last]), data)
+        y = order * np.array([0.0, last]) / cycle
+        lines.append(plain(Key(f"order {order}", PALETTE[0]), x, y, "Hz"))
+        marks.append({"text": str(order), "x": float(x[1]), "y": float(y[1])} | _LABEL)
+    for value in natural:
+        lines.append(plain(Key("natural frequency", GREY, "dash"), speed, np.full(2, value), "Hz"))
+    axes = layout(
+        show.axis_title("speed", data),
+        "frequency [Hz]",
+        xaxis={"range": [0.0, 1.04 * float(speed[1])]},
+        yaxis={"range": [0.0, 1.06 * most]},
+        annotations=marks,
+    )
+    note = "Where an order crosses a natural frequency, with the mean stiffness, lies a critical speed."
+    return Figure(f"{name}_campbell", "Campbell's diagram", lines, axes, note, tuple(keys), NONE)
+
+
+_LABEL: dict[str, Any] = {
+    "showarrow": False,
+    "xanchor": "left",
+    "yanchor": "bottom",
+    "font": {"size": 11},
+}
+
+
+# ---- from a start
+
+
+def start_panel(name: str, outcome: Outcome) -> Panel:
+    """Courses in time from a start."""
+    data = outcome.parts["start_up"]
+    x, along = display("time", data["time"].values, data), show.axis_title("time", data)
+    error = display("transmission_error", data["transmission_error"].values, data)
+    figures = [
+        _bodies(f"{name}_speed", data, x, along),
+        Figure(
+            f"{name}_error",
+            _title("transmission_error", data),
+            [plain(Key("", PALETTE[0]), *continued(x, error), "µm")],
+            layout(along, short_axis("transmission_error", data)),
+            missing=NONE,
+        ),
+        _pairs(f"{name}_load", data, "load", x, along),
+        _pairs(f"{name}_friction", data, "friction_force", x, along),
+    ]
+    if data.sizes.get("bearing"):
+        figures.append(_bearings(f"{name}_bearing", data, x, along))
+    return Panel("", figures)
+
+
+# ---- the section
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    for position, title, outcome in page.each("motion"):
+        if title:
+            yield Heading(title)
+        yield from _of_period(position, outcome)
+    for position, title, outcome in page.each("motion_against_speed"):
+        yield Heading(f"Against speed: {title}" if title else "Against speed")
+        yield from _gaps(outcome.parts["motion_against_speed"])
+        yield speeds_panel(f"speeds{position}", outcome)
+    for position, title, outcome in page.each("start_up"):
+        yield Heading(f"Start: {title}" if title else "Start")
+        data = outcome.parts["start_up"]
+        yield Paragraph(
+            f"From a start under the torques of the case: {data.attrs['sentence']}. Of the balance of energy "
+            f"{float(data['energy_closure']):.0e} of its largest part is left."
+        )
+        yield start_panel(f"start{position}", outcome)
+
+
+def _of_period(position: int, outcome: Outcome) -> Iterator[Block]:
+    data = outcome.parts["motion"]
+    held = " on bearings that yield" if data.sizes.get("bearing") else ""
+    yield Paragraph(
+        f"Both gears as bodies{held}, at the mean speed of the operating point, steady. Every contact draws "
+        f"at its own force, speeds and film by the law of friction: {data.attrs['law']}. Contact: "
+        f"{data.attrs['contact']}."
+    )
+    if not _found(data):
+        yield Paragraph(f"No values are shown: {data.attrs['sentence']}.", "warning")
+        return
+    yield _table(data)
+    yield Paragraph(
+        "The efficiency counts sliding, rolling and damping while the gears vibrate; that without vibration "
+        "is quasi-static, pairs sharing the load as they yield. The transmission error is that of the "
+        "rotations: where bearings yield their deflection is in it.",
+        "note",
+    )
+    yield _works(data)
+    yield motion_panel(f"motion{position}", outcome)
+
+
+def _gaps(data: xr.Dataset) -> Iterator[Block]:
+    """Speeds without a steady motion, and why."""
+    told: Sequence[str] = json.loads(data.attrs["sentences"])
+    for way, codes in zip(data["direction"].values, data["vibration_status"].values, strict=True):
+        for code in np.unique(codes[codes != 0]):
+            count = np.count_nonzero(codes == code)
+            yield Paragraph(
+                f"Speed {way}: {count} of {codes.size} speeds are left out, {told[int(code)]}.",
+                "warning",
+            )
+
+
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    data = outcome.parts.get("motion")
+    if data is None:
+        return
+    row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
+    yield Printed("Motion with friction", [row], f"{motion_answer(outcome)}.")
+
+
+def _lacks(page: Page) -> str | None:
+    return None if page.having("motion") else reason(page, "motion")
+
+
+MOTION = Section(
+    name="motion",
+    title="Motion with friction",
+    short="Motion",
+    order=420.0,
+    lacks=_lacks,
+    blocks=_blocks,
+    answer=lambda one: [("In motion", motion_answer(one))] if "motion" in one.parts else [],
+    screen=_screen,
+)
