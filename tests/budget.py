@@ -29,6 +29,7 @@ SLOWEST_FIRST = (
     "cli/test_commands.py",
     "properties/test_gradients.py",
     "analytic/test_strain_wave_geometry.py",
+    "analytic/test_strain_wave_loads.py",
     "properties/test_strain_wave_gradients.py",
     "analytic/test_dynamics.py",
     "literature/test_xu2021.py",

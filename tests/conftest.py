@@ -10,12 +10,15 @@ QUICKLY = (
     "--xla_backend_optimization_level=0",
     "--xla_llvm_disable_expensive_passes=true",
     "--xla_cpu_use_fusion_emitters=false",
+    "--xla_cpu_parallel_codegen_split_count=1",  # of 32 parts nothing is parallel on one thread
 )
 """Programs of tests run for milliseconds and compile for seconds; those of subprocesses too."""
 
 _given = os.environ.get("XLA_FLAGS", "")
 _more = [flag for flag in QUICKLY if flag.partition("=")[0] not in _given]
 os.environ["XLA_FLAGS"] = " ".join([_given, *_more]).strip()  # read once, with the first array
+# Nobody reads from which lines of Python an operation of a program came: finding out is a tenth of the work.
+os.environ.setdefault("JAX_TRACEBACK_IN_LOCATIONS_LIMIT", "0")
 
 import jax  # noqa: E402
 import pytest  # noqa: E402
@@ -26,8 +29,10 @@ install()  # before anything of the package is imported
 
 from pitchpoint import programs  # noqa: E402
 
-MOST_MAPS = 20_000
+MOST_MAPS = 30_000
 """Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
+
+programs.MOST_PROGRAMS = 10**9  # here their maps are counted, and programs shared across a thousand
 
 METER = Meter()
 SPENT: dict[str, Spent] = defaultdict(Spent)

@@ -112,11 +112,13 @@ class Program(Generic[P, R]):
         self, structure: Any, static: tuple[Any, ...], arrays: list[Any], given: Any
     ) -> Callable[..., Any] | None:
         """What computes for arguments of this structure, kept before or traced now; None without a name."""
+        flat = _Flat(self.function, structure, static)
+        traced = jax.jit(flat)
         try:
             path = self._path(given)
             kept = _read(path)
             if kept is None:
-                kept = self._exported(_Flat(self.function, structure, static), arrays)
+                kept = self._exported(flat, traced, arrays)
                 outline, blob = kept
                 write(path, json.dumps(outline).encode() + b"\n" + blob)
                 _make_room(path.parent)
@@ -126,7 +128,11 @@ class Program(Generic[P, R]):
             return None
         except Exception as error:  # what is wrong with the function itself shows when it is traced
             _LOG.info("%s is not kept: %s", self.function.__qualname__, error)
-            return None
+            # What has no portable form, as a call of the host from a library, was traced by now all the same:
+            # for arrays of such types, which those of NumPy are.
+            if flat.outline is None:
+                return None
+            return lambda *leaves: flat.rebuilt(traced(*map(np.asarray, leaves)))
         call = jax.jit(found.call, compiler_options=self.options)
         return lambda *leaves: _rebuilt(outline, iter(call(*leaves)))
 
@@ -139,10 +145,12 @@ class Program(Generic[P, R]):
         digest = hashlib.sha256(json.dumps(told).encode()).hexdigest()
         return folder / "programs" / digest[:40]
 
-    def _exported(self, flat: "_Flat", arrays: list[Any]) -> tuple[Any, bytes]:
+    def _exported(
+        self, flat: "_Flat", traced: jax.stages.Wrapped, arrays: list[Any]
+    ) -> tuple[Any, bytes]:
         """Outline of the results and the portable form of what computes their arrays."""
         shapes = [jax.ShapeDtypeStruct(leaf.shape, leaf.dtype) for leaf in arrays]
-        made = export.export(jax.jit(flat), disabled_checks=_CUSTOM)(*shapes)
+        made = export.export(traced, disabled_checks=_CUSTOM)(*shapes)
         return flat.outline, bytes(made.serialize())
 
 
@@ -205,6 +213,10 @@ class _Flat:
         found: list[Any] = []
         self.outline = _outline(self.function(*args, **kwargs), found)
         return found
+
+    def rebuilt(self, arrays: list[Any]) -> Any:
+        """The result of the function from its arrays."""
+        return _rebuilt(self.outline, iter(arrays))
 
 
 def _is_array(leaf: Any) -> bool:

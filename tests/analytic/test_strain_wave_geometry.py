@@ -9,6 +9,8 @@ from types import SimpleNamespace
 import equinox as eqx
 import numpy as np
 import pytest
+from loaded_strain_wave import passing as passing_teeth
+from loaded_strain_wave import wound, yielding
 from scipy.integrate import quad
 from strain_wave_positions import bend, drive, slope
 
@@ -23,18 +25,12 @@ from pitchpoint.gears.strain_wave.design import (
     double_arc_flank,
 )
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
-from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.equilibrium import equilibrium
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.materials import solids
 
 MODULE, RIM = 0.3e-3, 0.7e-3
 INVOLUTE = InvoluteForm(3.32)
 FORMS = {"flat": DOUBLE_ARCS["flat"], "liu": DOUBLE_ARCS["liu"], "involute": INVOLUTE}
 LOW_RIDGE = 2e-8
 """Ridges of the play so low part no valleys for the library, which looks at few places [m]."""
-STEEL = solids.find("steel").build()
-TERMS_OF_TEETH = TOOTH_COMPLIANCE["beam_foundation_weber"].terms
 
 
 def build(**options):
@@ -419,34 +415,27 @@ def test_teeth_pass_the_whole_turn_without_interference(drives, pair, shape):
     )
 
 
-@eqx.filter_jit
-def engaged(mesh, phase, load):
-    contacts = mesh.contacts(phase)
-    yields = compliance(mesh, contacts, (STEEL, STEEL), TERMS_OF_TEETH, load)
-    teeth = yields.of_teeth(contacts)
-    given = {"gap": contacts.gap, "active": contacts.active, "load": load}
-    arm = jnp.abs(along(contacts.normal, mesh.loaded))
-    found = equilibrium(teeth, yields.body, arm=arm, **given)
-    force = found.force.reshape(-1, *phase.shape)
-    moved = jnp.einsum("ij...,j...->i...", yields.body, force)
-    moved = moved + teeth.reshape(force.shape) * force
-    return {
-        "angle": 2.0 * jnp.pi * contacts.path[:, 0],
+def engaged(mesh, phases, torque):
+    """Contacts at phases under a torque."""
+    (part,) = passing_teeth(mesh, phases)
+    contacts, carried = part[0], wound(mesh, part, torque)
+    arm = np.abs(along(np.asarray(contacts.normal), np.asarray(mesh.loaded)))[:, 0]
+    found = {
+        "angle": 2.0 * np.pi * np.asarray(contacts.path[:, 0]),
         "active": contacts.active[:, 0],
         "gap": contacts.gap[:, 0],
-        "force": force,
-        "moved": moved,
-        "reach": (arm * found.approach)[:, 0],
+        "force": carried.force[:, 0],
+        "moved": yielding(mesh, *part, jnp.asarray(torque), carried.force),
+        "reach": arm * np.asarray(carried.wind_up + carried.touch),
     }
+    return SimpleNamespace(**{k: np.asarray(v)[:, : len(phases)] for k, v in found.items()})
 
 
 @pytest.fixture(scope="module")
 def loaded(pair):
     """At each place the clearance of its valley by positions: of two the first is nearer to the root."""
     mesh, by = pair.mesh, pair.by
-    phase = jnp.asarray([0.0, 0.21, 0.43, 0.64, 0.86])
-    found = engaged(mesh, phase, jnp.full(phase.shape, 16.0))
-    found = SimpleNamespace(**{name: np.asarray(value) for name, value in found.items()})
+    found = engaged(mesh, [0.0, 0.21, 0.43, 0.64, 0.86], 16.0)
     at, clear, rise = by.valleys(found.angle, pair.space)
     places = np.arange(found.angle.shape[0])
     found.first = np.isin(places, mesh.in_pairs(places[:, None], 0)[:, 0])[:, None]

@@ -8,22 +8,18 @@ from types import SimpleNamespace
 import equinox as eqx
 import numpy as np
 import pytest
+from loaded_strain_wave import WEBER, design, passing, wound, yielding
 from strain_wave_positions import drive
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, engagement
+from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagement
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
-from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
 
-STEEL = solids.find("steel").build()
-OIL = lubricants.find("pao-vg-220").build()
 CONSTANT = next(law for law in LAWS if law.name == "constant")
 FRICTION = 0.1
 MODELS = Models(
@@ -40,7 +36,9 @@ FORMS = {
 }
 LINEAR = TOOTH_COMPLIANCE["beam_hertz"].terms
 TORQUES = (4.7, 47.0, 94.0)
+RATED = TORQUES[1]
 NODES = (24, 48)
+PHASES = 90
 RIM = 0.7e-3
 
 
@@ -52,24 +50,28 @@ def build(form, **options):
     )
 
 
-def design(mesh):
-    return Design(mesh, (STEEL, STEEL), OIL, Roughness.from_composite_rq(0.4e-6))
+def at_rated(mesh, nodes=NODES[0]):
+    """What carries over one pitch."""
+    return engagement(design(mesh), jnp.asarray(RATED), MODELS, nodes)
 
 
-def run(mesh, torque, nodes=24):
-    """Path, forces and input torque over one pitch, and the efficiency with friction."""
+def passed(mesh, torque, like):
+    """The same at another torque, and what the cycle with friction finds."""
     made, load = design(mesh), jnp.asarray(torque)
-    engaged = engagement(made, load, MODELS, nodes)
-    found = cycle(
-        made, Operation(load, *map(jnp.asarray, (200.0, 313.15))), MODELS, engaged=engaged
-    )
-    given = MODELS.compliance, load, engaged.contacts, engaged.body
-    wound = wound_up(mesh, made.solids, *given)
+    engaged = engagement(made, load, MODELS, like.nodes, like)
+    operation = Operation(load, *map(jnp.asarray, (200.0, 313.15)))
+    return engaged, cycle(made, operation, MODELS, engaged=engaged)
+
+
+def run(mesh, torque, like):
+    """Path, forces and input torque over one pitch, and the efficiency with friction."""
+    engaged, found = passed(mesh, torque, like)
+    carried = wound(mesh, (engaged.contacts, engaged.body), torque)
     return SimpleNamespace(
         contacts=jax.tree.map(np.asarray, engaged.contacts),
         body=engaged.body,
         weight=np.asarray(engaged.weight),
-        wound=jax.tree.map(np.asarray, wound),
+        wound=jax.tree.map(np.asarray, carried),
         torque=np.asarray(found.state.input_torque),
         efficiency=float(found.mean_efficiency),
     )
@@ -81,18 +83,14 @@ def drives():
 
 
 @pytest.fixture(scope="module")
-def runs(drives):
-    return {(f, t): run(drives[f], t) for f in FORMS for t in TORQUES}
+def engaged(drives):
+    return {(form, nodes): at_rated(drives[form], nodes) for form in FORMS for nodes in NODES}
 
 
-@eqx.filter_jit
-def yielding(mesh, contacts, body, load, force):
-    """How far tooth and body yield at each contact to the forces."""
-    yields = compliance(mesh, contacts, (STEEL, STEEL), MODELS.compliance, load, body)
-    each = force[:, 0]
-    return (
-        jnp.einsum("ij...,j...->i...", yields.body, each) + yields.of_teeth(contacts)[:, 0] * each
-    )
+@pytest.fixture(scope="module")
+def runs(drives, engaged):
+    few = NODES[0]
+    return {(f, t): run(drives[f], t, engaged[f, few]) for f in FORMS for t in TORQUES}
 
 
 @pytest.mark.parametrize("torque", TORQUES)
@@ -119,17 +117,18 @@ def test_no_edge_carries_and_every_pair_closes_its_gap(drives, runs, form, torqu
 
 @pytest.mark.parametrize("torque", TORQUES)
 @pytest.mark.parametrize("form", FORMS)
-def test_input_torque_hardly_ripples(drives, runs, form, torque):
+def test_input_torque_hardly_ripples(drives, engaged, runs, form, torque):
     """However many nodes look for it."""
-    ripples = [ripple(runs[form, torque]), ripple(run(drives[form], torque, NODES[1]))]
+    more = passed(drives[form], torque, engaged[form, NODES[1]])[1].state
+    ripples = [ripple(runs[form, torque].torque), ripple(np.asarray(more.input_torque))]
     assert max(ripples) < 4e-3
     # Flat arcs at little torque touch at few places, and the peak of the torque is narrow.
     narrow = form == "flat" and torque == TORQUES[0]
     assert abs(ripples[1] - ripples[0]) < (1.2e-3 if narrow else 2e-4)
 
 
-def ripple(at):
-    return np.ptp(at.torque) / at.torque.mean()
+def ripple(torque):
+    return np.ptp(torque) / torque.mean()
 
 
 @pytest.mark.parametrize("torque", TORQUES)
@@ -140,7 +139,7 @@ def test_loss_of_an_involute_drive_by_its_friction(runs, torque):
 
 @pytest.mark.xfail(
     strict=True,
-    reason="5.5 since contacts beside joints are as wide, and as stiff, as half-planes there",
+    reason="5.5: at one end of the wave two or three; 5.9 if contacts had no width, 6 from 6 N m on",
 )
 def test_pairs_of_an_involute_drive_at_a_tenth_of_its_torque(runs):
     at = runs["involute", 4.7]
@@ -151,31 +150,36 @@ def test_pairs_of_an_involute_drive_at_a_tenth_of_its_torque(runs):
 @pytest.mark.parametrize("form", FORMS)
 def test_no_force_jumps_as_teeth_pass(drives, form):
     """Where contacts yield in proportion, the largest step of a force shrinks with that of the phase."""
-    few, many = (largest_step(drives[form], count, LINEAR, 47.0)[0] for count in (60, 240))
+    mesh, phases = drives[form], np.linspace(0.0, 1.0, 240, endpoint=False)
+    force = forces(mesh, passing(mesh, phases), LINEAR, RATED)
+    few, many = (largest_step(force[:, ::every]) for every in (4, 1))
     assert many < 0.27 * few
+
+
+@pytest.fixture(scope="module")
+def finely(drives):
+    """Contacts every 0.02 degrees of the wave."""
+    phases = np.linspace(0.0, 1.0, PHASES, endpoint=False)
+    return {form: passing(mesh, phases) for form, mesh in drives.items()}
 
 
 @pytest.mark.parametrize("torque", TORQUES)
 @pytest.mark.parametrize("form", FORMS)
-def test_forces_by_webers_law_hardly_step(drives, form, torque):
+def test_forces_by_webers_law_hardly_step(drives, finely, form, torque):
     """In 0.02 degrees of the wave: a contact sees a joint of its flank from afar."""
-    step, largest = largest_step(drives[form], 90, MODELS.compliance, torque)
-    assert step < 0.05 * largest
+    force = forces(drives[form], finely[form], WEBER, torque)[:, :PHASES]
+    assert largest_step(force) < 0.05 * np.max(force)
 
 
-def largest_step(mesh, count, terms, torque):
-    """Of the force on any tooth, and the largest force."""
-    phase = jnp.linspace(0.0, 1.0, count, endpoint=False)
-    contacts, body = contacts_at(mesh, phase)
-    found = wound_up(mesh, (STEEL, STEEL), terms, jnp.asarray(torque), contacts, body)
-    force = np.asarray(in_pairs(mesh, found.force))
-    return np.max(np.abs(np.diff(force, axis=1))), np.max(force)
+def largest_step(force):
+    """Of the force on any tooth."""
+    return np.max(np.abs(np.diff(force, axis=1)))
 
 
-@eqx.filter_jit
-def contacts_at(mesh, phase):
-    contacts = mesh.contacts(phase)
-    return contacts, mesh.body_compliance(contacts, (STEEL, STEEL))
+def forces(mesh, parts, terms, torque):
+    """Of each pair at all phases of the parts."""
+    each = [np.asarray(in_pairs(mesh, wound(mesh, part, torque, terms).force)) for part in parts]
+    return np.concatenate(each, axis=1)
 
 
 @eqx.filter_jit
@@ -184,6 +188,7 @@ def in_pairs(mesh, force):
 
 
 def test_edges_carry_where_that_is_asked_for():
-    found = run(build("liu", edges_carry=True, tip_relief=0.0), 47.0).wound
+    mesh = build("liu", edges_carry=True, tip_relief=0.0)
+    found = run(mesh, RATED, at_rated(mesh)).wound
     part = found.edge_load / found.force.sum(axis=(0, 1))
     assert part.max() > 0.03

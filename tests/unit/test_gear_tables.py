@@ -12,7 +12,7 @@ import pytest
 from sound import WAVE
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.caveats import proportions_words
+from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.schema import Case, quantity_at, validate
@@ -143,9 +143,13 @@ def test_stiffness_says_what_of_it_is_assumed_and_what_changes_with_the_ratio(
     told = proportions_words([built, built])
     assert told.startswith("; assumed proportions: rim thickness, wall thickness, cup length; rim")
     assert told.count(words) == 1
+    assert proportions_counted([built, built]).startswith("; 3 dimensions of its parts are assumed")
     given = {"rim_thickness": "0.6 mm", "wall_thickness": "0.3 mm", "cup_length": "30 mm"}
     assert proportions_words([drive(gears__flexspline=given).built({})]) == ""
-    assert proportions_words([Variant(PAIR, "pair.toml", "default").built({})]) == ""
+    two = {key: given[key] for key in ("rim_thickness", "cup_length")}
+    assert proportions_counted([drive(gears__flexspline=two).built({})]).startswith("; 1 dimension")
+    pair = [Variant(PAIR, "pair.toml", "default").built({})]
+    assert proportions_words(pair) == proportions_counted(pair) == ""
 
 
 def test_another_form_leaves_the_values_of_the_former() -> None:

@@ -39,6 +39,16 @@ moved.__module__ = "pitchpoint.programs"
 programs.moved = moved
 
 
+def told_by_the_host(bodies: Bodies) -> Bodies:
+    TRACED.append(bodies.label)
+    mass = jax.pure_callback(lambda x: 2.0 * x, bodies.mass, bodies.mass)
+    return Bodies(mass, bodies.label)
+
+
+told_by_the_host.__module__ = "pitchpoint.programs"
+programs.told_by_the_host = told_by_the_host
+
+
 @pytest.fixture
 def kept(tmp_path, monkeypatch):
     """A folder of its own for programs, and a program whose memory is empty each time it is asked."""
@@ -55,6 +65,16 @@ def test_results_are_those_of_the_function_put_together_again(kept):
         assert isinstance(inner, Bodies)
         assert (inner.label, nothing, labels) == ("a", None, ["a"])
     assert TRACED == ["a"]
+
+
+def test_what_has_no_portable_form_is_traced_once_in_a_process(kept, tmp_path):
+    one = Program(told_by_the_host, programs.QUICK)
+    for mass in (2.0, 3.0):  # arrays of plain numbers, whose type is weak
+        found = one(Bodies(jnp.asarray(mass), "a"))
+        assert float(found.mass) == 2.0 * mass
+        assert found.label == "a"
+    assert TRACED == ["a"]
+    assert not (tmp_path / "programs").exists()
 
 
 def test_what_is_static_decides(kept, tmp_path):

@@ -173,7 +173,8 @@ def torsion() -> xr.Dataset:
         },
         {"law": LAWS, "torque": ("torque", torque), "phase": ("phase", phase)},
         title="torsion",
-        note="teeth and ring yield",
+        note="teeth and ring yield; shafts are not in it",
+        brief="shafts are not in it",
         warnings=[],
     )
 
@@ -369,7 +370,8 @@ def test_the_torsional_stiffness_says_what_yields(whole: Outcome, page: str) -> 
         "pairs carry in the mean; without load its flanks let it turn freely by a kinematic play of "
         "1.031 arcmin"
     ) in words(page)
-    assert torsion_answer(whole).endswith("; teeth and ring yield")
+    assert "Teeth and ring yield; shafts are not in it." in words(page)
+    assert torsion_answer(whole).endswith("; shafts are not in it")
 
 
 def test_what_a_user_typed_is_text(page: str) -> None:

@@ -25,6 +25,7 @@ __all__ = [
     "faces_warning",
     "jamming_words",
     "pressure_warning",
+    "proportions_counted",
     "proportions_words",
     "room_warning",
     "told_of_law",
@@ -226,12 +227,32 @@ def proportions_words(points: Sequence[Built]) -> str:
     Args:
         points: one, or the stages of a drive.
     """
-    every = [(key, one) for built in points for key, one in built.assumed.items()]
-    if not every:
+    names = _proportions(points)
+    if not names:
         return ""
-    names = dict.fromkeys(key.rpartition(".")[2].replace("_", " ") for key, _ in every)
-    varies = dict.fromkeys(one.varies for _, one in every if one.varies)
+    varies = dict.fromkeys(
+        one.varies for built in points for one in built.assumed.values() if one.varies
+    )
     return "; ".join([f"; assumed proportions: {', '.join(names)}", *varies])
+
+
+def proportions_counted(points: Sequence[Built]) -> str:
+    """In short on how many assumed dimensions the stiffness of gears rests; empty if on none.
+
+    Args:
+        points: one, or the stages of a drive.
+    """
+    many = len(_proportions(points))
+    if not many:
+        return ""
+    told = "1 dimension of its parts is" if many == 1 else f"{many} dimensions of its parts are"
+    return f"; {told} assumed, see the inputs"
+
+
+def _proportions(points: Sequence[Built]) -> list[str]:
+    """Names of the proportions that are assumed."""
+    keys = (key for built in points for key in built.assumed)
+    return [*dict.fromkeys(key.rpartition(".")[2].replace("_", " ") for key in keys)]
 
 
 def told_of_law(law: FrictionLaw, reasons: Sequence[str]) -> list[str]:

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.analyses.caveats import proportions_words
+from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.build import Built
@@ -102,6 +102,7 @@ def _of_drive(built: BuiltDrive, torques: np.ndarray) -> xr.Dataset:
             *_on_edges_of_stages(built, torques, each),
         ],
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
+        brief=f"{'; '.join(rigid)} are not in it{proportions_counted(built.stages)}",
         left_out=_SLOPELESS if parts else "",
         solve=told(locked_or_lost(False, np.isnan(turned.sum(axis=-1)))),
     )
@@ -190,6 +191,7 @@ def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
             *(_pressed(float(found["kinematic_play"])) if _on_balls(built) else []),
         ],
         note=f"{yields} yield; {rigid} are not in it{assumed}{_of_balls(found, at_rated)}",
+        brief=f"{rigid} are not in it{proportions_counted([built])}",
         solve=solve,
     )
     whole["torsional_stiffness"].attrs.update(_covered(yields, assumed))

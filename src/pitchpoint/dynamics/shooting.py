@@ -22,6 +22,9 @@ NEWTON_STEPS = 12
 PERIODS = 400
 """Largest number of periods that a search marches."""
 
+_UNSTABLE = 2.0
+"""Multiplier of a period whose derivative is not known, so that Newton's method has the last word."""
+
 RETRY = 64
 """Periods after which Newton's method is tried again however far the march is from periodic."""
 
@@ -94,7 +97,12 @@ def shoot(
     return search(period, start, pieces.half.shape[0])
 
 
-def search(period: Period, start: Float[Array, " state"], intervals: int) -> Shot:
+def search(
+    period: Period,
+    start: Float[Array, " state"],
+    intervals: int,
+    marched: Callable[[Float[Array, " state"]], tuple[Array, Bool[Array, ""]]] | None = None,
+) -> Shot:
     """Periodic motion reached from a state.
 
     Newton's method looks for a stable periodic motion near the state. If its residual stops falling,
@@ -106,12 +114,21 @@ def search(period: Period, start: Float[Array, " state"], intervals: int) -> Sho
             whether they were found.
         start: without dimensions.
         intervals: of the period whose states are kept.
+        marched: the same as `period` without the derivative, for periods that march; `period` by default.
 
     Source: Nayfeh and Balachandran (1995), chapter 6, shooting.
     """
 
+    def without_slope(state: Float[Array, " state"]) -> tuple[Array, Array, Bool[Array, ""]]:
+        assert marched is not None
+        states, fine = marched(state)
+        return states, _UNSTABLE * jnp.eye(state.shape[0]), fine
+
     def once(shot: Shot) -> Shot:
-        states, monodromy, fine = period(shot.start)
+        if marched is None:
+            states, monodromy, fine = period(shot.start)
+        else:
+            states, monodromy, fine = jax.lax.cond(shot.newton, period, without_slope, shot.start)
         size = 1.0 + jnp.max(jnp.abs(shot.start))
         residual = jnp.max(jnp.abs(states[-1] - shot.start)) / size
         values = (states, monodromy, residual)

@@ -58,6 +58,10 @@ SLOWEST = 1e-3
 UNRESOLVED = 1e-4
 """Highest Legendre coefficients of an element, relative to the largest deflection."""
 
+SPEED_GAIN, TORQUE_GAIN = 0.3, 0.02
+"""Parts of an error of the mean speed that a period of a march corrects at once, and by its torque: two
+real roots of a controller with integral action, which fade within some twenty periods."""
+
 WHOLE = 1e-9
 """How far the orders of an error times the cycles of a period may be from whole numbers."""
 
@@ -271,7 +275,7 @@ def periodic_motion(
     if start is not None:
         known = jax.lax.stop_gradient(start)
         first = jnp.where(jnp.all(jnp.isfinite(known)), known, first)
-    shot = search(search_in.period, first, 1)
+    shot = search(search_in.period, first, 1, search_in.marched)
     turning = _Turning(moving, speed, cycles, tolerance)
     state = _polished(turning, shot)
     floquet = search_in.multipliers(jax.lax.stop_gradient(state))
@@ -506,18 +510,17 @@ class _Turning:
     def after(self, end: State, state: State) -> State:
         """State of the search after a period, the mean speed corrected.
 
-        What drives shifts all rates by what the mean speed was off, and changes its torque by as much as
-        would have held it.
+        What drives shifts all rates by a part of what the mean speed was off, and changes its torque by a
+        part of as much as would have held it: all of it would take vibration for a change of speed.
         """
         half = self.size // 2
         lag = jnp.sum(self.driver * self.place * end[:half]) / self.speed
         off = -self.speed * lag / (self.length + lag)
         inertia = moved_masses(self.moving.bodies) @ self.motion**2
-        torque = jnp.sum(self.driver * state[:half]) - self.sense * inertia * off / (
-            self.length * self.push
-        )
+        missing = self.sense * inertia * off / (self.length * self.push)
+        torque = jnp.sum(self.driver * state[:half]) - TORQUE_GAIN * missing
         places = jnp.where(self.driver > 0.0, jnp.where(self.held, 0.0, torque), end[:half])
-        rates = end[half:] - self.motion * off / self.rate
+        rates = end[half:] - SPEED_GAIN * self.motion * off / self.rate
         fixed = self.held & (self.driver > 0.0)
         return jnp.concatenate([places, jnp.where(fixed, 0.0, rates)])
 
@@ -532,6 +535,11 @@ class _Turning:
         end, slope, fine = self._with_slope(state)
         by_end, by_state = jax.jacfwd(self.after, (0, 1))(end, state)
         return self.after(end, state)[None], by_end @ slope + by_state, fine
+
+    def marched(self, state: State) -> tuple[Array, Bool[Array, ""]]:
+        """The same without the derivative."""
+        end, fine = self.end(state)
+        return self.after(end, state)[None], fine
 
     def multipliers(self, state: State) -> Complex[Array, " multiplier"]:
         """Floquet multipliers of the motion from a state, without that of the mean speed."""

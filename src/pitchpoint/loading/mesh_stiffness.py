@@ -89,6 +89,7 @@ def mesh_stiffness(
     phase, weight = nodes(events, count)
     contacts = mesh.contacts(phase)
     yields = compliance(mesh, contacts, solids, terms, load)
+    gap = yields.gap(contacts)
     each = jnp.where(contacts.active, yields.stiffness * contacts.weight, 0.0)
     state = None if mesh.touching else _settled(mesh, contacts, yields, each > 0.0)
     if state is not None:
@@ -100,7 +101,7 @@ def mesh_stiffness(
         weight=weight,
         single=jnp.sum(each, axis=1),
         arm=_action_arm(mesh, contacts)[:, 0],
-        error=contacts.gap[:, 0] if mesh.touching else _mean_gap(contacts, each),
+        error=gap[:, 0] if mesh.touching else _mean_gap(gap, each),
         state=state,
     )
 
@@ -112,18 +113,18 @@ def _settled(
     return equilibrium(
         yields.of_teeth(contacts),
         yields.body,
-        gap=contacts.gap,
+        gap=yields.gap(contacts),
         arm=jnp.abs(along(contacts.normal, mesh.loaded)),
         active=acts,
         load=yields.load,
     )
 
 
-def _mean_gap(contacts: Contacts, springs: Lanes) -> Float[Array, "pair *b"]:
+def _mean_gap(gap: Lanes, springs: Lanes) -> Float[Array, "pair *b"]:
     """Separation at which the springs of a whole contact line, all stretched alike, carry nothing."""
     whole = jnp.sum(springs, axis=1)
     touches = whole > 0.0
-    moved = jnp.sum(springs * contacts.gap, axis=1)
+    moved = jnp.sum(springs * gap, axis=1)
     return jnp.where(touches, moved / jnp.where(touches, whole, 1.0), 0.0)
 
 

@@ -12,7 +12,9 @@ __all__ = ["FLATTENED", "LEVELS", "curvature_in_contact"]
 
 FLATTENED = 1e-4
 """Growth of the gap up to the edge of a contact, in modules: 4 w/(pi E') of steel teeth of 0.3 mm under
-5 N/mm. A contact of other loads differs from it beside joints alone, and there by a logarithm."""
+5 N/mm, as the heaviest contacts of the shipped sets carry at 4.7 N m. A contact of other loads differs from
+it beside joints alone, and there by a logarithm: with the 18 N/mm at 47 N m the largest force on a tooth is
+2 to 9 % less there, stiffness and loss differ by 0.2 %."""
 
 LEVELS = (0.25, 1.0, 2.25)
 """Of that growth, over which widths are averaged: a contact hardly feels what lies at its very edge."""

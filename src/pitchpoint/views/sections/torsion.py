@@ -75,7 +75,7 @@ def torsion_answer(outcome: Outcome) -> str:
         f"{_words(data).yielded} by {told['wind_up']}"
         + _carrying(told.get("loaded_pairs", ""))
         + _free(data)
-        + (f"; {note}" if (note := str(data.attrs.get("note", ""))) else "")
+        + (f"; {note}" if (note := str(data.attrs.get("brief", ""))) else "")
     )
 
 
@@ -420,7 +420,7 @@ def _answer(outcome: Outcome) -> list[tuple[str, str]]:
 
 def _screen(outcome: Outcome) -> list[Printed]:
     slopes, attrs = slope_rows(outcome), outcome.parts["torsion"].attrs
-    note, left_out = (str(attrs.get(name, "")) for name in ("note", "left_out"))
+    note, left_out = (str(attrs.get(name, "")) for name in ("brief", "left_out"))
     return [
         Printed(rows=wind_up_rows(outcome), line=f"Stiffness: {note}." if note else ""),
         Printed(rows=slopes, line=_NO_LOOP if slopes else left_out),
