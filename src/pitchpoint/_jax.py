@@ -24,6 +24,16 @@ _ALLOWED = getattr(os, "sched_getaffinity", lambda _: range(os.cpu_count() or 1)
 if len(_ALLOWED) <= FEW_CORES:
     os.environ.setdefault("NPROC", "1")
 
+# A loop whose pass touches fewer bytes than this becomes one machine function. Larger ones call a kernel
+# for every few operations (so do all of more than 1 kB without this): of a motion of some coordinates
+# these calls are three quarters of the time. XLA reads the variable once, with the first array.
+LOOP_BYTES = 262_144
+
+_FLAGS = os.environ.get("XLA_FLAGS", "")
+if "xla_backend_extra_options" not in _FLAGS:
+    _LOOPS = f"--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold={LOOP_BYTES}"
+    os.environ["XLA_FLAGS"] = f"{_LOOPS} {_FLAGS}".strip()
+
 import jax  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402

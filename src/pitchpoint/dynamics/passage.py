@@ -20,7 +20,15 @@ from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.programs import program
 
-__all__ = ["Passage", "PathStiffness", "passage", "polynomial", "springs_of_teeth", "tabulated"]
+__all__ = [
+    "Passage",
+    "PathStiffness",
+    "passage",
+    "polynomial",
+    "sampled",
+    "springs_of_teeth",
+    "tabulated",
+]
 
 NODES = 14
 """Nodes of each segment: polynomials of a degree less."""
@@ -156,6 +164,18 @@ def passage(
     return found
 
 
+def sampled(
+    design: Design, operation: Operation, terms: Terms, curve: PathStiffness | None = None
+) -> Passage:
+    """The same without checks, for programs and derivatives of one's own.
+
+    Args:
+        design, operation, terms: as in `passage`.
+        curve: stiffness of a pair; that of the teeth if None.
+    """
+    return _with_softest(design, operation, terms, curve)[0]
+
+
 def springs_of_teeth(
     design: Design, contacts: Contacts, terms: Terms, load: Float[Array, ""]
 ) -> Lanes:
@@ -173,6 +193,12 @@ def springs_of_teeth(
 
 @program
 def _sampled(
+    design: Design, operation: Operation, terms: Terms, curve: PathStiffness | None
+) -> tuple[Passage, Float[Array, ""], Float[Array, ""]]:
+    return _with_softest(design, operation, terms, curve)
+
+
+def _with_softest(
     design: Design, operation: Operation, terms: Terms, curve: PathStiffness | None
 ) -> tuple[Passage, Float[Array, ""], Float[Array, ""]]:
     """The passage, and the least stiffness with its place."""

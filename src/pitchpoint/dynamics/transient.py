@@ -27,7 +27,14 @@ from pitchpoint.errors import InputError
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code, Status
 
-__all__ = ["Transient", "demand_bodies", "demand_effects", "transient", "where_known"]
+__all__ = [
+    "Transient",
+    "demand_bodies",
+    "demand_effects",
+    "transient",
+    "transient_motion",
+    "where_known",
+]
 
 Vector = Float[Array, " coordinate"]
 States = Float[Array, "coordinate time"]
@@ -50,6 +57,9 @@ CLOSED = 1e-6
 
 UNIT = 1e-9
 """How far ways of a support may be from unit vectors at right angles."""
+
+TOGETHER = 1e-12
+"""Share of the whole duration within which two events are one, as rounding may part them."""
 
 MOST_HAND_OVERS = 4096
 """Events beyond which a transient finds the hand-overs by its steps."""
@@ -126,11 +136,23 @@ def _hand_overs(
         return None
     turns = np.arange(math.floor(-whole) - 1, math.ceil(whole) + 2)
     every = times[0] + (np.add.outer(turns, edges - phase % 1.0) / pace).ravel()
-    inside = np.unique(every[(every > times[0]) & (every < times[-1])])
+    known = np.concatenate([times, np.asarray(moving.knots)])
+    inside = _apart(every, known, TOGETHER * (times[-1] - times[0]))
+    inside = inside[(inside > times[0]) & (inside < times[-1])]
     size = BUCKET
     while size < inside.size:
         size *= 2
     return jnp.asarray(np.pad(inside, (0, size - inside.size), constant_values=times[-1] + 1.0))
+
+
+def _apart(events: np.ndarray, known: np.ndarray, nearest: float) -> np.ndarray:
+    """Events, each once; those next to a known time are put at it: no step fits between the two."""
+    known, events = np.sort(known), np.sort(events)
+    after = np.clip(np.searchsorted(known, events), 1, known.size - 1)
+    low, high = known[after - 1], known[after]
+    close = np.where(events - low < high - events, low, high)
+    events = np.unique(np.where(np.abs(events - close) < nearest, close, events))
+    return events[np.diff(events, prepend=-np.inf) > nearest]
 
 
 @program
@@ -225,6 +247,12 @@ def demand_effects(moving: Moving, what: str) -> None:
         raise InputError(
             f"creep of the contacts is a sliding speed above 0 m/s, got {float(moving.creep):g}"
         )
+    for told, value in (
+        ("relaxation time of the contacts", moving.relaxation),
+        ("damping of the mesh", moving.mesh_damping),
+    ):
+        if float(value) < 0.0:
+            raise InputError(f"{told} is not negative, got {float(value):g}")
     if mesh.couples:
         raise InputError(f"{what} takes each pair of teeth as a spring, and a ring couples these")
     if moving.stiffness is None and moving.passage is None and not mesh.toothed:
@@ -240,6 +268,22 @@ def demand_effects(moving: Moving, what: str) -> None:
 def _travel(
     moving: Moving, times: Array, place: Vector, rate: Vector, events: Array | None
 ) -> Transient:
+    return transient_motion(moving, times, place, rate, events)
+
+
+def transient_motion(
+    moving: Moving,
+    times: Float[Array, " time"],
+    place: Vector,
+    rate: Vector,
+    events: Float[Array, " event"] | None = None,
+) -> Transient:
+    """The same without checks, for programs and batches of one's own.
+
+    Args:
+        moving, times, place, rate: as in `transient`, a number for each coordinate.
+        events: times at which pairs enter or leave, where they are known; found by the steps if not.
+    """
     scale = _Scale(moving, times, place, rate)
     start = scale.scaled(place, rate)
     states, reached, steps = _integrated(moving, times, scale, start, events)
