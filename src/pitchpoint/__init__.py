@@ -3,8 +3,13 @@
 Importing the package costs next to nothing: a public name is loaded when it is first asked for.
 """
 
+import os
 from importlib import import_module
 from typing import Any
+
+# The checks that diffrax makes of its arguments are calls from compiled code back to Python, and programs
+# with such calls are never kept for a later process. Equinox reads this once, when it is imported.
+os.environ.setdefault("EQX_ON_ERROR", "off")
 
 __version__: str
 

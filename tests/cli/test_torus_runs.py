@@ -4,18 +4,23 @@ import json
 import tomllib
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 import xarray as xr
 
+from pitchpoint.analyses.analysis import Unasked
 from pitchpoint.analyses.cycle import CYCLE
+from pitchpoint.analyses.torsion import TORSION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.ellipse import hamrock_brewe_1983
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.torus.table import TorusGears
+from pitchpoint.runs.run import Outcome
 from pitchpoint.status import Code
+from pitchpoint.views.sections.answer import teeth_rows
 
 SAMPLE = tomllib.loads(Path(sample_of(TorusGears)).read_text("utf-8"))
 EXAMPLE = Path(__file__).parents[2] / "examples" / "torus.toml"
@@ -100,6 +105,30 @@ def test_an_elliptic_contact_is_no_choice_for_lines() -> None:
     with pytest.raises(InputError, match="these gears touch along lines") as error:
         cycle(spur)
     assert error.value.key == "models.elliptic_contact"
+
+
+def test_the_answer_says_how_large_the_ellipse_is_and_what_tilt_it_bears() -> None:
+    data = cycle(SAMPLE)
+    outcome = Mock(spec=Outcome)
+    outcome.parts = {"operation": data, "cycle": data}
+    (row,) = teeth_rows(outcome)
+    longest = 1e3 * float(data["semi_axis_across"].max())
+    assert row["semi-axes of the contact, across and along"].startswith(f"{longest:.2f}"[:3])
+    assert row["room to the end of the face"].endswith("mm")
+    assert "rad" in row["largest inclination"]
+
+
+def test_another_sharing_says_that_wind_up_is_left_out() -> None:
+    tree = {**SAMPLE, "models": {"load_sharing": "equal"}}
+    given = {key: value for key, value in tree.items() if key not in ("title", "dynamics")}
+    given["gears"] = {key: value for key, value in tree["gears"].items() if key != "deviations"}
+    built = Variant(given, "torus.toml", "default").built({})
+    told = TORSION.why_not(built)
+    assert not isinstance(told, Unasked)
+    assert told == (
+        'load_sharing = "equal" leaves out how teeth yield; "from_stiffness", the usual one of these gears, '
+        "tells how far they wind up"
+    )
 
 
 def test_the_shipped_example_is_short() -> None:

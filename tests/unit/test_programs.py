@@ -6,6 +6,7 @@ import sys
 from functools import partial, wraps
 from pathlib import Path
 
+import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -179,3 +180,23 @@ def test_factorisations_run_on_one_thread():
         [sys.executable, "-c", THREADS], env=environment, capture_output=True, text=True, check=True
     )
     assert int(done.stdout) == 1
+
+
+def test_a_program_that_integrates_may_be_kept():
+    """It calls nothing in Python: JAX keeps no program that does."""
+
+    def integrated(start):
+        return diffrax.diffeqsolve(
+            diffrax.ODETerm(lambda _, state, __: -state),
+            diffrax.Dopri8(),
+            t0=0.0,
+            t1=1.0,
+            dt0=0.1,
+            y0=start,
+            saveat=diffrax.SaveAt(ts=jnp.linspace(0.0, 1.0, 3)),
+            stepsize_controller=diffrax.PIDController(rtol=1e-6, atol=1e-6),
+            adjoint=diffrax.ForwardMode(),
+            throw=False,
+        ).ys
+
+    assert "callback" not in str(jax.make_jaxpr(integrated)(jnp.ones(2)))

@@ -451,6 +451,11 @@ def rigid(built: Ready) -> str | None:
         return None
     if not built.transmits:
         return "nothing is transmitted by a test rig, so that nothing winds up"
+    if LOAD_SHARING[built.case.gears.load_sharing].by_stiffness:
+        return (
+            f'load_sharing = "{built.case.models.load_sharing}" leaves out how teeth yield; '
+            '"from_stiffness", the usual one of these gears, tells how far they wind up'
+        )
     return Unasked(
         "nothing in the case asks how teeth yield, as gaps and deviations of flanks, [dynamics] and "
         'load_sharing = "from_stiffness" do'

@@ -105,8 +105,15 @@ def stiffness_part(built: Built) -> xr.Dataset:
         title="mesh stiffness",
         warnings=[*told, *lost],
         solve=DIRECT if status is None else summary(status),
-        model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title,
+        model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title + _secant(built),
     )
+
+
+def _secant(built: Built) -> str:
+    """What to know of the stiffness of ellipses; nothing of that of lines, which changes little with load."""
+    if built.design.mesh.shape != "ellipse":
+        return ""
+    return "; load over deflection at the mean load, a secant; torsion has the tangent, which is stiffer"
 
 
 @program

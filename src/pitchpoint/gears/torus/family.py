@@ -22,13 +22,13 @@ from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.programs import program
 
-__all__ = ["FAMILY", "torus_pair"]
+__all__ = ["FAMILY", "middle_pair", "torus_pair"]
 
 _ROUNDED_BACKLASH = 1e-9
 
 
 def _build(gears: TorusGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
-    middle = _middle(gears, driver)
+    middle = middle_pair(gears, driver)
     told = [*check_cylindrical(middle)]
     pair = torus_pair(gears, middle)
     _check_place(gears, pair)
@@ -65,8 +65,13 @@ def _completed(pair: TorusPair) -> TorusPair:
     return pair.completed()
 
 
-def _middle(gears: TorusGears, driver: str) -> CylindricalPair:
-    """The spur pair that the gears are in the middle of their faces."""
+def middle_pair(gears: TorusGears, driver: str) -> CylindricalPair:
+    """The spur pair that the gears are in the middle of their faces.
+
+    Args:
+        gears: the table.
+        driver: name of the driving gear.
+    """
     depth, fillet = _depths(gears)
     pair = build_cylindrical_pair(
         teeth=(int(gears.teeth[0]), int(gears.teeth[1])),

@@ -29,7 +29,9 @@ class TorusPair(InvolutePair):
         middle_shift: profile shift coefficients in the middle planes.
         axial_offset: of the middle plane of gear 2 from that of gear 1, along z [m].
         inclination: of the axes across the line of centres, counted along the line of action: angle by which
-            the flanks that touch part towards positive z, and the other flanks close [rad].
+            the flanks that touch part towards positive z, and the other flanks close [rad]. Arms and
+            forces take both axes as that of gear 1: the axial load of gear 2 is along it, and along its own
+            axis differs by the inclination times the normal force.
 
     Source: Liu and Xiong, Dynamic characteristics of torus involute gear drive, section 2.
     """

@@ -1,6 +1,7 @@
 """Formulas as Liu and Xiong print them, beside what their derivation asks for."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import ceil, floor, sin
 
 import numpy as np
@@ -13,12 +14,14 @@ from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.gears.torus.family import middle_pair
 from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
 from pitchpoint.programs import program
 from pitchpoint.published.liu_xiong_torus.figures import Oil, figures
 from pitchpoint.published.liu_xiong_torus.motion import Drive, Piece, course
+from pitchpoint.published.liu_xiong_torus.steady import Springs, steady_figures
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.publication import Point
 
@@ -32,6 +35,11 @@ PAIRS = ("torus", "standard")
 """Torus-involute pair and standard pair of the same dimensions."""
 
 _DEGREE = 4
+
+_PINION = "gear 1"
+
+_SEMI_AXIS = 2e-3
+"""Of the ellipse for which the reference calculation tells the largest tilt [m]."""
 
 
 def pair_stiffness(*, roll: Numbers, stiffness: Numbers) -> Values:
@@ -87,6 +95,7 @@ def readings(point: Point) -> dict[str, float]:
         **{name: float(value) for name, value in at_pitch.items()},
         **_quadratic(gears),
         **_literal(point, mesh),
+        **_steady(point, mesh),
     }
 
 
@@ -152,6 +161,8 @@ def _contact(design: Design, operation: Operation) -> Known:
     exact, near = hertz_1881(**points, **both), hamrock_brewe_1983(**points, **both)
     return {
         "static_force": load,
+        "tilt_limit": mesh.largest_inclination(exact.across),
+        "tilt_limit_2_mm": mesh.largest_inclination(jnp.asarray(_SEMI_AXIS)),
         "ellipse_across": exact.across,
         "ellipse_along": exact.along,
         "ellipse_pressure": exact.pressure,
@@ -173,6 +184,7 @@ def _quadratic(gears: TorusGears) -> dict[str, float]:
     return {
         "quadratic_place": -gears.inclination * radius,
         "quadratic_approach": gears.inclination**2 * radius / 2.0,
+        "quadratic_tilt_limit": (min(gears.face_width) / 2.0 - _SEMI_AXIS) / radius,
     }
 
 
@@ -214,6 +226,46 @@ def _beside(found: Mapping[str, float]) -> dict[str, float]:
         "friction_ratio": found["torus_sliding_friction"] / found["standard_sliding_friction"],
         "printed_film_ratio": torus / standard,
     }
+
+
+def _steady(point: Point, mesh: TorusPair) -> dict[str, float]:
+    """The motion of both pairs in steady state by the corrected equations, where it is asked for."""
+    given, gears = point.formulas, point.gears
+    if not isinstance(given, TorusFormulas) or not isinstance(gears, TorusGears):
+        return {}
+    if given.steady_pinion is None:
+        return {}
+    known: Known = jax.device_get({**_conditions(point.design, point.operation), **_line(mesh)})
+    meshes = {"torus": mesh, "standard": middle_pair(gears, _PINION)}
+    found: dict[str, float] = {}
+    for name in PAIRS:
+        springs = _springs(_drive(name, given, known, point.operation), known, given)
+        told = steady_figures(replace(point.design, mesh=meshes[name]), point.operation, springs)
+        found |= {f"{name}_{key}": value for key, value in told.items()}
+    over = {name: found[f"torus_{name}"] / found[f"standard_{name}"] for name in _OVER}
+    return {**found, **{f"{name}_ratio": value for name, value in over.items()}}
+
+
+_OVER = ("steady_friction", "steady_film")
+
+
+def _springs(drive: Drive, known: Known, given: TorusFormulas) -> Springs:
+    """Bodies and springs of the corrected equations; a place on the path is counted in base pitches."""
+    roll = float(known["base_pitch"] / known["base_radii"][0])
+    first, powers = np.asarray(drive.coefficients), np.arange(1, _DEGREE + 1)
+    coefficients, ratio = first * roll**powers, float(known["ratio"])
+    return Springs(
+        mass=drive.mass,
+        inertia=drive.inertia,
+        joint_mass=drive.joint_mass,
+        coefficients=array(coefficients),
+        mean=array(np.sum(coefficients * ratio ** (powers + 1) / (powers + 1))),
+        bearing=drive.bearing,
+        bearing_damping=drive.bearing_damping,
+        mesh_damping=drive.mesh_damping,
+        error=drive.error,
+        held=given.steady_pinion == "held",
+    )
 
 
 def _pieces(line: Known, given: TorusFormulas) -> Piece:

@@ -17,6 +17,10 @@ def _plain(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "1")
 
 
+def _tilt(long_name: str) -> Variable:
+    return Variable(long_name, "γ", "rad", "mrad", "angle")
+
+
 _GEOMETRY = {
     "base_radius_pinion": length("base radius of the pinion", "r_bp"),
     "base_radius_gear": length("base radius of the gear", "r_bg"),
@@ -32,6 +36,9 @@ _GEOMETRY = {
     "static_force": force("normal force without friction", "F_n"),
     "quadratic_place": length("place of the contact across the face, parabola", "z"),
     "quadratic_approach": deviation("approach by misalignment, parabola", "δ"),
+    "tilt_limit": _tilt("tilt at which the ellipse at the pitch point reaches the end of the face"),
+    "tilt_limit_2_mm": _tilt("the same of an ellipse with a semi-axis of 2 mm"),
+    "quadratic_tilt_limit": _tilt("the same of an ellipse with a semi-axis of 2 mm, parabola"),
 }
 
 _AT_PITCH = {
@@ -77,14 +84,44 @@ _OF_MOTION = {
 }
 """Numbers of the motion by the printed equations, of one pair."""
 
+_STEADY = {
+    "steady_largest_error": deviation("largest dynamic transmission error", "ε_d"),
+    "steady_least_error": deviation("least dynamic transmission error", "ε_d"),
+    "steady_friction": force("mean sliding friction of both pairs of teeth", "|ΣF_f|"),
+    "steady_efficiency": percent("mean efficiency", "η"),
+    "steady_lowest_efficiency": percent("least efficiency, loss of the moment", "χ"),
+    "steady_highest_efficiency": percent("largest efficiency, loss of the moment", "χ"),
+    "steady_friction_created": percent("energy that friction creates, of the input", "ΔE/E"),
+    "steady_energy_left": _plain("energy that is not accounted for, of the largest part", "ΔE/E"),
+    "steady_reaction_left": _plain(
+        "sum of the forces of the contacts on both gears, of the largest", "ΣF/F"
+    ),
+    "steady_pulled": percent("part of the time in which flanks pull", "t/t_c"),
+    "steady_film": deviation("mean film, thinnest of both pairs of teeth", "h_min"),
+}
+"""Numbers of the motion in steady state by the corrected equations, of one pair."""
+
+_STEADY_RATIOS = {
+    "steady_friction_ratio": _plain(
+        "sliding friction, torus over standard pair, steady state", "F/F"
+    ),
+    "steady_film_ratio": _plain(
+        "film of the torus pair over that of the standard pair, steady state", "h/h"
+    ),
+}
+
 _HIDDEN = ("film_parts", "mean_force", "force_peak")
 
 
-def _of(pair: str) -> dict[str, Variable]:
+def _of(pair: str, numbers: dict[str, Variable], which: str) -> dict[str, Variable]:
     return {
-        f"{pair}_{name}": replace(one, long_name=f"{one.long_name}, {pair} pair, as published")
-        for name, one in _OF_MOTION.items()
+        f"{pair}_{name}": replace(one, long_name=f"{one.long_name}, {pair} pair, {which}")
+        for name, one in numbers.items()
     }
+
+
+def _every(numbers: dict[str, Variable], which: str) -> dict[str, Variable]:
+    return {**_of("torus", numbers, which), **_of("standard", numbers, which)}
 
 
 _SIDE_BY_SIDE = Beside(
@@ -94,6 +131,10 @@ _SIDE_BY_SIDE = Beside(
             f"{one.long_name}, as published": (f"torus_{name}", f"standard_{name}")
             for name, one in _OF_MOTION.items()
             if name not in _HIDDEN
+        },
+        **{
+            f"{one.long_name}, steady state": (f"torus_{name}", f"standard_{name}")
+            for name, one in _STEADY.items()
         },
         "film at the pitch point, with the radii of Hertz": (
             "torus_pitch_film",
@@ -109,13 +150,26 @@ _SIDE_BY_SIDE = Beside(
         "the torus pair follows from its effective radius alone, R' = c rho_1; with the radii of Hertz, in "
         "the last rows, its film is the thinner one. By the printed signs friction drives both gears behind "
         "the pitch point and brakes both before it: its power is 2 mu F v_e with the sign of the sliding, "
-        "not the loss -mu F |v_s|, and what lies between the two is energy from nothing."
+        "not the loss -mu F |v_s|, and what lies between the two is energy from nothing. In steady state, "
+        "of variant physical: the corrected equations with the same springs, the error once in a mesh "
+        "cycle, friction against the sliding, pressures and films by the radii of Hertz, and rolling per "
+        "width; the stiffness follows the place of the pinion and not time, and the energy balances. There "
+        "the friction of the torus pair is the larger one. At 10 rad/s the speed of the pinion is held: "
+        "under the heavy load the teeth store a third of the kinetic energy of the discs, and a constant "
+        "torque does not keep these turning."
     ),
 )
 
 PUBLICATION = Publication(
     name="liu_xiong_2017",
     readings=(printed.readings,),
-    variables={**_GEOMETRY, **_AT_PITCH, **_BESIDE, **_of("torus"), **_of("standard")},
+    variables={
+        **_GEOMETRY,
+        **_AT_PITCH,
+        **_BESIDE,
+        **_every(_OF_MOTION, "as published"),
+        **_every(_STEADY, "steady state"),
+        **_STEADY_RATIOS,
+    },
     beside=_SIDE_BY_SIDE,
 )

@@ -1,7 +1,7 @@
 """The table [formulas] of the case: what the equations of the paper take beside gears, oil and roughness."""
 
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -41,6 +41,8 @@ class TorusFormulas(Table):
         torus_roll, torus_stiffness: of a pair of teeth against the roll angle of the pinion.
         standard_roll, standard_stiffness: the same for the standard pair, at fewer places.
         standard_scale: by which the latter is multiplied.
+        steady_pinion: asks for the motion in steady state by the corrected equations as well, of a pinion
+            that a constant torque drives, or of one whose speed is held.
     """
 
     bearing_stiffness: Annotated[float, STIFFNESS]
@@ -55,6 +57,7 @@ class TorusFormulas(Table):
     standard_roll: Rolls
     standard_stiffness: Springs
     standard_scale: Annotated[float, FACTOR]
+    steady_pinion: Literal["driven", "held"] | None = None
 
     @model_validator(mode="after")
     def _paired(self) -> "TorusFormulas":

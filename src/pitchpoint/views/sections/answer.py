@@ -275,10 +275,26 @@ def _borne(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
     if cycle is not None:
         largest = float(cycle["pressure"].values[law].max())
         yield VARIABLES["pressure"].long_name, show.quantity("pressure", largest)
+        yield from _ellipse(cycle, law)
     if torsion is not None and "edge_share" in torsion:
         at = operating_point(outcome).torque
         share = float(np.interp(at, torsion["torque"], torsion["edge_share"]))
         yield VARIABLES["edge_share"].long_name, show.quantity("edge_share", share)
+
+
+def _ellipse(cycle: xr.Dataset, law: int) -> Iterator[tuple[str, str]]:
+    """The largest ellipse of contact, and how far it is from leaving the face; none for lines."""
+    if "contact_room" not in cycle:
+        return
+    axes = (float(cycle[f"semi_axis_{way}"].values[law].max()) for way in ("across", "along"))
+    told = [show.quantity("semi_axis_across", axis) for axis in axes]
+    room, inclination = (
+        show.quantity(name, float(cycle[name].values[law].min()))
+        for name in ("contact_room", "largest_inclination")
+    )
+    yield "semi-axes of the contact, across and along", " and ".join(told)
+    yield "room to the end of the face", room
+    yield "largest inclination", inclination
 
 
 def bearing_rows(outcome: Outcome) -> list[dict[str, str]]:

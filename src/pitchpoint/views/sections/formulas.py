@@ -20,19 +20,41 @@ def _beside(page: Page) -> Beside | None:
 
 
 def _studies(page: Page, beside: Beside) -> list[xr.Dataset]:
-    """Studies that hold the readings, once where variants agree, without those whose points are seen."""
-    asked = [name for names in beside.rows.values() for name in names]
-    seen: set[tuple[float, ...]] = set()
-    found = []
-    for one in page.outcomes.values():
-        for part, data in one.parts.items():
-            if not is_study(part) or any(name not in data for name in asked):
-                continue
-            numbers = {*zip(*(data[name].values[0].tolist() for name in asked), strict=True)}
-            if numbers - seen:
-                found.append(data)
-            seen |= numbers
-    return found
+    """Studies that hold readings, without those whose points all stand in one with as much to tell."""
+    found = [
+        data
+        for one in page.outcomes.values()
+        for part, data in one.parts.items()
+        if is_study(part) and _rows(data, beside)
+    ]
+    kept: list[int] = []
+    seen: list[_Told] = []
+    for place in sorted(range(len(found)), key=lambda one: -len(_rows(found[one], beside))):
+        points = _points(found[place], beside)
+        if not all(any(point <= other for other in seen) for point in points):
+            kept.append(place)
+            seen += points
+    return [found[place] for place in sorted(kept)]
+
+
+_Told = frozenset[tuple[str, float]]
+
+
+def _rows(data: xr.Dataset, beside: Beside) -> dict[str, tuple[str, ...]]:
+    """Rows of which a study has all readings."""
+    return {
+        told: names for told, names in beside.rows.items() if all(name in data for name in names)
+    }
+
+
+def _points(data: xr.Dataset, beside: Beside) -> list[_Told]:
+    """What is told of each point, by name of the reading."""
+    every = [name for names in _rows(data, beside).values() for name in names]
+    columns = {name: data[name].values[0].tolist() for name in every}
+    return [
+        frozenset((name, values[point]) for name, values in columns.items())
+        for point in range(data.sizes["point"])
+    ]
 
 
 def _blocks(page: Page) -> Iterator[Block]:
@@ -50,7 +72,10 @@ def _table(data: xr.Dataset, beside: Beside) -> Table:
     ]
     return Table(
         ["Quantity", *columns],
-        [(_titled(told, names[0]), *_cells(data, names)) for told, names in beside.rows.items()],
+        [
+            (_titled(told, names[0]), *_cells(data, names))
+            for told, names in _rows(data, beside).items()
+        ],
     )
 
 
