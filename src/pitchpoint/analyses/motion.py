@@ -221,24 +221,38 @@ def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Arr
         "pair_loss": lost,
         "film_thickness": thickness,
         "lambda_ratio": thickness / moving.design.roughness.composite_rq,
-        "efficiency": found.instantaneous_efficiency,
+        "efficiency": 1.0 - found.loss / _power_in(found),
         "bearing_force": found.bearing[size:],
     }
     nodes = found.turned.size
     return {name: values.reshape(*values.shape[:-2], nodes) for name, values in courses.items()}
 
 
+def _power_in(found: Motion) -> Float[Array, ""]:
+    """Mean power that has to be put in: what is taken out, and all that is lost [W].
+
+    Springs that change with the phase bring energy in without a torque for it, as does the error; in gears it
+    is the driver that does this work.
+    """
+    energy, period = found.energy, found.time[-1, -1] - found.time[0, 0]
+    lost = energy.friction + energy.rolling + energy.damping + energy.drag
+    return found.mean(found.load_power) + lost[-1] / period
+
+
 def _figures(moving: Moving, found: Motion) -> dict[str, Array]:
     """Figures of the whole period."""
     size = len(moving.design.mesh.coordinates)
     error, energy = found.transmission_error, found.energy
+    out, power = found.mean(found.load_power), _power_in(found)
     force = jnp.sum(found.found.force, axis=(0, 1))
     # Together, so that the polynomials between the nodes are compiled once.
     low, high = found.grid.extremes(jnp.stack([error, force]))
     pairs = found.bearing[size:].reshape(-1, 2, *error.shape)
     bearing = jnp.sqrt(jnp.sum(pairs**2, axis=1))
     own = {
-        "mean_efficiency": found.efficiency,
+        "mean_efficiency": jnp.where(
+            power > 0.0, out / jnp.where(power > 0.0, power, 1.0), jnp.nan
+        ),
         "mean_transmission_error": found.mean(error),
         "transmission_error_rms": found.rms(error),
         "transmission_error_range": high[0] - low[0],

@@ -112,7 +112,7 @@ def motion_panel(name: str, outcome: Outcome) -> Panel:
         _course(f"{name}_error", data, "transmission_error"),
         _bodies(f"{name}_speed", data, data["turned"].values, TURNED),
         *(_pairs(f"{name}_{one}", data, one, data["turned"].values, TURNED) for one in _OF_PAIRS),
-        _course(f"{name}_efficiency", data, "efficiency"),
+        _course(f"{name}_efficiency", data, "efficiency", _NOW),
         _spectrum(f"{name}_spectrum", data),
     ]
     if "bearing_force" in data and data.sizes.get("bearing"):
@@ -125,7 +125,10 @@ def _title(name: str, data: xr.Dataset) -> str:
     return words[0].upper() + words[1:]
 
 
-def _course(name: str, data: xr.Dataset, variable: str) -> Figure:
+_NOW = "Less what the contacts lose at the moment, of the mean power that is put in."
+
+
+def _course(name: str, data: xr.Dataset, variable: str, note: str = "") -> Figure:
     """One course over the period."""
     values = display(variable, data[variable].values, data)
     trace = plain(
@@ -134,7 +137,7 @@ def _course(name: str, data: xr.Dataset, variable: str) -> Figure:
         show.unit_of(variable, data),
     )
     axes = layout(TURNED, short_axis(variable, data))
-    return Figure(name, _title(variable, data), [trace], axes, missing=NONE)
+    return Figure(name, _title(variable, data), [trace], axes, note, missing=NONE)
 
 
 def _pairs(name: str, data: xr.Dataset, variable: str, x: np.ndarray, along: str) -> Figure:
@@ -390,8 +393,9 @@ def _of_period(position: int, outcome: Outcome) -> Iterator[Block]:
     yield _table(data)
     yield Paragraph(
         "The efficiency counts sliding, rolling and damping while the gears vibrate; that without vibration "
-        "is quasi-static, pairs sharing the load as they yield. The transmission error is that of the "
-        "rotations: where bearings yield their deflection is in it.",
+        "is quasi-static, pairs sharing the load as they yield. Springs that change with the phase and "
+        "errors bring in work without a torque for it, listed below: it counts as put in by the driver. The "
+        "transmission error is that of the rotations: where bearings yield their deflection is in it.",
         "note",
     )
     yield _works(data)
