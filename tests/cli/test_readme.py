@@ -23,7 +23,7 @@ from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-PAIR, MODIFIED, PLASTIC, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
+PAIR, MODIFIED, PLASTIC, MOTION, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
     text for kind, text in BLOCKS if kind == "toml"
 )
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
@@ -35,6 +35,7 @@ CASES = {
     "pair": PAIR,
     "modified": (PAIR, MODIFIED),
     "plastic": (PAIR, PLASTIC),
+    "motion": (PAIR, MOTION),
     "rack": (PAIR, RACK),
     "torus": (PAIR, TORUS),
     "wave": WAVE,
@@ -74,7 +75,8 @@ def test_every_block_is_known() -> None:
 def test_a_case(name: str) -> None:
     """Read, built, and its parts laid out, targets and sweeps with them."""
     made = [job.name for job in jobs(Variant(tree(name), "README.md", "default"), {})]
-    assert ("vibration" in made) == (name == "plastic")
+    assert ("vibration" in made) == (name in ("plastic", "motion"))
+    assert ("start_up" in made) == (name == "motion")
     assert ("running" in made) == (name in ("wave", "targets", "stages"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "targets"))
 

@@ -46,6 +46,9 @@ CREEP = 1e-3
 """Sliding at which friction is three quarters of itself, over the fastest one: its share of the loss is
 the square."""
 
+SLOWEST = 0.01
+"""Speed over that of the operating point below which a start asks the friction law at this one."""
+
 FEW = 4
 """Speeds of a piece, so that little is lost when a run is stopped."""
 
@@ -522,6 +525,7 @@ def _started(built: Built, moving: Moving) -> tuple[Moving, np.ndarray]:
         own = float(bodies[loaded].torque[0])
         bodies[loaded] = replace(bodies[loaded], torque=array([0.0, own]))
     speed = built.case.operation.speed
-    ready = replace(moving, bodies=tuple(bodies), knots=knots, creep=moving.creep * speed)
+    given = {"creep": moving.creep * speed, "slowest": array(SLOWEST * speed)}
+    ready = replace(moving, bodies=tuple(bodies), knots=knots, **given)
     still = np.zeros(moving.mass.shape[0] - len(bodies))
     return ready, np.concatenate([asked.speed * nominal["motion"], still])

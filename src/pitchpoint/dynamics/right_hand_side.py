@@ -44,7 +44,7 @@ Each = Float[Array, "*b"]
 Coordinates = Float[Array, "coordinate *b"]
 
 STANDSTILL = 1e-12
-"""Speed of the driver below which laws of friction are told this one [rad/s]."""
+"""Speed of the driver that counts as rest [rad/s]."""
 
 
 WORKS = ("put_in", "error", "friction", "rolling", "damping", "drag", "pressed")
@@ -77,6 +77,8 @@ class Moving(eqx.Module):
             the normal; None without.
         mesh_damping: a damper along the line of action (else along the normal), whether flanks touch or
             not, which does not feel the error [N s/m].
+        slowest: speed of the driver below which laws of friction, rolling and film are told the nominal
+            motion at this one, positive [rad/s or m/s]: regressions of films have no value at rest.
 
     From Coulomb's friction, made smooth about rest by tanh.
     """
@@ -95,6 +97,7 @@ class Moving(eqx.Module):
     backlash: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(jnp.inf))
     error: Waves | None = None
     mesh_damping: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(0.0))
+    slowest: Float[Array, ""] = eqx.field(default_factory=lambda: jnp.asarray(STANDSTILL))
 
     @property
     def mass(self) -> Float[Array, " coordinate"]:
@@ -431,10 +434,14 @@ def conditions_at(
         force: normal force of each slice [N]; laws are told 1 N where nothing carries.
         rate: of all coordinates.
     """
-    driving = jnp.abs(_driving(moving, rate))
-    point = replace(moving.operation, speed=jnp.maximum(driving, STANDSTILL))
+    driving = _driving(moving, rate)
+    slow = jnp.abs(driving) < moving.slowest
+    lifted = rate + column(moving.padded(moving.design.mesh.motion), rate) * jnp.where(
+        slow, moving.slowest - driving, 0.0
+    )
+    point = replace(moving.operation, speed=jnp.maximum(jnp.abs(driving), moving.slowest))
     return moving.design.conditions(
-        contacts, point, load=_or_one(force), nominal_load=_or_one(total(force)), rates=rate
+        contacts, point, load=_or_one(force), nominal_load=_or_one(total(force)), rates=lifted
     )
 
 

@@ -374,7 +374,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         data = outcome.parts["start_up"]
         yield Paragraph(
             f"From a start under the torques of the case: {data.attrs['sentence']}. Of the balance of energy "
-            f"{float(data['energy_closure']):.0e} of its largest part is left."
+            f"{float(data['energy_closure']):.0e} of its largest part is left. Below a hundredth of the "
+            "operating speed friction is that of the law at this hundredth."
         )
         yield start_panel(f"start{position}", outcome)
 
