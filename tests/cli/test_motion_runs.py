@@ -165,6 +165,15 @@ REFUSED = {
         {"pair_path": [1, 0], "pair_stiffness": ["1 N/um", "1 N/um"]},
         "places of a pair grow",
     ),
+    "entry": ({"pair_path": [0.5, 1], "pair_stiffness": ["1 N/um", "1 N/um"]}, "grow from 0"),
+    "exit": ({"pair_path": [0, 1], "pair_stiffness": ["1 N/um", "1 N/um"]}, "path of a pair is 1."),
+    "held": (
+        {
+            "prescribed_speed": True,
+            "start_up": {"duration": "1 s", "torque": "1 N m", "speed": "9 rpm"},
+        },
+        "needs no torque",
+    ),
     "undamped": ({"mesh_damping": "0 N s/m"}, "nothing that damps"),
     "no torque": ({"start_up": {"duration": "1 s"}}, "start_up.torque: is missing"),
     "rise": ({"start_up": {"duration": "1 s", "torque": "1 N m", "rise": "2 s"}}, "shorter than"),
@@ -179,6 +188,20 @@ def test_what_cannot_move_is_told_in_one_sentence(given: str, tmp_path: Path) ->
     with pytest.raises(InputError) as error:
         load_case(str(path))
     assert told in str(error.value)
+
+
+def test_a_motion_without_load_is_refused(case: str) -> None:
+    with pytest.raises(
+        InputError, match=r"operation.torque: 0 was given; a motion asks for a torque"
+    ):
+        load_case(case, settings={"operation.torque": "0 N m"})
+
+
+def test_a_start_that_runs_backwards_says_so(case: str) -> None:
+    given = {"dynamics.motion.start_up.torque": "5 N m"}
+    built = load_case(case, settings=given)
+    told = START_UP.compute(built, {}, lambda _: None).attrs["warnings"]
+    assert "turns the gear 1 backwards; it asks for 18.85 N m" in told
 
 
 def written(value: Any) -> str:

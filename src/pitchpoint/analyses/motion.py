@@ -23,7 +23,7 @@ from pitchpoint.dynamics.passage import passage, tabulated
 from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.steady_motion import Motion, film, periodic_motion
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
-from pitchpoint.dynamics.transient import transient
+from pitchpoint.dynamics.transient import Transient, transient
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.loading.sharing import LOAD_SHARING
@@ -46,8 +46,23 @@ CREEP = 1e-3
 """Sliding at which friction is three quarters of itself, over the fastest one: its share of the loss is
 the square."""
 
+BESIDE = "Motion with friction is that of the teeth alone: it leaves out the losses of [losses]."
+
+HELD = (
+    "Motion with friction: a constant torque beside that of the motor holds the mean speed; the efficiency "
+    "is that of the mesh."
+)
+
+ELLIPSES = (
+    "Motion with friction: contacts of ellipses have their stiffness from load and deflection, not the "
+    "steeper slope at the load: natural frequencies are some 10 % low."
+)
+
 SLOWEST = 0.01
 """Speed over that of the operating point below which a start asks the friction law at this one."""
+
+RETREAT = 0.01
+"""Speed backwards over that of the operating point that is worth a word: gears swing at first."""
 
 FEW = 4
 """Speeds of a piece, so that little is lost when a run is stopped."""
@@ -201,7 +216,7 @@ def _steady(
     """Everything that is kept of a steady motion, by name."""
     own = replace(moving, creep=moving.creep * speed)
     found = periodic_motion(own, speed, grid, cycles, start)
-    return {**_courses(own, found, law), **_figures(own, found)}
+    return {**_courses(own, found, law), **_figures(own, found, cycles)}
 
 
 def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Array]:
@@ -210,7 +225,7 @@ def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Arr
     force = jnp.maximum(act.force, 0.0)
     pressed = jnp.sum(force, axis=1)
     drawn = jnp.sum(act.friction * force, axis=1)
-    lost = jnp.sum(act.drawn * act.slip + act.rolled * act.roll, axis=1)
+    lost = jnp.sum(act.lost, axis=1)
     thickness = jnp.nanmin(film(moving, found, law), axis=1)
     size = len(moving.design.mesh.coordinates)
     courses = {
@@ -224,54 +239,45 @@ def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Arr
         "pair_loss": lost,
         "film_thickness": thickness,
         "lambda_ratio": thickness / moving.design.roughness.composite_rq,
-        "efficiency": 1.0 - found.loss / _power_in(found),
+        "efficiency": found.instantaneous_efficiency,
         "bearing_force": found.bearing[size:],
     }
     nodes = found.turned.size
     return {name: values.reshape(*values.shape[:-2], nodes) for name, values in courses.items()}
 
 
-def _power_in(found: Motion) -> Float[Array, ""]:
-    """Mean power that has to be put in: what is taken out, and all that is lost [W].
-
-    Springs that change with the phase bring energy in without a torque for it, as does the error; in gears it
-    is the driver that does this work.
-    """
-    energy, period = found.energy, found.time[-1, -1] - found.time[0, 0]
-    lost = energy.friction + energy.rolling + energy.damping + energy.drag
-    return found.mean(found.load_power) + lost[-1] / period
-
-
-def _figures(moving: Moving, found: Motion) -> dict[str, Array]:
+def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
     """Figures of the whole period."""
     size = len(moving.design.mesh.coordinates)
     error, energy = found.transmission_error, found.energy
-    out, power = found.mean(found.load_power), _power_in(found)
     force = jnp.sum(found.found.force, axis=(0, 1))
     # Together, so that the polynomials between the nodes are compiled once.
     low, high = found.grid.extremes(jnp.stack([error, force]))
     pairs = found.bearing[size:].reshape(-1, 2, *error.shape)
     bearing = jnp.sqrt(jnp.sum(pairs**2, axis=1))
     own = {
-        "mean_efficiency": jnp.where(
-            power > 0.0, out / jnp.where(power > 0.0, power, 1.0), jnp.nan
-        ),
+        "mean_efficiency": found.efficiency,
         "mean_transmission_error": found.mean(error),
         "transmission_error_rms": found.rms(error),
         "transmission_error_range": high[0] - low[0],
         "largest_mesh_force": high[1],
-        "smallest_mesh_force": low[1],
-        "mean_loss": found.mean(found.loss),
-        "largest_bearing_force": jnp.max(bearing, initial=0.0),
+        # Where teeth part a polynomial swings below the nothing that its nodes have.
+        "smallest_mesh_force": jnp.where(jnp.min(force) < 0.0, low[1], jnp.maximum(low[1], 0.0)),
+        "largest_bearing_force": jnp.max(bearing) if bearing.size else jnp.asarray(jnp.nan),
         "largest_multiplier": jnp.max(jnp.abs(found.multipliers)),
         "energy_closure": energy.closure,
         "vibration_status": found.status.code,
-        "spectrum": found.spectrum(error, ORDERS),
+        "spectrum": found.spectrum(error, range(_orders(cycles))),
         "state": found.state,
     }
     parts = {f"work_{name}": getattr(energy, name)[-1] for name in ACCOUNT}
     # Over a whole period, the hand-over at its end included, springs keep nothing of their energy.
     return own | parts | {"work_mesh": -energy.pressed[-1], "work_error": energy.error[-1]}
+
+
+def _orders(cycles: int) -> int:
+    """Number of orders of a period of some mesh cycles, from the mean on."""
+    return ORDERS[-1] * cycles + 1
 
 
 def _film(built: Built) -> FilmThickness:
@@ -323,7 +329,7 @@ def _labels(built: Built, cycles: int) -> dict[str, Any]:
     names = [one.body for one in built.bodies]
     ways = [f"{name}, {way}" for name in names for way in WAYS]
     yields = _asked(built).bearing_stiffness is not None
-    order = np.array(ORDERS) / cycles
+    order = np.arange(_orders(cycles)) / cycles
     return {"body": names, "order": ("order", order)} | ({"bearing": ways} if yields else {})
 
 
@@ -345,10 +351,12 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
 
 def _told(built: Built, codes: np.ndarray, sentence: str) -> list[str]:
     """What a motion leaves out, and what became of it."""
-    beside = (
-        "Motion with friction is that of the teeth alone: it leaves out the losses of [losses]."
-    )
-    return [*status_sentences(codes, sentence), *[beside] * bool(built.case.losses)]
+    asides = {
+        BESIDE: bool(built.case.losses),
+        HELD: _asked(built).stall_torque is not None,
+        ELLIPSES: built.design.mesh.shape != "line",
+    }
+    return [*status_sentences(codes, sentence), *(told for told, said in asides.items() if said)]
 
 
 # ---- against speed
@@ -385,7 +393,6 @@ KEPT = (
     "transmission_error_range",
     "largest_mesh_force",
     "smallest_mesh_force",
-    "mean_loss",
     "largest_bearing_force",
     "largest_multiplier",
     "vibration_status",
@@ -418,7 +425,7 @@ def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> 
             "state": (("coordinate",), state),
             "natural_frequency": (("mode",), frequencies[frequencies > 0.0]),
         },
-        {"order": ("order", np.array(ORDERS) / cycles)},
+        {"order": ("order", np.arange(_orders(cycles)) / cycles)},
         travels=built.travels,
         done=taken.stop,
         warnings=[],
@@ -469,12 +476,13 @@ def start_up_part(built: Built) -> xr.Dataset:
     moving, _ = moving_of(built)
     times = np.linspace(0.0, asked.duration, int(asked.count))
     ready, rate = _started(built, moving)
-    found = jax.device_get(transient(ready, times, rate=rate))
+    moved = transient(ready, times, rate=rate)
+    lost = np.sum(np.asarray(moved.found.lost), axis=(0, 1))
+    found = jax.device_get(moved)
     size, rates = len(built.bodies), found.rate
     line = np.asarray(ready.design.mesh.line_of_action)
     act, energy = found.found, found.energy
-    code = Code(int(found.status.code))
-    lost = np.sum(act.drawn * act.slip + act.rolled * act.roll, axis=(0, 1))
+    code = _code_of_start(moving, found)
     held = bearing_forces(ready.bodies, array(found.place), array(rates))[size:]
     return dataset(
         {
@@ -493,11 +501,34 @@ def start_up_part(built: Built) -> xr.Dataset:
         {name: one for name, one in _labels(built, 1).items() if name != "order"},
         title="start",
         travels=built.travels,
-        warnings=_told(built, np.array([code]), "Start: {sentence}."),
+        warnings=[
+            *_told(built, np.array([code]), "Start: {sentence}."),
+            *_backwards(built, rates[:size]),
+        ],
         sentence=code.sentence,
         solve=told_of(np.array(int(code)), np.asarray(energy.closure)),
         law=built.laws[0].title,
     )
+
+
+def _code_of_start(moving: Moving, found: Transient) -> Code:
+    """How a start ended; a linear contact that pulls is none that gears have."""
+    code = Code(int(found.status.code))
+    pulls = moving.law.linear and np.any(found.found.force < 0.0)
+    return Code.SEPARATES if code.ok and pulls else code
+
+
+def _backwards(built: Built, rates: np.ndarray) -> list[str]:
+    """A sentence where the load drives what should drive."""
+    driver = int(built.nominal["driver"].argmax())
+    motion = built.nominal["motion"]
+    if not np.any(rates[driver] * motion[driver] < -RETREAT * built.case.operation.speed):
+        return []
+    needed = built.case.operation.load * abs(motion[int(built.nominal["loaded"].argmax())])
+    return [
+        f"Start: the load turns the {built.driver} backwards; it asks for {needed:.4g} "
+        f"{'N' if 'driver' in built.travels else 'N m'} there without friction, and at rest nothing sticks."
+    ]
 
 
 def _speeds(built: Built, rates: np.ndarray) -> dict[str, Any]:
@@ -525,7 +556,12 @@ def _started(built: Built, moving: Moving) -> tuple[Moving, np.ndarray]:
         own = float(bodies[loaded].torque[0])
         bodies[loaded] = replace(bodies[loaded], torque=array([0.0, own]))
     speed = built.case.operation.speed
-    given = {"creep": moving.creep * speed, "slowest": array(SLOWEST * speed)}
-    ready = replace(moving, bodies=tuple(bodies), knots=knots, **given)
+    ready = replace(
+        moving,
+        bodies=tuple(bodies),
+        knots=knots,
+        creep=moving.creep * speed,
+        slowest=array(SLOWEST * speed),
+    )
     still = np.zeros(moving.mass.shape[0] - len(bodies))
     return ready, np.concatenate([asked.speed * nominal["motion"], still])

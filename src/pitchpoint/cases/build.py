@@ -536,6 +536,17 @@ def _check_motion(case: Case, mesh: Mesh) -> None:
             f"was given, and the {travelling[0]} travels; bearings that yield are those of gears that turn",
             key="dynamics.motion.bearing_stiffness",
         )
+    if case.operation.load == 0.0:
+        told = (
+            f"0 was given; a motion asks for a {case.gears.load} above 0, which presses the teeth"
+        )
+        raise InputError(told, key=f"operation.{case.gears.load}")
+    ratio = float(mesh.contact_ratio) if asked.pair_path else 0.0
+    if asked.pair_path and asked.pair_path[-1] < ratio - 1e-6:
+        raise InputError(
+            f"ends at {asked.pair_path[-1]:g}; the path of a pair is {ratio:.6g} base pitches long",
+            key="dynamics.motion.pair_path",
+        )
     if asked.mesh_damping == 0.0 and not any(asked.bearing_damping or ()):
         raise InputError(
             "0 N s/m leaves nothing that damps the vibration, so that it never becomes steady",

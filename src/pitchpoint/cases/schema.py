@@ -575,6 +575,9 @@ class MotionTable(Table):
         if not motor and start.torque is None and not self.prescribed_speed:
             told = "is missing; a start asks for a torque that drives, or for the motor of stall_torque"
             raise InputError(told, key="start_up.torque")
+        if self.prescribed_speed and start.torque is not None:
+            told = "was given; a driver of prescribed speed needs no torque, leave one of them out"
+            raise InputError(told, key="start_up.torque")
         if self.prescribed_speed and start.speed == 0.0:
             told = "is missing; a driver of prescribed speed keeps the speed with which it starts"
             raise InputError(told, key="start_up.speed")
@@ -596,7 +599,7 @@ def _check_path(places: Sequence[float]) -> None:
     """InputError unless the places of a table of stiffness grow from the entry of a pair on."""
     if not places:
         return
-    if len(places) < 2 or any(b <= a for a, b in pairwise(places)):
+    if len(places) < 2 or places[0] != 0.0 or any(b <= a for a, b in pairwise(places)):
         told = f"{', '.join(f'{one:g}' for one in places)} was given"
         raise InputError(
             f"{told}; places of a pair grow from 0, where it enters, in base pitches, at least two of them",

@@ -150,6 +150,11 @@ class ContactForces(eqx.Module):
     phase: Each
 
     @property
+    def lost(self) -> Lanes:
+        """Power lost to sliding and rolling at each contact [W]."""
+        return self.drawn * self.slip + self.rolled * self.roll
+
+    @property
     def energy(self) -> Each:
         """Elastic energy of the contacts [J].
 

@@ -153,24 +153,34 @@ class Motion(eqx.Module):
     @property
     def loss(self) -> Float[Array, "element node"]:
         """Power lost to sliding and rolling in the contacts [W]."""
-        found = self.found
-        return total(found.drawn * found.slip + found.rolled * found.roll)
+        return total(self.found.lost)
+
+    @property
+    def power_in(self) -> Float[Array, ""]:
+        """Mean power that the mesh asks for: what is taken out, and lost in contacts and dampers [W].
+
+        Springs that change with the phase bring energy in without a torque for it, as does the error; in
+        gears it is the driver that does this work. Drag of the bodies is beside the mesh.
+        """
+        energy, period = self.energy, self.time[-1, -1] - self.time[0, 0]
+        lost = energy.friction + energy.rolling + energy.damping
+        return self.mean(self.load_power) + lost[-1] / period
 
     @property
     def efficiency(self) -> Float[Array, ""]:
-        """Energy out over energy in; NaN where none is transmitted.
+        """Power out over `power_in`; NaN where none is transmitted.
 
         From the balance of energy over one period.
         """
-        out = self.mean(self.load_power)
-        put_in = out + self.energy.put_in[-1] / (self.time[-1, -1] - self.time[0, 0])
-        return _ratio(out, put_in)
+        return _ratio(self.mean(self.load_power), self.power_in)
 
     @property
     def instantaneous_efficiency(self) -> Float[Array, "element node"]:
-        """Power out over power in at each moment; NaN where none is put in."""
-        balance = jnp.sum(self.torque * self.rate, axis=0)
-        return _ratio(self.load_power, balance + self.load_power)
+        """One less what the contacts lose at each moment over the mean of `power_in`.
+
+        Source: Liu and Xiong (2017), eq. 23.
+        """
+        return 1.0 - self.loss / self.power_in
 
 
 def film(
@@ -400,7 +410,7 @@ class _Turning:
         def at(one: Float[Array, ""]) -> Float[Array, ""]:
             engaged = self.passage.at(one)
             found = forces_beside(self.moving, engaged, one, places, self.nominal)
-            return total(found.drawn * found.slip + found.rolled * found.roll)
+            return total(found.lost)
 
         return jax.vmap(at)(phase.ravel()) @ weight.ravel()
 

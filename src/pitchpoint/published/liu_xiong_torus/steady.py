@@ -22,6 +22,7 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.programs import program
+from pitchpoint.status import Code
 
 __all__ = ["Springs", "corrected", "steady_figures"]
 
@@ -127,7 +128,8 @@ def steady_figures(design: Design, operation: Operation, springs: Springs) -> di
     moved = steady_motion(moving, float(operation.speed), GRID)
     law = FILM_THICKNESS[_FILM[design.mesh.shape]]
     told = jax.device_get(_told(moving, moved, law))
-    return {name: float(value) for name, value in told.items()}
+    lost = Code(int(moved.status.code)) is Code.UNSTABLE
+    return {name: np.nan if lost else float(value) for name, value in told.items()}
 
 
 @program
@@ -136,8 +138,7 @@ def _told(moving: Moving, moved: Motion, law: FilmThickness) -> dict[str, Array]
     error = found.stretch[0, 0] + _parted(moving, found.phase)
     friction = jnp.abs(total(found.drawn))
     heat = found.drawn * found.slip
-    put_in = moved.mean(moved.load_power) / moved.efficiency
-    now = 1.0 - moved.loss / put_in
+    put_in, now = moved.power_in, moved.instantaneous_efficiency
     pushed = found.on_coordinates[2:].reshape(2, 2, *friction.shape)
     return {
         "steady_largest_error": jnp.max(error),

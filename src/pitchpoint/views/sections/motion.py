@@ -83,9 +83,7 @@ def motion_answer(outcome: Outcome) -> str:
     if not _found(data):
         return str(data.attrs["sentence"])
     names = ("mean_efficiency", "quasi_static_efficiency", "transmission_error_rms")
-    moving, still, error = (
-        show.quantity(name, float(data[name]), of=data) for name in (*names[:2], names[2])
-    )
+    moving, still, error = (show.quantity(name, float(data[name]), of=data) for name in names)
     return (
         f"{moving} of the teeth with vibration and friction together, {still} without vibration; "
         f"transmission error {error} rms, {_parts(data)}"
@@ -99,7 +97,7 @@ def _parts(data: xr.Dataset) -> str:
 
 
 def _found(data: xr.Dataset) -> bool:
-    return bool(np.isfinite(data["mean_transmission_error"].values))
+    return int(data["vibration_status"]) == 0
 
 
 # ---- one period
@@ -374,8 +372,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         data = outcome.parts["start_up"]
         yield Paragraph(
             f"From a start under the torques of the case: {data.attrs['sentence']}. Of the balance of energy "
-            f"{float(data['energy_closure']):.0e} of its largest part is left. Below a hundredth of the "
-            "operating speed friction is that of the law at this hundredth."
+            f"{float(data['energy_closure']):.0e} of its largest part is left. At rest nothing "
+            "sticks; below a hundredth of the operating speed friction is that of the law at this hundredth."
         )
         yield start_panel(f"start{position}", outcome)
 
@@ -418,6 +416,11 @@ def _gaps(data: xr.Dataset) -> Iterator[Block]:
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("motion")
     if data is None:
+        return
+    if not _found(data):
+        yield Printed(
+            "Motion with friction", line=f"No values are shown: {motion_answer(outcome)}."
+        )
         return
     row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
     yield Printed("Motion with friction", [row], f"{motion_answer(outcome)}.")
