@@ -10,7 +10,6 @@ QUICKLY = (
     "--xla_backend_optimization_level=0",
     "--xla_llvm_disable_expensive_passes=true",
     "--xla_cpu_use_fusion_emitters=false",
-    "--xla_cpu_parallel_codegen_split_count=1",  # of 32 parts nothing is parallel on one thread
 )
 """Programs of tests run for milliseconds and compile for seconds; those of subprocesses too."""
 

@@ -101,6 +101,19 @@ order = 1
 amplitude = "2 um"
 phase = "0 deg"
 
+[dynamics.motion]
+bearing_stiffness = "300 N/um"
+bearing_damping = "1000 N s/m"
+mass = ["0.5 kg", "1.6 kg"]
+mesh_damping = "800 N s/m"
+pair_path = [0.0, 2.0]
+pair_stiffness = ["300 N/um", "290 N/um"]
+prescribed_speed = false
+stall_torque = "100 N m"
+no_load_speed = "2000 rpm"
+cycles = 1
+start_up = { duration = "10 ms", rise = "1 ms", speed = "10 rpm", count = 50 }
+
 [studies.scan]
 title = "a sweep"
 sweep = { key = "gears.module", start = "1.9 mm", stop = "2.1 mm", count = 2 }
@@ -480,8 +493,15 @@ def named_list(site: Site) -> list[str] | None:
     return str(caught.value).partition("known are ")[2].split(", ")
 
 
+def literals(annotation: Any) -> tuple[Any, ...]:
+    """Words that a field takes, be it one that may be left open; none where it takes others."""
+    each = (annotation, *get_args(annotation))
+    return next((get_args(one) for one in each if get_origin(one) is Literal), ())
+
+
 def takes_flag(site: Site) -> bool:
-    return any(bool in get_args(option) for option in get_args(site.annotation))
+    options = get_args(site.annotation)
+    return site.annotation is bool or any(bool in get_args(option) for option in options)
 
 
 def bads_at(site: Site) -> Iterator[Bad]:
@@ -501,8 +521,7 @@ def bads_at(site: Site) -> Iterator[Bad]:
         for name, value, *words in of_name(known):
             if not (by_value and name == "table"):
                 yield Bad(name, site.path, value, tuple(words), site.key.partition(".0.name")[0])
-    elif get_origin(site.annotation) is Literal:
-        options = get_args(site.annotation)
+    elif options := literals(site.annotation):
         for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
             yield Bad(name, site.path, value, (shown, *options), site.key)
     elif takes_flag(site):

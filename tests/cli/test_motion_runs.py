@@ -69,7 +69,7 @@ def test_a_motion_is_found_and_its_energy_closes(outcome: Outcome) -> None:
     data = outcome.parts["motion"]
     assert data.attrs["sentence"] == Code.SOLVED.sentence
     assert float(data["energy_closure"]) < 1e-8
-    lost = sum(float(data[f"work_{name}"]) for name in ("friction", "rolling", "damping", "drag"))
+    lost = sum(float(data[f"work_{name}"]) for name in ("friction", "rolling", "damping"))
     brought = sum(float(data[f"work_{name}"]) for name in ("put_in", "error"))
     left = brought + float(data["work_mesh"]) - lost
     assert abs(left) < 1e-8 * float(data["work_put_in"])
@@ -135,8 +135,9 @@ def test_report_screen_and_figures_tell_it(outcome: Outcome) -> None:
     page = render({"default": outcome})
     for words in ("Motion with friction", "Campbell", "Against speed", "bearings that yield"):
         assert words in page
-    (printed,) = SECTION.screen(outcome)
+    printed, ended = SECTION.screen(outcome)
     assert "of the teeth with vibration and friction together" in printed.line
+    assert "Start, after 3 ms: gear 1" in ended.line
     told = figures(outcome)["motion"]
     assert told["status"] == Code.SOLVED.sentence
     assert len(told["natural_frequency"]) == 5
@@ -201,7 +202,7 @@ def test_a_start_that_runs_backwards_says_so(case: str) -> None:
     given = {"dynamics.motion.start_up.torque": "5 N m"}
     built = load_case(case, settings=given)
     told = START_UP.compute(built, {}, lambda _: None).attrs["warnings"]
-    assert "turns the gear 1 backwards; it asks for 18.85 N m" in told
+    assert "turns the driver, gear 1, backwards; it asks for 18.85 N m" in told
 
 
 def written(value: Any) -> str:

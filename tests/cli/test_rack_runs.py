@@ -94,8 +94,8 @@ def test_every_section_that_applies_is_in_the_report_in_words_of_a_travel(outcom
     page = render({"default": outcome})
     sections = re.findall(r'<section id="(\w+)"', page)
     assert sections[:6] == ["answer", "inputs", "teeth", "path", "cycle", "torsion"]
-    assert sections[6:11] == ["beside", "stiffness", "vibration", "studies", "map"]
-    assert sections[11:] == ["models", "sources"]
+    assert sections[6:12] == ["beside", "stiffness", "vibration", "motion", "studies", "map"]
+    assert sections[12:] == ["models", "sources"]
     assert "Kinematic error (deviations of the teeth of these gears are not among" in page
     assert "load on the guides of the rack, across its travel" in page
     for words in (

@@ -48,11 +48,6 @@ the square."""
 
 BESIDE = "Motion with friction is that of the teeth alone: it leaves out the losses of [losses]."
 
-HELD = (
-    "Motion with friction: a constant torque beside that of the motor holds the mean speed; the efficiency "
-    "is that of the mesh."
-)
-
 ELLIPSES = (
     "Motion with friction: contacts of ellipses have their stiffness from load and deflection, not the "
     "steeper slope at the load: natural frequencies are some 10 % low."
@@ -67,8 +62,8 @@ RETREAT = 0.01
 FEW = 4
 """Speeds of a piece, so that little is lost when a run is stopped."""
 
-ACCOUNT = ("put_in", "friction", "rolling", "damping", "drag")
-"""Energies of a period that are shown."""
+ACCOUNT = ("friction", "rolling", "damping")
+"""Energies of a period that are lost; what bodies drag is the slope of a motor, and comes off its work."""
 
 Nodal = Float[Array, "*b node"]
 
@@ -163,10 +158,13 @@ def _support(built: Built, number: int) -> Support | None:
     asked = _asked(built)
     if asked.bearing_stiffness is None or asked.mass is None:
         return None
-    damping = (asked.bearing_damping or (0.0, 0.0))[number]
-    plane = np.eye(2)
-    held = array(asked.bearing_stiffness[number] * plane)
-    return Support(array(asked.mass[number]), array(_ways(built)), held, array(damping * plane))
+    assert built.case.dynamics is not None
+    stiffness, mass, plane = asked.bearing_stiffness[number], asked.mass[number], np.eye(2)
+    damping = 2.0 * built.case.dynamics.damping_ratio * np.sqrt(stiffness * mass)
+    if asked.bearing_damping is not None:
+        damping = asked.bearing_damping[number]
+    held = array(stiffness * plane), array(damping * plane)
+    return Support(array(mass), array(_ways(built)), *held)
 
 
 def _ways(built: Built) -> np.ndarray:
@@ -257,6 +255,7 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
     bearing = jnp.sqrt(jnp.sum(pairs**2, axis=1))
     own = {
         "mean_efficiency": found.efficiency,
+        "mean_input_torque": found.power_in / jnp.abs(found.mean(_driving(moving, found.rate))),
         "mean_transmission_error": found.mean(error),
         "transmission_error_rms": found.rms(error),
         "transmission_error_range": high[0] - low[0],
@@ -272,12 +271,23 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
     }
     parts = {f"work_{name}": getattr(energy, name)[-1] for name in ACCOUNT}
     # Over a whole period, the hand-over at its end included, springs keep nothing of their energy.
-    return own | parts | {"work_mesh": -energy.pressed[-1], "work_error": energy.error[-1]}
+    brought = {
+        "mesh": -energy.pressed,
+        "error": energy.error,
+        "put_in": energy.put_in - energy.drag,
+    }
+    return own | parts | {f"work_{name}": work[-1] for name, work in brought.items()}
 
 
 def _orders(cycles: int) -> int:
     """Number of orders of a period of some mesh cycles, from the mean on."""
     return ORDERS[-1] * cycles + 1
+
+
+def _driving(moving: Moving, rate: Float[Array, "coordinate *b"]) -> Float[Array, "*b"]:
+    """Rate of the driver."""
+    own: Float[Array, "*b"] = jnp.tensordot(moving.padded(moving.design.mesh.driver), rate, 1)
+    return own
 
 
 def _film(built: Built) -> FilmThickness:
@@ -315,7 +325,10 @@ def motion_part(built: Built) -> xr.Dataset:
         _labels(built, cycles),
         title="motion with friction",
         travels=built.travels,
-        warnings=_told(built, np.array([code]), "Motion with friction: {sentence}."),
+        warnings=[
+            *_told(built, np.array([code]), "Motion with friction: {sentence}."),
+            *_motor_words(built, float(found["mean_input_torque"])),
+        ],
         sentence=code.sentence,
         solve=told_of(np.array(int(code)), np.asarray(found["energy_closure"])),
         law=built.laws[0].title,
@@ -353,10 +366,22 @@ def _told(built: Built, codes: np.ndarray, sentence: str) -> list[str]:
     """What a motion leaves out, and what became of it."""
     asides = {
         BESIDE: bool(built.case.losses),
-        HELD: _asked(built).stall_torque is not None,
         ELLIPSES: built.design.mesh.shape != "line",
     }
     return [*status_sentences(codes, sentence), *(told for told, said in asides.items() if said)]
+
+
+def _motor_words(built: Built, needed: float) -> list[str]:
+    """What the motor of a case gives at the operating speed, beside what the mesh asks for."""
+    asked, speed = _asked(built), built.case.operation.speed
+    if asked.stall_torque is None or not np.isfinite(needed):
+        return []
+    assert asked.no_load_speed is not None
+    given = asked.stall_torque * (1.0 - speed / asked.no_load_speed)
+    return [
+        f"Motion with friction: the motor gives {given:.4g} N m at the operating speed and the mesh asks for "
+        f"{needed:.4g} N m; a constant torque beside it holds the mean speed."
+    ]
 
 
 # ---- against speed
@@ -494,6 +519,7 @@ def start_up_part(built: Built) -> xr.Dataset:
             "loss": (("time",), lost),
             "bearing_force": (("bearing", "time"), held),
             **{f"work_{name}": (("time",), getattr(energy, name)) for name in ACCOUNT},
+            "work_put_in": (("time",), energy.put_in - energy.drag),
             "kinetic_energy": (("time",), energy.kinetic),
             "energy_closure": ((), energy.closure),
             "vibration_status": ((), int(code)),
@@ -526,7 +552,7 @@ def _backwards(built: Built, rates: np.ndarray) -> list[str]:
         return []
     needed = built.case.operation.load * abs(motion[int(built.nominal["loaded"].argmax())])
     return [
-        f"Start: the load turns the {built.driver} backwards; it asks for {needed:.4g} "
+        f"Start: the load turns the driver, {built.driver}, backwards; it asks for {needed:.4g} "
         f"{'N' if 'driver' in built.travels else 'N m'} there without friction, and at rest nothing sticks."
     ]
 

@@ -45,6 +45,7 @@ NONE = "No steady motion was found."
 _FIGURES = (
     "mean_efficiency",
     "quasi_static_efficiency",
+    "mean_input_torque",
     "mean_transmission_error",
     "transmission_error_rms",
     "transmission_error_range",
@@ -67,7 +68,6 @@ _WORKS = (
     "work_friction",
     "work_rolling",
     "work_damping",
-    "work_drag",
     "work_mesh",
     "work_error",
 )
@@ -154,7 +154,7 @@ def _labelled(data: xr.Dataset, axis: str) -> list[Key]:
 
 
 def _bodies(name: str, data: xr.Dataset, x: np.ndarray, along: str) -> Figure:
-    """Speed of every body, over its mean within a period."""
+    """Speed of every body, over the nominal one within a period."""
     variable = "body_speed" if "body_speed" in data else "relative_speed"
     return _by(name, data, variable, "body", x, along)
 
@@ -197,9 +197,7 @@ def _table(data: xr.Dataset) -> Table:
         (f"{_title(name, data)} {show.described(name, data).symbol}", _cell(data, name))
         for name in names
     ]
-    frequencies = show.unit_of("natural_frequency", data)
-    own = ", ".join(show.number(float(one)) for one in data["natural_frequency"].values)
-    rows.insert(-2, ("Natural frequencies with the mean stiffness", f"{own} {frequencies}"))
+    rows.insert(-2, ("Natural frequencies with the mean stiffness", _frequencies(data)))
     return Table(["", ""], rows, compact=True)
 
 
@@ -300,7 +298,7 @@ def _campbell(name: str, outcome: Outcome) -> Figure:
     cycle = period_of(outcome).angle
     lines, keys = (
         [],
-        [Key("orders of the mesh frequency", PALETTE[0]), Key("natural", GREY, "dash")],
+        [Key("orders of the mesh frequency", PALETTE[0]), Key("natural frequencies", GREY, "dash")],
     )
     marks = []
     for order in range(1, _ORDERS + 1):
@@ -371,9 +369,9 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Heading(f"Start: {title}" if title else "Start")
         data = outcome.parts["start_up"]
         yield Paragraph(
-            f"From a start under the torques of the case: {data.attrs['sentence']}. Of the balance of energy "
-            f"{float(data['energy_closure']):.0e} of its largest part is left. At rest nothing "
-            "sticks; below a hundredth of the operating speed friction is that of the law at this hundredth."
+            f"{_end_of_start(data)}. Under the torques of the case: {data.attrs['sentence']}. Of the "
+            f"balance of energy {float(data['energy_closure']):.0e} of its largest part is left. At rest "
+            "nothing sticks; below a hundredth of the operating speed friction is that of the law at it."
         )
         yield start_panel(f"start{position}", outcome)
 
@@ -423,7 +421,23 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
         )
         return
     row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
-    yield Printed("Motion with friction", [row], f"{motion_answer(outcome)}.")
+    told = f"{motion_answer(outcome)}; natural frequencies {_frequencies(data)}."
+    yield Printed("Motion with friction", [row], told)
+    if "start_up" in outcome.parts:
+        yield Printed(line=f"{_end_of_start(outcome.parts['start_up'])}.")
+
+
+def _end_of_start(data: xr.Dataset) -> str:
+    """Speeds at the end of a start, in words."""
+    name = "body_speed" if "body_speed" in data else "relative_speed"
+    ends = zip(data["body"].values, data[name].values[:, -1], strict=True)
+    told = ", ".join(f"{body} {show.quantity(name, float(value), of=data)}" for body, value in ends)
+    return f"Start, after {show.quantity('time', float(data['time'][-1]), of=data)}: {told}"
+
+
+def _frequencies(data: xr.Dataset) -> str:
+    values = ", ".join(show.number(float(one)) for one in data["natural_frequency"].values)
+    return f"{values} {show.unit_of('natural_frequency', data)}"
 
 
 def _lacks(page: Page) -> str | None:
