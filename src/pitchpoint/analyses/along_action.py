@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
@@ -113,7 +112,7 @@ def _motion_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     if data is None:
         return {"motion": {}}
     return {
-        "motion": {name: numbers(np.atleast_1d(data[name].values)) for name in OF_MOTION}
+        "motion": {name: numbers(data[name].values) for name in OF_MOTION}
         | {"status": str(data.attrs["sentence"])}
     }
 

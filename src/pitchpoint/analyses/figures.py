@@ -112,7 +112,8 @@ WIND_UP = ("wind_up", "angular_transmission_error_range", "torsional_stiffness",
 
 def numbers(values: Any) -> Any:
     """Values as JSON has them, None for NaN; one alone without a list."""
-    plain = [None if isinstance(v, float) and np.isnan(v) else v for v in values.tolist()]
+    each = np.atleast_1d(values).tolist()
+    plain = [None if isinstance(v, float) and np.isnan(v) else v for v in each]
     return plain if len(plain) > 1 else plain[0]
 
 

@@ -14,7 +14,7 @@ from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import MotionTable
 from pitchpoint.contact.contacts import along
-from pitchpoint.dynamics.bodies import Body, Support, bearing_forces, motor
+from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, motor
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
@@ -39,6 +39,7 @@ __all__ = [
     "motion_part",
     "moving_of",
     "next_speeds",
+    "quasi_static",
     "start_up_part",
 ]
 
@@ -65,8 +66,6 @@ FEW = 4
 ACCOUNT = ("friction", "rolling", "damping")
 """Energies of a period that are lost; what bodies drag is the slope of a motor, and comes off its work."""
 
-Nodal = Float[Array, "*b node"]
-
 
 # ---- what moves
 
@@ -92,7 +91,7 @@ def moving_of(built: Built) -> tuple[Moving, np.ndarray]:
     vibrating = vibrating_of(built)
     inertia = np.array(vibrating.inertia, float)
     if asked.prescribed_speed:
-        inertia[int(built.nominal["driver"].argmax())] = np.inf
+        inertia[_ends(built)[0]] = np.inf
     moving = Moving(
         design=design,
         operation=built.operation,
@@ -112,6 +111,11 @@ def moving_of(built: Built) -> tuple[Moving, np.ndarray]:
         damping = array(asked.mesh_damping)
     ready = replace(moving, mesh_damping=damping, creep=CREEP * fastest)
     return ready, np.asarray(frequencies)
+
+
+def _ends(built: Built) -> tuple[int, int]:
+    """Numbers of the driver and of the loaded body."""
+    return int(built.nominal["driver"].argmax()), int(built.nominal["loaded"].argmax())
 
 
 def _asked(built: Built) -> MotionTable:
@@ -138,7 +142,7 @@ def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array, Array]:
 def _bodies(built: Built, inertia: np.ndarray) -> Iterator[Body]:
     """Driver and loaded body with their torques, each on its bearings."""
     asked, nominal = _asked(built), built.nominal
-    driver, loaded = (int(nominal[end].argmax()) for end in ("driver", "loaded"))
+    driver, loaded = _ends(built)
     for number, (each, rate) in enumerate(zip(inertia, nominal["motion"], strict=True)):
         body = Body(array(each))
         if number == loaded:
@@ -159,12 +163,11 @@ def _support(built: Built, number: int) -> Support | None:
     if asked.bearing_stiffness is None or asked.mass is None:
         return None
     assert built.case.dynamics is not None
-    stiffness, mass, plane = asked.bearing_stiffness[number], asked.mass[number], np.eye(2)
+    stiffness, mass = asked.bearing_stiffness[number], asked.mass[number]
     damping = 2.0 * built.case.dynamics.damping_ratio * np.sqrt(stiffness * mass)
     if asked.bearing_damping is not None:
         damping = asked.bearing_damping[number]
-    held = array(stiffness * plane), array(damping * plane)
-    return Support(array(mass), array(_ways(built)), *held)
+    return replace(across(mass, stiffness, float(damping)), ways=array(_ways(built)))
 
 
 def _ways(built: Built) -> np.ndarray:
@@ -214,7 +217,8 @@ def _steady(
     """Everything that is kept of a steady motion, by name."""
     own = replace(moving, creep=moving.creep * speed)
     found = periodic_motion(own, speed, grid, cycles, start)
-    return {**_courses(own, found, law), **_figures(own, found, cycles)}
+    figures = {"mean_input_torque": found.power_in / speed}
+    return {**_courses(own, found, law), **_figures(own, found, cycles), **figures}
 
 
 def _courses(moving: Moving, found: Motion, law: FilmThickness) -> dict[str, Array]:
@@ -255,7 +259,6 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
     bearing = jnp.sqrt(jnp.sum(pairs**2, axis=1))
     own = {
         "mean_efficiency": found.efficiency,
-        "mean_input_torque": found.power_in / jnp.abs(found.mean(_driving(moving, found.rate))),
         "mean_transmission_error": found.mean(error),
         "transmission_error_rms": found.rms(error),
         "transmission_error_range": high[0] - low[0],
@@ -266,7 +269,7 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
         "largest_multiplier": jnp.max(jnp.abs(found.multipliers)),
         "energy_closure": energy.closure,
         "vibration_status": found.status.code,
-        "spectrum": found.spectrum(error, range(_orders(cycles))),
+        "spectrum": found.spectrum(error, range(ORDERS[-1] * cycles + 1)),
         "state": found.state,
     }
     parts = {f"work_{name}": getattr(energy, name)[-1] for name in ACCOUNT}
@@ -279,15 +282,10 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
     return own | parts | {f"work_{name}": work[-1] for name, work in brought.items()}
 
 
-def _orders(cycles: int) -> int:
-    """Number of orders of a period of some mesh cycles, from the mean on."""
-    return ORDERS[-1] * cycles + 1
-
-
-def _driving(moving: Moving, rate: Float[Array, "coordinate *b"]) -> Float[Array, "*b"]:
-    """Rate of the driver."""
-    own: Float[Array, "*b"] = jnp.tensordot(moving.padded(moving.design.mesh.driver), rate, 1)
-    return own
+def _order(built: Built) -> tuple[str, np.ndarray]:
+    """Orders of the mesh frequency of a period that may hold several mesh cycles, from the mean on."""
+    cycles = int(_asked(built).cycles)
+    return "order", np.arange(ORDERS[-1] * cycles + 1) / cycles
 
 
 def _film(built: Built) -> FilmThickness:
@@ -322,7 +320,7 @@ def motion_part(built: Built) -> xr.Dataset:
             "quasi_static_efficiency": ((), quasi_static(built, [speed])[0]),
             "mesh_damping": ((), float(moving.mesh_damping)),
         },
-        _labels(built, cycles),
+        {**_labels(built), "order": _order(built)},
         title="motion with friction",
         travels=built.travels,
         warnings=[
@@ -337,13 +335,12 @@ def motion_part(built: Built) -> xr.Dataset:
     )
 
 
-def _labels(built: Built, cycles: int) -> dict[str, Any]:
-    """Coordinates of a motion."""
+def _labels(built: Built) -> dict[str, Any]:
+    """Bodies that move, and their bearings where these yield."""
     names = [one.body for one in built.bodies]
     ways = [f"{name}, {way}" for name in names for way in WAYS]
     yields = _asked(built).bearing_stiffness is not None
-    order = np.arange(_orders(cycles)) / cycles
-    return {"body": names, "order": ("order", order)} | ({"bearing": ways} if yields else {})
+    return {"body": names} | ({"bearing": ways} if yields else {})
 
 
 WAYS = ("along the line of action", "across it")
@@ -450,7 +447,7 @@ def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> 
             "state": (("coordinate",), state),
             "natural_frequency": (("mode",), frequencies[frequencies > 0.0]),
         },
-        {"order": ("order", np.arange(_orders(cycles)) / cycles)},
+        {"order": _order(built)},
         travels=built.travels,
         done=taken.stop,
         warnings=[],
@@ -524,7 +521,7 @@ def start_up_part(built: Built) -> xr.Dataset:
             "energy_closure": ((), energy.closure),
             "vibration_status": ((), int(code)),
         },
-        {name: one for name, one in _labels(built, 1).items() if name != "order"},
+        _labels(built),
         title="start",
         travels=built.travels,
         warnings=[
@@ -546,11 +543,11 @@ def _code_of_start(moving: Moving, found: Transient) -> Code:
 
 def _backwards(built: Built, rates: np.ndarray) -> list[str]:
     """A sentence where the load drives what should drive."""
-    driver = int(built.nominal["driver"].argmax())
+    driver, loaded = _ends(built)
     motion = built.nominal["motion"]
     if not np.any(rates[driver] * motion[driver] < -RETREAT * built.case.operation.speed):
         return []
-    needed = built.case.operation.load * abs(motion[int(built.nominal["loaded"].argmax())])
+    needed = built.case.operation.load * abs(motion[loaded])
     return [
         f"Start: the load turns the driver, {built.driver}, backwards; it asks for {needed:.4g} "
         f"{'N' if 'driver' in built.travels else 'N m'} there without friction, and at rest nothing sticks."
@@ -571,7 +568,7 @@ def _started(built: Built, moving: Moving) -> tuple[Moving, np.ndarray]:
     asked = _asked(built).start_up
     assert asked is not None
     nominal = built.nominal
-    driver, loaded = (int(nominal[end].argmax()) for end in ("driver", "loaded"))
+    driver, loaded = _ends(built)
     bodies = list(moving.bodies)
     if asked.torque is not None:
         torque = array([float(np.sign(nominal["motion"][driver])) * asked.torque])

@@ -22,7 +22,7 @@ from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.loss_sets import expanded, named_set
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import Gears
-from pitchpoint.gears.table import BORE, DEVIATION, Deviation, GearsTable
+from pitchpoint.gears.table import BORE, DEVIATION, MASS, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
@@ -76,7 +76,6 @@ ANY = Quantity("dimensionless", -inf, inf)
 
 STIFFNESS = Quantity("stiffness", 0.0, 1e13, "N/um", open_low=True)
 DAMPING = Quantity("viscous damping", 0.0, 1e9, "N s/m")
-MASS = Quantity("mass", 0.0, 1e6, "kg", open_low=True)
 DURATION = Quantity("time", 0.0, 1e4, "s", open_low=True)
 RISE = Quantity("time", 0.0, 1e4, "s")
 CYCLES = Quantity("dimensionless", 1, 8, whole=True)

@@ -10,6 +10,7 @@ from pitchpoint.gears.table import (
     DISTANCE,
     FILLET,
     HELIX,
+    MASS,
     MODULE,
     RACK,
     SHIFT,
@@ -22,7 +23,6 @@ from pitchpoint.input.quantities import Pair, Quantity
 __all__ = ["RackAndPinionGears"]
 
 TEETH = Quantity("dimensionless", 2, 10_000, whole=True)
-MASS = Quantity("mass", 0.0, 1e6, "kg", open_low=True)
 
 
 class RackAndPinionGears(GearsTable):

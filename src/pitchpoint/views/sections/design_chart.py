@@ -21,6 +21,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.inputs import given
+from pitchpoint.views.lines import titled
 
 __all__ = ["design_charts", "is_design_chart"]
 
@@ -143,7 +144,7 @@ def _figure(name: str, variable: str, seen: Seen, limits: _Limits) -> Figure:
         values = display(variable, _valid(variable, data)[order])
         marks = {"mode": "lines+markers", "marker": {"size": 5, "color": key.colour}}
         traces.append(plain(key, data["axis"].values[order], values, unit, **marks))
-    title, shapes = VARIABLES[variable].long_name, list(limits.shapes)
+    shapes = list(limits.shapes)
     if variable == "tip_thickness_1" and limits.least > 0.0:
         level = float(display(variable, limits.least))
         shapes.append(
@@ -153,7 +154,7 @@ def _figure(name: str, variable: str, seen: Seen, limits: _Limits) -> Figure:
     axis = {"rangemode": "tozero"} if variable == "tip_thickness_1" else {}
     return Figure(
         name,
-        title[0].upper() + title[1:],
+        titled(variable),
         traces,
         layout(
             _AXIS, short_axis(variable), yaxis=axis, shapes=shapes, annotations=limits.annotations

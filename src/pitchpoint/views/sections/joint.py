@@ -7,6 +7,7 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.campbell import campbell
 from pitchpoint.views.figures import (
     GREY,
     PALETTE,
@@ -20,6 +21,7 @@ from pitchpoint.views.figures import (
     verticals,
 )
 from pitchpoint.views.inputs import words
+from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section, Table
 
@@ -111,11 +113,10 @@ def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, .
     keys = _keys(data)
     if len(motors) > 1:
         keys += [Key("motor holds its speed", GREY), Key("motor runs free", GREY, "dash")]
-    whole = show.described(variable, data).long_name
     held = "" if len(motors) > 1 else " Motor holds its speed."
     return Figure(
         name,
-        f"{whole[0].upper()}{whole[1:]} against driver speed",
+        f"{titled(variable, data)} against driver speed",
         traces,
         layout(
             show.axis_title("speed", data),
@@ -143,31 +144,18 @@ def _marks(data: xr.Dataset, speed: np.ndarray, motors: tuple[int, ...]) -> list
 
 def _campbell(name: str, data: xr.Dataset) -> Figure:
     """Frequencies of the waves over speed, with the natural frequencies."""
-    ends = np.array([0.0, float(data["speed"].values[-1])])
-    speed, most = display("speed", ends, data), 2.0 * float(data["natural_frequency"].max())
-    traces = []
-    for key, order in zip(_keys(data), data["wave_order"].values, strict=True):
-        last = min(ends[1], most * 2.0 * np.pi / order)
-        line = np.array([0.0, last])
-        traces.append(plain(key, display("speed", line, data), order * line / (2.0 * np.pi), "Hz"))
     levels = (
         Key("natural frequency, motor holds its speed", GREY),
         Key("natural frequency, motor runs free", GREY, "dash"),
     )
-    for key, value in zip(levels, data["natural_frequency"].values, strict=True):
-        traces.append(plain(key, speed, np.full(2, value), "Hz"))
-    return Figure(
+    natural = data["natural_frequency"].values
+    orders = zip(_keys(data), data["wave_order"].values, strict=True)
+    return campbell(
         name,
-        "Frequencies of the waves against driver speed",
-        traces,
-        layout(
-            show.axis_title("speed", data),
-            "frequency [Hz]",
-            xaxis={"range": [0.0, float(speed[1])]},
-            yaxis={"range": [0.0, most]},
-        ),
-        "Where a wave crosses a natural frequency lies a critical speed (Campbell's diagram).",
-        (*_keys(data), *levels),
+        data,
+        [(key, float(order) / (2.0 * np.pi)) for key, order in orders],
+        [(key, float(value)) for key, value in zip(levels, natural, strict=True)],
+        2.0 * float(natural.max()),
     )
 
 

@@ -28,6 +28,7 @@ from pitchpoint.views.figures import (
     rounded,
     short_axis,
 )
+from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
@@ -120,7 +121,7 @@ def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature
     }
     return Figure(
         f"map_{name}",
-        variable.long_name[0].upper() + variable.long_name[1:],
+        titled(name),
         [heat, point],
         layout(show.axis_title("speed", data), show.axis_title("torque", data)),
         "The cross marks the operating point.",

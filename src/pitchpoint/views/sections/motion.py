@@ -1,14 +1,15 @@
 """Motion with the friction of the teeth in it: one period, against speed, and from a start."""
 
 import json
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.campbell import campbell
 from pitchpoint.views.figures import (
     GREY,
     PALETTE,
@@ -24,6 +25,7 @@ from pitchpoint.views.figures import (
     rounded,
     short_axis,
 )
+from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
@@ -108,68 +110,68 @@ def motion_panel(name: str, outcome: Outcome) -> Panel:
     data = outcome.parts["motion"]
     figures = [
         _course(f"{name}_error", data, "transmission_error"),
-        _bodies(f"{name}_speed", data, data["turned"].values, TURNED),
-        *(_pairs(f"{name}_{one}", data, one, data["turned"].values, TURNED) for one in _OF_PAIRS),
+        _speeds(f"{name}_speed", data),
+        *(_pairs(f"{name}_{one}", data, one) for one in _OF_PAIRS),
         _course(f"{name}_efficiency", data, "efficiency", _NOW),
         _spectrum(f"{name}_spectrum", data),
     ]
-    if "bearing_force" in data and data.sizes.get("bearing"):
-        figures.append(_bearings(f"{name}_bearing", data, data["turned"].values, TURNED))
-    return Panel("", figures)
+    return Panel("", [*figures, *_bearings(name, data)])
 
 
-def _title(name: str, data: xr.Dataset) -> str:
-    words = show.described(name, data).long_name
-    return words[0].upper() + words[1:]
+def _bearings(name: str, data: xr.Dataset) -> Iterator[Figure]:
+    """Forces on the bearings of every gear, where they yield."""
+    if data.sizes.get("bearing"):
+        yield _labelled(f"{name}_bearing", data, "bearing_force", "bearing")
 
 
 _NOW = "Less what the contacts lose at the moment, of the mean power that is put in."
 
 
 def _course(name: str, data: xr.Dataset, variable: str, note: str = "") -> Figure:
-    """One course over the period."""
+    """One course over the period, or from a start."""
     values = display(variable, data[variable].values, data)
-    trace = plain(
-        Key("", PALETTE[0]),
-        *continued(data["turned"].values, values),
-        show.unit_of(variable, data),
+    return replace(
+        _lines(name, data, variable, [Key("", PALETTE[0])], [values]), keys=(), note=note
     )
-    axes = layout(TURNED, short_axis(variable, data))
-    return Figure(name, _title(variable, data), [trace], axes, note, missing=NONE)
 
 
-def _pairs(name: str, data: xr.Dataset, variable: str, x: np.ndarray, along: str) -> Figure:
+def _pairs(name: str, data: xr.Dataset, variable: str) -> Figure:
     """A quantity of every pair of teeth; gaps where a pair carries nothing."""
     carries = np.abs(data["load"].values) > 0.0
     values = display(variable, np.where(carries, data[variable].values, np.nan), data)
     keys = [pair_key(pair) for pair in range(data.sizes["pair"])]
-    unit = show.unit_of(variable, data)
-    traces = [plain(key, *continued(x, y), unit) for key, y in zip(keys, values, strict=True)]
-    axes = layout(along, short_axis(variable, data))
-    return Figure(name, _title(variable, data), traces, axes, "", tuple(keys), NONE)
+    return _lines(name, data, variable, keys, values)
 
 
-def _labelled(data: xr.Dataset, axis: str) -> list[Key]:
-    return [Key(str(one), PALETTE[k % len(PALETTE)]) for k, one in enumerate(data[axis].values)]
-
-
-def _bodies(name: str, data: xr.Dataset, x: np.ndarray, along: str) -> Figure:
+def _speeds(name: str, data: xr.Dataset) -> Figure:
     """Speed of every body, over the nominal one within a period."""
-    variable = "body_speed" if "body_speed" in data else "relative_speed"
-    return _by(name, data, variable, "body", x, along)
+    return _labelled(name, data, _speed_of(data), "body")
 
 
-def _bearings(name: str, data: xr.Dataset, x: np.ndarray, along: str) -> Figure:
-    """Forces on the bearings of every gear."""
-    return _by(name, data, "bearing_force", "bearing", x, along)
+def _labelled(name: str, data: xr.Dataset, variable: str, axis: str) -> Figure:
+    """A quantity of everything that an axis names."""
+    names = enumerate(data[axis].values)
+    keys = [Key(str(one), PALETTE[k % len(PALETTE)]) for k, one in names]
+    return _lines(name, data, variable, keys, display(variable, data[variable].values, data))
 
 
-def _by(name: str, data: xr.Dataset, variable: str, axis: str, x: np.ndarray, along: str) -> Figure:
-    keys, unit = _labelled(data, axis), show.unit_of(variable, data)
-    values = display(variable, data[variable].values, data)
+def _lines(
+    name: str, data: xr.Dataset, variable: str, keys: Sequence[Key], values: Iterable[np.ndarray]
+) -> Figure:
+    """Lines over the time of a start, else over what the driver has turned."""
+    unit = show.unit_of(variable, data)
+    if "turned" in data:
+        x, along = data["turned"].values, TURNED
+    else:
+        x, along = display("time", data["time"].values, data), show.axis_title("time", data)
     traces = [plain(key, *continued(x, y), unit) for key, y in zip(keys, values, strict=True)]
     axes = layout(along, short_axis(variable, data))
-    return Figure(name, _title(variable, data), traces, axes, "", tuple(keys), NONE)
+    return Figure(name, titled(variable, data), traces, axes, "", tuple(keys), NONE)
+
+
+def _speed_of(data: xr.Dataset) -> str:
+    """Variable of the speeds of the bodies."""
+    return "body_speed" if "body_speed" in data else "relative_speed"
 
 
 def _spectrum(name: str, data: xr.Dataset) -> Figure:
@@ -194,7 +196,7 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
 def _table(data: xr.Dataset) -> Table:
     names = [name for name in _FIGURES if name != "largest_bearing_force" or "bearing" in data]
     rows = [
-        (f"{_title(name, data)} {show.described(name, data).symbol}", _cell(data, name))
+        (f"{titled(name, data)} {show.described(name, data).symbol}", _cell(data, name))
         for name in names
     ]
     rows.insert(-2, ("Natural frequencies with the mean stiffness", _frequencies(data)))
@@ -208,7 +210,7 @@ def _cell(data: xr.Dataset, name: str) -> str:
 
 def _works(data: xr.Dataset) -> Table:
     """Energies of one period that are not nothing, and how well they balance."""
-    rows = [(_title(name, data), _cell(data, name)) for name in _WORKS if float(data[name])]
+    rows = [(titled(name, data), _cell(data, name)) for name in _WORKS if float(data[name])]
     closure = float(data["energy_closure"])
     rows.append(("What is left of their balance, of the largest", f"{closure:.0e}"))
     return Table(["Energy of one period", ""], rows, compact=True)
@@ -222,7 +224,7 @@ def speeds_panel(name: str, outcome: Outcome) -> Panel:
     data = outcome.parts["motion_against_speed"]
     figures = [_against(f"{name}_{one}", data, one) for one in _AGAINST_SPEED]
     figures.insert(2, _efficiencies(f"{name}_efficiency", data))
-    if np.nanmax(data["largest_bearing_force"].values, initial=0.0) > 0.0:
+    if data["largest_bearing_force"].notnull().any():
         figures.append(_against(f"{name}_bearing", data, "largest_bearing_force"))
     return Panel("", [*figures, _waterfall(f"{name}_waterfall", data), _campbell(name, outcome)])
 
@@ -250,7 +252,7 @@ def _against(name: str, data: xr.Dataset, variable: str) -> Figure:
         show.axis_title("speed", data), short_axis(variable, data), yaxis={"rangemode": "tozero"}
     )
     several = tuple(keys) if len(keys) > 1 else ()
-    return Figure(name, f"{_title(variable, data)} against speed", traces, axes, "", several, NONE)
+    return Figure(name, f"{titled(variable, data)} against speed", traces, axes, "", several, NONE)
 
 
 def _efficiencies(name: str, data: xr.Dataset) -> Figure:
@@ -291,41 +293,23 @@ def _waterfall(name: str, data: xr.Dataset) -> Figure:
 
 def _campbell(name: str, outcome: Outcome) -> Figure:
     """Frequencies of the orders over speed, with the natural frequencies."""
-    data = outcome.parts["motion_against_speed"]
-    ends = np.array([0.0, float(data["speed"].values[-1])])
+    data, cycle = outcome.parts["motion_against_speed"], period_of(outcome).angle
+    orders = [(Key(str(one), PALETTE[0]), one / cycle) for one in range(1, _ORDERS + 1)]
     natural = data["natural_frequency"].values
-    most, speed = 1.15 * float(natural.max()), display("speed", ends, data)
-    cycle = period_of(outcome).angle
-    lines, keys = (
-        [],
-        [Key("orders of the mesh frequency", PALETTE[0]), Key("natural frequencies", GREY, "dash")],
+    found = campbell(
+        f"{name}_campbell",
+        data,
+        orders,
+        [(Key("natural frequencies", GREY, "dash"), float(one)) for one in natural],
+        1.15 * float(natural.max()),
+        marked=True,
     )
-    marks = []
-    for order in range(1, _ORDERS + 1):
-        last = min(ends[1], most * cycle / order)
-        x = display("speed", np.array([0.0, last]), data)
-        y = order * np.array([0.0, last]) / cycle
-        lines.append(plain(Key(f"order {order}", PALETTE[0]), x, y, "Hz"))
-        marks.append({"text": str(order), "x": float(x[1]), "y": float(y[1])} | _LABEL)
-    for value in natural:
-        lines.append(plain(Key("natural frequency", GREY, "dash"), speed, np.full(2, value), "Hz"))
-    axes = layout(
-        show.axis_title("speed", data),
-        "frequency [Hz]",
-        xaxis={"range": [0.0, 1.04 * float(speed[1])]},
-        yaxis={"range": [0.0, 1.06 * most]},
-        annotations=marks,
+    keys = (
+        Key("orders of the mesh frequency", PALETTE[0]),
+        Key("natural frequencies", GREY, "dash"),
     )
     note = "Where an order crosses a natural frequency, with the mean stiffness, lies a critical speed."
-    return Figure(f"{name}_campbell", "Campbell's diagram", lines, axes, note, tuple(keys), NONE)
-
-
-_LABEL: dict[str, Any] = {
-    "showarrow": False,
-    "xanchor": "left",
-    "yanchor": "bottom",
-    "font": {"size": 11},
-}
+    return replace(found, title="Campbell's diagram", note=note, keys=keys, missing=NONE)
 
 
 # ---- from a start
@@ -334,23 +318,12 @@ _LABEL: dict[str, Any] = {
 def start_panel(name: str, outcome: Outcome) -> Panel:
     """Courses in time from a start."""
     data = outcome.parts["start_up"]
-    x, along = display("time", data["time"].values, data), show.axis_title("time", data)
-    error = display("transmission_error", data["transmission_error"].values, data)
     figures = [
-        _bodies(f"{name}_speed", data, x, along),
-        Figure(
-            f"{name}_error",
-            _title("transmission_error", data),
-            [plain(Key("", PALETTE[0]), *continued(x, error), "µm")],
-            layout(along, short_axis("transmission_error", data)),
-            missing=NONE,
-        ),
-        _pairs(f"{name}_load", data, "load", x, along),
-        _pairs(f"{name}_friction", data, "friction_force", x, along),
+        _speeds(f"{name}_speed", data),
+        _course(f"{name}_error", data, "transmission_error"),
+        *(_pairs(f"{name}_{one}", data, one) for one in ("load", "friction_force")),
     ]
-    if data.sizes.get("bearing"):
-        figures.append(_bearings(f"{name}_bearing", data, x, along))
-    return Panel("", figures)
+    return Panel("", [*figures, *_bearings(name, data)])
 
 
 # ---- the section
@@ -429,7 +402,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
 
 def _end_of_start(data: xr.Dataset) -> str:
     """Speeds at the end of a start, in words."""
-    name = "body_speed" if "body_speed" in data else "relative_speed"
+    name = _speed_of(data)
     ends = zip(data["body"].values, data[name].values[:, -1], strict=True)
     told = ", ".join(f"{body} {show.quantity(name, float(value), of=data)}" for body, value in ends)
     return f"Start, after {show.quantity('time', float(data['time'][-1]), of=data)}: {told}"

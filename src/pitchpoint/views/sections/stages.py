@@ -20,6 +20,7 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
+from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Heading, Page, Printed, Section, Table
 
@@ -83,7 +84,6 @@ def _wind_up(name: str, data: xr.Dataset) -> Figure:
     """Wind-up at the output by each stage against torque."""
     variable = "stage_wind_up"
     unit = show.unit_of(variable, data)
-    words = show.described(variable, data).long_name
     keys = tuple(
         Key(f"stage {stage}", PALETTE[at % len(PALETTE)], DASHES[at % len(DASHES)])
         for at, stage in enumerate(data["stage"].values)
@@ -92,7 +92,7 @@ def _wind_up(name: str, data: xr.Dataset) -> Figure:
     turned = display(variable, data[variable], data)
     return Figure(
         name,
-        f"{words[0].upper()}{words[1:]}",
+        titled(variable, data),
         [plain(key, load, turned[:, at], unit) for at, key in enumerate(keys)],
         layout(
             short_axis("torque", data),

@@ -30,6 +30,7 @@ from pitchpoint.views.figures import (
     verticals,
 )
 from pitchpoint.views.inputs import words
+from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import (
@@ -293,10 +294,9 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> Figure:
             f" Dotted: speeds at which {', '.join(label for label, _ in marks)} is the mesh "
             "frequency, with the mean stiffness."
         )
-    title = VARIABLES[variable].long_name
     return Figure(
         f"{name}_{variable}",
-        f"{title[0].upper()}{title[1:]} against speed",
+        f"{titled(variable)} against speed",
         traces,
         layout(show.axis_title("speed", data), short_axis(variable), yaxis={"rangemode": "tozero"})
         | verticals(marks),

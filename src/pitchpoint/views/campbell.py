@@ -1,0 +1,72 @@
+"""Diagram of Campbell: frequencies of orders over the driver's speed, with natural frequencies."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.views import show
+from pitchpoint.views.figures import Figure, Key, Trace, display, layout, plain
+
+__all__ = ["campbell"]
+
+_ROOM = (1.04, 1.06)
+"""Of the axes for marks at the ends of the lines."""
+
+_LABEL: dict[str, Any] = {
+    "showarrow": False,
+    "xanchor": "left",
+    "yanchor": "bottom",
+    "font": {"size": 11},
+}
+
+
+def campbell(
+    name: str,
+    data: xr.Dataset,
+    orders: Sequence[tuple[Key, float]],
+    natural: Sequence[tuple[Key, float]],
+    most: float,
+    *,
+    marked: bool = False,
+) -> Figure:
+    """Frequencies over speed.
+
+    Args:
+        name: of the figure.
+        data: with the speeds of the driver.
+        orders: entry of the legend, and frequency for a unit of speed [Hz s/rad].
+        natural: entry of the legend, and natural frequency [Hz].
+        most: highest frequency [Hz].
+        marked: True if every line of an order has its word at its end.
+    """
+    fastest = float(data["speed"].values[-1])
+    ends = display("speed", np.array([0.0, fastest]), data)
+    traces: list[Trace] = []
+    marks = []
+    for key, each in orders:
+        line = np.array([0.0, min(fastest, most / each)])
+        x, y = display("speed", line, data), each * line
+        traces.append(plain(key, x, y, "Hz"))
+        marks.append({"text": key.label, "x": float(x[1]), "y": float(y[1])} | _LABEL)
+    for key, value in natural:
+        traces.append(plain(key, ends, np.full(2, value), "Hz"))
+    room = _ROOM if marked else (1.0, 1.0)
+    words = {"annotations": marks} if marked else {}
+    axes = layout(
+        show.axis_title("speed", data),
+        "frequency [Hz]",
+        xaxis={"range": [0.0, room[0] * float(ends[1])]},
+        yaxis={"range": [0.0, room[1] * most]},
+        **words,
+    )
+    keys = tuple(key for key, _ in (*orders, *natural))
+    return Figure(
+        name,
+        "Frequencies of the waves against driver speed",
+        traces,
+        axes,
+        "Where a wave crosses a natural frequency lies a critical speed (Campbell's diagram).",
+        keys,
+    )
