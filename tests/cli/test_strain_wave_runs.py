@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from sound import PAIR
+from sound import PAIR, WAVE
 
 import pitchpoint as pp
 from pitchpoint import programs
@@ -26,23 +26,12 @@ from pitchpoint.views.sections.beside import running_rows, starting_answer
 from pitchpoint.views.sections.kinematic_error import error_rows, kinematic_error_answer
 from pitchpoint.views.sections.torsion import TORSION, wind_up_rows
 
-DRIVE = """
-[gears]
-family = "strain_wave"
-teeth = [200, 202]
-module = "0.3 mm"
-face_width = "10 mm"
+DRIVE = (
+    WAVE
+    + """
 [gears.deviations]
 flexspline = [{ order = 1, amplitude = "0.2 um" }, { order = 2, amplitude = "0.1 um", phase = "50 deg" }]
 circular_spline = [{ order = 3, amplitude = "0.2 um" }, { order = 4, amplitude = "0.1 um" }]
-[lubricant]
-name = "pao-vg-100"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "67 N m"
-speed = "2000 rpm"
-temperature = "40 degC"
 [models]
 friction = { name = "constant", coefficient = 0.08 }
 [losses.bearing]
@@ -61,6 +50,7 @@ torque_count = 3
 speed_count = 2
 temperatures = ["20 degC", "60 degC"]
 """
+)
 PARTS = ["teeth", "cycle", "operation", "laws", "torsion", "kinematic_error", "running", "loss_map"]
 PARTS += ["back_driving"]
 
