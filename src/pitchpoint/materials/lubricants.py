@@ -11,7 +11,7 @@ import equinox as eqx
 from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
@@ -122,6 +122,17 @@ class Lubricant(eqx.Module):
     def viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
         """Dynamic viscosity at T [K] and ambient pressure, shape (...) [Pa s]."""
         return dynamic_viscosity(nu=self.kinematic_viscosity(T), rho=self.density(T))
+
+    def viscosity_slope(self, T: ArrayLike) -> Float[Array, "..."]:
+        """Relative fall of the dynamic viscosity per kelvin at T [K], -d ln eta/dT, shape (...) [1/K].
+
+        From the law of viscosity and density against temperature, by differentiation. At the temperature
+        where the line for the cold meets the other one it is that of the warm side.
+        """
+        at = as_array(T)
+        eta, fall = jax.jvp(self.viscosity, (at,), (-jnp.ones_like(at),))
+        relative: Float[Array, "..."] = fall / eta
+        return relative
 
     def pressure_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
         """Pressure-viscosity coefficient at T [K], shape (...) [1/Pa].
