@@ -88,6 +88,7 @@ class RheologyLaw:
             values: by the names of `ranges` [SI], values and no tracers; others are passed over.
 
         Example:
+            >>> from pitchpoint.materials.rheology import VISCOSITY
             >>> VISCOSITY["roelands_1966"].outside(pressure=1.6e9)
             "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa"
             >>> VISCOSITY["roelands_1966"].outside(pressure=0.8e9) is None
