@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import equinox as eqx
-import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.heat import Temperatures, temperatures
 from pitchpoint.lubrication.ehl.line import LineContact, Problem
-from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
+from pitchpoint.lubrication.ehl.work import filled, shear_stress, work_of_pressure
 
 __all__ = ["LineFilm", "line_film"]
 
 Nodes = Float[Arrays, "*b node"]
 Each = Float[Arrays, "*b"]
-
-BROKEN: Final = 1e-9
-"""Pressure below which a film is broken, in units of Hertz's pressure."""
-
-_GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 class LineFilm(eqx.Module):
@@ -48,6 +41,7 @@ class LineFilm(eqx.Module):
         shear_force: shear of the oil on member 0, along positive speeds; minus that on member 1 [N/m].
         boundary_force: friction of asperities on member 0, in the same way [N/m].
         pumping_power: that the flow under pressure turns into heat [W/m].
+        heat: temperatures, where they were solved for; None of isothermal films.
     """
 
     x: Nodes
@@ -67,6 +61,7 @@ class LineFilm(eqx.Module):
     shear_force: Each
     boundary_force: Each
     pumping_power: Each
+    heat: Temperatures | None
 
     @property
     def traction_a(self) -> Each:
@@ -97,18 +92,19 @@ def line_film(
     oil = pressure - asperities
     room = flow.room(gap)
     sliding = contact.speed_b - contact.speed_a
-    filled = _filled(flow, oil, room)
-    stress = filled * _shear_stress(flow, oil, room, sliding)
+    full = filled(flow, oil, room)
+    stress = full * shear_stress(flow, oil, room, sliding)
     carried = jnp.sum(at.widths * asperities) / problem.load
     place, least = _minimum(at.x, room, jnp.abs(at.x) < 1.5 / problem.yielding)
-    rolling, pumping = _work_of_pressure(flow, oil, gap, at)
+    rolling, pumping, expansion = work_of_pressure(flow, oil, gap, at)
+    power = flow.pressure * flow.height * problem.speed
     film = LineFilm(
         x=at.x * length,
         pressure=pressure * flow.pressure,
         asperity_pressure=asperities * flow.pressure,
         gap=gap * flow.height,
         film=room * flow.height,
-        filled=filled,
+        filled=full,
         shear_stress=stress,
         central_film=room[jnp.argmin(jnp.abs(at.x))] * flow.height,
         minimum_film=least * flow.height,
@@ -123,43 +119,9 @@ def line_film(
         * contact.line_load
         * jnp.sign(sliding),
         pumping_power=pumping * flow.pressure * flow.height * problem.speed,
+        heat=temperatures(contact, problem, pressure, level, at, -expansion * power),
     )
     return _turned(film, contact.entrainment < 0.0)
-
-
-def _shear_stress(flow: Flow, oil: Array, room: Array, sliding: Array) -> Array:
-    """On member 0, which member 1 draws along where it is the faster one [Pa]."""
-    pressure = jnp.maximum(oil, 0.0) * flow.pressure
-    return flow.fluid.shear_stress(sliding / (room * flow.height), pressure, flow.temperature_rise)
-
-
-def _work_of_pressure(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
-    """Half of the flow that surfaces draw along times the rise of pressure; the same of that under pressure.
-
-    Both per volume: mass over the density between two nodes. Over a film that begins and ends without
-    pressure the flow as a whole does no work, so that twice the speed times the first is the second.
-    """
-    mass, conductance = flow.mass_and_conductance(oil, gap, at)
-    rise = jnp.diff(oil)
-    volume = rise * _specific_volume(flow, oil)
-    drawn = flow.entrainment * upwind(mass)
-    return 0.5 * jnp.sum(drawn * volume), jnp.sum(conductance * rise * volume)
-
-
-def _specific_volume(flow: Flow, oil: Array) -> Array:
-    """Mean of one over the density from the pressure at a node to that at the next."""
-    one, other = oil[:-1], oil[1:]
-    between = [0.5 * (one + other) + 0.5 * at * (other - one) for at in _GAUSS[0]]
-    weighed = [0.5 * w / flow.density(p) for w, p in zip(_GAUSS[1], between, strict=True)]
-    return jnp.sum(jnp.stack(weighed), axis=0)
-
-
-def _filled(flow: Flow, oil: Array, room: Array) -> Array:
-    """Oil that passes the end of the film over what would fill the gap behind it, one in the film."""
-    mass = flow.density(oil) * room
-    place = jnp.arange(oil.shape[0])
-    last = jnp.max(jnp.where(oil > BROKEN, place, 0))
-    return jnp.where(place > last, jnp.minimum(mass[last] / mass, 1.0), 1.0)
 
 
 def _minimum(x: Array, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
@@ -196,6 +158,10 @@ def _turned(film: LineFilm, turned: Array) -> LineFilm:
         "minimum_place": sign * film.minimum_place,
         "rolling": sign * film.rolling,
     }
+    if film.heat is not None:
+        changed["heat"] = jax.tree.map(
+            lambda leaf: jnp.where(turned, leaf[::-1], leaf) if leaf.ndim else leaf, film.heat
+        )
     found: LineFilm = eqx.tree_at(
         lambda one: [getattr(one, name) for name in changed], film, list(changed.values())
     )

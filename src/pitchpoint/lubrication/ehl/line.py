@@ -11,6 +11,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.grid import Grid
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth, Texture
@@ -18,7 +19,7 @@ from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.fluid import Fluid
 
-__all__ = ["LineContact", "Problem", "problem_of"]
+__all__ = ["SLOWEST", "LineContact", "Problem", "problem_of"]
 
 SLOWEST: Final = 1e-9
 """Least unit of speed [m/s], for contacts that stand still."""
@@ -44,6 +45,7 @@ class LineContact(eqx.Module):
         texture: of the surfaces; None for smooth ones.
         inlet: distance from the middle of the contact at which oil begins to fill the gap [m]; a short one
             starves the contact.
+        conduction: of heat, for the temperature of film and surfaces; None for isothermal films.
     """
 
     line_load: Float[Array, "..."]
@@ -55,6 +57,7 @@ class LineContact(eqx.Module):
     inlet: Float[Array, "..."]
     fluid: Fluid
     texture: Texture | None
+    conduction: Conduction | None
 
     def __init__(
         self,
@@ -68,12 +71,13 @@ class LineContact(eqx.Module):
         approach: ArrayLike = 0.0,
         texture: Texture | None = None,
         inlet: ArrayLike = FLOODED,
+        conduction: Conduction | None = None,
     ) -> None:
         self.line_load, self.radius = as_array(line_load), as_array(radius)
         self.modulus = as_array(modulus)
         self.speed_a, self.speed_b = as_array(speed_a), as_array(speed_b)
         self.approach, self.inlet = as_array(approach), as_array(inlet)
-        self.fluid, self.texture = fluid, texture
+        self.fluid, self.texture, self.conduction = fluid, texture, conduction
 
     @property
     def entrainment(self) -> Float[Array, "..."]:

@@ -72,10 +72,11 @@ class Flow(eqx.Module):
         gain = jnp.diff(net) + self.approach * density * at.widths[1:-1]
         return gain, conductance[1:] + conductance[:-1]
 
-    def density(self, film_pressure: Nodes) -> Nodes:
-        """Density over that of the inlet."""
+    def density(self, film_pressure: Nodes, temperature_rise: Nodes | None = None) -> Nodes:
+        """Density over that of the inlet, at the temperature of the film unless another is given."""
         pressure = jnp.maximum(film_pressure, 0.0) * self.pressure
-        return self.fluid.density_ratio(pressure, self.temperature_rise)
+        warmth = self.temperature_rise if temperature_rise is None else temperature_rise
+        return self.fluid.density_ratio(pressure, warmth)
 
     def mass_and_conductance(
         self, film_pressure: Nodes, gap: Nodes, at: Grid

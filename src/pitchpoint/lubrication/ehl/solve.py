@@ -15,8 +15,22 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import Ends, Grid, fewer, grid
-from pitchpoint.lubrication.ehl.line import LineContact, problem_of
-from pitchpoint.lubrication.ehl.newton import ENOUGH, from_coarse, iterated, polished, residual
+from pitchpoint.lubrication.ehl.heat import (
+    WARM_ENOUGH,
+    defect,
+    turned,
+    warm_from_coarse,
+    warmed,
+)
+from pitchpoint.lubrication.ehl.line import LineContact, Problem, problem_of
+from pitchpoint.lubrication.ehl.newton import (
+    ENOUGH,
+    State,
+    from_coarse,
+    iterated,
+    polished,
+    residual,
+)
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
@@ -41,6 +55,8 @@ class Ended(eqx.Module):
         load: defect of the load over it.
         gap: defect of the gap over the smallest one: elastic deformation against the gap of the result.
         iterations: of Newton's method, on all grids.
+        temperature: defect of the temperature of the film over its largest rise; None of isothermal films.
+        turns: between pressure and temperature, on all grids; None of isothermal films.
     """
 
     code: Int[Any, "*b"]
@@ -48,6 +64,8 @@ class Ended(eqx.Module):
     load: Float[Any, "*b"]
     gap: Float[Any, "*b"]
     iterations: Int[Any, "*b"]
+    temperature: Float[Any, "*b"] | None
+    turns: Int[Any, "*b"] | None
 
 
 @dataclass(frozen=True)
@@ -202,17 +220,14 @@ def _before(contact: LineContact) -> Array:
 def _solved(
     contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[Grid, ...]
 ) -> tuple[LineFilm, Ended, Array]:
-    problem, at = problem_of(contact), grids[-1]
-    if begin is None:
-        state = from_coarse(problem, grids)
-    else:
-        guess = begin[0] * problem.load / (at.widths @ begin[0])
-        sunk = problem.gap(guess, jnp.zeros(()), at)[jnp.argmin(jnp.abs(at.x))]
-        state = iterated(problem, guess, begin[1] / problem.flow.height - sunk, at)
+    at = grids[-1]
+    problem, state, turns = _iterated(contact, begin, grids)
     pressure, level = polished(problem, state, at)
     film = line_film(contact, problem, pressure, level, at)
     rest = residual(problem, pressure, level, at)
     found = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
+    off_heat = None if turns is None else defect(contact, problem, pressure, level, at)
+    found = found if off_heat is None else found & (off_heat < WARM_ENOUGH)
     gap = problem.gap(pressure, level, at)
     off = jnp.max(jnp.abs(film.gap / problem.flow.height - _as_turned(gap, contact)))
     ended = Ended(
@@ -221,8 +236,33 @@ def _solved(
         jnp.abs(rest[-1]) / problem.load,
         off / jnp.min(jnp.abs(gap)),
         state.total,
+        off_heat,
+        turns,
     )
     return _withheld(film, found), ended, at.x[jnp.array([0, -1])] / problem.yielding
+
+
+def _iterated(
+    contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[Grid, ...]
+) -> tuple[Problem, State, Array | None]:
+    """The contact as warm as it becomes, its solution, and the turns to its temperature."""
+    problem, at = problem_of(contact), grids[-1]
+    cold = None if begin is None else _guessed(problem, begin, at)
+    if contact.conduction is None:
+        state = from_coarse(problem, grids) if cold is None else iterated(problem, *cold, at)
+        return problem, state, None
+    if cold is None:
+        warm = warm_from_coarse(contact, problem, grids)
+    else:
+        warm = turned(contact, problem, *cold, jnp.zeros(at.x.shape), at)
+    return warmed(problem, warm.rise), warm.state._replace(total=warm.total), warm.turns
+
+
+def _guessed(problem: Problem, begin: tuple[Array, Array], at: Grid) -> tuple[Array, Array]:
+    """Pressure that carries the load, and the level for a film in the middle."""
+    guess = begin[0] * problem.load / (at.widths @ begin[0])
+    sunk = problem.gap(guess, jnp.zeros(()), at)[jnp.argmin(jnp.abs(at.x))]
+    return guess, begin[1] / problem.flow.height - sunk
 
 
 def _as_turned(gap: Array, contact: LineContact) -> Array:
@@ -253,7 +293,11 @@ def _without_profiles(film: LineFilm) -> LineFilm:
     empty = [getattr(film, name)[..., :0] for name in _PROFILES]
     some = lambda one: [getattr(one, name) for name in _PROFILES]  # noqa: E731
     found: LineFilm = eqx.tree_at(some, film, empty)
-    return found
+    if film.heat is None:
+        return found
+    along = film.film.ndim
+    heat = jax.tree.map(lambda leaf: leaf[..., :0] if leaf.ndim == along else leaf, film.heat)
+    return eqx.tree_at(lambda one: one.heat, found, heat)
 
 
 def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:

@@ -1,0 +1,340 @@
+"""Heat of line contacts: temperatures of film and surfaces in balance with the pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final, NamedTuple
+
+import equinox as eqx
+from jaxtyping import Array, Float, Int
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.grid import Grid, prolongation
+from pitchpoint.lubrication.ehl.line import SLOWEST, LineContact, Problem
+from pitchpoint.lubrication.ehl.newton import ENOUGH, State, dry, iterated
+from pitchpoint.lubrication.ehl.work import filled, pressure_flow, shear_stress
+from pitchpoint.lubrication.flash_temperature import Conductor, moving_strip, peclet_number
+
+__all__ = [
+    "WARM_ENOUGH",
+    "Spread",
+    "Temperatures",
+    "Warm",
+    "defect",
+    "spread",
+    "temperatures",
+    "warm_from_coarse",
+    "warmed",
+]
+
+Nodes = Float[Arrays, "*b node"]
+Each = Float[Arrays, "*b"]
+
+WARM_ENOUGH: Final = 1e-6
+"""Defect of the temperature over the largest rise, with which a film counts as solved."""
+
+STEADY: Final = 1e-9
+"""Change of the temperature in a turn, over the largest rise, at which turns end."""
+
+MOST_TURNS: Final = 40
+"""Turns between pressure and temperature after which a contact is given up."""
+
+MOST_STEPS: Final = 60
+"""Steps of Newton's method for the temperature in a turn."""
+
+LEAST_RISE: Final = 1e-6
+"""Rise of temperature that counts as none [K]."""
+
+
+class Temperatures(eqx.Module):
+    """Heat and rises of temperature above the inlet, of line contacts `*b`.
+
+    Attributes:
+        film: mean over the film [K].
+        surface_a: of member 0 [K].
+        surface_b: of member 1 [K].
+        flux_a: heat per area into member 0 [W/m2].
+        flux_b: into member 1 [W/m2].
+        heat: per area that film and asperities make [W/m2].
+        largest_film: largest mean over the film [K].
+        largest_a: flash temperature of member 0, largest [K].
+        largest_b: of member 1 [K].
+        power_a: heat into member 0 [W/m].
+        power_b: into member 1 [W/m].
+        expansion_power: work of the oil as it expands warm after it was compressed cold; what friction
+            takes is heat and this [W/m].
+        peclet_a: Peclet number |u| b rho c/(2 k) of member 0.
+        peclet_b: of member 1.
+    """
+
+    film: Nodes
+    surface_a: Nodes
+    surface_b: Nodes
+    flux_a: Nodes
+    flux_b: Nodes
+    heat: Nodes
+    largest_film: Each
+    largest_a: Each
+    largest_b: Each
+    power_a: Each
+    power_b: Each
+    expansion_power: Each
+    peclet_a: Each
+    peclet_b: Each
+
+
+class Spread(NamedTuple):
+    """How temperatures follow from heat per area at every node of a contact.
+
+    Attributes:
+        strip_a: rise of surface a by heat per area into it, shape (node, node) [K m2/W].
+        strip_b: of surface b.
+        to_a: heat into surface a by heat that is made, shape (node, node) [1]; the rest goes into b.
+        within: rise of the mean film above that of the surfaces by heat in the film, shape (node,) [K m2/W].
+    """
+
+    strip_a: Float[Array, "node node"]
+    strip_b: Float[Array, "node node"]
+    to_a: Float[Array, "node node"]
+    within: Float[Array, " node"]
+
+    @property
+    def mean(self) -> Array:
+        """Mean rise of both surfaces by heat that is made, shape (node, node) [K m2/W]."""
+        to_b = jnp.eye(self.within.shape[0]) - self.to_a
+        return 0.5 * (self.strip_a @ self.to_a + self.strip_b @ to_b)
+
+
+def spread(film: Array, strip_a: Array, strip_b: Array, oil_conductivity: Array | float) -> Spread:
+    """Spread of heat through a film between two surfaces.
+
+    Across the film k T'' = -q/h with the temperatures of the surfaces at its ends, so that half of q and
+    k (Tb - Ta)/h go into a, and the mean is that of the surfaces and q h/(12 k).
+
+    Args:
+        film: h, shape (node,) [m].
+        strip_a: rise of surface a by heat per area into it, shape (node, node) [K m2/W].
+        strip_b: of surface b.
+        oil_conductivity: k [W/m/K].
+    """
+    across = oil_conductivity / film
+    none = jnp.eye(film.shape[0])
+    # Tb - Ta = (Sb - Sa) q/2 - (Sa + Sb) across (Tb - Ta)
+    apart = jnp.linalg.solve(none + (strip_a + strip_b) * across, 0.5 * (strip_b - strip_a))
+    return Spread(
+        strip_a, strip_b, 0.5 * none + across[:, None] * apart, film / (12.0 * oil_conductivity)
+    )
+
+
+def _strip(body: Conductor, speed: Array, length: Array, at: Grid) -> Array:
+    """Rise of a surface by heat per area into it, shape (node, node) [K m2/W]."""
+    edges = at.x[0] + jnp.append(0.0, jnp.cumsum(at.widths))
+    along, against = moving_strip(at.x, edges), moving_strip(-at.x[::-1], -edges[::-1])
+    passed = jnp.where(speed >= 0.0, along, against[::-1, ::-1])
+    fast = jnp.maximum(jnp.abs(speed), SLOWEST)
+    return passed * jnp.sqrt(length / (jnp.pi * fast)) / body.effusivity
+
+
+def _forward(contact: LineContact) -> tuple[Array, Array]:
+    """Speeds of both surfaces along the grid, which follows the entrainment [m/s]."""
+    sign = jnp.where(contact.entrainment < 0.0, -1.0, 1.0)
+    return sign * contact.speed_a, sign * contact.speed_b
+
+
+def _conduction(contact: LineContact) -> Conduction:
+    assert contact.conduction is not None
+    return contact.conduction
+
+
+class _Found(NamedTuple):
+    """What pressure and level give, which heat is made of."""
+
+    oil: Array
+    gap: Array
+    room: Array
+    asperities: Array
+    length: Array
+    spread: Spread
+
+
+def _found(
+    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+) -> _Found:
+    flow, given = problem.flow, _conduction(contact)
+    gap = problem.gap(pressure, level, at)
+    asperities, room = flow.asperity_pressure(gap), flow.room(gap)
+    length = contact.half_width / problem.yielding
+    speed_a, speed_b = _forward(contact)
+    strips = _strip(given.a, speed_a, length, at), _strip(given.b, speed_b, length, at)
+    through = spread(room * flow.height, *strips, given.oil_conductivity)
+    return _Found(pressure - asperities, gap, room, asperities, length, through)
+
+
+def _made(
+    contact: LineContact, problem: Problem, found: _Found, moved: Array, at: Grid
+) -> tuple[Array, Array]:
+    """Heat per area that the film makes at each node, and the asperities, where mass is moved as given."""
+    flow, sliding = problem.flow, contact.speed_b - contact.speed_a
+    stress = shear_stress(flow, found.oil, found.room, sliding)
+    shear = filled(flow, found.oil, found.room) * stress * sliding
+    # Half of what a face makes belongs to each of the nodes beside it.
+    pumping = 0.5 * moved**2 * pressure_flow(flow, found.oil, found.gap, at)[1]
+    pumping = jnp.append(pumping, 0.0) + jnp.append(0.0, pumping)
+    power = flow.pressure * flow.height * problem.speed
+    rubbed = flow.texture.boundary_friction * found.asperities * flow.pressure
+    return shear + pumping * power / (at.widths * found.length), rubbed * jnp.abs(sliding)
+
+
+def warmed(problem: Problem, rise: Array) -> Problem:
+    """The contact with a film that is so much warmer than its inlet, shape (node,) [K]."""
+    found: Problem = eqx.tree_at(lambda one: one.flow.temperature_rise, problem, rise)
+    return found
+
+
+def _in_balance(
+    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+) -> Array:
+    """Rise of the film at a pressure, by Newton's method, shape (node,) [K].
+
+    The mass that pressure moves is held instead of the slope of the pressure: the heat of a flow that is held
+    falls as the oil becomes warmer, that of a slope that is held rises without bound.
+    """
+    found = _found(contact, problem, pressure, level, at)
+    moved, _ = pressure_flow(problem.flow, found.oil, found.gap, at)
+    mean, none = found.spread.mean, jnp.eye(pressure.shape[0])
+    whole = mean + jnp.diag(found.spread.within)
+
+    def film_heat(rise: Array) -> tuple[Array, Array]:
+        return _made(contact, warmed(problem, rise), found, moved, at)
+
+    def onward(given: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        rise, _, steps = given
+        by_rise, (film, rubbed) = jax.jacfwd(
+            lambda one: (film_heat(one)[0], film_heat(one)), has_aux=True
+        )(rise)
+        off = rise - whole @ film - mean @ rubbed
+        better = jnp.maximum(rise - jnp.linalg.solve(none - whole @ by_rise, off), 0.0)
+        change = jnp.max(jnp.abs(better - rise)) / (jnp.max(better) + LEAST_RISE)
+        return better, change, steps + 1
+
+    def unfinished(given: tuple[Array, Array, Array]) -> Array:
+        _, change, steps = given
+        return (change > 0.1 * STEADY) & (steps < MOST_STEPS)
+
+    begin = problem.flow.temperature_rise, jnp.asarray(jnp.inf), jnp.asarray(0)
+    rise: Array = jax.lax.while_loop(unfinished, onward, begin)[0]
+    return rise
+
+
+class Warm(NamedTuple):
+    """Where pressure and temperature of a contact stand.
+
+    Attributes:
+        state: of the pressure.
+        rise: of the film above its inlet, shape (node,) [K].
+        change: of the rise in the last turn over the largest rise.
+        turns: between pressure and temperature.
+        total: steps of Newton's method for the pressure.
+    """
+
+    state: State
+    rise: Float[Array, " node"]
+    change: Float[Array, ""]
+    turns: Int[Array, ""]
+    total: Int[Array, ""]
+
+
+def turned(
+    contact: LineContact, problem: Problem, pressure: Array, level: Array, rise: Array, at: Grid
+) -> Warm:
+    """Pressure and temperature in turns on one grid, from a guess of both."""
+
+    def onward(warm: Warm) -> Warm:
+        so_warm = warmed(problem, warm.rise)
+        state = iterated(so_warm, warm.state.pressure, warm.state.level, at)
+        rise = _in_balance(contact, so_warm, state.pressure, state.level, at)
+        change = jnp.max(jnp.abs(rise - warm.rise)) / (jnp.max(rise) + LEAST_RISE)
+        return Warm(state, rise, change, warm.turns + 1, warm.total + state.total)
+
+    def unfinished(warm: Warm) -> Array:
+        lost = (warm.turns > 0) & ~(warm.state.residual < ENOUGH)
+        return ~(warm.change < STEADY) & (warm.turns < MOST_TURNS) & ~lost
+
+    zero, open_ = jnp.asarray(0), jnp.asarray(jnp.inf)
+    state = State(pressure, level, zero, zero, zero, open_)
+    found: Warm = jax.lax.while_loop(unfinished, onward, Warm(state, rise, open_, zero, zero))
+    return found
+
+
+def warm_from_coarse(contact: LineContact, problem: Problem, grids: Sequence[Grid]) -> Warm:
+    """Solution on the last of some grids, on each of them started from that on the one before."""
+    cold = jnp.zeros(grids[0].x.shape)
+    warm = turned(contact, problem, *dry(problem, grids[0]), cold, grids[0])
+    for before, at in pairwise(grids):
+        finer = prolongation(before.x.shape[0], at.x.shape[0])
+        pressure = jnp.maximum(finer @ warm.state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
+        rise = jnp.maximum(finer @ warm.rise, 0.0)
+        once = turned(contact, problem, pressure, warm.state.level, rise, at)
+        warm = once._replace(turns=warm.turns + once.turns, total=warm.total + once.total)
+    return warm
+
+
+def defect(
+    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+) -> Array:
+    """Rise of the film against that by its heat, over the largest rise: the larger of either sign."""
+    rise, by_heat, *_ = _balance(contact, problem, pressure, level, at)
+    return jnp.max(jnp.abs(rise - by_heat)) / (jnp.max(by_heat) + LEAST_RISE)
+
+
+def _balance(
+    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+) -> tuple[Array, Array, Array, _Found]:
+    """Rise of the film, that by its heat, the heat per area, and what it is made of."""
+    found = _found(contact, problem, pressure, level, at)
+    moved, _ = pressure_flow(problem.flow, found.oil, found.gap, at)
+    film, rubbed = _made(contact, problem, found, moved, at)
+    by_heat = found.spread.mean @ (film + rubbed) + found.spread.within * film
+    return problem.flow.temperature_rise, by_heat, film + rubbed, found
+
+
+def temperatures(
+    contact: LineContact,
+    problem: Problem,
+    pressure: Array,
+    level: Array,
+    at: Grid,
+    expansion_power: Array,
+) -> Temperatures | None:
+    """Heat and temperatures of one contact along its grid; None of an isothermal one."""
+    if contact.conduction is None:
+        return None
+    rise, _, heat, found = _balance(contact, problem, pressure, level, at)
+    into_a = found.spread.to_a @ heat
+    into_b = heat - into_a
+    surfaces = found.spread.strip_a @ into_a, found.spread.strip_b @ into_b
+    cells = at.widths * found.length
+    speeds, bodies = (
+        (contact.speed_a, contact.speed_b),
+        (contact.conduction.a, contact.conduction.b),
+    )
+    peclet = [
+        peclet_number(speed=speed, half_width=contact.half_width, body=body)
+        for speed, body in zip(speeds, bodies, strict=True)
+    ]
+    return Temperatures(
+        rise,
+        *surfaces,
+        into_a,
+        into_b,
+        heat,
+        jnp.max(rise),
+        *map(jnp.max, surfaces),
+        cells @ into_a,
+        cells @ into_b,
+        expansion_power,
+        *peclet,
+    )

@@ -1,0 +1,76 @@
+"""Stress and work of the oil in a line contact, which fields and heat are made of."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from jaxtyping import Array
+
+from pitchpoint._jax import jnp
+from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
+
+__all__ = ["filled", "pressure_flow", "shear_stress", "specific_volume", "work_of_pressure"]
+
+BROKEN: Final = 1e-9
+"""Pressure below which a film is broken, in units of Hertz's pressure."""
+
+_GAUSS = np.polynomial.legendre.leggauss(4)
+
+
+def shear_stress(flow: Flow, oil: Array, room: Array, sliding: Array) -> Array:
+    """On member 0, which member 1 draws along where it is the faster one [Pa]."""
+    pressure = jnp.maximum(oil, 0.0) * flow.pressure
+    return flow.fluid.shear_stress(sliding / (room * flow.height), pressure, flow.temperature_rise)
+
+
+def work_of_pressure(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array, Array]:
+    """Half of the flow that surfaces draw along times the rise of pressure; the same of that under pressure.
+
+    Both per volume: mass over the density between two nodes. Twice the speed times the first is the second
+    and the work that goes into the oil: the flow as a whole times the rise of pressure, third. It is zero
+    for a film that begins and ends without pressure and is as warm everywhere.
+    """
+    drawn, conductance = _drawn(flow, oil, gap, at)
+    rise = jnp.diff(oil)
+    volume = rise * specific_volume(flow, oil)
+    inside = jnp.argmax(oil)
+    passing = drawn[inside] - conductance[inside] * rise[inside]
+    pumping = jnp.sum(conductance * rise * volume)
+    return 0.5 * jnp.sum(drawn * volume), pumping, passing * jnp.sum(volume)
+
+
+def pressure_flow(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
+    """Mass that pressure moves through each face, and the power that this turns into heat over its square."""
+    _, conductance = flow.mass_and_conductance(oil, gap, at)
+    return conductance * jnp.diff(oil), specific_volume(flow, oil) / conductance
+
+
+def _drawn(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
+    mass, conductance = flow.mass_and_conductance(oil, gap, at)
+    return flow.entrainment * upwind(mass), conductance
+
+
+def specific_volume(flow: Flow, oil: Array) -> Array:
+    """Mean of one over the density from the pressure at a node to that at the next."""
+    warmth = jnp.broadcast_to(flow.temperature_rise, oil.shape)
+    weighed = [
+        0.5 * w / flow.density(_between(oil, at), _between(warmth, at))
+        for at, w in zip(*_GAUSS, strict=True)
+    ]
+    return jnp.sum(jnp.stack(weighed), axis=0)
+
+
+def _between(values: Array, at: float) -> Array:
+    """From values at a node, at -1, to those at the next, at 1."""
+    one, other = values[:-1], values[1:]
+    return 0.5 * (one + other) + 0.5 * at * (other - one)
+
+
+def filled(flow: Flow, oil: Array, room: Array) -> Array:
+    """Oil that passes the end of the film over what would fill the gap behind it, one in the film."""
+    mass = flow.density(oil) * room
+    place = jnp.arange(oil.shape[0])
+    last = jnp.max(jnp.where(oil > BROKEN, place, 0))
+    return jnp.where(place > last, jnp.minimum(mass[last] / mass, 1.0), 1.0)

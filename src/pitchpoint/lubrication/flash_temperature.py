@@ -1,0 +1,108 @@
+"""Temperature of surfaces that pass a strip of heat, and what of a body decides about it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import equinox as eqx
+from jax.typing import ArrayLike
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials.solids import SolidRecord
+
+__all__ = ["LEAST_PECLET", "Conductor", "moving_strip", "peclet_number"]
+
+Each = Float[Numbers, "*#b"]
+
+LEAST_PECLET = 5.0
+"""Peclet number below which heat spreads along a surface too, and less than a strip in one dimension says
+of it stays: the largest temperature of a uniform strip is 10 % too high at 5 (Jaeger 1942)."""
+
+
+class Conductor(eqx.Module):
+    """What of a body decides about the temperature of its surface.
+
+    Args:
+        conductivity: of heat, shape (...) [W/m/K].
+        heat_capacity: density times specific heat, shape (...) [J/m3/K].
+    """
+
+    conductivity: Float[Arrays, "..."]
+    heat_capacity: Float[Arrays, "..."]
+
+    def __init__(self, *, conductivity: ArrayLike, heat_capacity: ArrayLike) -> None:
+        self.conductivity = as_array(conductivity)
+        self.heat_capacity = as_array(heat_capacity)
+
+    @classmethod
+    def of(cls, solid: SolidRecord) -> Conductor:
+        """That of a material, whose values say where they come from.
+
+        Args:
+            solid: of the catalogue, or by value.
+
+        Raises:
+            InputError: its conductivity or its specific heat is not known.
+
+        Example:
+            >>> from pitchpoint.materials import solids
+            >>> round(float(Conductor.of(solids.find("steel")).effusivity))
+            12942
+        """
+        for key in ("conductivity", "specific_heat"):
+            if getattr(solid, key) is None:
+                raise InputError(
+                    f"the temperature of a surface of {solid.name} needs its {key.replace('_', ' ')}, "
+                    "which is not known",
+                    key=f"{solid.name}.{key}",
+                )
+        values: dict[str, Any] = {key: datum.value for key, datum in solid.data().items()}
+        return cls(
+            conductivity=values["conductivity"],
+            heat_capacity=values["density"] * values["specific_heat"],
+        )
+
+    @property
+    def effusivity(self) -> Float[Arrays, "..."]:
+        """Root of conductivity times heat capacity [W s^0.5/m2/K]."""
+        return jnp.sqrt(self.conductivity * self.heat_capacity)
+
+
+def peclet_number(*, speed: Each, half_width: Each, body: Conductor) -> Each:
+    """Peclet number |u| b rho c/(2 k) of a surface that passes a strip of heat [1].
+
+    Args:
+        speed: u, of the surface across the strip [m/s].
+        half_width: b, of the strip [m].
+        body: behind the surface.
+
+    Source: Jaeger (1942), with thermal diffusivity k/(rho c).
+
+    Example:
+        >>> steel = Conductor(conductivity=46.0, heat_capacity=3.64e6)
+        >>> round(float(peclet_number(speed=1.0, half_width=1e-4, body=steel)), 2)
+        3.96
+    """
+    return jnp.abs(speed) * half_width * body.heat_capacity / (2.0 * body.conductivity)
+
+
+def moving_strip(
+    x: Float[Arrays, " node"], edges: Float[Arrays, " edge"]
+) -> Float[Array, "node cell"]:
+    """Integrals of (x - x')^(-1/2) over the part of each cell that a surface has passed [m^0.5].
+
+    Times the heat into the surface on each cell, over the root of pi k rho c |u|, it is the rise of its
+    temperature, where heat spreads into the body alone and not along its surface.
+
+    Args:
+        x: places along the motion of the surface, shape (node,) [m].
+        edges: of the cells, rising, shape (cell + 1,) [m].
+
+    Source: Jaeger (1942), limit of large Peclet numbers; Johnson, Contact Mechanics (1985), section 12.3.
+    """
+    passed = jnp.sqrt(jnp.maximum(x[:, None] - edges, 0.0))
+    return 2.0 * (passed[:, :-1] - passed[:, 1:])
