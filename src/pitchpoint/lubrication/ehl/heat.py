@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
 from typing import Final, NamedTuple
 
 import equinox as eqx
@@ -12,9 +10,9 @@ from jaxtyping import Array, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import Grid, prolongation
+from pitchpoint.lubrication.ehl.grid import Grid
 from pitchpoint.lubrication.ehl.line import SLOWEST, LineContact, Problem
-from pitchpoint.lubrication.ehl.newton import ENOUGH, State, dry, iterated
+from pitchpoint.lubrication.ehl.newton import ENOUGH, State, iterated
 from pitchpoint.lubrication.ehl.work import filled, pressure_flow, shear_stress
 from pitchpoint.lubrication.flash_temperature import Conductor, moving_strip, peclet_number
 
@@ -26,7 +24,7 @@ __all__ = [
     "defect",
     "spread",
     "temperatures",
-    "warm_from_coarse",
+    "turned",
     "warmed",
 ]
 
@@ -36,7 +34,7 @@ Each = Float[Arrays, "*b"]
 WARM_ENOUGH: Final = 1e-6
 """Defect of the temperature over the largest rise, with which a film counts as solved."""
 
-STEADY: Final = 1e-9
+STEADY: Final = 1e-7
 """Change of the temperature in a turn, over the largest rise, at which turns end."""
 
 MOST_TURNS: Final = 40
@@ -44,6 +42,12 @@ MOST_TURNS: Final = 40
 
 MOST_STEPS: Final = 60
 """Steps of Newton's method for the temperature in a turn."""
+
+REMEMBERED: Final = 4
+"""Turns from whose differences the next one begins."""
+
+NEAR: Final = 0.3
+"""Change of the temperature in a turn, over the largest rise, below which turns of the past are used."""
 
 LEAST_RISE: Final = 1e-6
 """Rise of temperature that counts as none [K]."""
@@ -245,41 +249,62 @@ class Warm(NamedTuple):
     change: Float[Array, ""]
     turns: Int[Array, ""]
     total: Int[Array, ""]
+    past: Past
 
 
-def turned(
-    contact: LineContact, problem: Problem, pressure: Array, level: Array, rise: Array, at: Grid
-) -> Warm:
-    """Pressure and temperature in turns on one grid, from a guess of both."""
+class Past(NamedTuple):
+    """Last turn of the temperature, and how the turns before it differed from each other.
+
+    Attributes:
+        found: rise that the turn found, shape (node,) [K].
+        moved: by how much that differed from what it began with, shape (node,) [K].
+        all_found: differences between turns, shape (REMEMBERED, node) [K].
+        all_moved: of the same turns.
+    """
+
+    found: Float[Array, " node"]
+    moved: Float[Array, " node"]
+    all_found: Float[Array, "turn node"]
+    all_moved: Float[Array, "turn node"]
+
+
+def _accelerated(past: Past, begun: Array, found: Array, known: Array) -> tuple[Array, Past]:
+    """Rise from which the next turn begins: where turns of the past together would have moved least.
+
+    Source: Anderson (1965), with differences between turns as unknowns.
+    """
+    moved = found - begun
+    by_found = jnp.roll(past.all_found, 1, axis=0).at[0].set(known * (found - past.found))
+    by_moved = jnp.roll(past.all_moved, 1, axis=0).at[0].set(known * (moved - past.moved))
+    square = by_moved @ by_moved.T
+    # Rows of turns that were not yet made are zero: the bound gives them no part.
+    bound = (1e-14 * jnp.trace(square) + 1e-300) * jnp.eye(REMEMBERED)
+    parts = jnp.linalg.solve(square + bound, by_moved @ moved)
+    return jnp.maximum(found - parts @ by_found, 0.0), Past(found, moved, by_found, by_moved)
+
+
+def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Warm:
+    """Pressure and temperature in turns, from the isothermal solution or any other pressure."""
 
     def onward(warm: Warm) -> Warm:
         so_warm = warmed(problem, warm.rise)
         state = iterated(so_warm, warm.state.pressure, warm.state.level, at)
         rise = _in_balance(contact, so_warm, state.pressure, state.level, at)
         change = jnp.max(jnp.abs(rise - warm.rise)) / (jnp.max(rise) + LEAST_RISE)
-        return Warm(state, rise, change, warm.turns + 1, warm.total + state.total)
+        quicker, past = _accelerated(warm.past, warm.rise, rise, warm.turns > 0)
+        near = (STEADY < change) & (change < NEAR) & (warm.change < NEAR)
+        rise = jnp.where(near, quicker, rise)
+        return Warm(state, rise, change, warm.turns + 1, warm.total + state.total, past)
 
     def unfinished(warm: Warm) -> Array:
         lost = (warm.turns > 0) & ~(warm.state.residual < ENOUGH)
         return ~(warm.change < STEADY) & (warm.turns < MOST_TURNS) & ~lost
 
-    zero, open_ = jnp.asarray(0), jnp.asarray(jnp.inf)
-    state = State(pressure, level, zero, zero, zero, open_)
-    found: Warm = jax.lax.while_loop(unfinished, onward, Warm(state, rise, open_, zero, zero))
+    cold, none = jnp.zeros_like(at.x), jnp.zeros((REMEMBERED, *at.x.shape))
+    past = Past(cold, cold, none, none)
+    begin = Warm(state, cold, jnp.asarray(jnp.inf), jnp.asarray(0), state.total, past)
+    found: Warm = jax.lax.while_loop(unfinished, onward, begin)
     return found
-
-
-def warm_from_coarse(contact: LineContact, problem: Problem, grids: Sequence[Grid]) -> Warm:
-    """Solution on the last of some grids, on each of them started from that on the one before."""
-    cold = jnp.zeros(grids[0].x.shape)
-    warm = turned(contact, problem, *dry(problem, grids[0]), cold, grids[0])
-    for before, at in pairwise(grids):
-        finer = prolongation(before.x.shape[0], at.x.shape[0])
-        pressure = jnp.maximum(finer @ warm.state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
-        rise = jnp.maximum(finer @ warm.rise, 0.0)
-        once = turned(contact, problem, pressure, warm.state.level, rise, at)
-        warm = once._replace(turns=warm.turns + once.turns, total=warm.total + once.total)
-    return warm
 
 
 def defect(

@@ -19,7 +19,6 @@ from pitchpoint.lubrication.ehl.heat import (
     WARM_ENOUGH,
     defect,
     turned,
-    warm_from_coarse,
     warmed,
 )
 from pitchpoint.lubrication.ehl.line import LineContact, Problem, problem_of
@@ -247,14 +246,13 @@ def _iterated(
 ) -> tuple[Problem, State, Array | None]:
     """The contact as warm as it becomes, its solution, and the turns to its temperature."""
     problem, at = problem_of(contact), grids[-1]
-    cold = None if begin is None else _guessed(problem, begin, at)
-    if contact.conduction is None:
-        state = from_coarse(problem, grids) if cold is None else iterated(problem, *cold, at)
-        return problem, state, None
-    if cold is None:
-        warm = warm_from_coarse(contact, problem, grids)
+    if begin is None:
+        state = from_coarse(problem, grids)
     else:
-        warm = turned(contact, problem, *cold, jnp.zeros(at.x.shape), at)
+        state = iterated(problem, *_guessed(problem, begin, at), at)
+    if contact.conduction is None:
+        return problem, state, None
+    warm = turned(contact, problem, state, at)
     return warmed(problem, warm.rise), warm.state._replace(total=warm.total), warm.turns
 
 

@@ -44,7 +44,10 @@ def work_of_pressure(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Arra
 def pressure_flow(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
     """Mass that pressure moves through each face, and the power that this turns into heat over its square."""
     _, conductance = flow.mass_and_conductance(oil, gap, at)
-    return conductance * jnp.diff(oil), specific_volume(flow, oil) / conductance
+    # Oil that is all but solid lets nothing through, and makes no heat.
+    return conductance * jnp.diff(oil), specific_volume(flow, oil) / jnp.maximum(
+        conductance, 1e-200
+    )
 
 
 def _drawn(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
