@@ -37,7 +37,7 @@ WARM_ENOUGH: Final = 1e-6
 STEADY: Final = 1e-7
 """Change of the temperature in a turn, over the largest rise, at which turns end."""
 
-MOST_TURNS: Final = 40
+MOST_TURNS: Final = 60
 """Turns between pressure and temperature after which a contact is given up."""
 
 MOST_STEPS: Final = 60
@@ -46,7 +46,7 @@ MOST_STEPS: Final = 60
 REMEMBERED: Final = 4
 """Turns from whose differences the next one begins."""
 
-NEAR: Final = 0.3
+NEAR: Final = 0.03
 """Change of the temperature in a turn, over the largest rise, below which turns of the past are used."""
 
 LEAST_RISE: Final = 1e-6
@@ -291,9 +291,9 @@ def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Wa
         state = iterated(so_warm, warm.state.pressure, warm.state.level, at)
         rise = _in_balance(contact, so_warm, state.pressure, state.level, at)
         change = jnp.max(jnp.abs(rise - warm.rise)) / (jnp.max(rise) + LEAST_RISE)
-        quicker, past = _accelerated(warm.past, warm.rise, rise, warm.turns > 0)
-        near = (STEADY < change) & (change < NEAR) & (warm.change < NEAR)
-        rise = jnp.where(near, quicker, rise)
+        near = (change < NEAR) & (warm.change < NEAR)
+        quicker, past = _accelerated(warm.past, warm.rise, rise, near)
+        rise = jnp.where(near & (change > STEADY), quicker, rise)
         return Warm(state, rise, change, warm.turns + 1, warm.total + state.total, past)
 
     def unfinished(warm: Warm) -> Array:
