@@ -23,10 +23,10 @@ ISOTHERMAL: Final = "isothermal"
 class Conduction(eqx.Module):
     """What conducts the heat of contacts `*b` whose film is as warm as its mean.
 
-    The heat of a cell of the film leaves it across to both surfaces, made evenly over the film; each takes
-    half of it, and what the film conducts from the warmer surface to the colder one. Friction of asperities is
-    heat at the surfaces, half of it at each. A surface warms as it passes the contact (`moving_strip`); one
-    that stands still takes no heat. Oil that flows takes none along, and compression makes none.
+    Heat is made evenly over the film and leaves it across: each surface takes half of it, and what the film
+    conducts from the warmer surface to the colder one. Friction of asperities is heat at the surfaces, half
+    of it at each. A surface warms as it passes the contact (`moving_strip`); one that stands still takes no
+    heat. Oil that flows takes none along, and compression makes none.
 
     Args:
         a: body of member 0.
@@ -72,7 +72,7 @@ THERMAL = Registry(
         "mean temperature of the film, flash temperature of both surfaces",
         ("jaeger_1942", "johnson_1985"),
         "Steady; viscosity, density and shear stress are those at the mean temperature across the film. The "
-        "flowing oil takes no heat along, compression makes none. Peclet numbers of both surfaces above about "
-        "5; a slower surface conducts heat along itself too.",
+        "flowing oil takes no heat along, compression makes none. Peclet numbers of both surfaces are above "
+        "about 5; a slower surface conducts heat along itself too.",
     ),
 )

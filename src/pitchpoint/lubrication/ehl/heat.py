@@ -68,8 +68,8 @@ class Temperatures(eqx.Module):
         largest_b: of member 1 [K].
         power_a: heat into member 0 [W/m].
         power_b: into member 1 [W/m].
-        expansion_power: work of the oil as it expands warm after it was compressed cold; what friction
-            takes is heat and this [W/m].
+        expansion_power: work that the oil does as it expands warm after it was compressed cold; with the
+            work against friction it makes up the heat [W/m].
         peclet_a: Peclet number |u| b rho c/(2 k) of member 0.
         peclet_b: of member 1.
     """
@@ -310,7 +310,7 @@ def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Wa
 def defect(
     contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
 ) -> Array:
-    """Rise of the film against that by its heat, over the largest rise: the larger of either sign."""
+    """Rise of the film against that by its heat, over the largest rise."""
     rise, by_heat, *_ = _balance(contact, problem, pressure, level, at)
     return jnp.max(jnp.abs(rise - by_heat)) / (jnp.max(by_heat) + LEAST_RISE)
 
@@ -340,26 +340,22 @@ def temperatures(
     rise, _, heat, found = _balance(contact, problem, pressure, level, at)
     into_a = found.spread.to_a @ heat
     into_b = heat - into_a
-    surfaces = found.spread.strip_a @ into_a, found.spread.strip_b @ into_b
-    cells = at.widths * found.length
-    speeds, bodies = (
-        (contact.speed_a, contact.speed_b),
-        (contact.conduction.a, contact.conduction.b),
-    )
-    peclet = [
-        peclet_number(speed=speed, half_width=contact.half_width, body=body)
-        for speed, body in zip(speeds, bodies, strict=True)
-    ]
+    surface_a, surface_b = found.spread.strip_a @ into_a, found.spread.strip_b @ into_b
+    cells, half_width = at.widths * found.length, contact.half_width
+    a, b = contact.conduction.a, contact.conduction.b
     return Temperatures(
-        rise,
-        *surfaces,
-        into_a,
-        into_b,
-        heat,
-        jnp.max(rise),
-        *map(jnp.max, surfaces),
-        cells @ into_a,
-        cells @ into_b,
-        expansion_power,
-        *peclet,
+        film=rise,
+        surface_a=surface_a,
+        surface_b=surface_b,
+        flux_a=into_a,
+        flux_b=into_b,
+        heat=heat,
+        largest_film=jnp.max(rise),
+        largest_a=jnp.max(surface_a),
+        largest_b=jnp.max(surface_b),
+        power_a=cells @ into_a,
+        power_b=cells @ into_b,
+        expansion_power=expansion_power,
+        peclet_a=peclet_number(speed=contact.speed_a, half_width=half_width, body=a),
+        peclet_b=peclet_number(speed=contact.speed_b, half_width=half_width, body=b),
     )

@@ -9,6 +9,8 @@ import numpy as np
 from jax.typing import ArrayLike
 
 from pitchpoint.contact.asperities import ETA_BETA_SIGMA, SIGMA_OVER_BETA
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL, Conduction
 from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
 from pitchpoint.lubrication.ehl.solve import NODES
 from pitchpoint.lubrication.ehl.texture import (
@@ -16,6 +18,7 @@ from pitchpoint.lubrication.ehl.texture import (
     USUAL_ASPERITIES,
     Rough,
 )
+from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.fluid import (
     USUAL_DENSITY,
     USUAL_VISCOSITY,
@@ -48,6 +51,9 @@ class FilmModel:
         pattern: Peklenik's gamma of the roughness.
         boundary_friction: coefficient of friction of asperities that touch.
         inlet: distance from the middle of a contact at which oil begins [m].
+        thermal: name in `THERMAL`.
+        members: what of both bodies decides about the temperature of their surfaces; an isothermal film
+            needs none.
     """
 
     nodes: int = NODES
@@ -61,6 +67,8 @@ class FilmModel:
     pattern: float = 1.0
     boundary_friction: float = BOUNDARY_FRICTION
     inlet: float = FLOODED
+    thermal: str = ISOTHERMAL
+    members: tuple[Conductor, Conductor] | None = None
 
     def contacts(
         self,
@@ -85,6 +93,9 @@ class FilmModel:
             oil: between them.
             temperature: of the oil in the inlet [K].
             roughness_rq: composite Rq [m]; zero for smooth surfaces.
+
+        Raises:
+            InputError: there is no thermal effect of this name, or it lacks what `members` tells.
         """
         fluid = Fluid.of(
             oil,
@@ -105,7 +116,19 @@ class FilmModel:
             fluid=fluid,
             texture=texture,
             inlet=self.inlet,
+            conduction=self._conduction(oil),
         )
+
+    def _conduction(self, oil: Lubricant) -> Conduction | None:
+        if THERMAL[self.thermal].name == ISOTHERMAL:
+            return None
+        if self.members is None:
+            raise InputError(
+                f'thermal = "{self.thermal}" needs the conductivity and the heat capacity of both members',
+                key="thermal",
+            )
+        a, b = self.members
+        return Conduction(a=a, b=b, oil_conductivity=oil.conductivity)
 
     def _rough(self, rq: ArrayLike, modulus: ArrayLike) -> Rough:
         return Rough(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import Ends, Grid, fewer, grid
 from pitchpoint.lubrication.ehl.heat import (
@@ -30,6 +31,7 @@ from pitchpoint.lubrication.ehl.newton import (
     polished,
     residual,
 )
+from pitchpoint.lubrication.flash_temperature import LEAST_PECLET, peclet_number
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
@@ -102,7 +104,12 @@ def line_films(contact: LineContact, nodes: int = NODES) -> LineFilm:
     Returns:
         Films, NaN where a contact was not solved. Derivatives are those of the solution (implicit function
         theorem), first ones; every cell stays full of oil, or not, as it is.
+
+    Raises:
+        InputError: a contact with conduction: with temperatures there are no derivatives.
     """
+    if contact.conduction is not None:
+        raise InputError("derivatives of films are known for isothermal ones alone", key="thermal")
     grids = _ladder(nodes, "entrained")
 
     def one(single: LineContact) -> LineFilm:
@@ -129,12 +136,13 @@ def solve_lines(
         contact: its arrays broadcast against each other to `*b`.
         nodes: across a contact: 33, 65, 129, 257, ...
         profiles: whether fields are kept; without them the memory stays small for any number of contacts.
-        start: films of as many contacts on as many nodes, with profiles, from which the solves begin.
+        start: films of as many contacts on as many nodes, with profiles, from whose pressures solves begin.
         size: of the teeth, such as the module [m]; contacts that are wide against it are told.
         progress: called with the number of contacts that are done and that of all.
 
     Raises:
-        InputError: a radius, modulus, viscosity or roughness that is not positive, or nodes that no grid has.
+        InputError: a radius, modulus, viscosity, roughness, conductivity or heat capacity that is not
+            positive, or nodes that no grid has.
     """
     shape, flat = _flat(contact)
     _check(flat)
@@ -212,6 +220,9 @@ def _before(contact: LineContact) -> Array:
     dry = contact.texture is None
     still = (contact.entrainment == 0.0) & (contact.approach <= 0.0)
     code = jnp.where(still & dry, Code.NO_FILM, Code.SOLVED)
+    if contact.conduction is not None:
+        rests = (contact.speed_a == 0.0) & (contact.speed_b == 0.0)
+        code = jnp.where(rests & (code == Code.SOLVED), Code.NO_STEADY_HEAT, code)
     code = jnp.where(contact.line_load <= 0.0, Code.UNLOADED, code)
     return jnp.where(jnp.all(numbers), code, Code.NOT_FINITE)
 
@@ -295,7 +306,8 @@ def _without_profiles(film: LineFilm) -> LineFilm:
         return found
     along = film.film.ndim
     heat = jax.tree.map(lambda leaf: leaf[..., :0] if leaf.ndim == along else leaf, film.heat)
-    return eqx.tree_at(lambda one: one.heat, found, heat)
+    found = eqx.tree_at(lambda one: one.heat, found, heat)
+    return found
 
 
 def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
@@ -330,10 +342,23 @@ def _check(contact: LineContact) -> None:
     }
     if texture is not None:
         positive["rq"] = (texture.rq, "a composite roughness Rq", 1e6, "um")
+    if contact.conduction is not None:
+        positive |= _of_conduction(contact.conduction)
     for key, (value, what, scale, unit) in positive.items():
         low = np.min(np.asarray(value))
         if not low > 0.0 and not np.isnan(low):
             raise InputError(f"{what} of {low * scale:.4g} {unit}: it must be positive", key=key)
+
+
+def _of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
+    """What of conduction has to be positive: value, what it is, scale and unit, by its key."""
+    of_oil = given.oil_conductivity, "a conductivity of the oil", 1.0, "W/m/K"
+    found: dict[str, tuple[Any, str, float, str]] = {"oil_conductivity": of_oil}
+    for member, body in enumerate((given.a, given.b)):
+        conducts = body.conductivity, f"a conductivity of member {member}", 1.0, "W/m/K"
+        stores = body.heat_capacity, f"a heat capacity of member {member}", 1e-6, "J/cm3/K"
+        found |= {f"conductivity_{member}": conducts, f"heat_capacity_{member}": stores}
+    return found
 
 
 def _warnings(contact: LineContact, ended: Ended, size: float | None) -> Iterator[str]:
@@ -345,6 +370,8 @@ def _warnings(contact: LineContact, ended: Ended, size: float | None) -> Iterato
     yield from _of_half_space(some, size)
     if some.texture is not None:
         yield from _of_roughness(some)
+    if some.conduction is not None:
+        yield from _of_strips(some, some.conduction)
 
 
 def _of_pressure(contact: LineContact) -> Iterator[str]:
@@ -376,4 +403,23 @@ def _of_roughness(contact: LineContact) -> Iterator[str]:
         yield (
             f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
             f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little"
+        )
+
+
+def _of_strips(contact: LineContact, given: Conduction) -> Iterator[str]:
+    half_width = np.asarray(contact.half_width)
+    speeds = np.stack([contact.speed_a, contact.speed_b])
+    peclet = np.stack(
+        [
+            peclet_number(speed=speed, half_width=contact.half_width, body=body)
+            for speed, body in zip(speeds, (given.a, given.b), strict=True)
+        ]
+    )
+    member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
+    if peclet[member, worst] < LEAST_PECLET:
+        yield (
+            f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
+            f"{abs(speeds[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
+            f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
+            "stands still is taken to take none"
         )
