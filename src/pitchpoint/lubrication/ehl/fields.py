@@ -96,8 +96,7 @@ def line_film(
     stress = full * shear_stress(flow, oil, room, sliding)
     carried = jnp.sum(at.widths * asperities) / problem.load
     place, least = _minimum(at.x, room, jnp.abs(at.x) < 1.5 / problem.yielding)
-    rolling, pumping, expansion = work_of_pressure(flow, oil, gap, at)
-    power = flow.pressure * flow.height * problem.speed
+    rolling, pumping = work_of_pressure(flow, oil, gap, at)
     film = LineFilm(
         x=at.x * length,
         pressure=pressure * flow.pressure,
@@ -119,7 +118,7 @@ def line_film(
         * contact.line_load
         * jnp.sign(sliding),
         pumping_power=pumping * flow.pressure * flow.height * problem.speed,
-        heat=temperatures(contact, problem, pressure, level, at, -expansion * power),
+        heat=temperatures(contact, problem, pressure, level, at),
     )
     return _turned(film, contact.entrainment < 0.0)
 

@@ -13,7 +13,7 @@ from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.grid import Grid
 from pitchpoint.lubrication.ehl.line import SLOWEST, LineContact, Problem
 from pitchpoint.lubrication.ehl.newton import ENOUGH, State, iterated
-from pitchpoint.lubrication.ehl.work import filled, pressure_flow, shear_stress
+from pitchpoint.lubrication.ehl.work import filled, pressure_flow, shear_stress, work_of_expansion
 from pitchpoint.lubrication.flash_temperature import Conductor, moving_strip, peclet_number
 
 __all__ = [
@@ -177,6 +177,11 @@ def _found(
     return _Found(pressure - asperities, gap, room, asperities, length, through)
 
 
+def _power(problem: Problem) -> Array:
+    """Unit of power per length of contact line [W/m]."""
+    return problem.flow.pressure * problem.flow.height * problem.speed
+
+
 def _made(
     contact: LineContact, problem: Problem, found: _Found, moved: Array, at: Grid
 ) -> tuple[Array, Array]:
@@ -187,9 +192,8 @@ def _made(
     # Half of what a face makes belongs to each of the nodes beside it.
     pumping = 0.5 * moved**2 * pressure_flow(flow, found.oil, found.gap, at)[1]
     pumping = jnp.append(pumping, 0.0) + jnp.append(0.0, pumping)
-    power = flow.pressure * flow.height * problem.speed
     rubbed = flow.texture.boundary_friction * found.asperities * flow.pressure
-    return shear + pumping * power / (at.widths * found.length), rubbed * jnp.abs(sliding)
+    return shear + pumping * _power(problem) / (at.widths * found.length), rubbed * jnp.abs(sliding)
 
 
 def warmed(problem: Problem, rise: Array) -> Problem:
@@ -211,14 +215,13 @@ def _in_balance(
     mean, none = found.spread.mean, jnp.eye(pressure.shape[0])
     whole = mean + jnp.diag(found.spread.within)
 
-    def film_heat(rise: Array) -> tuple[Array, Array]:
-        return _made(contact, warmed(problem, rise), found, moved, at)
+    def made(rise: Array) -> tuple[Array, tuple[Array, Array]]:
+        film, rubbed = _made(contact, warmed(problem, rise), found, moved, at)
+        return film, (film, rubbed)
 
     def onward(given: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         rise, _, steps = given
-        by_rise, (film, rubbed) = jax.jacfwd(
-            lambda one: (film_heat(one)[0], film_heat(one)), has_aux=True
-        )(rise)
+        by_rise, (film, rubbed) = jax.jacfwd(made, has_aux=True)(rise)
         off = rise - whole @ film - mean @ rubbed
         better = jnp.maximum(rise - jnp.linalg.solve(none - whole @ by_rise, off), 0.0)
         change = jnp.max(jnp.abs(better - rise)) / (jnp.max(better) + LEAST_RISE)
@@ -327,12 +330,7 @@ def _balance(
 
 
 def temperatures(
-    contact: LineContact,
-    problem: Problem,
-    pressure: Array,
-    level: Array,
-    at: Grid,
-    expansion_power: Array,
+    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
 ) -> Temperatures | None:
     """Heat and temperatures of one contact along its grid; None of an isothermal one."""
     if contact.conduction is None:
@@ -343,6 +341,7 @@ def temperatures(
     surface_a, surface_b = found.spread.strip_a @ into_a, found.spread.strip_b @ into_b
     cells, half_width = at.widths * found.length, contact.half_width
     a, b = contact.conduction.a, contact.conduction.b
+    expansion = work_of_expansion(problem.flow, found.oil, found.gap, at)
     return Temperatures(
         film=rise,
         surface_a=surface_a,
@@ -355,7 +354,7 @@ def temperatures(
         largest_b=jnp.max(surface_b),
         power_a=cells @ into_a,
         power_b=cells @ into_b,
-        expansion_power=expansion_power,
+        expansion_power=expansion * _power(problem),
         peclet_a=peclet_number(speed=contact.speed_a, half_width=half_width, body=a),
         peclet_b=peclet_number(speed=contact.speed_b, half_width=half_width, body=b),
     )

@@ -11,7 +11,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.lubrication.ehl.grid import Grid
 from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
 
-__all__ = ["filled", "pressure_flow", "shear_stress", "specific_volume", "work_of_pressure"]
+__all__ = ["filled", "pressure_flow", "shear_stress", "work_of_expansion", "work_of_pressure"]
 
 BROKEN: Final = 1e-9
 """Pressure below which a film is broken, in units of Hertz's pressure."""
@@ -25,20 +25,26 @@ def shear_stress(flow: Flow, oil: Array, room: Array, sliding: Array) -> Array:
     return flow.fluid.shear_stress(sliding / (room * flow.height), pressure, flow.temperature_rise)
 
 
-def work_of_pressure(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array, Array]:
+def work_of_pressure(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
     """Half of the flow that surfaces draw along times the rise of pressure; the same of that under pressure.
 
-    Both per volume: mass over the density between two nodes. Twice the speed times the first is the second
-    and the work that goes into the oil: the flow as a whole times the rise of pressure, third. It is zero
-    for a film that begins and ends without pressure and is as warm everywhere.
+    Both per volume: mass over the density between two nodes. Over a film that begins and ends without
+    pressure the flow as a whole does no work, unless it becomes warm, so that twice the speed times the first
+    is the second.
     """
-    drawn, conductance = _drawn(flow, oil, gap, at)
+    mass, conductance = flow.mass_and_conductance(oil, gap, at)
     rise = jnp.diff(oil)
     volume = rise * specific_volume(flow, oil)
-    inside = jnp.argmax(oil)
-    passing = drawn[inside] - conductance[inside] * rise[inside]
-    pumping = jnp.sum(conductance * rise * volume)
-    return 0.5 * jnp.sum(drawn * volume), pumping, passing * jnp.sum(volume)
+    drawn = flow.entrainment * upwind(mass)
+    return 0.5 * jnp.sum(drawn * volume), jnp.sum(conductance * rise * volume)
+
+
+def work_of_expansion(flow: Flow, oil: Array, gap: Array, at: Grid) -> Array:
+    """What the flow as a whole does as it expands warm after it was compressed cold."""
+    mass, conductance = flow.mass_and_conductance(oil, gap, at)
+    rise, inside = jnp.diff(oil), jnp.argmax(oil)
+    passing = flow.entrainment * upwind(mass)[inside] - conductance[inside] * rise[inside]
+    return -passing * jnp.sum(rise * specific_volume(flow, oil))
 
 
 def pressure_flow(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
@@ -50,23 +56,19 @@ def pressure_flow(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, 
     )
 
 
-def _drawn(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
-    mass, conductance = flow.mass_and_conductance(oil, gap, at)
-    return flow.entrainment * upwind(mass), conductance
-
-
 def specific_volume(flow: Flow, oil: Array) -> Array:
     """Mean of one over the density from the pressure at a node to that at the next."""
-    warmth = jnp.broadcast_to(flow.temperature_rise, oil.shape)
     weighed = [
-        0.5 * w / flow.density(_between(oil, at), _between(warmth, at))
+        0.5 * w / flow.density(_between(oil, at), _between(flow.temperature_rise, at))
         for at, w in zip(*_GAUSS, strict=True)
     ]
     return jnp.sum(jnp.stack(weighed), axis=0)
 
 
 def _between(values: Array, at: float) -> Array:
-    """From values at a node, at -1, to those at the next, at 1."""
+    """From values at a node, at -1, to those at the next, at 1; one that holds everywhere as it is."""
+    if values.ndim == 0:
+        return values
     one, other = values[:-1], values[1:]
     return 0.5 * (one + other) + 0.5 * at * (other - one)
 
