@@ -72,7 +72,7 @@ class Flow(eqx.Module):
         gain = jnp.diff(net) + self.approach * density * at.widths[1:-1]
         return gain, conductance[1:] + conductance[:-1]
 
-    def density(self, film_pressure: Nodes, temperature_rise: Nodes | None = None) -> Nodes:
+    def density(self, film_pressure: Nodes, temperature_rise: Array | None = None) -> Nodes:
         """Density over that of the inlet, at the temperature of the film unless another is given."""
         pressure = jnp.maximum(film_pressure, 0.0) * self.pressure
         warmth = self.temperature_rise if temperature_rise is None else temperature_rise
