@@ -19,6 +19,9 @@ Lanes = Float[Array, "pair slice *b"]
 class Springs(eqx.Module):
     """Every slice as a straight line through its force and its closing under the load.
 
+    For motions that are small beside that closing; where teeth part, the line ends before the contact does,
+    by what `gap` is wider than the flanks.
+
     Attributes:
         stiffness: change of the normal force over closing, zero out of contact [N/m].
         gap: closing at which that line has no force, in place of the separation of the unloaded flanks; a
