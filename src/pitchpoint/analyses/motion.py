@@ -49,11 +49,6 @@ the square."""
 
 BESIDE = "Motion with friction is that of the teeth alone: it leaves out the losses of [losses]."
 
-ELLIPSES = (
-    "Motion with friction: contacts of ellipses have their stiffness from load and deflection, not the "
-    "steeper slope at the load: natural frequencies are some 10 % low."
-)
-
 SLOWEST = 0.01
 """Speed over that of the operating point below which a start asks the friction law at this one."""
 
@@ -357,11 +352,7 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
 
 def _told(built: Built, codes: np.ndarray, sentence: str) -> list[str]:
     """What a motion leaves out, and what became of it."""
-    asides = {
-        BESIDE: bool(built.case.losses),
-        ELLIPSES: built.design.mesh.shape != "line",
-    }
-    return [*status_sentences(codes, sentence), *(told for told, said in asides.items() if said)]
+    return [*status_sentences(codes, sentence), *([BESIDE] if built.case.losses else [])]
 
 
 def _motor_words(built: Built, needed: float) -> list[str]:
