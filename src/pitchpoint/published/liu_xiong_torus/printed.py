@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import ceil, floor, sin
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax, jnp
@@ -213,7 +213,7 @@ def _literal(point: Point, mesh: TorusPair) -> Read:
     return {**found, **_beside(found)}
 
 
-def _named(pair: str, told: Mapping[str, Float[Arrays, "..."]]) -> dict[str, float | Values]:
+def _named(pair: str, told: Mapping[str, Values | Array]) -> dict[str, float | Values]:
     """Numbers and courses of a pair."""
     return {
         f"{pair}_{key}": np.asarray(value) if np.ndim(value) else float(value)

@@ -13,7 +13,7 @@ from pitchpoint.dynamics.bodies import Body, across
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.modes import mean_stiffness, natural_frequencies
+from pitchpoint.dynamics.modes import modes
 from pitchpoint.dynamics.passage import passage, polynomial
 from pitchpoint.dynamics.right_hand_side import Moving, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
@@ -156,7 +156,7 @@ def _grid(moving: Moving, speed: float) -> Grid:
 @program
 def _highest(moving: Moving) -> Each:
     """Highest natural frequency [Hz]."""
-    return natural_frequencies(moving, mean_stiffness(moving))[-1]
+    return modes(moving).frequency[-1]
 
 
 @program
