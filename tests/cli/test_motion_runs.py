@@ -94,10 +94,10 @@ def test_speeds_and_forces_are_those_of_bodies_in_balance(outcome: Outcome) -> N
 
 def test_the_part_is_what_the_kernel_finds(case: str, outcome: Outcome) -> None:
     built = load_case(case)
-    moving, natural = moving_of(built)
+    moving, modes = moving_of(built)
     data = outcome.parts["motion"]
-    assert natural.size == 6
-    assert np.count_nonzero(natural) == data.sizes["mode"] == 5
+    assert modes.frequency.size == 6
+    assert np.count_nonzero(modes.frequency) == data.sizes["mode"] == 5
     np.testing.assert_allclose(quasi_static(built, [SPEED]), data["quasi_static_efficiency"])
     with pytest.raises(InputError, match="above 0, got 0"):
         steady_motion(moving, 0.0)
