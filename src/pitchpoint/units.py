@@ -181,6 +181,15 @@ _KINDS: dict[str, _Kind] = {
             "g/cm3/K": "gram/centimeter**3/kelvin",
         },
     ),
+    "thermal conductivity": _Kind(
+        "a thermal conductivity",
+        "0.14 W/m/K",
+        {
+            "W/m/K": "watt/meter/kelvin",
+            "W/(m K)": "watt/meter/kelvin",
+            "mW/m/K": "milliwatt/meter/kelvin",
+        },
+    ),
     "pressure-viscosity coefficient": _Kind(
         "a pressure-viscosity coefficient",
         "22 1/GPa",

@@ -6,8 +6,13 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.film_thickness import (
     FILM_THICKNESS,
+    dowson_1968,
     dowson_higginson_1959,
+    dowson_toyoda_1979,
     hamrock_dowson_1977,
+    moes_1992,
+    pan_hamrock_1989,
+    pan_hamrock_1989_central,
 )
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE, wu_cheng_1991
 
@@ -45,6 +50,72 @@ def test_line_film_is_its_power_product():
 
 
 @pytest.mark.parametrize(
+    ("law", "factor", "exponents"),
+    [
+        (dowson_1968, 2.65, (-0.13, 0.7, 0.54)),
+        (dowson_toyoda_1979, 3.06, (-0.10, 0.69, 0.56)),
+        (pan_hamrock_1989, 1.714, (-0.128, 0.694, 0.568)),
+        (pan_hamrock_1989_central, 2.922, (-0.166, 0.692, 0.470)),
+    ],
+)
+def test_line_films_are_the_power_products_that_are_printed(law, factor, exponents):
+    W, U, G = LINE["line_load"] / (MODULUS * 0.01), 0.015 * 2.0 / (MODULUS * 0.01), 2.2e-8 * MODULUS
+    powers = np.prod(np.array([W, U, G]) ** np.array(exponents))
+    assert value(law, LINE) == pytest.approx(0.01 * factor * powers, rel=1e-12)
+
+
+def moes(M, L):
+    """Film h/R U2^-1/2 of a line contact whose groups are M and L."""
+    modulus, radius, U2 = 2.26e11, 0.01, 1e-11
+    given = {
+        "line_load": M * modulus * radius * np.sqrt(U2),
+        "entrainment": 0.5,
+        "viscosity": U2 * modulus * radius,
+        "pressure_viscosity": L / (modulus * U2**0.25),
+        "radius": radius,
+        "modulus": modulus,
+    }
+    return value(moes_1992, given) / (radius * np.sqrt(U2))
+
+
+@pytest.mark.parametrize(
+    ("M", "L", "film", "solved"),
+    [
+        (5.0, 5.0, 4.105, 4.126),
+        (10.0, 10.0, 5.464, 5.633),
+        (20.0, 10.0, 5.100, 5.262),
+        (50.0, 10.0, 4.636, 4.749),
+        (100.0, 10.0, 4.297, 4.367),
+        (200.0, 10.0, 3.971, 4.003),
+    ],
+)
+def test_film_after_moes_by_hand_and_beside_converged_solutions(M, L, film, solved):
+    assert moes(M, L) == pytest.approx(film, abs=6e-4)
+    assert 1.0 < solved / moes(M, L) < 1.04
+
+
+@pytest.mark.parametrize(
+    ("M", "L", "limit"),
+    [
+        (1e-3, 0.0, lambda M, L: 3.0 / M),
+        (1e8, 0.0, lambda M, L: 2.621 * M**-0.2),
+        (1e-2, 1e9, lambda M, L: 1.287 * L ** (2.0 / 3.0)),
+        (1e8, 1e3, lambda M, L: 1.311 * M**-0.125 * L**0.75),
+    ],
+    ids=["rigid isoviscous", "elastic isoviscous", "rigid piezoviscous", "elastic piezoviscous"],
+)
+def test_limits_of_the_film_after_moes(M, L, limit):
+    assert moes(M, L) == pytest.approx(limit(M, L), rel=2e-3)
+
+
+@pytest.mark.parametrize("law", [one for one in FILM_THICKNESS.values() if one.shape == "line"])
+def test_line_films_grow_with_speed_to_the_power_of_about_seven_tenths(law):
+    given = {key: jnp.asarray(v) for key, v in LINE.items()}
+    slope = jax.grad(lambda u: jnp.log(law.function(**{**given, "entrainment": jnp.exp(u)})))
+    assert 0.64 <= float(slope(jnp.log(2.0))) <= 0.72
+
+
+@pytest.mark.parametrize(
     ("name", "exponent"), [("entrainment", 0.68), ("viscosity", 0.68), ("load", -0.073)]
 )
 def test_exponents_of_the_elliptic_film(name, exponent):
@@ -54,15 +125,20 @@ def test_exponents_of_the_elliptic_film(name, exponent):
 
 
 # Converged full solutions of line contacts with a compressible, Roelands oil: Hertz pressure [Pa],
-# speed [m/s], radius [m], minimum film [m], rolling resistance [N/m].
+# speed [m/s], radius [m], minimum film [m], rolling resistance [N/m], central film [m].
 CONVERGED = [
-    (0.5e9, 1.0, 0.01, 288.2e-9, 37.27),
-    (1.0e9, 0.1, 0.01, 48.64e-9, 8.545),
-    (1.0e9, 1.0, 0.01, 250.9e-9, 44.83),
+    (0.5e9, 1.0, 0.01, 288.2e-9, 37.27, 338.2e-9),
+    (1.0e9, 0.1, 0.01, 48.64e-9, 8.545, 55.25e-9),
+    (1.0e9, 1.0, 0.01, 250.9e-9, 44.83, 285.2e-9),
 ]
 # Ratio of solution to formula over eight such cases.
 RATIOS = [
     (dowson_higginson_1959, 3, 0.95, 1.02),
+    (dowson_1968, 3, 0.95, 1.02),
+    (pan_hamrock_1989, 3, 1.01, 1.10),
+    (pan_hamrock_1989_central, 5, 1.02, 1.15),
+    (dowson_toyoda_1979, 5, 0.80, 0.88),
+    (moes_1992, 5, 0.81, 0.88),
     (wu_cheng_1991, 4, 0.95, 1.22),
 ]
 

@@ -3,52 +3,19 @@
 import equinox as eqx
 import numpy as np
 import pytest
+from bare_contacts import conditions
 
 from pitchpoint._jax import array
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.conditions import Conditions, arguments, evaluate, shape_of
+from pitchpoint.lubrication.conditions import arguments, evaluate, shape_of
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
 LAWS = (*FRICTION.values(), *FILM_THICKNESS.values(), *ROLLING_RESISTANCE.values())
 LINES = {"line_load", "half_width", "reference_line_load"}
 ELLIPSES = {"load", "transverse_radius"}
-
-
-def conditions(shape):
-    """A steel contact of 50 N, 9.525 mm both ways."""
-    one = array(np.ones((1, 1)))
-    curvature = array(np.array([[0.0, 0.0], [1.0, 1.0]])[..., None, None] / 9.525e-3)
-    contacts = Contacts(
-        active=array(np.ones((1, 1), bool)),
-        path=one,
-        width=one,
-        weight=one,
-        curvature=curvature,
-        surface=array(np.ones((2, 3, 1, 1))),
-        normal=array(np.ones((3, 1, 1))),
-        gap=one,
-        flank=array(np.ones((2, 1, 1))),
-        **dict.fromkeys(("point", "direction", "tangent"), array(np.ones((3, 1, 1)))),
-        shape=shape,
-    )
-    scalars = dict.fromkeys(
-        ("nominal_load", "speed", "viscosity", "kinematic_viscosity", "pressure_viscosity"),
-        array(1.0),
-    )
-    scalars |= dict.fromkeys(("lubricant_factor", "roughness_ra", "roughness_rq"), array(1.0))
-    return Conditions(
-        contacts=contacts,
-        load=array(np.full((1, 1), 50.0)),
-        slip=one,
-        roll=one,
-        modulus=array(226e9),
-        reference=None,
-        **scalars,
-    )
 
 
 def test_what_a_law_states_fits_what_it_asks_for():
@@ -66,6 +33,11 @@ def test_shapes_of_the_library():
         "iso_tr_14179_2": "line",
         "xu_2007": None,
         "dowson_higginson_1959": "line",
+        "dowson_1968": "line",
+        "dowson_toyoda_1979": "line",
+        "pan_hamrock_1989": "line",
+        "pan_hamrock_1989_central": "line",
+        "moes_1992": "line",
         "hamrock_dowson_1977": "ellipse",
         "hamrock_dowson_1977_central": "ellipse",
         "none": None,
@@ -87,7 +59,8 @@ def test_shapes_of_the_library():
             FILM_THICKNESS["hamrock_dowson_1977"],
             "line",
             "'hamrock_dowson_1977' holds for elliptic contacts, and these touch along lines; choose one "
-            "of dowson_higginson_1959",
+            "of dowson_higginson_1959, dowson_1968, dowson_toyoda_1979, pan_hamrock_1989, "
+            "pan_hamrock_1989_central, moes_1992",
         ),
         (
             FILM_THICKNESS["dowson_higginson_1959"].function,

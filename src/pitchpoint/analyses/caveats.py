@@ -13,6 +13,7 @@ from pitchpoint.cases.stages import Ready
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
+from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
@@ -23,6 +24,7 @@ __all__ = [
     "demand_motion",
     "face_warning",
     "faces_warning",
+    "film_warning",
     "jamming_words",
     "pressure_warning",
     "proportions_counted",
@@ -255,19 +257,19 @@ def _proportions(points: Sequence[Built]) -> list[str]:
     return [*dict.fromkeys(key.rpartition(".")[2].replace("_", " ") for key in keys)]
 
 
-def told_of_law(law: FrictionLaw, reasons: Sequence[str]) -> list[str]:
+def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
+    """Conditions that leave the range of the film law, which answers there too."""
+    return told_of_law(film, [f"{one}; its film is an extrapolation" for one in _leaves(film, run)])
+
+
+def told_of_law(law: FrictionLaw | FilmThickness, reasons: Sequence[str]) -> list[str]:
     """Sentences on a law."""
     return [f"{law.title}: {reason}." for reason in reasons]
 
 
 def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
-    reasons = [
-        f"the {name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}, "
-        f"{_how_long(run[f'outside {law.name} {name}'], run['weight'])}"
-        for name, limits in law.ranges.items()
-        if np.any(run[f"outside {law.name} {name}"])
-    ]
+    reasons = _leaves(law, run)
     if run["locked"].any():
         reasons.append(f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh")
     loaded = run["load"] > 0.0
@@ -293,6 +295,16 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
             "the loss"
         )
     return reasons
+
+
+def _leaves(law: FrictionLaw | FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
+    """Which conditions leave the range of a law, in words."""
+    return [
+        f"the {name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}, "
+        f"{_how_long(run[f'outside {law.name} {name}'], run['weight'])}"
+        for name, limits in law.ranges.items()
+        if np.any(run[f"outside {law.name} {name}"])
+    ]
 
 
 def _how_long(outside: np.ndarray, weight: np.ndarray) -> str:

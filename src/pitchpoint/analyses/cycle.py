@@ -12,6 +12,7 @@ from pitchpoint.analyses.caveats import (
     demand_convergence,
     demand_motion,
     face_warning,
+    film_warning,
     pressure_warning,
     room_warning,
     told_of_law,
@@ -54,6 +55,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         for law, run in zip(built.laws, runs, strict=True)
         for text in told_of_law(law, why_outside(built, law, run))
     ]
+    warnings += film_warning(built.film, runs[0])
     warnings += conformal_warning(mesh, runs[0])
     warnings += pressure_warning(built, runs)
     warnings += face_warning(built, runs[0])

@@ -29,7 +29,7 @@ from pitchpoint.dynamics.transient import Transient, transient
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
+from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -297,10 +297,6 @@ def _order(built: Built) -> tuple[str, np.ndarray]:
     return "order", np.arange(ORDERS[-1] * cycles + 1) / cycles
 
 
-def _film(built: Built) -> FilmThickness:
-    return FILM_THICKNESS[built.case.models.film_thickness]
-
-
 def quasi_static(built: Built, speeds: Sequence[float] | np.ndarray) -> np.ndarray:
     """Mean efficiency of the teeth without vibration, pairs sharing as they yield, at driver speeds."""
     design = replace(built.design, drag=())
@@ -316,7 +312,7 @@ def motion_part(built: Built) -> xr.Dataset:
     asked, speed = _asked(built), built.case.operation.speed
     grid, cycles = _grid(built, own, speed, "operation.speed"), int(asked.cycles)
     start = jnp.full(2 * moving.mass.shape[0], jnp.nan)
-    given = moving, array(speed), start, _film(built), grid, cycles
+    given = moving, array(speed), start, built.film, grid, cycles
     found = jax.device_get(_steady(*given))
     found.pop("state")
     data = {name: (_dims(name, values), values) for name, values in found.items()}
@@ -474,7 +470,7 @@ def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> 
     rows = []
     taken = range(done, min(done + FEW, speeds.size))
     for count, number in enumerate(taken, 1):
-        given = moving, array(speeds[number]), array(state), _film(built), grid, cycles
+        given = moving, array(speeds[number]), array(state), built.film, grid, cycles
         found = jax.device_get(_steady(*given))
         state = found["state"]
         rows.append({name: found[name] for name in KEPT})

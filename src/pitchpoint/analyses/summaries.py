@@ -16,7 +16,6 @@ from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.summary import summarise
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
@@ -215,9 +214,8 @@ def _in_groups(
 
 def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
     """The mesh cycle under each of some models."""
-    film = FILM_THICKNESS[built.case.models.film_thickness]
     point = built.design, built.operation
-    return [profile(*point, models, film, engaged=built.engaged) for models in under]
+    return [profile(*point, models, built.film, engaged=built.engaged) for models in under]
 
 
 def beside(points: Sequence[Ready]) -> dict[str, Any]:

@@ -53,8 +53,9 @@ from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
+from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials._leaves import Datum
@@ -153,6 +154,11 @@ class Built:
     def laws(self) -> list[FrictionLaw]:
         """Friction laws of the case, in order."""
         return [models.law for models in self.models]
+
+    @property
+    def film(self) -> FilmThickness:
+        """The film law of the case, with the heat in the inlet."""
+        return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case)
 
     @property
     def law_names(self) -> list[str]:
@@ -424,10 +430,15 @@ def _models(case: Case, own: FrictionLaw | None) -> tuple[Models, ...]:
         choice=array(0),
         parameters={},
         sharing=LOAD_SHARING[case.models.load_sharing],
-        rolling=ROLLING_RESISTANCE[case.models.rolling_resistance],
+        rolling=_inlet(ROLLING_RESISTANCE[case.models.rolling_resistance], case),
         compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance].terms,
     )
     return _under(laws, common, given)
+
+
+def _inlet(law: Inlet, case: Case) -> Inlet:
+    """A law of film or of rolling resistance with the heat in the inlet that the case asks for."""
+    return with_inlet_heating(law, INLET_HEATING[case.models.inlet_heating])
 
 
 def _under(
@@ -710,6 +721,7 @@ def _oil(oil: Oil, document: Document) -> lubricants.LubricantRecord:
         "density_15": oil.density,
         "density_slope": oil.density_slope,
         "lubricant_factor": oil.lubricant_factor,
+        "conductivity": oil.conductivity,
         "T_min": oil.temperature_min,
         "T_max": oil.temperature_max,
     }
@@ -785,6 +797,7 @@ _OIL_KEYS = {
     "gold_s": "pressure_viscosity",
     "gold_t": "pressure_viscosity",
     "lubricant_factor": "lubricant_factor",
+    "conductivity": "conductivity",
     "T_min": "temperature_min",
     "T_max": "temperature_max",
 }

@@ -65,6 +65,7 @@ _OIL = {
     "gold_s": "dimensionless",
     "gold_t": "dimensionless",
     "lubricant_factor": "dimensionless",
+    "conductivity": "thermal conductivity",
     "T_min": "temperature",
     "T_max": "temperature",
 }

@@ -55,6 +55,7 @@ VISCOSITY = Quantity("kinematic viscosity", 2e-6, 0.1, "mm2/s")
 COLD_VISCOSITY = Quantity("kinematic viscosity", 2e-6, 10.0, "mm2/s")
 ALPHA = Quantity("pressure-viscosity coefficient", 1e-10, 1e-6, "1/GPa")
 FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
+CONDUCTIVITY = Quantity("thermal conductivity", 0.01, 10.0, "W/m/K")
 ROUGHNESS = Quantity("length", 0.0, 1e-4, "um")
 TORQUE = Quantity("torque", 0.0, 1e8, "N m")
 LOADED = Quantity("torque", 0.0, 1e8, "N m", open_low=True)
@@ -185,6 +186,12 @@ def _films() -> list[str]:
     return list(FILM_THICKNESS)
 
 
+def _heatings() -> list[str]:
+    from pitchpoint.lubrication.inlet_heating import INLET_HEATING
+
+    return list(INLET_HEATING)
+
+
 def _oils() -> list[str]:
     from pitchpoint.materials.lubricants import catalogue
 
@@ -241,6 +248,7 @@ class Oil(Table):
     density_slope: Annotated[float, SLOPE] | None = None
     pressure_viscosity: Annotated[float, ALPHA] | None = None
     lubricant_factor: Annotated[float, FACTOR] | None = None
+    conductivity: Annotated[float, CONDUCTIVITY] | None = None
     temperature_min: Annotated[float, TEMPERATURE] | None = None
     temperature_max: Annotated[float, TEMPERATURE] | None = None
     thickener: Text = ""
@@ -371,6 +379,7 @@ class Choices(Table):
     film_thickness: Annotated[str, BeforeValidator(named(_films, "film thickness law"))] = (
         "dowson_higginson_1959"
     )
+    inlet_heating: Annotated[str, BeforeValidator(named(_heatings, "inlet heating"))] = "none"
     elliptic_contact: Annotated[str, BeforeValidator(named(_ellipses, "elliptic contact"))] = (
         "hertz_1881"
     )

@@ -18,7 +18,7 @@ from pitchpoint.efficiency.quasi_static import (
 from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import evaluate
-from pitchpoint.lubrication.film_thickness import FilmThickness
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.programs import program
 
@@ -52,13 +52,14 @@ def profile(
     law = models.law
     known = engaged or _engagement(design, operation.load, models.without_friction, nodes)
     found = balance_in_rows(design, operation, known, models)
-    limited = sorted({*law.ranges, *(name for one in LAWS for name in one.ranges)})
+    limited = sorted({*law.ranges, *(name for one in LAWS for name in one.ranges), *_by_film(film)})
     told, ranged = jax.device_get(
         _profile(design, operation, replace(known, body=None), found, film, tuple(limited))
     )
     outside = {
-        f"outside {law.name} {name}": _outside(ranged[name], limits, told["active"])
-        for name, limits in law.ranges.items()
+        f"outside {one.name} {name}": _outside(ranged[name], limits, told["active"])
+        for one in (law, film)
+        for name, limits in one.ranges.items()
     }
     return {**told, **outside}
 
@@ -127,6 +128,12 @@ def _profile(
         name: jnp.moveaxis(values, -1, 0) for name, values in lanes.items()
     }
     return {**mesh, **in_order}, ranged
+
+
+def _by_film(film: FilmThickness) -> set[str]:
+    """Conditions by which laws are limited that hold where a film law does: they share one program."""
+    alike = (one for one in FILM_THICKNESS.values() if one.shape == film.shape)
+    return {*film.ranges, *(name for one in alike for name in one.ranges)}
 
 
 def _outside(value: np.ndarray, limits: tuple[float, float], active: np.ndarray) -> np.ndarray:

@@ -118,6 +118,8 @@ class Design(eqx.Module):
             viscosity=oil.viscosity(temperature),
             kinematic_viscosity=oil.kinematic_viscosity(temperature),
             pressure_viscosity=oil.pressure_viscosity(temperature),
+            viscosity_slope=oil.viscosity_slope(temperature),
+            conductivity=oil.conductivity,
             lubricant_factor=oil.lubricant_factor,
             roughness_ra=self.roughness.mean_ra,
             roughness_rq=self.roughness.composite_rq,

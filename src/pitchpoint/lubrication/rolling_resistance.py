@@ -29,7 +29,8 @@ class RollingResistance:
     """A named model of rolling resistance; `function` gives N per metre of contact line and surface.
 
     Of elliptic contacts it gives N for each surface, over their whole width. It holds for contacts of one
-    `shape`, or of any (None).
+    `shape`, or of any (None). Where `heating` is given it is multiplied by that factor of the heat in the
+    inlet.
     """
 
     name: str
@@ -38,6 +39,7 @@ class RollingResistance:
     sources: tuple[str, ...] = ()
     note: str = ""
     shape: Shape | None = None
+    heating: Callable[..., Array] | None = None
 
     @property
     def rivals(self) -> "Iterable[RollingResistance]":
@@ -152,7 +154,8 @@ ROLLING_RESISTANCE = Registry(
         "isothermal rolling resistance of a line contact",
         wu_cheng_1991,
         ("goksem_hargreaves_1978", "wu_cheng_1991"),
-        "Fully flooded line contacts; force per length and surface, it brakes both.",
+        "Fully flooded line contacts; force per length and surface, it brakes both. Isothermal: it rises "
+        "with speed where measured ones level off, which inlet_heating follows (Aihara 1987).",
         "line",
     ),
     RollingResistance(
@@ -160,7 +163,8 @@ ROLLING_RESISTANCE = Registry(
         "isothermal rolling resistance of a wide elliptic contact, strip by strip",
         wu_cheng_1991_strips,
         ("goksem_hargreaves_1978", "wu_cheng_1991"),
-        "Fully flooded contacts, wide across the rolling direction; force per surface, it brakes both.",
+        "Fully flooded contacts, wide across the rolling direction; force per surface, it brakes both. "
+        "Isothermal: it rises with speed where measured ones level off, which inlet_heating follows.",
         "ellipse",
     ),
 )

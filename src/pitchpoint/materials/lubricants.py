@@ -11,7 +11,7 @@ import equinox as eqx
 from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
@@ -62,6 +62,7 @@ class Lubricant(eqx.Module):
         gold_s: constant of the pressure-viscosity law, shape (...) [1/GPa at 1 mm2/s].
         gold_t: exponent of the pressure-viscosity law, shape (...) [1].
         lubricant_factor: lubricant factor X_L of mean friction laws, shape (...) [1].
+        conductivity: of heat, shape (...) [W/m/K].
         T_min: lowest temperature the values are meant for, shape (...) [K].
         T_max: highest temperature the values are meant for, shape (...) [K].
         nu_0: kinematic viscosity at -40 degC, shape (...) [m2/s]; None for an oil of which it is not known.
@@ -76,6 +77,7 @@ class Lubricant(eqx.Module):
     gold_s: Float[Array, "..."]
     gold_t: Float[Array, "..."]
     lubricant_factor: Float[Array, "..."]
+    conductivity: Float[Array, "..."]
     T_min: Float[Array, "..."]
     T_max: Float[Array, "..."]
     nu_0: Float[Array, "..."] | None
@@ -92,6 +94,7 @@ class Lubricant(eqx.Module):
         gold_s: ArrayLike,
         gold_t: ArrayLike,
         lubricant_factor: ArrayLike,
+        conductivity: ArrayLike,
         T_min: ArrayLike,
         T_max: ArrayLike,
         nu_0: ArrayLike | None = None,
@@ -101,6 +104,7 @@ class Lubricant(eqx.Module):
         self.density_15, self.density_slope = as_array(density_15), as_array(density_slope)
         self.gold_s, self.gold_t = as_array(gold_s), as_array(gold_t)
         self.lubricant_factor = as_array(lubricant_factor)
+        self.conductivity = as_array(conductivity)
         self.T_min, self.T_max = as_array(T_min), as_array(T_max)
         self.nu_0 = None if nu_0 is None else as_array(nu_0)
 
@@ -122,6 +126,17 @@ class Lubricant(eqx.Module):
     def viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
         """Dynamic viscosity at T [K] and ambient pressure, shape (...) [Pa s]."""
         return dynamic_viscosity(nu=self.kinematic_viscosity(T), rho=self.density(T))
+
+    def viscosity_slope(self, T: ArrayLike) -> Float[Array, "..."]:
+        """Relative fall of the dynamic viscosity per kelvin at T [K], -d ln eta/dT, shape (...) [1/K].
+
+        From the law of viscosity and density against temperature, by differentiation. At the temperature
+        where the line for the cold meets the other one it is that of the warm side.
+        """
+        at = as_array(T)
+        eta, fall = jax.jvp(self.viscosity, (at,), (-jnp.ones_like(at),))
+        relative: Float[Array, "..."] = fall / eta
+        return relative
 
     def pressure_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
         """Pressure-viscosity coefficient at T [K], shape (...) [1/Pa].
@@ -152,6 +167,9 @@ _T_40 = Datum(value=ZERO_CELSIUS + 40.0)
 _T_100 = Datum(value=ZERO_CELSIUS + 100.0)
 _T_LOWEST = Datum(value=ZERO_CELSIUS, status="assumed")
 _T_HIGHEST = Datum(value=ZERO_CELSIUS + 120.0, status="assumed")
+_CONDUCTIVITY = Datum(
+    value=0.14, status="assumed", note="of the 0.12 to 0.17 of oils, recalled and unconfirmed"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,6 +189,7 @@ class LubricantRecord:
         gold_s: constant of the pressure-viscosity law [1/GPa at 1 mm2/s].
         gold_t: exponent of the pressure-viscosity law [1]; `constant_alpha` gives both.
         lubricant_factor: lubricant factor X_L of mean friction laws [1].
+        conductivity: of heat [W/m/K], a round value unless given.
         T_min: lowest temperature the values are meant for [K], 0 degC unless given.
         T_max: highest temperature the values are meant for [K], 120 degC unless given. The two
             defaults are a choice: D341 goes through two points 60 K apart and is taken 40 K
@@ -202,6 +221,7 @@ class LubricantRecord:
     T_2: Datum = _T_100
     T_min: Datum = _T_LOWEST
     T_max: Datum = _T_HIGHEST
+    conductivity: Datum = _CONDUCTIVITY
     nu_0: Datum | None = None
 
     def __post_init__(self) -> None:

@@ -18,8 +18,9 @@ from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import asks_for_pitch_point
 from pitchpoint.lubrication.conditions import Law, shape_of
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
@@ -40,13 +41,11 @@ def entries() -> list[dict[str, str]]:
         _entry("rolling_resistance", model, _shape(model)) for model in ROLLING_RESISTANCE.values()
     ]
     rows += [_entry("elliptic_contact", one, "") for one in ELLIPTIC_CONTACT.values()]
-    rows += [
-        _entry("film_thickness", law, f"{_shape(law)}, {law.place} film")
-        for law in FILM_THICKNESS.values()
-    ]
+    rows += [_entry("film_thickness", law, _film_range(law)) for law in FILM_THICKNESS.values()]
     rows += [
         _entry(kind, model, "")
         for kind, registry in (
+            ("inlet_heating", INLET_HEATING),
             ("tooth_compliance", TOOTH_COMPLIANCE),
             ("tooth_contact", CONTACT_LAWS),
             ("tooth_temperature", TOOTH_TEMPERATURE),
@@ -110,15 +109,23 @@ def _shape(law: Law) -> str:
 
 
 def _friction_range(law: FrictionLaw) -> str:
-    limits = [
-        f"{name.replace('_', ' ')} {limits_words(name, ends)}" for name, ends in law.ranges.items()
-    ]
+    limits = _limits(law)
     limits += ["gears with a pitch point"] if asks_for_pitch_point(law) else []
     limits += ["film at least Rq"] if law.full_film else []
     limits += [f"coefficient at most {law.largest:g}"] if law.largest < inf else []
     place = "each contact" if law.local else "whole mesh"
     own = "; only for its case" if law in CASE_LAWS else ""
     return "; ".join([place + own, _shape(law), *limits])
+
+
+def _film_range(law: FilmThickness) -> str:
+    return "; ".join([f"{_shape(law)}, {law.place} film", *_limits(law)])
+
+
+def _limits(law: FrictionLaw | FilmThickness) -> list[str]:
+    return [
+        f"{name.replace('_', ' ')} {limits_words(name, ends)}" for name, ends in law.ranges.items()
+    ]
 
 
 def _ratio_range(limits: tuple[float, float]) -> str:

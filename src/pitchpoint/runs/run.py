@@ -39,6 +39,7 @@ from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.programs import surroundings
 from pitchpoint.registry import nearest
@@ -592,6 +593,8 @@ def _of_mesh(built: Built) -> dict[str, Any]:
         "rolling resistance": ROLLING_RESISTANCE[case.models.rolling_resistance],
         "film thickness": FILM_THICKNESS[case.models.film_thickness],
     }
+    if case.models.inlet_heating != "none":
+        found["inlet heating"] = INLET_HEATING[case.models.inlet_heating]
     if case.dynamics is not None or found["load sharing"].by_stiffness:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
     if case.dynamics is not None and built.design.mesh.along_action:

@@ -34,6 +34,7 @@ _LABELS = {
     "gold_s": "Gold's s",
     "gold_t": "Gold's t",
     "lubricant_factor": "lubricant factor X_L",
+    "conductivity": "thermal conductivity",
     "T_min": "lowest temperature",
     "T_max": "highest temperature",
     "tip_thickness": "tip thickness in the normal section",

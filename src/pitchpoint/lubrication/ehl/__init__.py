@@ -1,0 +1,1 @@
+"""Elastohydrodynamic contacts solved: pressure and film from Reynolds' equation, elasticity and load."""

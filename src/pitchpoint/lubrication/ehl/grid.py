@@ -1,0 +1,147 @@
+"""Grids across a line contact, in units of its own length, and the deflection of half spaces on them."""
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Final, Literal
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Bool, Float
+from numpy.typing import NDArray
+
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
+
+__all__ = ["ENDS", "Ends", "Grid", "fewer", "grid", "line_kernel", "prolongation"]
+
+Ends = Literal["entrained", "squeezed"]
+
+ENDS: Final[dict[Ends, tuple[float, float]]] = {"entrained": (-10.0, 1.5), "squeezed": (-10.0, 10.0)}
+"""First and last node; a film that is drawn in breaks soon behind the contact, a squeezed one does not."""
+
+FEWEST: Final = 33
+"""Nodes of the coarsest grid."""
+
+_FINER, _OVER = 3.0, 0.15
+"""By how much the grid is finer about the ends of the dry contact, where pressure and film turn, and how far
+about them. Against a uniform grid of 129 nodes this takes the error of the minimum film from 3 to 10 % down
+to 0.3 to 2.5 %, and lets thin films converge that do not on a uniform one."""
+
+_COARSER_FROM, _COARSER_OVER = 1.2, 0.8
+"""Distance from which on nodes grow apart, and over which they do."""
+
+
+class Grid(eqx.Module):
+    """Nodes across a line contact; all lengths in units of the length of the contact.
+
+    Attributes:
+        x: of the nodes, shape (node,), against the entrainment at first.
+        widths: of the cells about the nodes, shape (node,).
+        spacing: of neighbours, shape (face,).
+        ahead: whether a face between neighbours is ahead of the middle, shape (face,).
+        kernel: deflection at a node by a pressure of one on the cell of another, but for a constant,
+            shape (node, node).
+    """
+
+    x: Float[Arrays, " node"]
+    widths: Float[Arrays, " node"]
+    spacing: Float[Arrays, " face"]
+    ahead: Bool[Arrays, " face"]
+    kernel: Float[Arrays, "node node"]
+
+    @property
+    def middle(self) -> int:
+        """Number of the node at zero."""
+        return int(np.argmin(np.abs(np.asarray(self.x))))
+
+
+@lru_cache(maxsize=16)
+def grid(nodes: int, ends: Ends = "entrained") -> Grid:
+    """The grid of a line contact.
+
+    Args:
+        nodes: 33, 65, 129, 257, ...: one more than a power of two.
+        ends: whether oil is drawn in on one side, or pressed out on both.
+
+    Raises:
+        InputError: another number of nodes.
+
+    Example:
+        >>> one = grid(129)
+        >>> float(one.x[0]), float(one.x[one.middle]), float(one.x[-1])
+        (-10.0, 0.0, 1.5)
+    """
+    fewer(nodes)
+    first, last = ENDS[ends]
+    places = _places(first, last)
+    steps = np.linspace(0.0, 1.0, nodes)
+    x = places(steps)
+    faces = places(0.5 * (steps[1:] + steps[:-1]))
+    edges = np.concatenate(([x[0]], faces, [x[-1]]))
+    return Grid(x, np.diff(edges), np.diff(x), faces < 0.0, line_kernel(x, edges))
+
+
+def fewer(nodes: int) -> int | None:
+    """Nodes of the next coarser grid, None for the coarsest.
+
+    Raises:
+        InputError: not a number of nodes that a grid may have.
+    """
+    if nodes < FEWEST or (nodes - 1) & (nodes - 2):
+        raise InputError(
+            f"{nodes} nodes across a contact; their number is one more than a power of two, "
+            f"{FEWEST}, 65, 129, 257, ..."
+        )
+    return None if nodes < 4 * (FEWEST - 1) else (nodes - 1) // 4 + 1
+
+
+def line_kernel(x: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Deflection -1/pi int ln|x - x'| dx' at nodes by the pressure on cells, shape (node, node).
+
+    Args:
+        x: of the nodes, shape (node,).
+        edges: of the cells, shape (node + 1,).
+
+    Source: Johnson, Contact Mechanics (1985), section 2.4.
+    """
+    distance = x[:, None] - edges
+    away = np.where(distance == 0.0, 1.0, np.abs(distance))
+    integral = distance * (np.log(away) - 1.0)
+    return np.diff(integral, axis=1) / np.pi
+
+
+@lru_cache(maxsize=16)
+def prolongation(coarse: int, fine: int) -> NDArray[np.float64]:
+    """Matrix from values at the nodes of a coarse grid to those of a fine one, cubic, shape (fine, coarse)."""
+    at = np.linspace(0.0, coarse - 1.0, fine)
+    first = np.clip(np.floor(at).astype(int) - 1, 0, coarse - 4)
+    matrix = np.zeros((fine, coarse))
+    for one in range(4):
+        others = [k for k in range(4) if k != one]
+        weight = np.prod([(at - first - k) / (one - k) for k in others], axis=0)
+        matrix[np.arange(fine), first + one] = weight
+    return matrix
+
+
+def _places(first: float, last: float) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Places by the number of a node over that of the last; the middle is a node of the coarsest grid."""
+    x = np.linspace(first, last, 400_001)
+    density = _density(x)
+    count = np.concatenate(([0.0], np.cumsum(density[1:] + density[:-1])))
+    count /= count[-1]
+    middle = float(np.interp(0.0, x, count))
+    node = round(middle * (FEWEST - 1)) / (FEWEST - 1)
+    bend = (middle - node) / (node * (1.0 - node))
+
+    def places(steps: NDArray[np.float64]) -> NDArray[np.float64]:
+        found = np.interp(steps + bend * steps * (1.0 - steps), count, x)
+        return np.where(np.abs(found) < 1e-9, 0.0, found)
+
+    return places
+
+
+def _density(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Nodes per length, but for a factor."""
+    about = sum(np.cosh((x - end) / _OVER) ** -2.0 for end in (-1.0, 1.0))
+    away = np.maximum(np.abs(x) - _COARSER_FROM, 0.0) / _COARSER_OVER
+    return (1.0 + _FINER * about) / np.sqrt(1.0 + away**2)

@@ -1,0 +1,154 @@
+"""Newton's method for a line contact: oil pressure, asperities, cavitation and load at once."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.lubrication.ehl.grid import Grid, prolongation
+from pitchpoint.lubrication.ehl.line import Problem
+from pitchpoint.lubrication.ehl.reynolds import REACH, banded
+
+__all__ = ["MOST", "TOLERANCE", "State", "from_coarse", "polished"]
+
+TOLERANCE: Final = 1e-9
+"""Largest residual of a solution, in units of Hertz's pressure."""
+
+LONGEST_STEP: Final = 0.3
+"""Largest change of a pressure in a step, in units of Hertz's pressure."""
+
+MOST: Final = 40
+"""Steps after which an attempt on a grid is given up."""
+
+THICK: Final = 1.5
+"""First guess of the film over the one that a regression gives."""
+
+FASTER: Final = (1.0, 8.0, 4.0, 2.0, 1.0)
+"""Speeds, over the given one, at which films are found one after the other where the first attempt fails:
+from a thick film, which every guess leads to, down to the thin one."""
+
+
+class State(NamedTuple):
+    """Where an iteration stands, of one contact, in units of the contact."""
+
+    pressure: Float[Array, " node"]
+    level: Float[Array, ""]
+    speed: Int[Array, ""]
+    steps: Int[Array, ""]
+    total: Int[Array, ""]
+    residual: Float[Array, ""]
+
+
+def step(
+    problem: Problem, pressure: Array, level: Array, at: Grid
+) -> tuple[Array, Array, Array]:
+    """Residual, of the inner nodes and the load at last, and the derivative matrix.
+
+    Unknown are the pressures at the inner nodes, which oil and asperities carry together, and the level of
+    the surfaces. A cell is full of oil, and balanced, or its oil is without pressure: the smaller of the oil
+    pressure and of the defect of its balance is zero, the defect measured by the pressure that mends it.
+
+    Returns:
+        Residual, shape (node - 1,); matrix, shape (node - 1, node - 1); whether cells are full.
+    """
+    gap = problem.gap(pressure, level, at)
+    carried, softer = jax.jvp(problem.flow.asperity_pressure, (gap,), (jnp.ones_like(gap),))
+    oil = pressure - carried
+    found = banded(problem.flow, oil, gap, at)
+    scale = jax.lax.stop_gradient(found.own + at.widths[1:-1])
+    defect = -found.gain / scale
+    full = oil[1:-1] > defect
+    by_pressure = jnp.where(full, -found.by_pressure / scale, 0.0).at[2].add(~full * 1.0)
+    by_gap = jnp.where(full, -found.by_gap / scale, 0.0) - by_pressure * _shifted(softer)
+    residual = jnp.where(full, defect, oil[1:-1])
+    return (
+        jnp.append(residual, at.widths @ pressure - problem.load),
+        _matrix(problem.yielding * by_gap, by_pressure, jnp.sum(by_gap, axis=0), at),
+        full,
+    )
+
+
+def _shifted(values: Array) -> Array:
+    """Values at the REACH nodes that each inner cell knows, shape (reach, inner)."""
+    padded = jnp.concatenate((values[:1], values))
+    inner = values.shape[0] - 2
+    return jnp.stack([padded[k : k + inner] for k in range(REACH)])
+
+
+def _matrix(by_deflection: Array, by_pressure: Array, by_level: Array, at: Grid) -> Array:
+    """Derivatives of all balances to pressures and level, shape (node - 1, node - 1)."""
+    inner = by_level.shape[0]
+    kernel = jnp.concatenate((at.kernel[:1], at.kernel))[:, 1:-1]
+    block = sum(by_deflection[k][:, None] * kernel[k : k + inner] for k in range(REACH))
+    matrix = jnp.zeros((inner + 1, inner + 1))
+    matrix = matrix.at[:inner, :inner].set(block).at[:inner, inner].set(by_level)
+    matrix = matrix.at[inner, :inner].set(at.widths[1:-1])
+    rows = np.arange(inner)
+    for k in range(REACH):
+        kept = (rows + k - 2 >= 0) & (rows + k - 2 < inner)
+        matrix = matrix.at[rows[kept], rows[kept] + k - 2].add(by_pressure[k][kept])
+    return matrix
+
+
+def dry(problem: Problem, at: Grid, factor: Array | float = 1.0) -> tuple[Array, Array]:
+    """Pressure without oil, and the level at which the film in the middle is as guessed.
+
+    Args:
+        problem: the contact.
+        at: the grid.
+        factor: speed over the given one.
+    """
+    half_width = jnp.maximum(problem.yielding, 0.5)
+    inside = jnp.maximum(1.0 - (at.x / half_width) ** 2, 0.0)
+    pressure = jnp.sqrt(inside)
+    pressure = pressure * problem.load / (at.widths @ pressure)
+    sunk = problem.gap(pressure, jnp.zeros(()), at)[jnp.argmin(jnp.abs(at.x))]
+    return pressure, THICK * problem.film * factor**0.7 - sunk
+
+
+def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State:
+    """Newton's iteration on one grid, from a guess; from thick films where that fails."""
+    faster = jnp.asarray(FASTER)
+    last = len(FASTER) - 1
+
+    def unfinished(state: State) -> Array:
+        return state.speed <= last
+
+    def onward(state: State) -> State:
+        factor = faster[state.speed]
+        residual, matrix, _ = step(problem.at_speed(factor), state.pressure, state.level, at)
+        size = jnp.max(jnp.abs(residual))
+        asked = jnp.where(factor == 1.0, TOLERANCE, 1e-3)
+        lost = ~jnp.isfinite(size) | (state.steps >= MOST)
+        state = state._replace(residual=size, total=state.total + 1, steps=state.steps + 1)
+        return jax.lax.cond(
+            (size < asked) | lost,
+            lambda: _next(state, lost),
+            lambda: _moved(state, residual, matrix),
+        )
+
+    def _next(state: State, lost: Array) -> State:
+        found = ~lost & (faster[state.speed] == 1.0)
+        give_up = lost & (state.speed > 0)
+        speed = jnp.where(found | give_up, last + 1, state.speed + 1)
+        again = dry(problem, at, faster[jnp.minimum(speed, last)])
+        pressure = jnp.where(lost & ~give_up, again[0], state.pressure)
+        level = jnp.where(lost & ~give_up, again[1], state.level)
+        return state._replace(pressure=pressure, level=level, speed=speed, steps=jnp.asarray(0))
+
+    def _moved(state: State, residual: Array, matrix: Array) -> State:
+        change = jnp.linalg.solve(matrix, -residual)
+        limit = jnp.minimum(1.0, LONGEST_STEP / jnp.max(jnp.abs(change[:-1])))
+        return state._replace(
+            pressure=state.pressure.at[1:-1].add(limit * change[:-1]),
+            level=state.level + limit * change[-1],
+        )
+
+    zero = jnp.asarray(0)
+    begin = State(pressure, level, zero, zero, zero, jnp.asarray(jnp.inf))
+    return jax.lax.while_loop(unfinished, onward, begin)
+
+

@@ -1,0 +1,193 @@
+"""An oil in a contact: its values at the inlet with the laws that carry them to pressure and heat."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+import equinox as eqx
+import numpy as np
+from jax.typing import ArrayLike
+from jaxtyping import Array, Float
+
+from pitchpoint.errors import InputError, shorten
+from pitchpoint.factored import Numbers
+from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials.lubricants import Lubricant
+from pitchpoint.materials.rheology import (
+    DENSITY,
+    SHEAR_STRESS,
+    VISCOSITY,
+    RheologyLaw,
+    roelands_index,
+)
+from pitchpoint.registry import nearest
+
+__all__ = ["USUAL_DENSITY", "USUAL_SHEAR_STRESS", "USUAL_VISCOSITY", "Fluid"]
+
+Each = Float[Numbers, "*#b"]
+
+USUAL_VISCOSITY: Final = "roelands_1966"
+USUAL_DENSITY: Final = "dowson_higginson_1966"
+USUAL_SHEAR_STRESS: Final = "newtonian"
+
+
+class Fluid(eqx.Module):
+    """An oil at one temperature, or at one for each contact, ready for a solver of films.
+
+    Args:
+        viscosity: eta0 at ambient pressure and `temperature`, shape (...) [Pa s].
+        pressure_viscosity: alpha there, shape (...) [1/Pa].
+        viscosity_slope: -d ln eta0/dT there, shape (...) [1/K].
+        temperature: of the oil in the inlet, shape (...) [K].
+        density: at ambient pressure and `temperature`, shape (...) [kg/m3].
+        viscosity_law: name in `VISCOSITY`; static.
+        density_law: name in `DENSITY`; static.
+        shear_law: name in `SHEAR_STRESS`; static.
+        shear_parameters: those of the shear law that differ from its defaults, by name [SI].
+
+    Raises:
+        InputError: there is no law of a name, or no parameter of one; the message has the nearest ones.
+
+    Example:
+        >>> oil = Fluid(viscosity=0.04, pressure_viscosity=2.2e-8)
+        >>> float(oil.viscosity_at(0.0)), round(float(oil.density_ratio(1e9)), 3)
+        (0.04, 1.222)
+    """
+
+    viscosity: Float[Array, "..."]
+    pressure_viscosity: Float[Array, "..."]
+    viscosity_slope: Float[Array, "..."]
+    temperature: Float[Array, "..."]
+    density: Float[Array, "..."]
+    shear_parameters: dict[str, Float[Array, "..."]]
+    viscosity_law: str = eqx.field(static=True)
+    density_law: str = eqx.field(static=True)
+    shear_law: str = eqx.field(static=True)
+
+    def __init__(
+        self,
+        *,
+        viscosity: ArrayLike,
+        pressure_viscosity: ArrayLike,
+        viscosity_slope: ArrayLike = 0.0,
+        temperature: ArrayLike = 313.15,
+        density: ArrayLike = 870.0,
+        viscosity_law: str = USUAL_VISCOSITY,
+        density_law: str = USUAL_DENSITY,
+        shear_law: str = USUAL_SHEAR_STRESS,
+        shear_parameters: Mapping[str, ArrayLike] | None = None,
+    ) -> None:
+        self.viscosity, self.density = as_array(viscosity), as_array(density)
+        self.pressure_viscosity = as_array(pressure_viscosity)
+        self.viscosity_slope = as_array(viscosity_slope)
+        self.temperature = as_array(temperature)
+        self.viscosity_law = VISCOSITY[viscosity_law].name
+        self.density_law = DENSITY[density_law].name
+        self.shear_law = SHEAR_STRESS[shear_law].name
+        self.shear_parameters = _own(SHEAR_STRESS[shear_law], shear_parameters or {})
+
+    @classmethod
+    def of(
+        cls,
+        oil: Lubricant,
+        temperature: ArrayLike,
+        *,
+        viscosity_law: str = USUAL_VISCOSITY,
+        density_law: str = USUAL_DENSITY,
+        shear_law: str = USUAL_SHEAR_STRESS,
+        shear_parameters: Mapping[str, ArrayLike] | None = None,
+    ) -> Fluid:
+        """An oil of the catalogue, or one by value, at a temperature.
+
+        Args:
+            oil: ready for a computation.
+            temperature: of the inlet, shape (...) [K].
+            viscosity_law: name in `VISCOSITY`.
+            density_law: name in `DENSITY`.
+            shear_law: name in `SHEAR_STRESS`.
+            shear_parameters: those of the shear law that differ from its defaults, by name [SI].
+        """
+        return cls(
+            viscosity=oil.viscosity(temperature),
+            pressure_viscosity=oil.pressure_viscosity(temperature),
+            viscosity_slope=oil.viscosity_slope(temperature),
+            temperature=temperature,
+            density=oil.density(temperature),
+            viscosity_law=viscosity_law,
+            density_law=density_law,
+            shear_law=shear_law,
+            shear_parameters=shear_parameters,
+        )
+
+    def viscosity_at(self, pressure: Each, temperature_rise: Each | float = 0.0) -> Each:
+        """Viscosity under pressure [Pa s].
+
+        Args:
+            pressure: above ambient [Pa].
+            temperature_rise: above `temperature` [K].
+        """
+        return VISCOSITY[self.viscosity_law].function(
+            pressure=pressure,
+            temperature_rise=temperature_rise,
+            viscosity=self.viscosity,
+            pressure_viscosity=self.pressure_viscosity,
+            temperature=self.temperature,
+            viscosity_slope=self.viscosity_slope,
+        )
+
+    def density_ratio(self, pressure: Each, temperature_rise: Each | float = 0.0) -> Each:
+        """Density over that at ambient pressure and `temperature` [1].
+
+        Args:
+            pressure: above ambient [Pa].
+            temperature_rise: above `temperature` [K].
+        """
+        law = DENSITY[self.density_law]
+        return law.function(pressure=pressure, temperature_rise=temperature_rise)
+
+    def shear_stress(
+        self, shear_rate: Each, pressure: Each, temperature_rise: Each | float = 0.0
+    ) -> Each:
+        """Shear stress, with the sign of the shear rate [Pa].
+
+        Args:
+            shear_rate: [1/s].
+            pressure: above ambient [Pa].
+            temperature_rise: above `temperature` [K].
+        """
+        return SHEAR_STRESS[self.shear_law].function(
+            viscosity=self.viscosity_at(pressure, temperature_rise),
+            shear_rate=shear_rate,
+            pressure=pressure,
+            **self.shear_parameters,
+        )
+
+    @property
+    def index(self) -> Each:
+        """Pressure-viscosity index Z of Roelands, shape (...) [1]."""
+        return roelands_index(viscosity=self.viscosity, pressure_viscosity=self.pressure_viscosity)
+
+    def outside(self, pressure: ArrayLike) -> str | None:
+        """None if the laws hold up to a pressure, else why not, in one sentence without its stop.
+
+        Args:
+            pressure: largest of each contact, shape (...) [Pa]; values and no tracers.
+
+        Example:
+            >>> Fluid(viscosity=0.04, pressure_viscosity=2.2e-8).outside(1.6e9)
+            "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa"
+        """
+        values = {"pressure": pressure, "index": np.asarray(self.index)}
+        laws = VISCOSITY[self.viscosity_law], DENSITY[self.density_law]
+        told = (law.outside(**values) for law in laws)
+        return next((one for one in told if one is not None), None)
+
+
+def _own(law: RheologyLaw, given: Mapping[str, ArrayLike]) -> dict[str, Float[Array, "..."]]:
+    """Parameters of a law as arrays."""
+    for name in given.keys() - law.parameters.keys():
+        raise InputError(
+            f"'{shorten(name)}' is no parameter of '{law.name}'{nearest(name, law.parameters)}"
+        )
+    return {name: as_array(value) for name, value in given.items()}

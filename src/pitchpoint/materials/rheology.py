@@ -1,0 +1,396 @@
+"""Rheology of oils under pressure: rival laws of viscosity, density and shear stress by name.
+
+Laws of one kind take the same keywords, so that one can stand in the place of another. All arguments
+broadcast. They are defined, and have finite gradients, at every pressure that the iterate of a solver may
+have: what lies below `LEAST_PRESSURE` counts as it.
+"""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+from jax.typing import ArrayLike
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.factored import Numbers
+from pitchpoint.registry import Registry
+
+__all__ = [
+    "DENSITY",
+    "LEAST_PRESSURE",
+    "SHEAR_STRESS",
+    "VISCOSITY",
+    "RheologyLaw",
+    "bair_winer_1979",
+    "barus_1893",
+    "dowson_higginson_1966",
+    "incompressible",
+    "newtonian",
+    "ree_eyring_1955",
+    "roelands_1966",
+    "roelands_index",
+]
+
+Each = Float[Numbers, "*#b"]
+
+LEAST_PRESSURE: Final = -5e7
+"""Pressure below which nothing changes any more [Pa]: no oil bears such tension, its film breaks."""
+
+_ROELANDS_PRESSURE: Final = 1.96e8  # Pa
+_ROELANDS_TEMPERATURE: Final = 138.0  # K
+_ROELANDS_LOGARITHM: Final = 9.67  # of 6.31e-5 Pa s, with its sign changed
+
+EYRING_STRESS: Final = 5e6
+"""Usual shear stress from which on an oil thins [Pa]: assumed, of the 2 to 10 MPa of mineral oils."""
+
+LIMITING_COEFFICIENT: Final = 0.08
+"""Usual limiting shear stress over pressure: assumed, of the 0.05 to 0.1 of mineral oils."""
+
+LIMITING_STRESS: Final = 2e6
+"""Limiting shear stress without pressure [Pa]: assumed; it keeps the inlet of a contact Newtonian."""
+
+
+@dataclass(frozen=True, eq=False)
+class RheologyLaw:
+    """A named law of the oil under pressure.
+
+    Attributes:
+        name: by which it is chosen.
+        title: name to show.
+        function: the law; keyword-only, SI in and out.
+        sources: keys of the bibliography.
+        check: arguments in SI, and the value worked out by hand.
+        range: where it holds, as a sentence.
+        ranges: limits of quantities in SI, where a range is known; `index` is that of `roelands_index`.
+    """
+
+    name: str
+    title: str
+    function: Callable[..., Array]
+    sources: tuple[str, ...]
+    check: tuple[dict[str, float], float]
+    range: str
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameters of its own with their usual values [SI]."""
+        every = inspect.signature(self.function).parameters.values()
+        return {one.name: one.default for one in every if one.default is not one.empty}
+
+    def outside(self, **values: ArrayLike) -> str | None:
+        """None if the law holds for these values, else why not, in one sentence without its stop.
+
+        Args:
+            values: by the names of `ranges` [SI], values and no tracers; others are passed over.
+
+        Example:
+            >>> from pitchpoint.materials.rheology import VISCOSITY
+            >>> VISCOSITY["roelands_1966"].outside(pressure=1.6e9)
+            "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa"
+            >>> VISCOSITY["roelands_1966"].outside(pressure=0.8e9) is None
+            True
+        """
+        for name in filter(values.__contains__, self.ranges):
+            low, high = self.ranges[name]
+            given = np.asarray(values[name], dtype=float)
+            beyond = given[~((given >= low) & (given <= high))]
+            if beyond.size:
+                return self._told(name, float(beyond[np.argmax(abs(beyond))]))
+        return None
+
+    def _told(self, name: str, value: float) -> str:
+        low, high = (_words(name, limit) for limit in self.ranges[name])
+        limits = f"up to {high}" if name == "pressure" else f"{low} to {high}"
+        what = _NAMES[name]
+        return f"{what} of {_words(name, value)} is outside the range of '{self.name}', {limits}"
+
+
+_NAMES: Final = {"pressure": "a pressure", "index": "a pressure-viscosity index Z"}
+
+
+def _words(name: str, value: float) -> str:
+    return f"{value * 1e-9:.3g} GPa" if name == "pressure" else f"{value:.3g}"
+
+
+def _bounded(pressure: Each) -> Array:
+    return jnp.where(jnp.asarray(pressure) > LEAST_PRESSURE, pressure, LEAST_PRESSURE)
+
+
+def roelands_index(*, viscosity: Each, pressure_viscosity: Each) -> Each:
+    """Pressure-viscosity index Z = alpha p0/(ln eta0 + 9.67) of Roelands' law [1].
+
+    Args:
+        viscosity: eta0 at ambient pressure [Pa s], above 6.31e-5.
+        pressure_viscosity: alpha [1/Pa].
+
+    With p0 = 196 MPa; it makes alpha the slope of ln eta at ambient pressure. Source: Roelands (1966), in
+    the form of Houpert (1985).
+
+    Example:
+        >>> round(float(roelands_index(viscosity=0.04, pressure_viscosity=2.2e-8)), 4)
+        0.6684
+    """
+    logarithm = jnp.log(viscosity) + _ROELANDS_LOGARITHM
+    return pressure_viscosity * _ROELANDS_PRESSURE / logarithm
+
+
+def roelands_1966(
+    *,
+    pressure: Each,
+    temperature_rise: Each,
+    viscosity: Each,
+    pressure_viscosity: Each,
+    temperature: Each,
+    viscosity_slope: Each,
+) -> Each:
+    """Viscosity under pressure by Roelands, eta0 exp{(ln eta0 + 9.67)[(1 + p/p0)^Z t^-S0 - 1]} [Pa s].
+
+    Args:
+        pressure: p above ambient [Pa].
+        temperature_rise: above `temperature` [K].
+        viscosity: eta0 at ambient pressure and `temperature` [Pa s], above 6.31e-5.
+        pressure_viscosity: alpha there [1/Pa].
+        temperature: T0 to which the values belong [K].
+        viscosity_slope: -d ln eta0/dT there [1/K].
+
+    p0 = 196 MPa, t = (T - 138)/(T0 - 138); Z = alpha p0/(ln eta0 + 9.67) and S0 = slope (T0 - 138)/
+    (ln eta0 + 9.67), so that the slopes of ln eta at p = 0 and T = T0 are alpha and -slope. The minus one
+    belongs inside the bracket; where it is printed outside of it, the viscosity at p = 0 is wrong.
+    Source: Roelands (1966), in the form of Houpert (1985).
+
+    Example:
+        >>> eta = roelands_1966(
+        ...     pressure=1e9, temperature_rise=0.0, viscosity=0.04, pressure_viscosity=2.2e-8,
+        ...     temperature=313.15, viscosity_slope=0.04,
+        ... )
+        >>> round(float(eta))
+        153281
+    """
+    logarithm = jnp.log(viscosity) + _ROELANDS_LOGARITHM
+    from_pole = temperature - _ROELANDS_TEMPERATURE
+    index = roelands_index(viscosity=viscosity, pressure_viscosity=pressure_viscosity)
+    by_heat = viscosity_slope * from_pole / logarithm
+    warmth = jnp.log(jnp.maximum(from_pole + temperature_rise, 1.0) / from_pole)
+    squeezed = jnp.log1p(_bounded(pressure) / _ROELANDS_PRESSURE)
+    return viscosity * jnp.exp(logarithm * jnp.expm1(index * squeezed - by_heat * warmth))
+
+
+def barus_1893(
+    *,
+    pressure: Each,
+    temperature_rise: Each,
+    viscosity: Each,
+    pressure_viscosity: Each,
+    temperature: Each,
+    viscosity_slope: Each,
+) -> Each:
+    """Viscosity under pressure by Barus, eta0 exp(alpha p - slope (T - T0)) [Pa s].
+
+    Args:
+        pressure: p above ambient [Pa].
+        temperature_rise: T - T0 [K].
+        viscosity: eta0 at ambient pressure and T0 [Pa s].
+        pressure_viscosity: alpha [1/Pa].
+        temperature: T0 [K]; not asked for.
+        viscosity_slope: -d ln eta0/dT at T0 [1/K].
+
+    Source: Barus (1893) for the pressure; the exponential of the temperature is the usual one beside it.
+
+    Example:
+        >>> eta = barus_1893(
+        ...     pressure=0.1e9, temperature_rise=5.0, viscosity=0.04, pressure_viscosity=2e-8,
+        ...     temperature=313.15, viscosity_slope=0.04,
+        ... )
+        >>> round(float(eta), 6)
+        0.241986
+    """
+    del temperature
+    return viscosity * jnp.exp(
+        pressure_viscosity * _bounded(pressure) - viscosity_slope * temperature_rise
+    )
+
+
+def dowson_higginson_1966(*, pressure: Each, temperature_rise: Each) -> Each:
+    """Density over that at ambient pressure, 1 + 0.6 p/(1 + 1.7 p) - 0.0007 (T - T0), p in GPa [1].
+
+    Args:
+        pressure: p above ambient [Pa].
+        temperature_rise: T - T0 [K].
+
+    Source: Dowson and Higginson (1966) for the pressure, of a mineral oil; the expansion by heat is that of
+    Xu et al. (2021), equation 13, where the 0.0007 must multiply the density.
+
+    Example:
+        >>> round(float(dowson_higginson_1966(pressure=1e9, temperature_rise=10.0)), 6)
+        1.215222
+    """
+    GPa = _bounded(pressure) * 1e-9
+    return 1.0 + 0.6 * GPa / (1.0 + 1.7 * GPa) - 0.7e-3 * temperature_rise
+
+
+def incompressible(*, pressure: Each, temperature_rise: Each) -> Each:
+    """Density that neither pressure nor heat changes, 1 [1].
+
+    Args:
+        pressure: p above ambient [Pa].
+        temperature_rise: T - T0 [K].
+    """
+    return jnp.ones(jnp.broadcast_shapes(jnp.shape(pressure), jnp.shape(temperature_rise)))
+
+
+def newtonian(*, viscosity: Each, shear_rate: Each, pressure: Each) -> Each:
+    """Shear stress eta gamma of a Newtonian oil [Pa].
+
+    Args:
+        viscosity: eta, that under pressure [Pa s].
+        shear_rate: gamma, with its sign [1/s].
+        pressure: p [Pa]; not asked for.
+
+    Source: Newton's definition of viscosity.
+    """
+    del pressure
+    return viscosity * shear_rate
+
+
+def ree_eyring_1955(
+    *,
+    viscosity: Each,
+    shear_rate: Each,
+    pressure: Each,
+    eyring_stress: Each | float = EYRING_STRESS,
+) -> Each:
+    """Shear stress tau_E asinh(eta gamma/tau_E) of an oil that thins under shear [Pa].
+
+    Args:
+        viscosity: eta, that under pressure [Pa s].
+        shear_rate: gamma, with its sign [1/s].
+        pressure: p [Pa]; not asked for.
+        eyring_stress: tau_E from which on it thins [Pa].
+
+    Source: Ree and Eyring (1955), with one kind of unit; Johnson and Tevaarwerk (1977), equation 4.
+
+    Example:
+        >>> round(float(ree_eyring_1955(viscosity=100.0, shear_rate=1e6, pressure=1e9)))
+        18447519
+    """
+    del pressure
+    return eyring_stress * jnp.arcsinh(viscosity * shear_rate / eyring_stress)
+
+
+def bair_winer_1979(
+    *,
+    viscosity: Each,
+    shear_rate: Each,
+    pressure: Each,
+    limiting_coefficient: Each | float = LIMITING_COEFFICIENT,
+    limiting_stress: Each | float = LIMITING_STRESS,
+) -> Each:
+    """Shear stress tau_L [1 - exp(-eta gamma/tau_L)] of an oil that bears tau_L at most [Pa].
+
+    Args:
+        viscosity: eta, that under pressure [Pa s].
+        shear_rate: gamma, with its sign, which the stress has too [1/s].
+        pressure: p [Pa].
+        limiting_coefficient: rise of tau_L with pressure [1].
+        limiting_stress: tau_L without pressure [Pa].
+
+    tau_L = limiting_stress + limiting_coefficient p, where a pressure below zero counts as zero; without
+    the first term the stress would vanish in the inlet, where the oil is Newtonian.
+    Source: Bair and Winer (1979), steady shear.
+
+    Example:
+        >>> round(float(bair_winer_1979(viscosity=100.0, shear_rate=1e6, pressure=1e9)))
+        57779314
+    """
+    pressed = jnp.where(jnp.asarray(pressure) > 0.0, pressure, 0.0)
+    limit = limiting_stress + limiting_coefficient * pressed
+    drawn = viscosity * shear_rate / limit
+    return limit * (jnp.expm1(jnp.minimum(drawn, 0.0)) - jnp.expm1(-jnp.maximum(drawn, 0.0)))
+
+
+_OIL: Final[dict[str, Any]] = {
+    "viscosity": 0.04,
+    "pressure_viscosity": 2.2e-8,
+    "temperature": 313.15,
+    "viscosity_slope": 0.04,
+}
+
+VISCOSITY = Registry(
+    "law of viscosity under pressure",
+    RheologyLaw(
+        "roelands_1966",
+        "Roelands",
+        roelands_1966,
+        ("roelands_1966", "houpert_1985"),
+        ({**_OIL, "pressure": 0.5e9, "temperature_rise": 20.0}, 40.90895584153685),
+        "Mineral and most synthetic oils up to about 1 GPa, with an index Z between 0 and 1; beyond that it "
+        "is an extrapolation.",
+        {"pressure": (LEAST_PRESSURE, 1e9), "index": (0.0, 1.0)},
+    ),
+    RheologyLaw(
+        "barus_1893",
+        "Barus",
+        barus_1893,
+        ("barus_1893", "stachowiak_batchelor_2014"),
+        ({**_OIL, "pressure": 0.1e9, "temperature_rise": 5.0}, 0.295562243957226),
+        "Low pressures; beyond 0.5 GPa the viscosity is much too high.",
+        {"pressure": (LEAST_PRESSURE, 0.5e9)},
+    ),
+)
+"""Laws f(*, pressure, temperature_rise, viscosity, pressure_viscosity, temperature, viscosity_slope)."""
+
+DENSITY = Registry(
+    "law of density under pressure",
+    RheologyLaw(
+        "dowson_higginson_1966",
+        "Dowson-Higginson",
+        dowson_higginson_1966,
+        ("dowson_higginson_1966", "xu_2021"),
+        ({"pressure": 1e9, "temperature_rise": 10.0}, 1.0 + 0.6 / 2.7 - 0.007),
+        "A mineral oil, used for every oil; the density rises by 35 % at most. No range of the fit was "
+        "found.",
+    ),
+    RheologyLaw(
+        "incompressible",
+        "incompressible",
+        incompressible,
+        (),
+        ({"pressure": 1e9, "temperature_rise": 10.0}, 1.0),
+        "Films come out too thick at high pressure.",
+    ),
+)
+"""Laws f(*, pressure, temperature_rise), density over that at ambient pressure."""
+
+SHEAR_STRESS = Registry(
+    "law of shear stress",
+    RheologyLaw(
+        "newtonian",
+        "Newtonian",
+        newtonian,
+        (),
+        ({"viscosity": 10.0, "shear_rate": -1e5, "pressure": 1e9}, -1e6),
+        "Small shear stresses; in a sliding contact under pressure far too high.",
+    ),
+    RheologyLaw(
+        "ree_eyring_1955",
+        "Ree-Eyring",
+        ree_eyring_1955,
+        ("ree_eyring_1955", "johnson_tevaarwerk_1977"),
+        ({"viscosity": 100.0, "shear_rate": 1e6, "pressure": 1e9}, 18447519.34494453),
+        "Thinning up to the stress at which an oil yields; its parameter belongs to one oil at one mean "
+        "pressure and temperature.",
+    ),
+    RheologyLaw(
+        "bair_winer_1979",
+        "Bair-Winer, limiting shear stress",
+        bair_winer_1979,
+        ("bair_winer_1979",),
+        ({"viscosity": 100.0, "shear_rate": 1e6, "pressure": 1e9}, 57779314.22479116),
+        "Oils near their limiting shear stress, which belongs to one oil and temperature.",
+    ),
+)
+"""Laws f(*, viscosity, shear_rate, pressure) with own parameters, stress with the sign of the shear rate."""
