@@ -46,13 +46,11 @@ class Curves:
         title: of the figure.
         along: variable of the places that all of them run over.
         names: variables of the courses, in the order of the columns.
-        bars: True for a spectrum.
     """
 
     title: str
     along: str
     names: tuple[str, ...]
-    bars: bool = False
 
 
 @dataclass(frozen=True)

@@ -29,10 +29,10 @@ class Oil(eqx.Module):
     whole: Float[Array, ""]
 
 
-LINES = 240
+LINES = 480
 """Lines that are kept of it, the first at one order over the whole mesh cycles."""
 
-INSTANTS = 3000
+INSTANTS = 2400
 """Places of equal distance from the start on at which a course is kept."""
 
 

@@ -132,14 +132,12 @@ _HIDDEN = ("film_parts", "mean_force", "force_peak")
 def _curves() -> Iterator[Curves]:
     """Courses of both pairs over each other, from the start on and in steady state."""
     for begin, which in (("", "as published"), ("steady_", "steady state")):
-        way = begin or "start_"
         for name, one in _COURSES.items():
-            bars = name == "spectrum"
+            along = "orders" if name == "spectrum" else "cycles"
             yield Curves(
                 f"{one.long_name}, {which}",
-                f"{way}{'orders' if bars else 'cycles'}",
+                f"{begin or 'start_'}{along}",
                 tuple(f"{pair}_{begin}{name}" for pair in printed.PAIRS),
-                bars,
             )
 
 

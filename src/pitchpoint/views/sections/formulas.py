@@ -18,7 +18,6 @@ from pitchpoint.views.figures import (
     Figure,
     Key,
     Panel,
-    Trace,
     display,
     layout,
     plain,
@@ -81,7 +80,8 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Heading(str(data.attrs["title"]))
         yield _table(data, beside)
         yield from _solves(data, beside)
-        yield _panel(f"formulas{position}", data, beside)
+        panel = _panel(f"formulas{position}", data, beside)
+        yield from [panel] if panel.figures else []
 
 
 def _solves(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
@@ -101,58 +101,42 @@ def _solves(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
 
 def _panel(name: str, data: xr.Dataset, beside: Beside) -> Panel:
     """Courses of a study, with a menu of its points; empty where it has none."""
-    curves = [one for one in beside.curves if all(each in data for each in one.names)]
-    figures = [_figure(f"{name}_{k}", one, data, beside) for k, one in enumerate(curves)]
+    there = [one for one in beside.curves if all(each in data for each in one.names)]
+    curves = {f"{name}_{k}": one for k, one in enumerate(there)}
+    figures = [_figure(each, one, data, beside) for each, one in curves.items()]
     choices = [
-        Choice(
-            place,
-            {
-                one.name: [_values(each, data, point), {}]
-                for one, each in zip(figures, curves, strict=True)
-            },
-        )
+        Choice(place, {each: [_changed(one, data, point), {}] for each, one in curves.items()})
         for point, place in enumerate(_places(data))
     ]
     several = len(choices) > 1 and bool(figures)
     return Panel("", figures, choices=choices if several else [], menu="Shown at")
 
 
-def _values(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
-    """Places and values of every course at a point."""
-    x = rounded(display(one.along, data[one.along].values[point]))
-    return {
-        "x": [x] * len(one.names),
-        "y": [rounded(display(name, data[name].values[point])) for name in one.names],
-    }
+def _changed(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
+    """What a choice of a point changes: values, and places where they are others."""
+    places = data[one.along].values
+    moved = not np.array_equal(places[point], places[0])
+    x = {"x": [_shown(one.along, data, point)] * len(one.names)} if moved else {}
+    return {**x, "y": [_shown(name, data, point) for name in one.names]}
+
+
+def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
+    return rounded(display(name, data[name].values[point]))
 
 
 def _figure(name: str, one: Curves, data: xr.Dataset, beside: Beside) -> Figure:
     """Courses over each other at the first point."""
-    keys = [
-        Key(column, PALETTE[k], "" if one.bars else "solid")
-        for k, column in enumerate(beside.columns)
-    ]
-    first = _values(one, data, 0)
-    unit = show.unit_of(one.names[0])
+    keys = [Key(column, PALETTE[k]) for k, column in enumerate(beside.columns)]
+    unit, places = show.unit_of(one.names[0]), display(one.along, data[one.along].values[0])
     traces = [
-        _bars(key, x, y, unit) if one.bars else plain(key, x, y, unit)
-        for key, x, y in zip(keys, first["x"], first["y"], strict=True)
+        plain(key, places, display(each, data[each].values[0]), unit, opacity=0.75)
+        for key, each in zip(keys, one.names, strict=True)
     ]
+    for trace in traces:
+        trace["line"]["width"] = 1  # of vibrations that lie close
     axes = layout(show.axis_title(one.along), short_axis(one.names[0]))
     title = one.title[0].upper() + one.title[1:]
     return Figure(name, title, traces, axes, keys=tuple(keys), missing="No motion was found.")
-
-
-def _bars(key: Key, x: list[Any], y: list[Any], unit: str) -> Trace:
-    return {
-        "type": "bar",
-        "name": key.label,
-        "meta": "",
-        "x": x,
-        "y": y,
-        "marker": {"color": key.colour},
-        "hovertemplate": f"%{{y:.4~g}} {unit}<br>order %{{x}}",
-    }
 
 
 def _table(data: xr.Dataset, beside: Beside) -> Table:
