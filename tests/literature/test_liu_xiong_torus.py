@@ -391,7 +391,8 @@ def test_report_sets_torus_beside_standard():
         "Speed of the gear",
         "Amplitude of the normal force",
     ]
-    assert [one.label for one in panel.choices] == ["10 rad/s", "100 rad/s", "300 rad/s"]
+    places = dict.fromkeys(one.rpartition(", ")[0] for one in table.head[1:])
+    assert [one.label for one in panel.choices] == [*places]
     error, speed, _ = panel.figures
     for trace, key in zip(error.data, error.keys, strict=True):
         assert trace["name"] == key.label
