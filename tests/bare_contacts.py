@@ -37,7 +37,7 @@ def conditions(shape, **changed):
         array(1.0),
     )
     scalars |= dict.fromkeys(("viscosity_slope", "conductivity", "lubricant_factor"), array(1.0))
-    scalars |= dict.fromkeys(("roughness_ra", "roughness_rq"), array(1.0))
+    scalars |= dict.fromkeys(("roughness_ra", "roughness_rq", "hardness"), array(1.0))
     scalars |= {"slip": one, "roll": one, "modulus": array(226e9)}
     scalars |= {name: array(value) for name, value in changed.items()}
     load = array(np.full((1, 1), 50.0))

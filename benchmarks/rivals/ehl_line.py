@@ -77,7 +77,9 @@ def solve(case: Case, nodes: int, *, tolerance: float = 1e-9, most: int = 80) ->
     inner = np.arange(1, nodes - 1)
     matrix = np.zeros((nodes + 1, nodes + 1), order="F")
     total = math.pi / 2.0
-    for steps in range(1, most + 1):
+    steps = 0
+    while steps < most:
+        steps += 1
         film = level + 0.5 * x**2 + kernel @ pressure
         film = np.where(film < least, least * np.exp(np.minimum(film / least, 1.0) - 1.0), film)
         safe = np.clip(pressure, 0.0, None) * hertz
@@ -100,7 +102,9 @@ def solve(case: Case, nodes: int, *, tolerance: float = 1e-9, most: int = 80) ->
         padded = np.concatenate(([mass[0]], mass))  # one node more ahead of the inlet
         carried = (2.0 * padded[2:] + 5.0 * padded[1:-1] - padded[:-2]) / 6.0
         rest = (np.diff(flow) - np.diff(carried)) / step
-        stiff = 1.0 + (mean[1:] + mean[:-1]) / step**2  # turns a defect of flow into one of pressure
+        stiff = (
+            1.0 + (mean[1:] + mean[:-1]) / step**2
+        )  # turns a defect of flow into one of pressure
         full = pressure[1:-1] > -rest / stiff
         defect = np.where(full, -rest / stiff, pressure[1:-1])
         miss = step * pressure.sum() - total
@@ -123,9 +127,7 @@ def solve(case: Case, nodes: int, *, tolerance: float = 1e-9, most: int = 80) ->
             bands *= full / (-step * stiff)
         matrix[:] = 0.0
         rows = matrix[: nodes - 2]
-        block = sum(
-            bands_h[k][:, None] * kernel[np.maximum(inner - 2 + k, 0)] for k in range(4)
-        )
+        block = sum(bands_h[k][:, None] * kernel[np.maximum(inner - 2 + k, 0)] for k in range(4))
         rows[:, 1 : nodes - 1] = block[:, 1:-1]
         rows[:, nodes] = bands_h.sum(axis=0)
         for k in range(4):

@@ -28,6 +28,8 @@ class Code(IntEnum):
     NO_DESIGN = 11
     BEYOND_FACE = 12
     NOT_SETTLED = 13
+    NO_FILM = 14
+    UNLOADED = 15
 
     @property
     def sentence(self) -> str:
@@ -57,6 +59,8 @@ _SENTENCES = {
     Code.NO_DESIGN: "the dimensions give no gears that can run",
     Code.BEYOND_FACE: "an elliptic contact is longer than the face has room for, and Hertz's theory ends",
     Code.NOT_SETTLED: "the vibration had not become steady when the longest run ended",
+    Code.NO_FILM: "smooth surfaces that neither draw oil in nor approach each other have no film",
+    Code.UNLOADED: "no load presses the bodies together",
 }
 
 

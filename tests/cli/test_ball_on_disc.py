@@ -231,7 +231,7 @@ def test_a_contact_narrower_than_long_is_told() -> None:
 
 def test_models_tell_the_shape_of_contact() -> None:
     ranges = {row["name"]: row["range"] for row in entries()}
-    assert ranges["hamrock_dowson_1977"] == "elliptic contacts, minimum film"
+    assert ranges["hamrock_dowson_1977"] == "elliptic contacts, minimum film; ellipticity 1 to 8"
     assert ranges["wu_cheng_1991"] == "line contacts"
     assert ranges["constant"] == "each contact; any shape of contact"
     assert "line contacts" in ranges["iso_tr_14179_2"]

@@ -13,11 +13,14 @@ from pitchpoint.cases.stages import Ready
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
+from pitchpoint.lubrication.applicability import Limited
+from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
 __all__ = [
+    "asperity_warning",
     "beyond_face",
     "conformal_warning",
     "demand_convergence",
@@ -262,7 +265,21 @@ def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str
     return told_of_law(film, [f"{one}; its film is an extrapolation" for one in _leaves(film, run)])
 
 
-def told_of_law(law: FrictionLaw | FilmThickness, reasons: Sequence[str]) -> list[str]:
+def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) -> list[str]:
+    """Conditions that leave the range of the law of the load on asperities, and where it is cut."""
+    if law is None:
+        return []
+    reasons = [f"{one}; its asperity load ratio is an extrapolation" for one in _leaves(law, run)]
+    cut = np.any(run["asperity_load_ratio"] >= 1.0, axis=(1, 2))
+    if cut.any():
+        reasons.append(
+            "its asperity load ratio reaches more than the 100 % at which it is cut, "
+            f"{_how_long(cut, run['weight'])}"
+        )
+    return told_of_law(law, reasons)
+
+
+def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
     """Sentences on a law."""
     return [f"{law.title}: {reason}." for reason in reasons]
 
@@ -297,7 +314,7 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
     return reasons
 
 
-def _leaves(law: FrictionLaw | FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
+def _leaves(law: Limited, run: Mapping[str, np.ndarray]) -> list[str]:
     """Which conditions leave the range of a law, in words."""
     return [
         f"the {name.replace('_', ' ')} leaves the range of the law, {limits_words(name, limits)}, "

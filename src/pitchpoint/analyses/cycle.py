@@ -7,6 +7,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.caveats import (
+    asperity_warning,
     beyond_face,
     conformal_warning,
     demand_convergence,
@@ -56,6 +57,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         for text in told_of_law(law, why_outside(built, law, run))
     ]
     warnings += film_warning(built.film, runs[0])
+    warnings += asperity_warning(built.asperities, runs[0])
     warnings += conformal_warning(mesh, runs[0])
     warnings += pressure_warning(built, runs)
     warnings += face_warning(built, runs[0])

@@ -214,8 +214,11 @@ def _in_groups(
 
 def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
     """The mesh cycle under each of some models."""
-    point = built.design, built.operation
-    return [profile(*point, models, built.film, engaged=built.engaged) for models in under]
+    point, engaged, asperities = (built.design, built.operation), built.engaged, built.asperities
+    return [
+        profile(*point, models, built.film, engaged=engaged, asperities=asperities)
+        for models in under
+    ]
 
 
 def beside(points: Sequence[Ready]) -> dict[str, Any]:

@@ -52,6 +52,7 @@ from pitchpoint.loading.reactions import Bearing, InnerBearing
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.lubrication.applicability import applies
+from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
@@ -159,6 +160,12 @@ class Built:
     def film(self) -> FilmThickness:
         """The film law of the case, with the heat in the inlet."""
         return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case)
+
+    @property
+    def asperities(self) -> AsperityLoad | None:
+        """The law of the load on asperities; None without one."""
+        law = ASPERITY_LOAD[self.case.models.asperity_load]
+        return None if law.name == "none" else law
 
     @property
     def law_names(self) -> list[str]:
@@ -352,6 +359,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     try:
         _check_shapes(case, mesh, own)
         _check_models(case, mesh)
+        _check_hardness(case, used)
     except InputError as error:
         raise error.at(file=document.name) from None
     design = Design(
@@ -461,6 +469,7 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
     chosen: dict[str, Law] = {
         "models.film_thickness": FILM_THICKNESS[models.film_thickness],
         "models.rolling_resistance": ROLLING_RESISTANCE[models.rolling_resistance],
+        "models.asperity_load": ASPERITY_LOAD[models.asperity_load],
     }
     for key, law in chosen.items():
         try:
@@ -474,6 +483,20 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
             f"these gears touch along lines; leave it at {USUAL_ELLIPSE}",
             key="models.elliptic_contact",
         )
+
+
+def _check_hardness(case: Case, used: Sequence[SolidInUse]) -> None:
+    """InputError if a law asks for the hardness of a gear whose material has none."""
+    law = ASPERITY_LOAD[case.models.asperity_load]
+    if "hardness" not in arguments(law.function)[0]:
+        return
+    for gear, one in enumerate(used, 1):
+        if one.record.hardness is None:
+            raise InputError(
+                f"'{law.name}' asks for the hardness of both gears, and that of gear {gear} is not known; "
+                "give its material by value, with its hardness",
+                key=f"materials.gear_{gear}",
+            )
 
 
 def _check_models(case: Case, mesh: Mesh) -> None:

@@ -53,6 +53,7 @@ _DIMENSIONS = (
 """What follows from the gears and is asked for first."""
 
 _SOLID = {"young": "pressure", "poisson": "dimensionless", "density": "density"}
+_FLANK = {"hardness": "pressure"}
 
 _OIL = {
     "nu_0": "kinematic viscosity",
@@ -322,7 +323,7 @@ def _inertia(built: Built) -> Iterator[Row]:
 def _of_solid(built: Built, gear: int) -> Iterator[Row]:
     """Values of a material at the temperature at which they are used."""
     used = built.solids[gear - 1]
-    for name, kind in _SOLID.items():
+    for name, kind in (_SOLID | (_FLANK if built.asperities else {})).items():
         datum = used.record.data()[name]
         note = (used.told if name == "young" else "") or datum.note
         mark = Provenance(datum.status, datum.source, note)

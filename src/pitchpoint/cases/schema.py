@@ -48,6 +48,7 @@ SLICES = Quantity("dimensionless", 1, 400, whole=True)
 THERMAL_RESISTANCE = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
 AREA = Quantity("area", 1e-8, 1e4, "m2")
 MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
+HARDNESS = Quantity("pressure", 1e6, 1e11, "GPa")
 POISSON = Quantity("dimensionless", 0.0, 0.5)
 DENSITY = Quantity("density", 100.0, 30_000.0, "kg/m3")
 SLOPE = Quantity("density slope", 0.0, 5.0, "kg/m3/K")
@@ -192,6 +193,12 @@ def _heatings() -> list[str]:
     return list(INLET_HEATING)
 
 
+def _asperity_loads() -> list[str]:
+    from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
+
+    return list(ASPERITY_LOAD)
+
+
 def _oils() -> list[str]:
     from pitchpoint.materials.lubricants import catalogue
 
@@ -211,11 +218,12 @@ def _bases() -> list[str]:
 
 
 class SolidValues(Table):
-    """A material by value."""
+    """A material by value; a law that asks for the Vickers hardness of its flanks says so."""
 
     young: Annotated[float, MODULUS]
     poisson: Annotated[float, POISSON]
     density: Annotated[float, DENSITY] = 7830.0
+    hardness: Annotated[float, HARDNESS] | None = None
 
 
 SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]
@@ -380,6 +388,9 @@ class Choices(Table):
         "dowson_higginson_1959"
     )
     inlet_heating: Annotated[str, BeforeValidator(named(_heatings, "inlet heating"))] = "none"
+    asperity_load: Annotated[str, BeforeValidator(named(_asperity_loads, "asperity load law"))] = (
+        "none"
+    )
     elliptic_contact: Annotated[str, BeforeValidator(named(_ellipses, "elliptic contact"))] = (
         "hertz_1881"
     )

@@ -222,5 +222,12 @@ def _record(given: SolidValues | str, key: str, document: Document) -> SolidReco
         datum(getattr(given, name), f"materials.{key}.{name}", document)
         for name in ("young", "poisson", "density")
     )
-    name = f"material of gear {key[-1]}"
-    return SolidRecord(name=name, title=BY_VALUE, young=young, poisson=poisson, density=density)
+    hard = given.hardness
+    return SolidRecord(
+        name=f"material of gear {key[-1]}",
+        title=BY_VALUE,
+        young=young,
+        poisson=poisson,
+        density=density,
+        hardness=None if hard is None else datum(hard, f"materials.{key}.hardness", document),
+    )

@@ -1,5 +1,6 @@
 """Everything along one mesh cycle, for figures and tables: torques, and the state of every contact."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,8 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.loading.balance import Balance
+from pitchpoint.lubrication.applicability import Limited
+from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS
@@ -32,6 +35,7 @@ def profile(
     film: FilmThickness,
     nodes: int = 48,
     engaged: Engagement | None = None,
+    asperities: AsperityLoad | None = None,
 ) -> dict[str, np.ndarray]:
     """State over one period at one operating point.
 
@@ -42,6 +46,7 @@ def profile(
         film: law of the film thickness.
         nodes: in each segment between events.
         engaged: contacts and shares, where they are known already.
+        asperities: law of the part of the load that asperities carry, where it is asked for.
 
     Returns:
         Quantities by name, [node] for the mesh and [node, pair, slice] for each contact; zero where
@@ -49,16 +54,16 @@ def profile(
         Without any load there is no film (NaN), which the laws let grow without limit; over smooth
         flanks its ratio to their roughness is infinite.
     """
-    law = models.law
+    chosen: list[Limited] = [models.law, film, *([asperities] if asperities else [])]
     known = engaged or _engagement(design, operation.load, models.without_friction, nodes)
     found = balance_in_rows(design, operation, known, models)
-    limited = sorted({*law.ranges, *(name for one in LAWS for name in one.ranges), *_by_film(film)})
+    limited = _limiting(chosen, film)
     told, ranged = jax.device_get(
-        _profile(design, operation, replace(known, body=None), found, film, tuple(limited))
+        _profile(design, operation, replace(known, body=None), found, film, asperities, limited)
     )
     outside = {
         f"outside {one.name} {name}": _outside(ranged[name], limits, told["active"])
-        for one in (law, film)
+        for one in chosen
         for name, limits in one.ranges.items()
     }
     return {**told, **outside}
@@ -74,6 +79,7 @@ def _profile(
     known: Engagement,
     found: Balance,
     film: FilmThickness,
+    asperities: AsperityLoad | None,
     limited: tuple[str, ...],
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """The state by name, and conditions by which laws are limited [pair, slice, node]."""
@@ -112,6 +118,8 @@ def _profile(
         "rolling_loss": state.rolling_loss,
         "radius": contacts.radius,
     }
+    if asperities is not None:
+        each["asperity_load_ratio"] = jnp.where(carries, evaluate(asperities, at), 0.0)
     if contacts.shape == "ellipse":
         ellipse = at.ellipse
         each |= {"semi_axis_along": ellipse.along, "semi_axis_across": ellipse.across}
@@ -130,10 +138,10 @@ def _profile(
     return {**mesh, **in_order}, ranged
 
 
-def _by_film(film: FilmThickness) -> set[str]:
-    """Conditions by which laws are limited that hold where a film law does: they share one program."""
-    alike = (one for one in FILM_THICKNESS.values() if one.shape == film.shape)
-    return {*film.ranges, *(name for one in alike for name in one.ranges)}
+def _limiting(chosen: Sequence[Limited], film: FilmThickness) -> tuple[str, ...]:
+    """Conditions by which laws are limited, rivals among them: they share one program."""
+    films = (one for one in FILM_THICKNESS.values() if one.shape == film.shape)
+    return tuple(sorted({name for one in (*chosen, *LAWS, *films) for name in one.ranges}))
 
 
 def _outside(value: np.ndarray, limits: tuple[float, float], active: np.ndarray) -> np.ndarray:

@@ -123,6 +123,7 @@ class Design(eqx.Module):
             lubricant_factor=oil.lubricant_factor,
             roughness_ra=self.roughness.mean_ra,
             roughness_rq=self.roughness.composite_rq,
+            hardness=jnp.minimum(*(solid.hardness for solid in self.solids)),
             reference=mesh.reference if mesh.pitch_point else None,
             elliptic=self.elliptic,
         )

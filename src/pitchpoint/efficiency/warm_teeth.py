@@ -11,7 +11,6 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import heat
 from pitchpoint.efficiency.tooth_temperature import ToothTemperature
-from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
@@ -116,10 +115,7 @@ def _loss(at: Float[Array, "2"], given: Given) -> Float[Array, "2"]:
     """Friction and loss factor of teeth that those of `at` have warmed."""
     design, operation, models, heated = given
     young = _moduli(_temperatures(at, design, operation, heated).root, heated)
-    first, second = (
-        Solid(young=young[k], poisson=solid.poisson, density=solid.density)
-        for k, solid in enumerate(design.solids)
-    )
+    first, second = (replace(solid, young=young[k]) for k, solid in enumerate(design.solids))
     found = heat(replace(design, solids=(first, second)), operation, models)
     return jnp.stack([found["mean_friction"], found["loss_factor"]])
 

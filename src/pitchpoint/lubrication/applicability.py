@@ -1,10 +1,15 @@
 """Which laws hold for the contacts of a mesh, by what they ask for."""
 
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.conditions import arguments, of_other_shape
+from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 
-__all__ = ["OF_PITCH_POINT", "applies", "asks_for_pitch_point"]
+__all__ = ["OF_PITCH_POINT", "Limited", "applies", "asks_for_pitch_point"]
+
+Limited = FrictionLaw | FilmThickness | AsperityLoad
+"""Laws with ranges of conditions, outside of which they answer and results say so."""
 
 OF_PITCH_POINT = frozenset(
     {

@@ -47,6 +47,7 @@ class Conditions(eqx.Module):
         lubricant_factor: X_L.
         roughness_ra: mean Ra of both flanks [m].
         roughness_rq: composite Rq of both flanks [m].
+        hardness: Vickers hardness of the softer flank [Pa]; not a number where one is not known.
         reference: pitch-point values, or None.
         elliptic: how an elliptic contact follows from its load; static.
     """
@@ -66,6 +67,7 @@ class Conditions(eqx.Module):
     lubricant_factor: Float[Array, ""]
     roughness_ra: Float[Array, ""]
     roughness_rq: Float[Array, ""]
+    hardness: Float[Array, ""]
     reference: Reference | None
     elliptic: EllipticContact = eqx.field(static=True, default=ELLIPTIC_CONTACT[USUAL_ELLIPSE])
 
@@ -191,6 +193,22 @@ class Conditions(eqx.Module):
         return self.pressure_viscosity * self.modulus
 
     @property
+    def roughness_parameter(self) -> Lanes:
+        """Composite Rq over radius [1].
+
+        Source: Masjedi and Khonsari (2012).
+        """
+        return self.roughness_rq / self.radius
+
+    @property
+    def hardness_parameter(self) -> Each:
+        """V, Vickers hardness over E' [1].
+
+        Source: Masjedi and Khonsari (2012).
+        """
+        return self.hardness / self.modulus
+
+    @property
     def thermal_loading(self) -> Lanes:
         """L of the heat by shear in the inlet, beta eta0 u^2/k with the mean surface speed [1].
 
@@ -280,10 +298,13 @@ UNITS: Mapping[str, str] = {
     "lubricant_factor": "1",
     "roughness_ra": "m",
     "roughness_rq": "m",
+    "hardness": "Pa",
     "modulus": "Pa",
     "load_parameter": "1",
     "speed_parameter": "1",
     "material_parameter": "1",
+    "roughness_parameter": "1",
+    "hardness_parameter": "1",
     "thermal_loading": "1",
     "ellipticity": "1",
     "face_width": "m",

@@ -38,6 +38,7 @@ class Solid(eqx.Module):
         young: Young's modulus, shape (...) [Pa].
         poisson: Poisson's ratio, shape (...) [1].
         density: density, shape (...) [kg/m3].
+        hardness: Vickers hardness of the flanks, shape (...) [Pa]; not a number where it is not known.
 
     Example:
         >>> steel = Solid(young=206e9, poisson=0.3, density=7830.0)
@@ -46,11 +47,20 @@ class Solid(eqx.Module):
     young: Float[Array, "..."]
     poisson: Float[Array, "..."]
     density: Float[Array, "..."]
+    hardness: Float[Array, "..."]
 
-    def __init__(self, *, young: ArrayLike, poisson: ArrayLike, density: ArrayLike) -> None:
+    def __init__(
+        self,
+        *,
+        young: ArrayLike,
+        poisson: ArrayLike,
+        density: ArrayLike,
+        hardness: ArrayLike = np.nan,
+    ) -> None:
         self.young = as_array(young)
         self.poisson = as_array(poisson)
         self.density = as_array(density)
+        self.hardness = as_array(hardness)
 
     @property
     def plane_strain_modulus(self) -> Float[Array, "..."]:
@@ -113,6 +123,7 @@ class SolidRecord:
         melting: temperature at which it melts [K], of plastics.
         service_limit: temperature that it bears for long in air [K], of plastics.
         contact_limit: largest Hertz pressure that it bears, a few times only [Pa], if known.
+        hardness: Vickers hardness of its flanks [Pa], if known.
 
     Raises:
         InputError: a value is out of its physical range, or the table is not in order.
@@ -137,6 +148,7 @@ class SolidRecord:
     melting: Datum | None = None
     service_limit: Datum | None = None
     contact_limit: Datum | None = None
+    hardness: Datum | None = None
 
     def __post_init__(self) -> None:
         positive = [item for item in self.data().items() if item[0] != "poisson"]
@@ -160,6 +172,7 @@ class SolidRecord:
             "melting": self.melting,
             "service_limit": self.service_limit,
             "contact_limit": self.contact_limit,
+            "hardness": self.hardness,
         }
         table = {f"young_at {celsius(p.temperature)}": p.young for p in self.young_at}
         return {key: datum for key, datum in every.items() if datum is not None} | table
@@ -204,6 +217,7 @@ class SolidRecord:
             young=self._young(temperature),
             poisson=self.poisson.value,
             density=self.density.value,
+            hardness=np.nan if self.hardness is None else self.hardness.value,
         )
 
     def _young(self, temperature: ArrayLike | None) -> ArrayLike:
@@ -295,6 +309,7 @@ def _record(name: str, entry: dict[str, Any]) -> SolidRecord:
         melting=_temperature(entry, "melting_degC"),
         service_limit=_temperature(entry, "service_limit_degC"),
         contact_limit=_optional(entry, "contact_limit_GPa", 1e9),
+        hardness=_optional(entry, "hardness_GPa", 1e9),
     )
 
 

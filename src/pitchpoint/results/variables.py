@@ -65,6 +65,7 @@ VARIABLES: dict[str, Variable] = {
     "semi_axis_across": length("semi-axis of the contact across the rolling direction", "a"),
     "film_thickness": Variable("film thickness", "h", "m", "um", "length"),
     "lambda_ratio": Variable("film thickness over composite Rq", "Λ", "1"),
+    "asperity_load_ratio": percent("part of the load on asperities", "L_a"),
     "sliding_loss": power("sliding loss of the pair", "P_s"),
     "rolling_loss": power("rolling loss of the pair", "P_r"),
     "drag_loss": power("power loss beside the teeth", "P_drag"),

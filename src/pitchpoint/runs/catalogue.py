@@ -16,7 +16,8 @@ from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
-from pitchpoint.lubrication.applicability import asks_for_pitch_point
+from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point
+from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
 from pitchpoint.lubrication.conditions import Law, shape_of
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -42,6 +43,10 @@ def entries() -> list[dict[str, str]]:
     ]
     rows += [_entry("elliptic_contact", one, "") for one in ELLIPTIC_CONTACT.values()]
     rows += [_entry("film_thickness", law, _film_range(law)) for law in FILM_THICKNESS.values()]
+    rows += [
+        _entry("asperity_load", law, "; ".join([_shape(law), *_limits(law)]))
+        for law in ASPERITY_LOAD.values()
+    ]
     rows += [
         _entry(kind, model, "")
         for kind, registry in (
@@ -122,7 +127,7 @@ def _film_range(law: FilmThickness) -> str:
     return "; ".join([f"{_shape(law)}, {law.place} film", *_limits(law)])
 
 
-def _limits(law: FrictionLaw | FilmThickness) -> list[str]:
+def _limits(law: Limited) -> list[str]:
     return [
         f"{name.replace('_', ' ')} {limits_words(name, ends)}" for name, ends in law.ranges.items()
     ]

@@ -593,6 +593,8 @@ def _of_mesh(built: Built) -> dict[str, Any]:
         "rolling resistance": ROLLING_RESISTANCE[case.models.rolling_resistance],
         "film thickness": FILM_THICKNESS[case.models.film_thickness],
     }
+    if built.asperities is not None:
+        found["asperity load"] = built.asperities
     if case.models.inlet_heating != "none":
         found["inlet heating"] = INLET_HEATING[case.models.inlet_heating]
     if case.dynamics is not None or found["load sharing"].by_stiffness:

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Bool, Float
 from numpy.typing import NDArray
 
 from pitchpoint.errors import InputError
@@ -16,7 +16,10 @@ __all__ = ["ENDS", "Ends", "Grid", "fewer", "grid", "line_kernel", "prolongation
 
 Ends = Literal["entrained", "squeezed"]
 
-ENDS: Final[dict[Ends, tuple[float, float]]] = {"entrained": (-10.0, 1.5), "squeezed": (-10.0, 10.0)}
+ENDS: Final[dict[Ends, tuple[float, float]]] = {
+    "entrained": (-10.0, 1.5),
+    "squeezed": (-10.0, 10.0),
+}
 """First and last node; a film that is drawn in breaks soon behind the contact, a squeezed one does not."""
 
 FEWEST: Final = 33
@@ -78,7 +81,8 @@ def grid(nodes: int, ends: Ends = "entrained") -> Grid:
     x = places(steps)
     faces = places(0.5 * (steps[1:] + steps[:-1]))
     edges = np.concatenate(([x[0]], faces, [x[-1]]))
-    return Grid(x, np.diff(edges), np.diff(x), faces < 0.0, line_kernel(x, edges))
+    found: Any = x, np.diff(edges), np.diff(x), faces < 0.0, line_kernel(x, edges)
+    return Grid(*found)
 
 
 def fewer(nodes: int) -> int | None:
@@ -112,7 +116,7 @@ def line_kernel(x: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[n
 
 @lru_cache(maxsize=16)
 def prolongation(coarse: int, fine: int) -> NDArray[np.float64]:
-    """Matrix from values at the nodes of a coarse grid to those of a fine one, cubic, shape (fine, coarse)."""
+    """Matrix from values at the nodes of a coarse grid to those of a finer one, shape (fine, coarse)."""
     at = np.linspace(0.0, coarse - 1.0, fine)
     first = np.clip(np.floor(at).astype(int) - 1, 0, coarse - 4)
     matrix = np.zeros((fine, coarse))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import equinox as eqx
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
@@ -12,10 +14,21 @@ from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.grid import Grid
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth, Texture
+from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.fluid import Fluid
 
 __all__ = ["LineContact", "Problem", "problem_of"]
+
+SLOWEST: Final = 1e-9
+"""Least unit of speed [m/s], for contacts that stand still."""
+
+SUMMITS: Final = 4.0
+"""Gap over Rq up to which asperities are counted when the length of a contact is chosen."""
+
+FLOODED: Final = 1e9
+"""Distance at which oil begins where there is enough of it [m]."""
+
 
 class LineContact(eqx.Module):
     """Line contacts `*b` between two bodies with oil between them.
@@ -29,6 +42,8 @@ class LineContact(eqx.Module):
         approach: speed at which the bodies approach each other [m/s].
         fluid: the oil.
         texture: of the surfaces; None for smooth ones.
+        inlet: distance from the middle of the contact at which oil begins to fill the gap [m]; a short one
+            starves the contact.
     """
 
     line_load: Float[Array, "..."]
@@ -37,6 +52,7 @@ class LineContact(eqx.Module):
     speed_a: Float[Array, "..."]
     speed_b: Float[Array, "..."]
     approach: Float[Array, "..."]
+    inlet: Float[Array, "..."]
     fluid: Fluid
     texture: Texture | None
 
@@ -51,11 +67,12 @@ class LineContact(eqx.Module):
         fluid: Fluid,
         approach: ArrayLike = 0.0,
         texture: Texture | None = None,
+        inlet: ArrayLike = FLOODED,
     ) -> None:
         self.line_load, self.radius = as_array(line_load), as_array(radius)
         self.modulus = as_array(modulus)
         self.speed_a, self.speed_b = as_array(speed_a), as_array(speed_b)
-        self.approach = as_array(approach)
+        self.approach, self.inlet = as_array(approach), as_array(inlet)
         self.fluid, self.texture = fluid, texture
 
     @property
@@ -82,30 +99,45 @@ class Problem(eqx.Module):
         yielding: b/L, the deflection by a pressure of one over a length of one, times pi.
         load: over pressure and length.
         film: guess of it, for a start.
+        speed: unit of speed [m/s].
+        inlet: distance from the middle from which on there is oil.
     """
 
     flow: Flow
     yielding: Float[Arrays, ""]
     load: Float[Arrays, ""]
     film: Float[Arrays, ""]
+    speed: Float[Arrays, ""]
+    inlet: Float[Arrays, ""]
 
     def gap(self, pressure: Array, level: Array, at: Grid) -> Array:
         """Gap of the mean planes at every node, shape (node,)."""
         return level + 0.5 * at.x**2 + self.yielding * (at.kernel @ pressure)
 
+    def wet(self, at: Grid) -> Array:
+        """Whether there is oil at each inner node, shape (node - 2,)."""
+        half_way = 0.5 * (at.x[1:-1] + at.x[2:])
+        wet: Array = half_way > -self.inlet
+        return wet
+
     def at_speed(self, factor: Array) -> Problem:
         """The same contact at another speed."""
-        return eqx.tree_at(lambda one: one.flow.resistance, self, self.flow.resistance * factor)
+        found: Problem = eqx.tree_at(
+            lambda one: one.flow.resistance, self, self.flow.resistance * factor
+        )
+        return found
 
 
-def problem_of(contact: LineContact, nodes: int) -> Problem:
+def problem_of(contact: LineContact) -> Problem:
     """One contact in units of its own length, pressure and speed."""
     half_width, pressure = contact.half_width, contact.hertz_pressure
-    approach = jnp.maximum(contact.approach, 0.0)
     speed = jnp.abs(contact.entrainment)
-    unit = jnp.maximum(speed + approach * contact.radius / half_width, 1e-9)
-    film = guess(contact, unit)
-    ratio = jax.lax.stop_gradient(jnp.sqrt(1.0 + contact.radius * film / half_width**2))
+    unit = jnp.maximum(speed + jnp.abs(contact.approach) * contact.radius / half_width, SLOWEST)
+    film = jax.lax.stop_gradient(guess(contact))
+    # Thick films and rough surfaces carry on a length beyond that of the dry contact.
+    rough = 0.0 if contact.texture is None else contact.texture.rq
+    beyond = contact.radius * (film + SUMMITS * rough) / half_width**2
+    ratio = jnp.sqrt(1.0 + jax.lax.stop_gradient(beyond))
     # In steps, so that the grid keeps its places in the contact while inputs change a little.
     ratio = 2.0 ** (jnp.ceil(4.0 * jnp.log2(ratio) - 1e-9) / 4.0)
     length = half_width * ratio
@@ -119,20 +151,28 @@ def problem_of(contact: LineContact, nodes: int) -> Problem:
         12.0 * fluid.viscosity * unit * contact.radius**2 / (length**3 * pressure),
         speed / unit,
         contact.approach * contact.radius / (length * unit),
-        jnp.zeros(nodes),
+        jnp.zeros(()),
     )
-    return Problem(flow, 1.0 / ratio, 0.5 * jnp.pi / ratio, film / height)
+    return Problem(
+        flow, 1.0 / ratio, 0.5 * jnp.pi / ratio, film / height, unit, contact.inlet / length
+    )
 
 
-def guess(contact: LineContact, unit: Array) -> Array:
-    speed = 2.0 * contact.fluid.viscosity * unit / (contact.modulus * contact.radius)
-    M = contact.line_load / (contact.modulus * contact.radius) / jnp.sqrt(speed)
-    L = contact.fluid.pressure_viscosity * contact.modulus * speed**0.25
-    ri, rp, ei, ep = 3 / M, 1.287 * L ** (2 / 3), 2.621 * M**-0.2, 1.311 * M**-0.125 * L**0.75
-    s = (7 + 8 * jnp.exp(-2 * ei / ri)) / 5
-    h = (
-        (ri ** (7 / 3) + ei ** (7 / 3)) ** (3 * s / 7) + (rp**-3.5 + ep**-3.5) ** (-2 * s / 7)
-    ) ** (1 / s)
-    return h * contact.radius * jnp.sqrt(speed)
+def guess(contact: LineContact) -> Array:
+    """Film in the middle that a regression gives [m].
 
-
+    An approach counts as the speed that would give rigid bodies with an oil that pressure does not thicken
+    the same film, (3 pi sqrt(2) eta V R^(3/2)/w)^(2/3) for the one and 6 eta u R/w for the other.
+    """
+    load, oil, radius = contact.line_load, contact.fluid.viscosity, contact.radius
+    closing = jnp.maximum(contact.approach, 0.0)
+    squeezed = (3.0 * jnp.pi * jnp.sqrt(2.0) * oil * closing * radius**1.5 / load) ** (2.0 / 3.0)
+    speed = jnp.abs(contact.entrainment) + squeezed * load / (6.0 * oil * radius)
+    return moes_1992(
+        line_load=contact.line_load,
+        entrainment=jnp.maximum(speed, SLOWEST),
+        viscosity=contact.fluid.viscosity,
+        pressure_viscosity=contact.fluid.pressure_viscosity,
+        radius=contact.radius,
+        modulus=contact.modulus,
+    )

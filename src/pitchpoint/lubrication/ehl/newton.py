@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.ehl.grid import Grid, prolongation
 from pitchpoint.lubrication.ehl.line import Problem
 from pitchpoint.lubrication.ehl.reynolds import REACH, banded
 
-__all__ = ["MOST", "TOLERANCE", "State", "from_coarse", "polished"]
+__all__ = ["ENOUGH", "TOLERANCE", "State", "from_coarse", "polished", "residual", "step"]
 
-TOLERANCE: Final = 1e-9
-"""Largest residual of a solution, in units of Hertz's pressure."""
+TOLERANCE: Final = 1e-10
+"""Residual at which an iteration ends, in units of Hertz's pressure; one more step follows."""
+
+ENOUGH: Final = 1e-8
+"""Residual of a solution that rounding keeps from coming closer."""
 
 LONGEST_STEP: Final = 0.3
 """Largest change of a pressure in a step, in units of Hertz's pressure."""
@@ -42,33 +47,45 @@ class State(NamedTuple):
     residual: Float[Array, ""]
 
 
-def step(
-    problem: Problem, pressure: Array, level: Array, at: Grid
-) -> tuple[Array, Array, Array]:
-    """Residual, of the inner nodes and the load at last, and the derivative matrix.
+def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array:
+    """What is left of the balance of every inner cell, and of the load at last, shape (node - 1,).
+
+    A cell is full of oil, and balanced, or its oil is without pressure: the smaller of the oil pressure and
+    of the defect of its balance is zero, the defect measured by the pressure that mends it.
+    """
+    gap = problem.gap(pressure, level, at)
+    oil = pressure - problem.flow.asperity_pressure(gap)
+    defect = _defect(*problem.flow.balance(oil, gap, at), at)
+    full = (oil[1:-1] > defect) & problem.wet(at)
+    return _with_load(jnp.where(full, defect, oil[1:-1]), problem, pressure, at)
+
+
+def _defect(gain: Array, own: Array, at: Grid) -> Array:
+    return -gain / jax.lax.stop_gradient(own + at.widths[1:-1])
+
+
+def _with_load(rest: Array, problem: Problem, pressure: Array, at: Grid) -> Array:
+    return jnp.append(rest, at.widths @ pressure - problem.load)
+
+
+def step(problem: Problem, pressure: Array, level: Array, at: Grid) -> tuple[Array, Array]:
+    """Residual, and its derivatives to what is unknown, shape (node - 1, node - 1).
 
     Unknown are the pressures at the inner nodes, which oil and asperities carry together, and the level of
-    the surfaces. A cell is full of oil, and balanced, or its oil is without pressure: the smaller of the oil
-    pressure and of the defect of its balance is zero, the defect measured by the pressure that mends it.
-
-    Returns:
-        Residual, shape (node - 1,); matrix, shape (node - 1, node - 1); whether cells are full.
+    the surfaces.
     """
     gap = problem.gap(pressure, level, at)
     carried, softer = jax.jvp(problem.flow.asperity_pressure, (gap,), (jnp.ones_like(gap),))
     oil = pressure - carried
     found = banded(problem.flow, oil, gap, at)
-    scale = jax.lax.stop_gradient(found.own + at.widths[1:-1])
-    defect = -found.gain / scale
-    full = oil[1:-1] > defect
+    defect = _defect(found.gain, found.own, at)
+    full = (oil[1:-1] > defect) & problem.wet(at)
+    scale = found.own + at.widths[1:-1]
     by_pressure = jnp.where(full, -found.by_pressure / scale, 0.0).at[2].add(~full * 1.0)
     by_gap = jnp.where(full, -found.by_gap / scale, 0.0) - by_pressure * _shifted(softer)
-    residual = jnp.where(full, defect, oil[1:-1])
-    return (
-        jnp.append(residual, at.widths @ pressure - problem.load),
-        _matrix(problem.yielding * by_gap, by_pressure, jnp.sum(by_gap, axis=0), at),
-        full,
-    )
+    rest = jnp.where(full, defect, oil[1:-1])
+    matrix = _matrix(problem.yielding * by_gap, by_pressure, jnp.sum(by_gap, axis=0), at)
+    return _with_load(rest, problem, pressure, at), matrix
 
 
 def _shifted(values: Array) -> Array:
@@ -119,16 +136,15 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
 
     def onward(state: State) -> State:
         factor = faster[state.speed]
-        residual, matrix, _ = step(problem.at_speed(factor), state.pressure, state.level, at)
-        size = jnp.max(jnp.abs(residual))
+        rest, matrix = step(problem.at_speed(factor), state.pressure, state.level, at)
+        size = jnp.max(jnp.abs(rest))
         asked = jnp.where(factor == 1.0, TOLERANCE, 1e-3)
-        lost = ~jnp.isfinite(size) | (state.steps >= MOST)
         state = state._replace(residual=size, total=state.total + 1, steps=state.steps + 1)
-        return jax.lax.cond(
-            (size < asked) | lost,
-            lambda: _next(state, lost),
-            lambda: _moved(state, residual, matrix),
-        )
+        ended = (size < asked) | ~jnp.isfinite(size) | (state.steps > MOST)
+        lost = ~(size < jnp.maximum(asked, ENOUGH))
+        ways = lambda: _next(state, lost), lambda: _moved(state, rest, matrix)
+        found: State = jax.lax.cond(ended, *ways)
+        return found
 
     def _next(state: State, lost: Array) -> State:
         found = ~lost & (faster[state.speed] == 1.0)
@@ -139,8 +155,8 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
         level = jnp.where(lost & ~give_up, again[1], state.level)
         return state._replace(pressure=pressure, level=level, speed=speed, steps=jnp.asarray(0))
 
-    def _moved(state: State, residual: Array, matrix: Array) -> State:
-        change = jnp.linalg.solve(matrix, -residual)
+    def _moved(state: State, rest: Array, matrix: Array) -> State:
+        change = jnp.linalg.solve(matrix, -rest)
         limit = jnp.minimum(1.0, LONGEST_STEP / jnp.max(jnp.abs(change[:-1])))
         return state._replace(
             pressure=state.pressure.at[1:-1].add(limit * change[:-1]),
@@ -149,6 +165,34 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
 
     zero = jnp.asarray(0)
     begin = State(pressure, level, zero, zero, zero, jnp.asarray(jnp.inf))
-    return jax.lax.while_loop(unfinished, onward, begin)
+    found: State = jax.lax.while_loop(unfinished, onward, begin)
+    return found
 
 
+def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
+    """Solution on the last of some grids, on each of them started from that on the one before.
+
+    Args:
+        problem: the contact.
+        grids: from coarse to fine.
+    """
+    state = iterated(problem, *dry(problem, grids[0]), grids[0])
+    total = state.total
+    for before, at in pairwise(grids):
+        finer = prolongation(before.x.shape[0], at.x.shape[0])
+        pressure = jnp.maximum(finer @ state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
+        state = iterated(problem, pressure, state.level, at)
+        total = total + state.total
+    return state._replace(total=total)
+
+
+def polished(problem: Problem, state: State, at: Grid) -> tuple[Array, Array]:
+    """Pressure and level of a solution, with their derivatives to all that the problem is made of.
+
+    A last step from the solution carries them (implicit function theorem), with the cells that are full and
+    those that are not as they are.
+    """
+    frozen, pressure, level = jax.lax.stop_gradient((problem, state.pressure, state.level))
+    _, matrix = step(frozen, pressure, level, at)
+    change = jnp.linalg.solve(matrix, -residual(problem, pressure, level, at))
+    return pressure.at[1:-1].add(change[:-1]), level + change[-1]

@@ -30,7 +30,7 @@ class Flow(eqx.Module):
         resistance: 12 eta0 u R^2/(L^3 p), u the unit of speed.
         entrainment: mean speed of the surfaces over the unit of speed, 0 or 1 for the usual one.
         approach: of the surfaces to each other over unit of speed times L/R.
-        temperature_rise: of the film above the inlet, shape (node,) [K].
+        temperature_rise: of the film above the inlet, of one number or shape (node,) [K].
     """
 
     fluid: Fluid
@@ -40,7 +40,7 @@ class Flow(eqx.Module):
     resistance: Float[Arrays, ""]
     entrainment: Float[Arrays, ""]
     approach: Float[Arrays, ""]
-    temperature_rise: Nodes
+    temperature_rise: Float[Arrays, "..."]
 
     def room(self, gap: Nodes) -> Nodes:
         """Mean gap that is open to the oil."""
@@ -65,7 +65,7 @@ class Flow(eqx.Module):
         Returns:
             Both of shape (node - 2,).
         """
-        mass, conductance = self._mass_and_conductance(film_pressure, gap, at)
+        mass, conductance = self.mass_and_conductance(film_pressure, gap, at)
         net = conductance * jnp.diff(film_pressure) - self.entrainment * upwind(mass)
         density = self.density(film_pressure)[1:-1]
         # Positive where oil comes in: convergent gaps and surfaces that approach raise the pressure.
@@ -77,9 +77,10 @@ class Flow(eqx.Module):
         pressure = jnp.maximum(film_pressure, 0.0) * self.pressure
         return self.fluid.density_ratio(pressure, self.temperature_rise)
 
-    def _mass_and_conductance(
+    def mass_and_conductance(
         self, film_pressure: Nodes, gap: Nodes, at: Grid
     ) -> tuple[Array, Array]:
+        """Mass under each node, and flow through each face for a fall of pressure of one."""
         pressure = jnp.maximum(film_pressure, 0.0) * self.pressure
         room = self.room(gap)
         thicker = self.fluid.viscosity_at(pressure, self.temperature_rise) / self.fluid.viscosity

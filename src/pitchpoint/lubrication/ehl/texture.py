@@ -1,20 +1,49 @@
 """What the surfaces of a contact do to its film: room for oil, resistance to its flow, load on asperities."""
 
 import abc
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
 
 import equinox as eqx
-from jaxtyping import Float
+from jax.typing import ArrayLike
+from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.contact.asperities import (
+    ETA_BETA_SIGMA,
+    SIGMA_OVER_BETA,
+    greenwood_tripp_1970,
+    greenwood_williamson_1966,
+    hu_1994,
+)
 from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.lubrication.flow_factors import mean_gap, patir_cheng_1978
+from pitchpoint.materials._leaves import as_array
+from pitchpoint.registry import Registry
 
-__all__ = ["Smooth", "Texture"]
+__all__ = ["ASPERITIES", "USUAL_ASPERITIES", "AsperityLaw", "Rough", "Smooth", "Texture"]
 
 Each = Float[Numbers, "*#b"]
+
+USUAL_ASPERITIES: Final = "greenwood_tripp_1970"
+
+BOUNDARY_FRICTION: Final = 0.1
+"""Usual coefficient of friction of steel asperities with oil between them: assumed, of 0.08 to 0.15."""
 
 
 class Texture(eqx.Module):
     """Surfaces as seen across a gap between their mean planes, which may overlap."""
+
+    @property
+    @abc.abstractmethod
+    def rq(self) -> Float[Array, "..."]:
+        """Composite Rq of both surfaces [m]."""
+
+    @property
+    @abc.abstractmethod
+    def boundary_friction(self) -> Float[Array, "..."]:
+        """Coefficient of friction of asperities that touch [1]."""
 
     @abc.abstractmethod
     def pressure(self, gap: Each) -> Each:
@@ -26,7 +55,7 @@ class Texture(eqx.Module):
 
     @abc.abstractmethod
     def flow_factor(self, gap: Each) -> Each:
-        """Flow along the pressure gradient over that between smooth surfaces."""
+        """Flow along the pressure gradient over that between smooth surfaces with this room."""
 
 
 class Smooth(Texture):
@@ -36,14 +65,170 @@ class Smooth(Texture):
         least: gap below which a trial counts as a smaller and smaller positive one [m]; no solution has it.
     """
 
-    least: Float[Arrays, ""]
+    least: Float[Arrays, "..."]
+
+    @property
+    def rq(self) -> Float[Array, "..."]:
+        """Composite Rq of both surfaces [m]."""
+        return jnp.zeros_like(self.least)
+
+    @property
+    def boundary_friction(self) -> Float[Array, "..."]:
+        """Coefficient of friction of asperities that touch [1]."""
+        return jnp.zeros_like(self.least)
 
     def pressure(self, gap: Each) -> Each:
+        """Pressure that asperities carry [Pa]."""
         return jnp.zeros_like(gap)
 
     def room(self, gap: Each) -> Each:
+        """Mean gap that is open to the oil, positive [m]."""
         tight = jnp.minimum(gap / self.least, 1.0)
         return jnp.where(tight < 1.0, self.least * jnp.exp(tight - 1.0), gap)
 
     def flow_factor(self, gap: Each) -> Each:
+        """Flow along the pressure gradient over that between smooth surfaces with this room."""
         return jnp.ones_like(gap)
+
+
+@dataclass(frozen=True, eq=False)
+class AsperityLaw:
+    """A named law of the pressure that asperities carry, f(gap, Rq, E', constants) in SI."""
+
+    name: str
+    title: str
+    function: Callable[..., Array]
+    sources: tuple[str, ...]
+
+
+def _fitted(
+    *, gap: Each, roughness_rq: Each, modulus: Each, eta_beta_sigma: Each, sigma_over_beta: Each
+) -> Array:
+    """Greenwood and Tripp's pressure with the usual fit of its integral [Pa]."""
+    by_one = greenwood_tripp_1970(
+        gap=jnp.zeros(()),
+        roughness_rq=roughness_rq,
+        modulus=modulus,
+        eta_beta_sigma=eta_beta_sigma,
+        sigma_over_beta=sigma_over_beta,
+    )
+    found: Array = by_one / F_AT_ZERO * hu_1994(ratio=gap / roughness_rq)
+    return found
+
+
+F_AT_ZERO: Final = 0.6166341243
+"""Moment F_5/2 of Gaussian heights about their mean, Gamma(7/4) 2^(1/4)/sqrt(pi)."""
+
+
+def _one_rough_side(
+    *, gap: Each, roughness_rq: Each, modulus: Each, eta_beta_sigma: Each, sigma_over_beta: Each
+) -> Array:
+    """Greenwood and Williamson's pressure with summits as high as the composite roughness [Pa]."""
+    summit = roughness_rq / sigma_over_beta
+    found: Array = greenwood_williamson_1966(
+        gap=gap,
+        deviation=roughness_rq,
+        radius=summit,
+        density=eta_beta_sigma / (summit * roughness_rq),
+        modulus=modulus,
+    )
+    return found
+
+
+ASPERITIES = Registry(
+    "law of asperity pressure",
+    AsperityLaw(
+        "greenwood_tripp_1970",
+        "Greenwood-Tripp",
+        greenwood_tripp_1970,
+        ("greenwood_tripp_1970",),
+    ),
+    AsperityLaw(
+        "hu_1994",
+        "Greenwood-Tripp with the fit of its integral by Hu",
+        _fitted,
+        ("greenwood_tripp_1970", "hu_1994"),
+    ),
+    AsperityLaw(
+        "greenwood_williamson_1966",
+        "Greenwood-Williamson",
+        _one_rough_side,
+        ("greenwood_williamson_1966",),
+    ),
+)
+
+
+class Rough(Texture):
+    """Rough surfaces whose asperities are elastic.
+
+    Args:
+        rq: composite Rq of both surfaces, positive, shape (...) [m].
+        modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+        eta_beta_sigma: summits per area times their radius times Rq, shape (...) [1].
+        sigma_over_beta: Rq over the radius of the summits, shape (...) [1].
+        asperities: name in `ASPERITIES`; static.
+        pattern: Peklenik's gamma, length of asperities along the flow over that across it, 1/9 to 9; static.
+        boundary_friction: coefficient of friction of asperities that touch, shape (...) [1].
+
+    The film under pressure flows as between smooth surfaces with the mean room of Gaussian heights, times the
+    flow factor of Patir and Cheng (1978) for the gap. Where mean planes overlap both stay positive, which
+    is a choice. Flow that sliding carries in the valleys is left out: it is none where both sides are
+    equally rough.
+
+    Raises:
+        InputError: there is no law of this name; the message has the nearest ones.
+    """
+
+    deviation: Float[Array, "..."]
+    modulus: Float[Array, "..."]
+    eta_beta_sigma: Float[Array, "..."]
+    sigma_over_beta: Float[Array, "..."]
+    friction: Float[Array, "..."]
+    asperities: str = eqx.field(static=True)
+    pattern: float = eqx.field(static=True)
+
+    def __init__(
+        self,
+        *,
+        rq: ArrayLike,
+        modulus: ArrayLike,
+        eta_beta_sigma: ArrayLike = ETA_BETA_SIGMA,
+        sigma_over_beta: ArrayLike = SIGMA_OVER_BETA,
+        asperities: str = USUAL_ASPERITIES,
+        pattern: float = 1.0,
+        boundary_friction: ArrayLike = BOUNDARY_FRICTION,
+    ) -> None:
+        self.deviation, self.modulus = as_array(rq), as_array(modulus)
+        self.eta_beta_sigma = as_array(eta_beta_sigma)
+        self.sigma_over_beta = as_array(sigma_over_beta)
+        self.friction = as_array(boundary_friction)
+        self.asperities, self.pattern = ASPERITIES[asperities].name, float(pattern)
+
+    @property
+    def rq(self) -> Float[Array, "..."]:
+        """Composite Rq of both surfaces [m]."""
+        return self.deviation
+
+    @property
+    def boundary_friction(self) -> Float[Array, "..."]:
+        """Coefficient of friction of asperities that touch [1]."""
+        return self.friction
+
+    def pressure(self, gap: Each) -> Each:
+        """Pressure that asperities carry [Pa]."""
+        return ASPERITIES[self.asperities].function(
+            gap=gap,
+            roughness_rq=self.rq,
+            modulus=self.modulus,
+            eta_beta_sigma=self.eta_beta_sigma,
+            sigma_over_beta=self.sigma_over_beta,
+        )
+
+    def room(self, gap: Each) -> Each:
+        """Mean gap that is open to the oil, positive [m]."""
+        # A trial may sink deep; what is left is far less than oil could flow through.
+        return jnp.maximum(mean_gap(gap=gap, roughness_rq=self.rq), 1e-9 * self.rq)
+
+    def flow_factor(self, gap: Each) -> Each:
+        """Flow along the pressure gradient over that between smooth surfaces with this room."""
+        return jnp.maximum(patir_cheng_1978(ratio=gap / self.rq, pattern=self.pattern), 1e-9)

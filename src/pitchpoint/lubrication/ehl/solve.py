@@ -1,0 +1,337 @@
+"""Line contacts solved, many at once: in portions, with what became of each, and what to be wary of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
+from numpy.typing import NDArray
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
+from pitchpoint.lubrication.ehl.grid import Ends, Grid, fewer, grid
+from pitchpoint.lubrication.ehl.line import LineContact, problem_of
+from pitchpoint.lubrication.ehl.newton import ENOUGH, from_coarse, iterated, polished, residual
+from pitchpoint.programs import program
+from pitchpoint.status import Code
+
+__all__ = ["NODES", "Films", "line_films", "solve_lines"]
+
+NODES: Final = 129
+"""Usual number of nodes: films come within 1 % of those on ever finer grids, minimum ones within 3 %."""
+
+PORTION: Final = 64
+"""Contacts of a program at once; between portions progress is told, and an interrupt is heard."""
+
+WIDE: Final = 0.1
+"""Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
+
+
+class Ended(eqx.Module):
+    """How a solve ended, of contacts `*b`.
+
+    Attributes:
+        code: of `Code`.
+        reynolds: largest defect of the balance of a cell, in units of Hertz's pressure.
+        load: defect of the load over it.
+        gap: defect of the gap over the smallest one: elastic deformation against the gap of the result.
+        iterations: of Newton's method, on all grids.
+    """
+
+    code: Int[Any, "*b"]
+    reynolds: Float[Any, "*b"]
+    load: Float[Any, "*b"]
+    gap: Float[Any, "*b"]
+    iterations: Int[Any, "*b"]
+
+
+@dataclass(frozen=True)
+class Films:
+    """Films of contacts `*b` with what became of each.
+
+    Attributes:
+        film: fields and what follows from them, NumPy arrays; NaN where a contact was not solved.
+        ended: how each solve ended.
+        nodes: across a contact.
+        domain: first and last place in half-widths, shape (2, *b).
+        warnings: what to be wary of, in sentences.
+    """
+
+    film: LineFilm
+    ended: Ended
+    nodes: int
+    domain: NDArray[np.float64]
+    warnings: tuple[str, ...]
+
+    @property
+    def solved(self) -> NDArray[np.bool_]:
+        """Whether each contact was solved."""
+        found: NDArray[np.bool_] = np.asarray(self.ended.code) == Code.SOLVED
+        return found
+
+
+def line_films(contact: LineContact, nodes: int = NODES) -> LineFilm:
+    """Films of contacts as a function that can be differentiated, and be a part of programs.
+
+    Args:
+        contact: all of its arrays of one shape `*b`, of no axis or one.
+        nodes: across a contact.
+
+    Returns:
+        Films, NaN where a contact was not solved. Derivatives are those of the solution (implicit function
+        theorem), first ones; every cell stays full of oil, or not, as it is.
+    """
+    grids = _ladder(nodes, "entrained")
+
+    def one(single: LineContact) -> LineFilm:
+        problem = problem_of(single)
+        state = from_coarse(jax.lax.stop_gradient(problem), grids)
+        film = line_film(single, problem, *polished(problem, state, grids[-1]), grids[-1])
+        return _withheld(film, state.residual < ENOUGH)
+
+    return one(contact) if contact.line_load.ndim == 0 else jax.lax.map(one, contact)
+
+
+def solve_lines(
+    contact: LineContact,
+    *,
+    nodes: int = NODES,
+    profiles: bool = True,
+    start: Films | None = None,
+    size: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Films:
+    """Films of many contacts.
+
+    Args:
+        contact: its arrays broadcast against each other to `*b`.
+        nodes: across a contact: 33, 65, 129, 257, ...
+        profiles: whether fields are kept; without them the memory stays small for any number of contacts.
+        start: films of as many contacts on as many nodes, with profiles, from which the solves begin.
+        size: of the teeth, such as the module [m]; contacts that are wide against it are told.
+        progress: called with the number of contacts that are done and that of all.
+
+    Raises:
+        InputError: a radius, modulus, viscosity or roughness that is not positive, or nodes that no grid has.
+    """
+    shape, flat = _flat(contact)
+    _check(flat)
+    ends: Ends = "squeezed" if np.any(np.asarray(flat.approach) != 0.0) else "entrained"
+    grids = _ladder(nodes, ends)
+    begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
+    portions = list(_portions(flat, grids, begin, profiles, progress))
+    film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts), *portions)
+    film, ended = (
+        jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), one)
+        for one in (film, ended)
+    )
+    domain = np.moveaxis(domain.reshape(*shape, 2), -1, 0)
+    return Films(film, ended, nodes, domain, tuple(_warnings(flat, ended, size)))
+
+
+def _ladder(nodes: int, ends: Ends) -> tuple[Grid, ...]:
+    """Grids from the coarsest to that of so many nodes."""
+    numbers = [nodes]
+    while (less := fewer(numbers[0])) is not None:
+        numbers.insert(0, less)
+    return tuple(grid(number, ends) for number in numbers)
+
+
+def _flat(contact: LineContact) -> tuple[tuple[int, ...], LineContact]:
+    """Shape of the contacts, and all of their arrays with one axis."""
+    leaves = jax.tree.leaves(contact)
+    shape = np.broadcast_shapes(*(np.shape(leaf) for leaf in leaves))
+    flat = jax.tree.map(lambda leaf: np.broadcast_to(np.asarray(leaf), shape).reshape(-1), contact)
+    return shape, flat
+
+
+def _portions(
+    flat: LineContact,
+    grids: tuple[Grid, ...],
+    begin: tuple[Any, Any] | None,
+    profiles: bool,
+    progress: Callable[[int, int], None] | None,
+) -> Iterator[tuple[LineFilm, Ended, NDArray[np.float64]]]:
+    every = flat.line_load.shape[0]
+    for first in range(0, every, PORTION):
+        count = min(PORTION, every - first)
+        # A last portion that is short is filled up with contacts that nobody solves.
+        which = np.minimum(np.arange(first, first + PORTION), every - 1)
+        part, given = jax.tree.map(lambda leaf: leaf[which], (flat, begin))  # noqa: B023
+        film, ended, domain = _portion(part, np.arange(PORTION) < count, given, grids)
+        film = film if profiles else _without_profiles(film)
+        yield jax.tree.map(lambda leaf: np.asarray(leaf)[:count], (film, ended, domain))  # noqa: B023
+        if progress is not None:
+            progress(first + count, every)
+
+
+@program
+def _portion(
+    contact: LineContact,
+    wanted: Bool[Any, " b"],
+    start: tuple[Float[Any, "b node"], Float[Any, " b"]] | None,
+    grids: tuple[Grid, ...],
+) -> tuple[LineFilm, Ended, Float[Array, "b 2"]]:
+    def one(given: Any) -> tuple[LineFilm, Ended, Array]:
+        single, asked, begin = given
+        code = _before(single)
+        ways = lambda: _solved(single, begin, grids), lambda: _not_solved(single, code, grids)
+        ended: tuple[LineFilm, Ended, Array] = jax.lax.cond(asked & (code == Code.SOLVED), *ways)
+        return ended
+
+    found: tuple[LineFilm, Ended, Array] = jax.lax.map(one, (contact, wanted, start))
+    return found
+
+
+def _before(contact: LineContact) -> Array:
+    """What can be said of a contact before it is solved."""
+    numbers = jnp.stack([jnp.all(jnp.isfinite(leaf)) for leaf in jax.tree.leaves(contact)])
+    # Rough surfaces may stand still upon each other, smooth ones would have no film.
+    dry = contact.texture is None
+    still = (contact.entrainment == 0.0) & (contact.approach <= 0.0)
+    code = jnp.where(still & dry, Code.NO_FILM, Code.SOLVED)
+    code = jnp.where(contact.line_load <= 0.0, Code.UNLOADED, code)
+    return jnp.where(jnp.all(numbers), code, Code.NOT_FINITE)
+
+
+def _solved(
+    contact: LineContact, begin: tuple[Array, Array] | None, grids: tuple[Grid, ...]
+) -> tuple[LineFilm, Ended, Array]:
+    problem, at = problem_of(contact), grids[-1]
+    if begin is None:
+        state = from_coarse(problem, grids)
+    else:
+        guess = begin[0] * problem.load / (at.widths @ begin[0])
+        sunk = problem.gap(guess, jnp.zeros(()), at)[jnp.argmin(jnp.abs(at.x))]
+        state = iterated(problem, guess, begin[1] / problem.flow.height - sunk, at)
+    pressure, level = polished(problem, state, at)
+    film = line_film(contact, problem, pressure, level, at)
+    rest = residual(problem, pressure, level, at)
+    found = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
+    gap = problem.gap(pressure, level, at)
+    off = jnp.max(jnp.abs(film.gap / problem.flow.height - _as_turned(gap, contact)))
+    ended = Ended(
+        jnp.where(found, Code.SOLVED, Code.NOT_CONVERGED),
+        jnp.max(jnp.abs(rest[:-1])),
+        jnp.abs(rest[-1]) / problem.load,
+        off / jnp.min(jnp.abs(gap)),
+        state.total,
+    )
+    return _withheld(film, found), ended, at.x[jnp.array([0, -1])] / problem.yielding
+
+
+def _as_turned(gap: Array, contact: LineContact) -> Array:
+    return jnp.where(contact.entrainment < 0.0, gap[::-1], gap)
+
+
+def _not_solved(
+    contact: LineContact, code: Array, grids: tuple[Grid, ...]
+) -> tuple[LineFilm, Ended, Array]:
+    shape = jax.eval_shape(lambda: _solved(contact, None, grids))
+    film, ended, domain = jax.tree.map(
+        lambda leaf: jnp.full(leaf.shape, jnp.nan if leaf.dtype.kind == "f" else 0, leaf.dtype),
+        shape,
+    )
+    return film, eqx.tree_at(lambda one: one.code, ended, code.astype(ended.code.dtype)), domain
+
+
+def _withheld(film: LineFilm, found: Array) -> LineFilm:
+    """The numbers of what was solved; nothing of what was not."""
+    kept: LineFilm = jax.tree.map(lambda leaf: jnp.where(found, leaf, jnp.nan), film)
+    return kept
+
+
+_PROFILES: Final = ("x", "pressure", "asperity_pressure", "gap", "film", "filled", "shear_stress")
+
+
+def _without_profiles(film: LineFilm) -> LineFilm:
+    empty = [getattr(film, name)[..., :0] for name in _PROFILES]
+    some = lambda one: [getattr(one, name) for name in _PROFILES]  # noqa: E731
+    found: LineFilm = eqx.tree_at(some, film, empty)
+    return found
+
+
+def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
+    """Pressures and films in the middle from which solves begin."""
+    pressure = np.asarray(start.film.pressure).reshape(-1, start.film.pressure.shape[-1])
+    if pressure.shape != (count, nodes):
+        raise InputError(
+            f"films of {pressure.shape[0]} contacts on {pressure.shape[1]} nodes are no start for "
+            f"{count} contacts on {nodes} nodes"
+        )
+    gap = np.asarray(start.film.gap).reshape(count, nodes)
+    middle = np.argmin(np.abs(np.asarray(start.film.x).reshape(count, nodes)), axis=-1)
+    return pressure, gap[np.arange(count), middle]
+
+
+# ---- what is wrong with an input, and what is doubtful about a result
+
+
+def _check(contact: LineContact) -> None:
+    """InputError for values that no contact has."""
+    fluid, texture = contact.fluid, contact.texture
+    positive = {
+        "radius": (contact.radius, "a relative radius of curvature", 1.0, "m"),
+        "modulus": (contact.modulus, "a modulus E'", 1e-9, "GPa"),
+        "viscosity": (fluid.viscosity, "a viscosity", 1e3, "mPa s"),
+        "pressure_viscosity": (
+            fluid.pressure_viscosity,
+            "a pressure-viscosity coefficient",
+            1e9,
+            "1/GPa",
+        ),
+    }
+    if texture is not None:
+        positive["rq"] = (texture.rq, "a composite roughness Rq", 1e6, "um")
+    for key, (value, what, scale, unit) in positive.items():
+        low = np.min(np.asarray(value))
+        if not low > 0.0 and not np.isnan(low):
+            raise InputError(f"{what} of {low * scale:.4g} {unit}: it must be positive", key=key)
+
+
+def _warnings(contact: LineContact, ended: Ended, size: float | None) -> Iterator[str]:
+    solved = np.asarray(ended.code).reshape(-1) == Code.SOLVED
+    if not solved.any():
+        return
+    some: LineContact = jax.tree.map(lambda leaf: np.asarray(leaf)[solved], contact)
+    yield from _of_pressure(some)
+    yield from _of_half_space(some, size)
+    if some.texture is not None:
+        yield from _of_roughness(some)
+
+
+def _of_pressure(contact: LineContact) -> Iterator[str]:
+    told = contact.fluid.outside(np.asarray(contact.hertz_pressure))
+    if told is not None:
+        yield f"{told}: films and traction there are extrapolated"
+
+
+def _of_half_space(contact: LineContact, size: float | None) -> Iterator[str]:
+    half_width, radius = np.asarray(contact.half_width), np.asarray(contact.radius)
+    sizes = {"the relative radius": radius}
+    if size is not None:
+        sizes["the size of a tooth"] = np.full_like(radius, size)
+    for name, length in sizes.items():
+        worst = np.argmax(half_width / length)
+        if half_width[worst] > WIDE * length[worst]:
+            yield (
+                f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
+                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them"
+            )
+
+
+def _of_roughness(contact: LineContact) -> Iterator[str]:
+    assert contact.texture is not None
+    rough = np.broadcast_to(np.asarray(contact.texture.rq), contact.radius.shape)
+    half_width = np.asarray(contact.half_width)
+    worst = np.argmax(rough / half_width)
+    if rough[worst] > WIDE * half_width[worst]:
+        yield (
+            f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
+            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little"
+        )
