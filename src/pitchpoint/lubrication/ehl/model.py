@@ -1,0 +1,119 @@
+"""Choices by which films of the contacts of a mesh are solved, and the contacts that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from jax.typing import ArrayLike
+
+from pitchpoint.contact.asperities import ETA_BETA_SIGMA, SIGMA_OVER_BETA
+from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
+from pitchpoint.lubrication.ehl.solve import NODES
+from pitchpoint.lubrication.ehl.texture import (
+    BOUNDARY_FRICTION,
+    USUAL_ASPERITIES,
+    Rough,
+)
+from pitchpoint.materials.fluid import (
+    USUAL_DENSITY,
+    USUAL_VISCOSITY,
+    Fluid,
+)
+from pitchpoint.materials.lubricants import Lubricant
+
+__all__ = ["SMOOTH", "USUAL_SHEAR", "FilmModel"]
+
+SMOOTH = "none"
+"""Name of no asperities: the surfaces count as smooth, whatever their roughness."""
+
+USUAL_SHEAR = "ree_eyring_1955"
+"""Shear law of gear contacts unless another is chosen: a Newtonian oil draws far too much there."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilmModel:
+    """How films are solved.
+
+    Attributes:
+        nodes: across a contact.
+        viscosity_law: name in `VISCOSITY`.
+        density_law: name in `DENSITY`.
+        shear_law: name in `SHEAR_STRESS`.
+        shear_parameters: those of the shear law that differ from its defaults, by name [SI].
+        asperities: name in `ASPERITIES`, or `SMOOTH`.
+        eta_beta_sigma: summits per area times their radius times Rq.
+        sigma_over_beta: Rq over the radius of the summits.
+        pattern: Peklenik's gamma of the roughness.
+        boundary_friction: coefficient of friction of asperities that touch.
+        inlet: distance from the middle of a contact at which oil begins [m].
+    """
+
+    nodes: int = NODES
+    viscosity_law: str = USUAL_VISCOSITY
+    density_law: str = USUAL_DENSITY
+    shear_law: str = USUAL_SHEAR
+    shear_parameters: Mapping[str, float] = field(default_factory=dict)
+    asperities: str = USUAL_ASPERITIES
+    eta_beta_sigma: float = ETA_BETA_SIGMA
+    sigma_over_beta: float = SIGMA_OVER_BETA
+    pattern: float = 1.0
+    boundary_friction: float = BOUNDARY_FRICTION
+    inlet: float = FLOODED
+
+    def contacts(
+        self,
+        *,
+        line_load: ArrayLike,
+        radius: ArrayLike,
+        modulus: ArrayLike,
+        speed_a: ArrayLike,
+        speed_b: ArrayLike,
+        oil: Lubricant,
+        temperature: ArrayLike,
+        roughness_rq: ArrayLike,
+    ) -> LineContact:
+        """Contacts `*b` to solve, of arrays that broadcast against each other.
+
+        Args:
+            line_load: normal load per length of contact line [N/m].
+            radius: relative radius of curvature [m].
+            modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E.
+            speed_a: surface speed of member 0 relative to the contact [m/s].
+            speed_b: surface speed of member 1 relative to the contact [m/s].
+            oil: between them.
+            temperature: of the oil in the inlet [K].
+            roughness_rq: composite Rq [m]; zero for smooth surfaces.
+        """
+        fluid = Fluid.of(
+            oil,
+            temperature,
+            viscosity_law=self.viscosity_law,
+            density_law=self.density_law,
+            shear_law=self.shear_law,
+            shear_parameters=self.shear_parameters,
+        )
+        smooth = self.asperities == SMOOTH or not np.any(np.asarray(roughness_rq) > 0.0)
+        texture = None if smooth else self._rough(roughness_rq, modulus)
+        return LineContact(
+            line_load=line_load,
+            radius=radius,
+            modulus=modulus,
+            speed_a=speed_a,
+            speed_b=speed_b,
+            fluid=fluid,
+            texture=texture,
+            inlet=self.inlet,
+        )
+
+    def _rough(self, rq: ArrayLike, modulus: ArrayLike) -> Rough:
+        return Rough(
+            rq=rq,
+            modulus=modulus,
+            eta_beta_sigma=self.eta_beta_sigma,
+            sigma_over_beta=self.sigma_over_beta,
+            asperities=self.asperities,
+            pattern=self.pattern,
+            boundary_friction=self.boundary_friction,
+        )
