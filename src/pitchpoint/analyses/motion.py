@@ -560,7 +560,7 @@ def _coarse(
     speeds: np.ndarray, critical: dict[str, np.ndarray], own: xr.Dataset, spectrum: np.ndarray
 ) -> list[str]:
     """A sentence where peaks of excited orders may lie between the speeds."""
-    amplitude = np.nanmax(np.nan_to_num(spectrum), axis=(0, 1))
+    amplitude = np.max(np.nan_to_num(spectrum), axis=(0, 1))
     heights = np.interp(critical["critical_order"], own["order"].values, amplitude)
     width = np.where(
         heights >= EXCITED * np.max(amplitude[1:]), critical["half_power_width"], np.inf
