@@ -22,8 +22,8 @@ ENDS: Final[dict[Ends, tuple[float, float]]] = {
 }
 """First and last node; a film that is drawn in breaks soon behind the contact, a squeezed one does not.
 
-With the length that a contact has between rigid bodies such an inlet takes .4 % from the film; between elastic
-ones far less.
+With the length that a contact has between rigid bodies such an inlet takes .4 % from the film; between
+elastic ones far less.
 """
 
 FEWEST: Final = 33
