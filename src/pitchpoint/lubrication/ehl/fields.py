@@ -41,6 +41,8 @@ class LineFilm(eqx.Module):
         shear_force: shear of the oil on member 0, along positive speeds; minus that on member 1 [N/m].
         boundary_force: friction of asperities on member 0, in the same way [N/m].
         pumping_power: that the flow under pressure turns into heat [W/m].
+        half_width: of the dry contact [m].
+        hertz_pressure: largest one of the dry contact [Pa].
         heat: temperatures, where they were solved for; None of isothermal films.
     """
 
@@ -61,6 +63,8 @@ class LineFilm(eqx.Module):
     shear_force: Each
     boundary_force: Each
     pumping_power: Each
+    half_width: Each
+    hertz_pressure: Each
     heat: Temperatures | None
 
     @property
@@ -118,12 +122,14 @@ def line_film(
         * contact.line_load
         * jnp.sign(sliding),
         pumping_power=pumping * flow.pressure * flow.height * problem.speed,
+        half_width=contact.half_width,
+        hertz_pressure=flow.pressure,
         heat=temperatures(contact, problem, pressure, level, at),
     )
     return _turned(film, contact.entrainment < 0.0)
 
 
-def _minimum(x: Array, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
+def _minimum(x: Arrays, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
     """Place and value of the lowest point of the parabola through the lowest node and its neighbours."""
     low = jnp.clip(jnp.argmin(jnp.where(where, film, jnp.inf)), 1, x.shape[0] - 2)
     near = low + jnp.arange(-1, 2)

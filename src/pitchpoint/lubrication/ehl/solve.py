@@ -22,7 +22,7 @@ from pitchpoint.lubrication.ehl.heat import (
     turned,
     warmed,
 )
-from pitchpoint.lubrication.ehl.line import LineContact, Problem, problem_of
+from pitchpoint.lubrication.ehl.line import LEAST, LineContact, Problem, problem_of
 from pitchpoint.lubrication.ehl.newton import (
     ENOUGH,
     State,
@@ -31,7 +31,7 @@ from pitchpoint.lubrication.ehl.newton import (
     polished,
     residual,
 )
-from pitchpoint.lubrication.flash_temperature import LEAST_PECLET, peclet_number
+from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
@@ -42,6 +42,9 @@ NODES: Final = 129
 
 PORTION: Final = 64
 """Contacts of a program at once; between portions progress is told, and an interrupt is heard."""
+
+COARSE: Final = 0.03
+"""Error by the grid from which on it is told."""
 
 WIDE: Final = 0.1
 """Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
@@ -56,6 +59,8 @@ class Ended(eqx.Module):
         load: defect of the load over it.
         gap: defect of the gap over the smallest one: elastic deformation against the gap of the result.
         iterations: of Newton's method, on all grids.
+        grid: estimate of the error of the film in the middle that the grid makes, over that film, from the
+            film on the grid before; NaN where there was none.
         temperature: defect of the temperature of the film over its largest rise; None of isothermal films.
         turns: between pressure and temperature, on all grids; None of isothermal films.
     """
@@ -65,6 +70,7 @@ class Ended(eqx.Module):
     load: Float[Any, "*b"]
     gap: Float[Any, "*b"]
     iterations: Int[Any, "*b"]
+    grid: Float[Any, "*b"]
     temperature: Float[Any, "*b"] | None
     turns: Int[Any, "*b"] | None
 
@@ -90,8 +96,7 @@ class Films:
     @property
     def solved(self) -> NDArray[np.bool_]:
         """Whether each contact was solved."""
-        found: NDArray[np.bool_] = np.asarray(self.ended.code) == Code.SOLVED
-        return found
+        return np.asarray(np.asarray(self.ended.code) == Code.SOLVED)
 
 
 def line_films(contact: LineContact, nodes: int = NODES) -> LineFilm:
@@ -151,12 +156,13 @@ def solve_lines(
     begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
     portions = list(_portions(flat, grids, begin, profiles, progress))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts), *portions)
+    warnings = tuple(_warnings(flat, film, ended, size))
     film, ended = (
-        jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), one)
+        jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), one)
         for one in (film, ended)
     )
-    domain = np.moveaxis(domain.reshape(*shape, 2), -1, 0)
-    return Films(film, ended, nodes, domain, tuple(_warnings(flat, ended, size)))
+    domain = np.moveaxis(domain.reshape((*shape, 2)), -1, 0)
+    return Films(film, ended, nodes, domain, warnings)
 
 
 def _ladder(nodes: int, ends: Ends) -> tuple[Grid, ...]:
@@ -235,17 +241,25 @@ def _solved(
     pressure, level = polished(problem, state, at)
     film = line_film(contact, problem, pressure, level, at)
     rest = residual(problem, pressure, level, at)
-    found = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
-    off_heat = None if turns is None else defect(contact, problem, pressure, level, at)
-    found = found if off_heat is None else found & (off_heat < WARM_ENOUGH)
     gap = problem.gap(pressure, level, at)
+    converged = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
+    code = jnp.where(converged, Code.SOLVED, Code.NOT_CONVERGED)
+    if contact.texture is None:  # whose trial gaps may close, but no solution does
+        thin = jnp.min(gap) < LEAST * problem.film
+        code = jnp.where(converged & thin, Code.UNRESOLVED, code)
+    off_heat = None if turns is None else defect(contact, problem, pressure, level, at)
+    if off_heat is not None:
+        code = jnp.where(off_heat < WARM_ENOUGH, code, Code.NOT_CONVERGED)
+    found = code == Code.SOLVED
+    at_middle = gap[jnp.argmin(jnp.abs(at.x))]
     off = jnp.max(jnp.abs(film.gap / problem.flow.height - _as_turned(gap, contact)))
     ended = Ended(
-        jnp.where(found, Code.SOLVED, Code.NOT_CONVERGED),
+        code,
         jnp.max(jnp.abs(rest[:-1])),
         jnp.abs(rest[-1]) / problem.load,
         off / jnp.min(jnp.abs(gap)),
         state.total,
+        jnp.abs(at_middle - state.coarse) / _gain(grids) / jnp.abs(at_middle),
         off_heat,
         turns,
     )
@@ -264,7 +278,15 @@ def _iterated(
     if contact.conduction is None:
         return problem, state, None
     warm = turned(contact, problem, state, at)
-    return warmed(problem, warm.rise), warm.state._replace(total=warm.total), warm.turns
+    cold, hot = (_in_the_middle(problem, one, at) for one in (state, warm.state))
+    # The grid makes as large a part of the warm film its error as of the isothermal one.
+    found = warm.state._replace(total=warm.total, coarse=state.coarse * hot / cold)
+    return warmed(problem, warm.rise), found, warm.turns
+
+
+def _in_the_middle(problem: Problem, state: State, at: Grid) -> Array:
+    gap = problem.gap(state.pressure, state.level, at)
+    return gap[jnp.argmin(jnp.abs(at.x))]
 
 
 def _guessed(problem: Problem, begin: tuple[Array, Array], at: Grid) -> tuple[Array, Array]:
@@ -272,6 +294,12 @@ def _guessed(problem: Problem, begin: tuple[Array, Array], at: Grid) -> tuple[Ar
     guess = begin[0] * problem.load / (at.widths @ begin[0])
     sunk = problem.gap(guess, jnp.zeros(()), at)[jnp.argmin(jnp.abs(at.x))]
     return guess, begin[1] / problem.flow.height - sunk
+
+
+def _gain(grids: tuple[Grid, ...]) -> float:
+    """By how much the last grid is better than the one before, but for one: errors are of second order."""
+    fine, coarse = grids[-1].x.shape[0], grids[max(len(grids) - 2, 0)].x.shape[0]
+    return ((fine - 1) / (coarse - 1)) ** 2 - 1.0
 
 
 def _as_turned(gap: Array, contact: LineContact) -> Array:
@@ -361,27 +389,35 @@ def _of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
     return found
 
 
-def _warnings(contact: LineContact, ended: Ended, size: float | None) -> Iterator[str]:
-    solved = np.asarray(ended.code).reshape(-1) == Code.SOLVED
+def _warnings(
+    contact: LineContact, film: LineFilm, ended: Ended, size: float | None
+) -> Iterator[str]:
+    solved = np.asarray(ended.code) == Code.SOLVED
     if not solved.any():
         return
     some: LineContact = jax.tree.map(lambda leaf: np.asarray(leaf)[solved], contact)
-    yield from _of_pressure(some)
-    yield from _of_half_space(some, size)
+    half_width = np.asarray(film.half_width)[solved]
+    yield from _of_pressure(some, np.asarray(film.hertz_pressure)[solved])
+    yield from _of_half_space(some, half_width, size)
+    yield from _of_inlet(some, half_width)
+    yield from _of_grid(np.asarray(ended.grid)[solved])
     if some.texture is not None:
-        yield from _of_roughness(some)
-    if some.conduction is not None:
-        yield from _of_strips(some, some.conduction)
+        yield from _of_roughness(np.asarray(some.texture.rq), half_width)
+    if film.heat is not None:
+        peclet = np.stack([film.heat.peclet_a, film.heat.peclet_b])[:, solved]
+        yield from _of_strips(peclet, np.stack([some.speed_a, some.speed_b]), half_width)
 
 
-def _of_pressure(contact: LineContact) -> Iterator[str]:
-    told = contact.fluid.outside(np.asarray(contact.hertz_pressure))
+def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[str]:
+    told = contact.fluid.outside(pressure)
     if told is not None:
         yield f"{told}: films and traction there are extrapolated"
 
 
-def _of_half_space(contact: LineContact, size: float | None) -> Iterator[str]:
-    half_width, radius = np.asarray(contact.half_width), np.asarray(contact.radius)
+def _of_half_space(
+    contact: LineContact, half_width: NDArray[np.float64], size: float | None
+) -> Iterator[str]:
+    radius = np.asarray(contact.radius)
     sizes = {"the relative radius": radius}
     if size is not None:
         sizes["the size of a tooth"] = np.full_like(radius, size)
@@ -394,10 +430,7 @@ def _of_half_space(contact: LineContact, size: float | None) -> Iterator[str]:
             )
 
 
-def _of_roughness(contact: LineContact) -> Iterator[str]:
-    assert contact.texture is not None
-    rough = np.broadcast_to(np.asarray(contact.texture.rq), contact.radius.shape)
-    half_width = np.asarray(contact.half_width)
+def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[str]:
     worst = np.argmax(rough / half_width)
     if rough[worst] > WIDE * half_width[worst]:
         yield (
@@ -406,20 +439,46 @@ def _of_roughness(contact: LineContact) -> Iterator[str]:
         )
 
 
-def _of_strips(contact: LineContact, given: Conduction) -> Iterator[str]:
-    half_width = np.asarray(contact.half_width)
-    speeds = np.stack([contact.speed_a, contact.speed_b])
-    peclet = np.stack(
-        [
-            peclet_number(speed=speed, half_width=contact.half_width, body=body)
-            for speed, body in zip(speeds, (given.a, given.b), strict=True)
-        ]
-    )
+def _of_strips(
+    peclet: NDArray[np.float64], speed: NDArray[np.float64], half_width: NDArray[np.float64]
+) -> Iterator[str]:
     member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
     if peclet[member, worst] < LEAST_PECLET:
         yield (
             f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
-            f"{abs(speeds[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
+            f"{abs(speed[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
             f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
             "stands still is taken to take none"
         )
+
+
+def _of_grid(error: NDArray[np.float64]) -> Iterator[str]:
+    rough = error > COARSE
+    if rough.any():
+        yield (
+            f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
+            f"off by {100.0 * error.max():.2g} %; take more nodes"
+        )
+
+
+def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[str]:
+    given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
+    worst = np.argmin(given / needed)
+    if given[worst] < needed[worst]:
+        yield (
+            f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
+            f"one draws it from {needed[worst]:.0f} on: the contact is starved"
+        )
+
+
+def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
+    """Length of inlet beyond which oil no longer changes the film by more than a hundredth [half-widths].
+
+    3 above a load parameter M = w/(E' R) (2 eta0 u/(E' R))^(-1/2) of 30, 4 above 5, else 6: contacts with
+    thick films draw oil from further away. From films of inlets of 2 to 6 half-widths.
+    """
+    modulus, radius = np.asarray(contact.modulus), np.asarray(contact.radius)
+    speed = np.abs(np.asarray(contact.entrainment)) * np.asarray(contact.fluid.viscosity)
+    scaled = np.maximum(2.0 * speed / (modulus * radius), 1e-30)
+    load = np.asarray(contact.line_load) / (modulus * radius) / np.sqrt(scaled)
+    return np.where(load > 30.0, 3.0, np.where(load > 5.0, 4.0, 6.0))

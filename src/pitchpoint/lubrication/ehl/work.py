@@ -16,7 +16,7 @@ __all__ = ["filled", "pressure_flow", "shear_stress", "work_of_expansion", "work
 BROKEN: Final = 1e-9
 """Pressure below which a film is broken, in units of Hertz's pressure."""
 
-_GAUSS = np.polynomial.legendre.leggauss(4)
+_GAUSS = np.polynomial.legendre.leggauss(8)
 
 
 def shear_stress(flow: Flow, oil: Array, room: Array, sliding: Array) -> Array:
