@@ -56,7 +56,7 @@ def sliding():
 @pytest.fixture(scope="module")
 def rough():
     """The same with asperities that carry a part of the load."""
-    case = contact(slide=SLIDES, speed=0.5, texture=Rough(rq=0.3e-6, modulus=MODULUS))
+    case = contact(slide=SLIDES, speed=0.5, texture=Rough(rq=0.5e-6, modulus=MODULUS))
     return case, solve_lines(case, nodes=33)
 
 
@@ -140,7 +140,7 @@ def test_the_warmer_surface_takes_less_of_the_heat():
     a, b = jnp.array([[2e-9]]), jnp.array([[5e-8]])
     found = spread(jnp.array([film]), a, b, conductivity)
     into_a = float(found.to_a[0, 0]) * heat
-    at_a, at_b = a[0, 0] * into_a, b[0, 0] * (heat - into_a)
+    at_a, at_b = float(a[0, 0]) * into_a, float(b[0, 0]) * (heat - into_a)
     _, expected = across_by_differences(film, heat, at_a, at_b, conductivity)
     assert at_b > at_a and into_a > 0.5 * heat
     assert into_a == pytest.approx(expected, rel=1e-9)
@@ -178,24 +178,23 @@ def test_residuals_are_small_and_turns_are_told(sliding):
 
 
 def test_surfaces_are_as_warm_as_their_heat_makes_them(sliding):
-    """Summed up anew in SI along the motion of each surface; the last contact has one against the other."""
+    """Summed up anew in SI along the motion of each surface; in the last contact one runs against the other.
+
+    Heat is on lines between the nodes here and constant on cells there, 1.5 % of the largest rise apart.
+    """
     case, found = sliding
-    for k, speed in ((6, case.speed_a), (6, case.speed_b), (8, case.speed_b)):
-        x, heat = found.film.x[k], found.film.heat
-        flux, rise = (
-            (heat.flux_a[k], heat.surface_a[k])
-            if speed is case.speed_a
-            else (heat.flux_b[k], heat.surface_b[k])
-        )
-        steps = np.linspace(0.0, 1.0, 20_001)
-        place = 40
-        passed = float(x[place] - (x[0] if speed[k] > 0.0 else x[-1]))
+    heat = found.film.heat
+    ahead, behind = np.asarray(case.speed_a), np.asarray(case.speed_b)
+    a, b = (heat.flux_a, heat.surface_a, ahead), (heat.flux_b, heat.surface_b, behind)
+    steps = np.linspace(0.0, 1.0, 20_001)
+    for k, (flux, rise, speed) in ((6, a), (6, b), (8, b)):
+        x = found.film.x[k]
         # A root as variable takes the singular end out of the integral.
-        from_here = passed * steps**2
-        values = np.interp(x[place] - from_here, x, flux)
-        along = np.trapezoid(2.0 * values, steps) * np.sqrt(abs(passed))
-        expected = along / np.sqrt(np.pi * abs(speed[k])) / STEEL.effusivity
-        assert rise[place] == pytest.approx(expected, rel=2e-2)
+        passed = x - (x[0] if speed[k] > 0.0 else x[-1])
+        values = np.interp(x[:, None] - passed[:, None] * steps**2, x, flux[k])
+        along = np.trapezoid(2.0 * values, steps, axis=1) * np.sqrt(np.abs(passed))
+        expected = along / np.sqrt(np.pi * abs(speed[k])) / float(STEEL.effusivity)
+        np.testing.assert_allclose(rise[k], expected, rtol=0, atol=0.015 * np.max(expected))
 
 
 def test_traction_rises_with_sliding_and_falls_with_heat(sliding):
@@ -253,7 +252,7 @@ def test_contacts_together_are_those_alone(sliding):
 def test_asperities_warm_the_surfaces(rough):
     case, found = rough
     without = dataclasses.replace(
-        case, texture=Rough(rq=0.3e-6, modulus=MODULUS, boundary_friction=0.0)
+        case, texture=Rough(rq=0.5e-6, modulus=MODULUS, boundary_friction=0.0)
     )
     smooth = solve_lines(without, nodes=33).film.heat
     assert (found.film.asperity_share > 0.02).all()
