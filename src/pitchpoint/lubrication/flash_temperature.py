@@ -83,6 +83,7 @@ def peclet_number(*, speed: Each, half_width: Each, body: Conductor) -> Each:
     Source: Jaeger (1942), with thermal diffusivity k/(rho c).
 
     Example:
+        >>> from pitchpoint.lubrication.flash_temperature import Conductor
         >>> steel = Conductor(conductivity=46.0, heat_capacity=3.64e6)
         >>> round(float(peclet_number(speed=1.0, half_width=1e-4, body=steel)), 2)
         3.96
