@@ -29,6 +29,7 @@ _TABLES = (
     "housing",
     "losses",
     "dynamics",
+    "film",
     "loss_map",
     "formulas",
 )
