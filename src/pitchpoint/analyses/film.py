@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -95,21 +96,40 @@ def _laws() -> list[FilmThickness]:
 
 @lru_cache(maxsize=2)
 def _states(built: Built) -> dict[str, np.ndarray]:
-    """What the contacts of a cycle carry and how they move, under the first friction law.
+    """What the contacts of a cycle carry and how they move, [phase, pair, slice].
 
-    Lanes are [phase, pair, slice], in front of them those of the laws.
+    Forces are those of the first friction law; what a law says, with an axis for all laws in front, stands
+    under its own forces.
     """
-    design, point, first = built.design, built.operation, built.models[0]
-    nodes = _nodes(built)
-    known = engaged(design, point, first, nodes)
-    if known is None:
-        known = _engagement(design, point.load, first.without_friction, nodes)
-    found = balance_in_rows(design, point, known, first)
-    given = design, point, _without_body(known), found, built.models
-    lanes, cycle = jax.device_get(_computed(*given))
-    pairs = {name: _in_pairs(built, values) for name, values in lanes.items()}
+    known = _known(built)
+    each = [_under(built, known, models) for models in built.models]
+    pairs, cycle = each[0]
+    pairs |= {name: np.stack([one[name] for one, _ in each]) for name in _OF_LAW}
     loaded = pairs["active"] & (pairs["line_load"] > LEAST * pairs["line_load"].max())
     return {**pairs, **cycle, "loaded": loaded}
+
+
+_OF_LAW = ("friction", "sliding_loss", "rolling_loss", "load_by_law")
+
+
+def _known(built: Built) -> Engagement:
+    """Contacts and shares over the cycle."""
+    given, nodes = (built.design, built.operation), _nodes(built)
+    known = engaged(*given, built.models[0], nodes)
+    if known is None:
+        alone = built.models[0].without_friction
+        known = _engagement(built.design, built.operation.load, alone, nodes)
+    return known
+
+
+def _under(
+    built: Built, known: Engagement, models: Models
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Contacts and cycle in balance under one friction law."""
+    given = built.design, built.operation
+    found = balance_in_rows(*given, known, models)
+    lanes, cycle = jax.device_get(_computed(*given, replace(known, body=None), found))
+    return {name: _in_pairs(built, values) for name, values in lanes.items()}, cycle
 
 
 def _nodes(built: Built) -> int:
@@ -123,37 +143,29 @@ def _nodes(built: Built) -> int:
 _engagement = program(engagement_alone)
 
 
-def _without_body(known: Engagement) -> Engagement:
-    return Engagement(known.phase, known.weight, known.contacts, known.share, None, known.nodes)
-
-
 @program
 def _computed(
-    design: Design,
-    operation: Operation,
-    known: Engagement,
-    found: Balance,
-    models: tuple[Models, ...],
+    design: Design, operation: Operation, known: Engagement, found: Balance
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Values at the contacts [..., pair, slice, node], and those of the whole mesh [node]."""
     cycle = cycle_of(design, operation, known, found)
     state, at, contacts = cycle.state, cycle.state.conditions, cycle.state.contacts
-    friction = jnp.stack([one.coefficient(at) for one in models])
     lanes = {
         "active": contacts.active,
         "path": contacts.path,
         "weight_of_line": contacts.weight,
         "radius": contacts.radius,
         **_of_load(at, contacts),
-        "friction": friction,
-        "sliding_loss": at.load * friction * at.sliding,
+        "load_by_law": state.balance.load,
+        "friction": state.balance.friction,
+        "sliding_loss": state.sliding_loss,
         "rolling_loss": state.rolling_loss,
         "film_by_law": jnp.stack([evaluate(law, at) for law in _laws()]),
     }
     shape = contacts.active.shape
     whole = {"drag_loss": state.drag_loss, "output_power": state.output_power}
     courses = {name: jnp.broadcast_to(v, cycle.phase.shape) for name, v in whole.items()}
-    courses |= {"phase": cycle.phase, "weight": cycle.weight, "locked": state.balance.locked}
+    courses |= {"phase": cycle.phase, "weight": cycle.weight}
     return {name: _spread(values, shape) for name, values in lanes.items()}, courses
 
 
@@ -384,13 +396,16 @@ def _figures(
         return np.asarray(sums @ weight)
 
     total = mean(load) if loaded.any() else np.nan
+    own = states["load_by_law"]
     sliding, rolling = (mean(found[f"film_{kind}_loss"]) * whole for kind in ("sliding", "rolling"))
     by_law = states["sliding_loss"] + states["rolling_loss"]
     figures = {
         **_extremes(found),
         "mean_film_friction": mean(load * found["film_friction"]) / total * whole,
         "mean_boundary_part": mean(load * found["boundary_part"]) / total * whole,
-        "mean_law_friction": mean(load * states["friction"]) / total,
+        "mean_law_friction": mean(own * states["friction"]) / mean(own)
+        if loaded.any()
+        else own[:, 0, 0, 0] * np.nan,
         "mean_film_sliding_loss": sliding,
         "mean_film_rolling_loss": rolling,
         "mean_film_loss": sliding + rolling,
