@@ -66,7 +66,7 @@ _PROFILES = {
 
 FIGURES = (
     "smallest_film",
-    "smallest_film_ratio",
+    "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
     "mean_film_friction",
@@ -209,7 +209,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     films, codes, back = _solved(built, some)
     values = _values(films.film, some, back)
     rq = float(built.design.roughness.composite_rq)
-    values["film_ratio"] = (
+    values["minimum_lambda"] = (
         values["minimum_film"] / rq if rq > 0.0 else values["minimum_film"] * np.inf
     )
     profiles = _kept(films.film, states, some, back)
@@ -305,10 +305,13 @@ def _kept(
 
 
 def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Numbers of the pairs that carry most over the cycle, in order."""
-    carried = np.einsum("npk,n->p", states["load"], states["weight"])
-    most = np.argsort(-carried, kind="stable")[:SHOWN]
-    return np.sort(most[carried[most] > 0.0]) if np.any(carried > 0.0) else most[:1]
+    """Numbers of the pairs that carry most over the cycle, in order; of pairs that are alike the first."""
+    load = np.moveaxis(states["load"], 1, 0).reshape(states["load"].shape[1], -1)
+    rounded = np.round(load / np.max(load, initial=1e-300), ALIKE)
+    _, first = np.unique(rounded, axis=0, return_index=True)
+    carried = np.einsum("npk,n->p", states["load"], states["weight"])[first]
+    most = first[np.argsort(-carried, kind="stable")[:SHOWN]]
+    return np.sort(most)
 
 
 # ---- the whole
@@ -421,7 +424,7 @@ def _figures(
 
 def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Smallest and largest values of the films that were found."""
-    low = {"smallest_film": "minimum_film", "smallest_film_ratio": "film_ratio"}
+    low = {"smallest_film": "minimum_film", "smallest_lambda": "minimum_lambda"}
     high = {"largest_film_pressure": "film_pressure", "largest_asperity_share": "asperity_share"}
 
     def end(name: str, reduce: Any) -> Any:

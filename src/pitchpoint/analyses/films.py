@@ -14,7 +14,7 @@ __all__ = ["FILM"]
 
 _MAIN = (
     "smallest_film",
-    "smallest_film_ratio",
+    "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
     "mean_film_friction",

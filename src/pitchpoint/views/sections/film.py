@@ -36,13 +36,16 @@ NONE = "No film was found."
 
 _FIGURES = (
     "smallest_film",
-    "smallest_film_ratio",
+    "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
-    "mean_boundary_part",
-    "mean_film_sliding_loss",
-    "mean_film_rolling_loss",
 )
+_PARTS = {
+    "mean_film_friction": ("mean_boundary_part",),
+    "mean_film_loss": ("mean_film_sliding_loss", "mean_film_rolling_loss"),
+}
+"""Figures with the parts that stand under them."""
+
 _BESIDE = {
     "mean_film_friction": "mean_law_friction",
     "mean_film_loss": "mean_law_loss",
@@ -52,7 +55,7 @@ _BESIDE = {
 
 _ON_SCREEN = (
     "smallest_film",
-    "smallest_film_ratio",
+    "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
 )
@@ -67,7 +70,7 @@ def film_answer(outcome: Outcome) -> str:
     if int(data["solved_contacts"]) == 0:
         return NONE
     told = (
-        f"{_told(data, 'smallest_film')} at least, {_told(data, 'smallest_film_ratio')} of Rq; asperities "
+        f"{_told(data, 'smallest_film')} at least, {_told(data, 'smallest_lambda')} of Rq; asperities "
         f"carry up to {_told(data, 'largest_asperity_share')} of a contact's load"
     )
     if not np.isfinite(float(data["mean_film_loss"])):
@@ -92,8 +95,13 @@ def _told(data: xr.Dataset, name: str) -> str:
 def profiles_panel(name: str, data: xr.Dataset) -> Panel:
     """Film and pressure across the contacts that carry most, with the phase to slide."""
     figures = [_film_profile(f"{name}_film", data), _pressure_profile(f"{name}_pressure", data)]
-    choices = [_choice(data, figures, phase) for phase in range(data.sizes["phase"])]
+    choices = [_choice(data, figures, int(phase)) for phase in _in_order(data)]
     return Panel("", figures, choices=choices, menu="Phase", slides=True)
+
+
+def _in_order(data: xr.Dataset) -> np.ndarray:
+    """Positions of the phases from 0 to 1, wherever the period begins."""
+    return np.argsort(data["phase"].values % 1.0, kind="stable")
 
 
 def _choice(data: xr.Dataset, figures: Sequence[Figure], phase: int) -> Choice:
@@ -108,10 +116,14 @@ def _points(lines: Sequence[Trace]) -> dict[str, list[list[float]]]:
 
 
 def _film_profile(name: str, data: xr.Dataset) -> Figure:
-    top = 1.6 * np.nanmax(np.where(_pressed(data), data["profile_film"].values, np.nan), initial=0)
+    middle = np.argmin(np.abs(data["profile_place"].values), axis=-1)[..., None]
+    film = np.take_along_axis(data["profile_film"].values, middle, axis=-1)
+    top = 2.5 * np.nanmax(film, initial=0.0)
     axes = _across(data, "profile_film", top)
     title = titled("profile_film", data)
-    return Figure(name, title, _film_lines(data, 0), axes, "", tuple(_keys(data)), NONE)
+    return Figure(
+        name, title, _film_lines(data, int(_in_order(data)[0])), axes, "", tuple(_keys(data)), NONE
+    )
 
 
 def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
@@ -119,7 +131,9 @@ def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
     axes = _across(data, "profile_pressure", top)
     keys = [*_keys(data), Key("of it on asperities", GREY, "dot")]
     title = titled("profile_pressure", data)
-    return Figure(name, title, _pressure_lines(data, 0), axes, "", tuple(keys), NONE)
+    return Figure(
+        name, title, _pressure_lines(data, int(_in_order(data)[0])), axes, "", tuple(keys), NONE
+    )
 
 
 def _across(data: xr.Dataset, name: str, top: float) -> dict[str, object]:
@@ -252,7 +266,7 @@ def _film_keys(data: xr.Dataset) -> list[Key]:
 
 def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
     """Film over roughness with the lubrication regimes; none over smooth flanks."""
-    ratio, film = data["film_ratio"].values, data["minimum_film"].values
+    ratio, film = data["minimum_lambda"].values, data["minimum_film"].values
     if not np.any(np.isfinite(ratio)):
         return
     rough = np.nanmedian(film / ratio)
@@ -267,9 +281,9 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
     }
     by_law = _of_most(data, data["film_by_law"].values) / rough
     given |= dict(zip(_film_keys(data), by_law, strict=True))
-    lines = [(key, _line(data, "film_ratio", key, values)) for key, values in given.items()]
+    lines = [(key, _line(data, "minimum_lambda", key, values)) for key, values in given.items()]
     title = "Film over composite Rq, and lubrication regimes"
-    figure = _figure(name, title, "film_ratio", lines, axis, MOST)
+    figure = _figure(name, title, "minimum_lambda", lines, axis, MOST)
     figure.layout.setdefault("shapes", [])
     figure.layout.setdefault("annotations", [])
     regimes(figure.layout, figure.data)
@@ -374,21 +388,28 @@ _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
 
 def _of_profiles(data: xr.Dataset) -> str:
     few = data.sizes["pair"] > data.sizes["shown"]
-    pairs = f"The {data.sizes['shown']} pairs that carry most" if few else "Every pair"
-    slices = ", at its slice with the highest load" if data.sizes["slice"] > 1 else ""
-    return (
-        f"{pairs} of teeth{slices}. Oil enters from the left where the surfaces run to the right."
+    pairs = (
+        f"The {data.sizes['shown']} pairs of teeth that carry most"
+        if few
+        else "Every pair of teeth"
     )
+    slices = ", each at its slice with the highest load" if data.sizes["slice"] > 1 else ""
+    return f"{pairs}{slices}. Oil enters from the left where the surfaces run to the right."
 
 
 def _table(outcome: Outcome) -> Table:
     """Figures of the cycle, with those by the friction laws beside them."""
     data, known = outcome.parts["film"], laws(outcome.parts["film"])
-    rows = [(titled(name, data), _told(data, name), *("" for _ in known)) for name in _FIGURES]
+
+    def alone(name: str) -> tuple[str, ...]:
+        return (titled(name, data), _told(data, name), *("" for _ in known))
+
+    rows = [alone(name) for name in _FIGURES]
     for own, by_law in _BESIDE.items():
         values = data[by_law].values
         cells = [show.quantity(by_law, float(value), of=data) for value in values]
         rows.append((titled(own, data).removesuffix(" by the films"), _told(data, own), *cells))
+        rows += [alone(part) for part in _PARTS.get(own, ())]
     return Table(["", "by films", *(law_title(outcome, law) for law in known)], rows, compact=True)
 
 
