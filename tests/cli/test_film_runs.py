@@ -122,8 +122,8 @@ def test_energy_is_lost_by_sliding_and_rolling(outcome: Outcome) -> None:
 def test_a_film_that_is_not_found_withholds_the_loss(
     case: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lost(built: Any, given: np.ndarray) -> Any:
-        films = honest(built, np.where(np.arange(len(given))[:, None] == 0, np.nan, given))
+    def lost(built: Any, given: np.ndarray, done: Any) -> Any:
+        films = honest(built, np.where(np.arange(len(given))[:, None] == 0, np.nan, given), done)
         return films
 
     honest = solved._films

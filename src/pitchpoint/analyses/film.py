@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -39,7 +39,10 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
-__all__ = ["FIGURES", "film_part", "joined", "pieces"]
+__all__ = ["film_part", "joined", "pieces"]
+
+Done = Callable[[int, int], None]
+"""Told the number of contacts that are done, and that of all."""
 
 TOGETHER = 6
 """Phases of a piece, so that little is lost when a run is stopped."""
@@ -56,6 +59,7 @@ SHOWN = 4
 COLD = "The films are isothermal: the oil in a contact is as warm as that in its inlet."
 
 _LANES = ("phase", "pair", "slice")
+_OF_PIECE = ("point", "pair", "slice")
 _MASKED = ("pressure", "friction", "film_by_law")
 _PROFILES = {
     "profile_place": "x",
@@ -63,22 +67,6 @@ _PROFILES = {
     "profile_pressure": "pressure",
     "profile_asperity_pressure": "asperity_pressure",
 }
-
-FIGURES = (
-    "smallest_film",
-    "smallest_lambda",
-    "largest_film_pressure",
-    "largest_asperity_share",
-    "mean_film_friction",
-    "mean_boundary_part",
-    "mean_film_sliding_loss",
-    "mean_film_rolling_loss",
-    "mean_film_loss",
-    "film_efficiency",
-    "loaded_contacts",
-    "solved_contacts",
-)
-"""Figures of the cycle by the solver."""
 
 
 def _asked(built: Built) -> FilmTable:
@@ -206,19 +194,20 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     states = _states(built)
     taken = slice(piece["first"], piece["first"] + piece["count"])
     some = {name: states[name][taken] for name in (*_GIVEN, "loaded", "load", "weight_of_line")}
-    films, codes, back = _solved(built, some)
+    first, count = piece["first"], piece["count"]
+    done = lambda part, every: progress(first + count * part // every)  # noqa: E731
+    films, codes, back = _solved(built, some, done)
     values = _values(films.film, some, back)
     rq = float(built.design.roughness.composite_rq)
     values["minimum_lambda"] = (
         values["minimum_film"] / rq if rq > 0.0 else values["minimum_film"] * np.inf
     )
     profiles = _kept(films.film, states, some, back)
-    progress(piece["count"])
     return dataset(
         {
-            **{name: (_LANES, one) for name, one in values.items()},
-            "film_status": (_LANES, codes),
-            **{name: (("phase", "shown", "node"), one) for name, one in profiles.items()},
+            **{name: (_OF_PIECE, one) for name, one in values.items()},
+            "film_status": (_OF_PIECE, codes),
+            **{name: (("point", "shown", "node"), one) for name, one in profiles.items()},
         },
         {},
         warnings=list(films.warnings),
@@ -235,7 +224,9 @@ _GIVEN = ("line_load", "radius", "speed_a", "speed_b")
 """What tells one contact of a mesh from another."""
 
 
-def _solved(built: Built, some: Mapping[str, np.ndarray]) -> tuple[Films, np.ndarray, np.ndarray]:
+def _solved(
+    built: Built, some: Mapping[str, np.ndarray], done: Done
+) -> tuple[Films, np.ndarray, np.ndarray]:
     """Films of the contacts that differ, codes [phase, pair, slice], and which film belongs to each lane."""
     loaded = some["loaded"]
     every = np.stack([some[name][loaded] for name in _GIVEN], axis=-1)
@@ -244,14 +235,14 @@ def _solved(built: Built, some: Mapping[str, np.ndarray]) -> tuple[Films, np.nda
     scale = np.max(np.abs(every), axis=0)
     rounded = np.round(every / np.where(scale > 0.0, scale, 1.0), ALIKE)
     _, where, inverse = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-    films = _films(built, every[where])
+    films = _films(built, every[where], done)
     back = np.full(loaded.shape, -1)
     back[loaded] = inverse.reshape(-1)[: loaded.sum()]
     codes = np.where(back < 0, int(Code.UNLOADED), np.asarray(films.ended.code)[back])
     return films, codes, back
 
 
-def _films(built: Built, given: np.ndarray) -> Films:
+def _films(built: Built, given: np.ndarray, done: Done) -> Films:
     model = film_model(_asked(built))
     design = built.design
     contacts = model.contacts(
@@ -262,7 +253,8 @@ def _films(built: Built, given: np.ndarray) -> Films:
         roughness_rq=float(design.roughness.composite_rq),
     )
     size = built.dimensions.get("module")
-    return solve_lines(contacts, nodes=model.nodes, size=None if size is None else float(size))
+    size = None if size is None else float(size)
+    return solve_lines(contacts, nodes=model.nodes, size=size, progress=done)
 
 
 def _values(
@@ -320,7 +312,7 @@ def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them."""
     states = _states(built)
-    found = xr.concat(parts, "phase", combine_attrs="drop")
+    found = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
     loaded, codes = states["loaded"], found["film_status"].values
     lanes = {
         str(name): (tuple(map(str, one.dims)), one.values) for name, one in found.data_vars.items()
