@@ -53,6 +53,9 @@ LEAST = 1e-6
 ALIKE = 11
 """Digits to which contacts are alike and solved once: those of both ends of a wave, say."""
 
+SHOWN_ALIKE = 6
+"""Digits to which pairs carry alike and one of them is shown."""
+
 SHOWN = 4
 """Pairs whose profiles are kept: those that carry most."""
 
@@ -298,11 +301,11 @@ def _kept(
 
 def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
     """Numbers of the pairs that carry most over the cycle, in order; of pairs that are alike the first."""
-    load = np.moveaxis(states["load"], 1, 0).reshape(states["load"].shape[1], -1)
-    rounded = np.round(load / np.max(load, initial=1e-300), ALIKE)
+    load = states["load"].sum(axis=-1)
+    carried = load.T @ states["weight"]
+    rounded = np.round(load.T / np.max(load, initial=LEAST), SHOWN_ALIKE)
     _, first = np.unique(rounded, axis=0, return_index=True)
-    carried = np.einsum("npk,n->p", states["load"], states["weight"])[first]
-    most = first[np.argsort(-carried, kind="stable")[:SHOWN]]
+    most = first[np.argsort(-carried[first], kind="stable")[:SHOWN]]
     return np.sort(most)
 
 
@@ -483,13 +486,19 @@ def _lost(codes: np.ndarray) -> Iterator[str]:
 
 
 def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
-    """Warnings of all pieces, of a kind that of the one with the highest pressure."""
-    highest = sorted(parts, key=lambda part: -np.nanmax(part["film_pressure"].values, initial=0.0))
-    kinds: dict[str, str] = {}
-    for part in highest:
-        for text in json.loads(part.attrs["warnings"]):
-            kinds.setdefault(re.sub(r"[\d.]+(e[+-]?\d+)?", "", text), text)
-    return [f"Films: {text}." for text in kinds.values()]
+    """Warnings of all pieces, of a kind that of the one with the highest pressure, and where it is."""
+    ends = np.cumsum([0, *(part.sizes["point"] for part in parts)])
+    highest = [np.nanmax(part["film_pressure"].values, initial=0.0) for part in parts]
+    kinds: dict[str, list[str]] = {}
+    for k in np.argsort(highest)[::-1]:
+        where = f"phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}"
+        for text in json.loads(parts[k].attrs["warnings"]):
+            kind = re.sub(r"[\d.]+(e[+-]?\d+)?", "", text)
+            kinds.setdefault(kind, []).append(f"{where}: {text}")
+    return [
+        f"Films, {told[0].replace(':', ' and at others:', 1) if len(told) > 1 else told[0]}."
+        for told in kinds.values()
+    ]
 
 
 def _about(built: Built, states: Mapping[str, np.ndarray]) -> list[str]:
