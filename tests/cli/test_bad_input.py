@@ -715,6 +715,7 @@ def bad_stages() -> Iterator[Bad]:
         ),
         ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
         ("dynamics", ("dynamics",), {}, ("computed for one mesh",), "dynamics: "),
+        ("film", ("film",), {"solver": "line"}, ("solved for one mesh",), "film: "),
         (
             "left",
             (*second, "flank"),

@@ -186,9 +186,18 @@ def test_keys_that_are_left_out_stand_as_the_model_has_them() -> None:
 
 
 def test_smooth_flanks_have_no_film_ratio(case: str) -> None:
-    data = running.run(case, settings={"roughness.ra": "0 um", "film.phases": 3})["default"].parts
-    assert np.isinf(data["film"]["smallest_lambda"])
-    assert float(data["film"]["largest_asperity_share"]) == 0.0
+    outcome = running.run(case, settings={"roughness.ra": "0 um", "film.phases": 3})["default"]
+    assert np.isinf(outcome.parts["film"]["smallest_lambda"])
+    assert float(outcome.parts["film"]["largest_asperity_share"]) == 0.0
+    assert figures(outcome)["film"]["smallest_lambda"] is None
+    assert "lubrication regimes" not in render({"default": outcome})
+
+
+def test_without_load_there_is_no_film(case: str) -> None:
+    data = running.run(case, settings={"operation.torque": "0 N m"})["default"].parts["film"]
+    assert int(data["loaded_contacts"]) == 0
+    assert np.isnan(float(data["mean_film_loss"]))
+    assert Code.UNLOADED.sentence in data.attrs["solve"]
 
 
 @pytest.mark.parametrize(

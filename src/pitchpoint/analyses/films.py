@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
@@ -64,10 +65,15 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("film")
     if data is None:
         return {"film": {}}
-    every: dict[str, Any] = {name: numbers(data[name].values) for name in _MAIN}
+    every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in _MAIN}
     every["friction_laws"] = _each(data, "law", _BY_LAW)
     every["film_laws"] = _each(data, "film_law", _BY_FILM_LAW)
     return {"film": every}
+
+
+def _finite(values: np.ndarray) -> np.ndarray:
+    """Values without those that are infinite: a film over no roughness."""
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def _each(data: xr.Dataset, axis: str, names: Sequence[str]) -> dict[str, Any]:
