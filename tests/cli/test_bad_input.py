@@ -114,6 +114,21 @@ no_load_speed = "2000 rpm"
 cycles = 1
 start_up = { duration = "10 ms", rise = "1 ms", speed = "10 rpm", count = 50 }
 
+[film]
+solver = "line"
+phases = 9
+nodes = 65
+viscosity_law = "roelands_1966"
+density_law = "dowson_higginson_1966"
+shear_law = "ree_eyring_1955"
+eyring_stress = "5 MPa"
+asperities = "greenwood_tripp_1970"
+eta_beta_sigma = 0.05
+sigma_over_beta = 0.01
+pattern = 1.0
+boundary_friction = 0.1
+inlet = "5 mm"
+
 [studies.scan]
 title = "a sweep"
 sweep = { key = "gears.module", start = "1.9 mm", stop = "2.1 mm", count = 2 }
@@ -700,6 +715,7 @@ def bad_stages() -> Iterator[Bad]:
         ),
         ("gears too", ("gears",), BASE["gears"], ("was given with [[stages]]",), "gears: "),
         ("dynamics", ("dynamics",), {}, ("computed for one mesh",), "dynamics: "),
+        ("film", ("film",), {"solver": "line"}, ("solved for one mesh",), "film: "),
         (
             "left",
             (*second, "flank"),

@@ -92,9 +92,9 @@ def test_json_says_the_units_of_a_travel(outcome: Outcome) -> None:
 def test_every_section_that_applies_is_in_the_report_in_words_of_a_travel(outcome: Outcome) -> None:
     page = render({"default": outcome})
     sections = re.findall(r'<section id="(\w+)"', page)
-    assert sections[:6] == ["answer", "inputs", "teeth", "path", "cycle", "torsion"]
-    assert sections[6:12] == ["beside", "stiffness", "vibration", "motion", "studies", "map"]
-    assert sections[12:] == ["models", "sources"]
+    assert sections[:7] == ["answer", "inputs", "teeth", "path", "cycle", "film", "torsion"]
+    assert sections[7:13] == ["beside", "stiffness", "vibration", "motion", "studies", "map"]
+    assert sections[13:] == ["models", "sources"]
     assert "Kinematic error (deviations of the teeth of these gears are not among" in page
     assert "load on the guides of the rack, across its travel" in page
     for words in (

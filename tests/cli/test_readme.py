@@ -23,7 +23,7 @@ from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-PAIR, MODIFIED, PLASTIC, MOTION, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
+PAIR, MODIFIED, PLASTIC, MOTION, FILM, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
     text for kind, text in BLOCKS if kind == "toml"
 )
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
@@ -36,6 +36,7 @@ CASES = {
     "modified": (PAIR, MODIFIED),
     "plastic": (PAIR, PLASTIC),
     "motion": (PAIR, MOTION),
+    "film": (PAIR, FILM),
     "rack": (PAIR, RACK),
     "torus": (PAIR, TORUS),
     "wave": WAVE,
@@ -67,7 +68,7 @@ def tree(name: str) -> dict[str, Any]:
 
 def test_every_block_is_known() -> None:
     assert {kind for kind, _ in BLOCKS} == {"sh", "toml", "python"}
-    assert sum(kind == "python" for kind, _ in BLOCKS) == 2
+    assert sum(kind == "python" for kind, _ in BLOCKS) == 3
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
 
@@ -77,6 +78,7 @@ def test_a_case(name: str) -> None:
     made = [job.name for job in jobs(Variant(tree(name), "README.md", "default"), {})]
     assert ("vibration" in made) == (name in ("plastic", "motion"))
     assert ("start_up" in made) == (name == "motion")
+    assert ("film" in made) == (name == "film")
     assert ("running" in made) == (name in ("wave", "targets", "stages"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "targets"))
 
@@ -145,8 +147,14 @@ def test_the_table_of_commands_is_whole() -> None:
         assert set(re.findall(r"(--?[a-z]+)", words)) <= known
 
 
+def test_films_without_any_gear(capsys: pytest.CaptureFixture[str]) -> None:
+    (block,) = (text for kind, text in BLOCKS if kind == "python" and "solve_lines" in text)
+    exec(compile(block, "README.md", "exec"), {})
+    assert capsys.readouterr().out.splitlines()[-1].startswith("True ")
+
+
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    block = next(text for kind, text in BLOCKS if kind == "python")
+    block = next(text for kind, text in BLOCKS if kind == "python" and "write_report" in text)
     exec(compile(block, "README.md", "exec"), {})
     assert (folder / "again.html").stat().st_size > 1_000_000
     out = capsys.readouterr().out

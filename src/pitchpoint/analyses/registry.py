@@ -10,6 +10,7 @@ from pitchpoint.analyses.along_action import (
 )
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
+from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.joint import JOINT
 from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.analyses.loss_map import LOSS_MAP
@@ -29,6 +30,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     CYCLE,
     OPERATION,
     LAWS_THERE,
+    FILM,
     TORSION,
     KINEMATIC_ERROR,
     JOINT,

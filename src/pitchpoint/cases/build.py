@@ -33,6 +33,7 @@ from pitchpoint.cases.solids import (
     solids_in_use,
     surrounded,
 )
+from pitchpoint.contact.contacts import TOUCH
 from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
@@ -478,6 +479,11 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
             raise error.at(key=key) from None
     if own is not None:
         demand_shape(own, mesh.shape)
+    if case.film is not None and mesh.shape != "line":
+        raise InputError(
+            f"these gears touch {TOUCH[mesh.shape]}, and ellipses have no line solver; leave the table out",
+            key="film.solver",
+        )
     if mesh.shape == "line" and models.elliptic_contact != USUAL_ELLIPSE:
         raise InputError(
             f"these gears touch along lines; leave it at {USUAL_ELLIPSE}",

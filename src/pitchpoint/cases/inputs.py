@@ -30,6 +30,7 @@ _TABLES = (
     "housing",
     "losses",
     "dynamics",
+    "film",
     "loss_map",
     "formulas",
 )

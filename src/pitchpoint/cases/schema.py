@@ -81,6 +81,12 @@ DAMPING = Quantity("viscous damping", 0.0, 1e9, "N s/m")
 DURATION = Quantity("time", 0.0, 1e4, "s", open_low=True)
 RISE = Quantity("time", 0.0, 1e4, "s")
 CYCLES = Quantity("dimensionless", 1, 8, whole=True)
+FILM_NODES = Quantity("dimensionless", 33, 1025, whole=True)
+FILM_PHASES = Quantity("dimensionless", 3, 400, whole=True)
+STRESS = Quantity("pressure", 1e3, 1e10, "MPa")
+SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
+PATTERN = Quantity("dimensionless", 1 / 9, 9.0)
+INLET = Quantity("length", 0.0, 10.0, "mm", open_low=True)
 INSTANTS = Quantity("dimensionless", 2, 20_000, whole=True)
 ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 
@@ -191,6 +197,31 @@ def _heatings() -> list[str]:
     from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 
     return list(INLET_HEATING)
+
+
+def _viscosities() -> list[str]:
+    from pitchpoint.materials.rheology import VISCOSITY
+
+    return list(VISCOSITY)
+
+
+def _densities() -> list[str]:
+    from pitchpoint.materials.rheology import DENSITY
+
+    return list(DENSITY)
+
+
+def _shears() -> list[str]:
+    from pitchpoint.materials.rheology import SHEAR_STRESS
+
+    return list(SHEAR_STRESS)
+
+
+def _asperities() -> list[str]:
+    from pitchpoint.lubrication.ehl.model import SMOOTH
+    from pitchpoint.lubrication.ehl.texture import ASPERITIES
+
+    return [SMOOTH, *ASPERITIES]
 
 
 def _asperity_loads() -> list[str]:
@@ -639,6 +670,69 @@ class Dynamics(Table):
     motion: MotionTable | None = None
 
 
+def _nodes(value: float) -> float:
+    from pitchpoint.lubrication.ehl.grid import fewer
+
+    fewer(int(value))
+    return value
+
+
+class FilmTable(Table):
+    """Films of the contacts solved over the mesh cycle; what is left out is as `FilmModel` has it.
+
+    `phases` are the least number of states over a mesh cycle. The parameters are those of the shear law.
+    """
+
+    solver: Literal["line"]
+    phases: Annotated[float, FILM_PHASES] = 24.0
+    nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
+    viscosity_law: (
+        Annotated[str, BeforeValidator(named(_viscosities, "law of viscosity under pressure"))]
+        | None
+    ) = None
+    density_law: (
+        Annotated[str, BeforeValidator(named(_densities, "law of density under pressure"))] | None
+    ) = None
+    shear_law: Annotated[str, BeforeValidator(named(_shears, "law of shear stress"))] | None = None
+    eyring_stress: Annotated[float, STRESS] | None = None
+    limiting_coefficient: Annotated[float, COEFFICIENT] | None = None
+    limiting_stress: Annotated[float, STRESS] | None = None
+    asperities: (
+        Annotated[str, BeforeValidator(named(_asperities, "law of asperity contact"))] | None
+    ) = None
+    eta_beta_sigma: Annotated[float, SUMMITS] | None = None
+    sigma_over_beta: Annotated[float, SUMMITS] | None = None
+    pattern: Annotated[float, PATTERN] | None = None
+    boundary_friction: Annotated[float, COEFFICIENT] | None = None
+    inlet: Annotated[float, INLET] | None = None
+
+    @property
+    def shear_parameters(self) -> dict[str, float]:
+        """Parameters of the shear law that were given, by name [SI]."""
+        given = {name: getattr(self, name) for name in _OF_SHEAR}
+        return {name: value for name, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _own(self) -> "FilmTable":
+        from pitchpoint.lubrication.ehl.model import SMOOTH, USUAL_SHEAR
+        from pitchpoint.materials.rheology import SHEAR_STRESS
+
+        law = SHEAR_STRESS[self.shear_law or USUAL_SHEAR]
+        for key in self.shear_parameters:
+            if key not in law.parameters:
+                has = ", ".join(law.parameters) or "none"
+                raise InputError(f"is no parameter of {law.name}; it has {has}", key=key)
+        for key in _OF_ROUGH if self.asperities == SMOOTH else ():
+            if getattr(self, key) is not None:
+                told = "was given without asperities, to which it belongs"
+                raise InputError(told, key=key)
+        return self
+
+
+_OF_SHEAR = ("eyring_stress", "limiting_coefficient", "limiting_stress")
+_OF_ROUGH = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
+
+
 class Sweep(Table):
     """Values of one key: from start to stop in equal steps, or a list."""
 
@@ -787,6 +881,7 @@ class Case(Table):
     housing: Housing = Housing()
     losses: Losses = Field(default_factory=dict)
     dynamics: Dynamics | None = None
+    film: FilmTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
     formulas: TorusFormulas | None = None
@@ -1151,6 +1246,7 @@ def validate(document: Document) -> Case | DriveCase:
 _OF_ONE_MESH = {
     "gears": "was given with [[stages]]; gears belong to a stage, or are all that the file has",
     "dynamics": "vibration is computed for one mesh; give the stage a file of its own",
+    "film": "films are solved for one mesh; give the stage a file of its own",
 }
 
 

@@ -65,6 +65,7 @@ class RheologyLaw:
         check: arguments in SI, and the value worked out by hand.
         range: where it holds, as a sentence.
         ranges: limits of quantities in SI, where a range is known; `index` is that of `roelands_index`.
+        note: what else is to be known.
     """
 
     name: str
@@ -74,6 +75,7 @@ class RheologyLaw:
     check: tuple[dict[str, float], float]
     range: str
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    note: str = ""
 
     @property
     def parameters(self) -> dict[str, float]:

@@ -19,12 +19,14 @@ from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
 from pitchpoint.lubrication.conditions import Law, shape_of
+from pitchpoint.lubrication.ehl.texture import ASPERITIES
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials._leaves import Datum
+from pitchpoint.materials.rheology import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
 
@@ -60,6 +62,16 @@ def entries() -> list[dict[str, str]]:
         )
         for model in registry.values()
     ]
+    rows += [
+        _entry(kind, law, law.range)
+        for kind, registry in (
+            ("viscosity_law", VISCOSITY),
+            ("density_law", DENSITY),
+            ("shear_law", SHEAR_STRESS),
+        )
+        for law in registry.values()
+    ]
+    rows += [_entry("asperities", law, "") for law in ASPERITIES.values()]
     rows += [_entry("losses", one, "") for one in loss_sets().values()]
     rows += [_record("lubricant", oil, _oil_range(oil)) for oil in lubricants.catalogue().values()]
     return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]

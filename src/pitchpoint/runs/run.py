@@ -21,6 +21,7 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, variants
 from pitchpoint.cases.failures import worst_first
+from pitchpoint.cases.films import film_model
 from pitchpoint.cases.library import as_text, find, names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
@@ -37,10 +38,13 @@ from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
+from pitchpoint.lubrication.ehl.texture import ASPERITIES
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials.rheology import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.programs import surroundings
 from pitchpoint.registry import nearest
 from pitchpoint.results.store import (
@@ -601,7 +605,21 @@ def _of_mesh(built: Built) -> dict[str, Any]:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
     if case.dynamics is not None and built.design.mesh.along_action:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
+    if case.film is not None:
+        found |= _of_films(film_model(case.film))
     found |= _bearings(case.losses)
     if case.models.tooth_temperature != "isothermal":
         found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
+    return found
+
+
+def _of_films(model: FilmModel) -> dict[str, Any]:
+    """Models behind films that are solved, by effect."""
+    found: dict[str, Any] = {
+        "viscosity under pressure": VISCOSITY[model.viscosity_law],
+        "density under pressure": DENSITY[model.density_law],
+        "shear of the oil": SHEAR_STRESS[model.shear_law],
+    }
+    if model.asperities != SMOOTH:
+        found["asperities that touch"] = ASPERITIES[model.asperities]
     return found

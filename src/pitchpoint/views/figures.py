@@ -115,7 +115,11 @@ class Choice:
 
 @dataclass(frozen=True)
 class Panel:
-    """Figures that belong together, with the curves in them and a menu if there is one."""
+    """Figures that belong together, with the curves in them and a menu if there is one.
+
+    Attributes:
+        slides: True if the choices are places in order, for a slider in place of a menu.
+    """
 
     title: str
     figures: list[Figure]
@@ -123,6 +127,7 @@ class Panel:
     choices: list[Choice] = field(default_factory=list)
     note: str = ""
     menu: str = ""
+    slides: bool = False
     block: ClassVar[str] = "panel"
 
 

@@ -8,6 +8,7 @@ from pitchpoint.views.sections.beside import BESIDE
 from pitchpoint.views.sections.compared import COMPARED
 from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.drive import DRIVE
+from pitchpoint.views.sections.film import FILM
 from pitchpoint.views.sections.formulas import FORMULAS
 from pitchpoint.views.sections.inputs import INPUTS
 from pitchpoint.views.sections.issues import ISSUES
@@ -37,6 +38,7 @@ SECTIONS: Registry[Section] = Registry(
     DRIVE,
     ARC,
     CYCLE,
+    FILM,
     TORSION,
     KINEMATIC_ERROR,
     JOINT,

@@ -99,6 +99,7 @@ class AsperityLaw:
     title: str
     function: Callable[..., Array]
     sources: tuple[str, ...]
+    note: str = ""
 
 
 def _fitted(

@@ -33,6 +33,9 @@
   }
 
   function choose(menu) {
+    if (menu.dataset.labels) {
+      menu.closest(".slider").querySelector("output").textContent = menu.dataset.labels.split(" ")[menu.value];
+    }
     const changes = page.menus[menu.dataset.menu][menu.value];
     for (const [id, change] of Object.entries(changes)) {
       const place = document.getElementById(id);
@@ -322,7 +325,7 @@
     box.addEventListener("change", () => show(box.dataset.curve, box.checked))
   );
   document.querySelectorAll("[data-menu]").forEach((menu) => {
-    menu.addEventListener("change", () => choose(menu));
+    menu.addEventListener("input", () => choose(menu));
     menu.value = "0";
   });
   document.querySelectorAll(".mesh").forEach(animate);

@@ -1,0 +1,96 @@
+"""Films of the contacts; the solver is imported when a case asks for it."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.figures import numbers
+from pitchpoint.cases.build import Built
+from pitchpoint.contact.contacts import TOUCH
+
+__all__ = ["FILM"]
+
+_MAIN = (
+    "smallest_film",
+    "smallest_lambda",
+    "largest_film_pressure",
+    "largest_asperity_share",
+    "mean_film_friction",
+    "mean_boundary_part",
+    "mean_film_loss",
+    "film_efficiency",
+    "loaded_contacts",
+    "solved_contacts",
+)
+_BY_LAW = (
+    "mean_law_friction",
+    "mean_law_loss",
+    "law_efficiency",
+    "friction_deviation",
+    "loss_deviation",
+)
+_BY_FILM_LAW = ("film_deviation", "largest_film_deviation")
+
+
+def _dry(built: Built) -> str | None:
+    """Why a case has no films: those of ellipses have no solver yet, or nobody asks for them."""
+    shape = built.design.mesh.shape
+    if shape != "line":
+        return f"these gears touch {TOUCH[shape]}, and ellipses have no line solver"
+    return Unasked("the case has no [film]") if built.case.film is None else None
+
+
+def _pieces(built: Built) -> Iterable[Piece]:
+    from pitchpoint.analyses.film import pieces
+
+    return pieces(built)
+
+
+def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    from pitchpoint.analyses.film import film_part
+
+    return film_part(built, piece, progress)
+
+
+def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    from pitchpoint.analyses.film import joined
+
+    return joined(built, parts)
+
+
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("film")
+    if data is None:
+        return {"film": {}}
+    every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in _MAIN}
+    every["friction_laws"] = _each(data, "law", _BY_LAW)
+    every["film_laws"] = _each(data, "film_law", _BY_FILM_LAW)
+    return {"film": every}
+
+
+def _finite(values: np.ndarray) -> np.ndarray:
+    """Values without those that are infinite: a film over no roughness."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def _each(data: xr.Dataset, axis: str, names: Sequence[str]) -> dict[str, Any]:
+    """Figures by law."""
+    return {
+        str(law): {name: numbers(data[name].values[k]) for name in names}
+        for k, law in enumerate(data[axis].values)
+    }
+
+
+FILM = Analysis(
+    name="film",
+    title="films",
+    lacks=_dry,
+    compute=_compute,
+    pieces=_pieces,
+    joined=_joined,
+    main=_MAIN,
+    figures=_figures,
+)

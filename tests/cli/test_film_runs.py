@@ -1,0 +1,226 @@
+"""Films of a mesh cycle from a case file: balance, resume, withheld numbers, report, refusals."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sound import PAIR
+
+from pitchpoint.analyses import film as solved
+from pitchpoint.analyses.films import FILM
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.films import film_model
+from pitchpoint.cases.schema import FilmTable
+from pitchpoint.efficiency.summary import summarise
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.solve import solve_lines
+from pitchpoint.runs import run as running
+from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.run import Outcome, load_case
+from pitchpoint.status import Code
+from pitchpoint.views.report import render
+from pitchpoint.views.sections.film import FILM as SECTION
+
+CASE = f"""{PAIR}
+[models]
+friction = [{{ name = "constant", coefficient = 0.05 }}, "iso_tr_14179_2"]
+[film]
+solver = "line"
+phases = 9
+nodes = 33
+"""
+TORUS = str(Path(__file__).parents[2] / "examples" / "torus.toml")
+PHASES = ("film_loss", "minimum_film", "profile_pressure")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def alone() -> Iterator[None]:
+    """Nothing but films."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ANALYSES, "_entries", {"film": FILM})
+        yield
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("film") / "film.toml"
+    path.write_text(CASE, "utf-8")
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def outcome(case: str, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
+    return running.run(case, folder=tmp_path_factory.mktemp("out"))["default"]
+
+
+def test_every_loaded_contact_has_a_film(outcome: Outcome) -> None:
+    data = outcome.parts["film"]
+    loaded = data["load"].values > 0.0
+    assert int(data["loaded_contacts"]) == int(data["solved_contacts"]) == loaded.sum() > 0
+    assert np.array_equal(np.isfinite(data["minimum_film"].values), loaded)
+    assert (data["film_status"].values[loaded] == Code.SOLVED).all()
+    assert data.sizes["phase"] >= 9
+
+
+def test_a_film_carries_the_load_of_the_balance(outcome: Outcome) -> None:
+    """The integral of the pressure over a profile is the load per length of the contact line."""
+    data, width = outcome.parts["film"], 20e-3
+    pressure, place = data["profile_pressure"].values, data["profile_place"].values
+    carried = np.trapezoid(pressure, place, axis=-1)
+    load = data["load"].values.sum(axis=-1)[:, data["shown_pair"].values]
+    pressed = np.isfinite(carried)
+    assert pressed.any()
+    face = load[pressed] / carried[pressed]
+    assert face == pytest.approx(np.full(face.size, face[0]), rel=0.02)
+    assert 0.5 * width < face[0] < 2.0 * width
+
+
+def test_the_film_of_one_contact_is_that_of_the_solver_alone(outcome: Outcome, case: str) -> None:
+    data, built = outcome.parts["film"], load_case(case)
+    states = solved._states(built)
+    at = np.unravel_index(np.argmax(states["line_load"]), states["line_load"].shape)
+    contacts = FilmModel(nodes=33).contacts(
+        **{
+            name: states[name][at].reshape(1)
+            for name in ("line_load", "radius", "speed_a", "speed_b")
+        },
+        modulus=float(built.design.modulus),
+        oil=built.design.lubricant,
+        temperature=float(built.operation.temperature),
+        roughness_rq=float(built.design.roughness.composite_rq),
+    )
+    film = solve_lines(contacts, nodes=33).film
+    assert float(data["minimum_film"].values[at]) == pytest.approx(float(film.minimum_film[0]))
+    force = abs(float(film.shear_force[0] + film.boundary_force[0]))
+    coefficient = force / float(states["line_load"][at])
+    assert float(data["film_friction"].values[at]) == pytest.approx(coefficient)
+
+
+def test_friction_by_law_is_that_of_the_operating_point(outcome: Outcome, case: str) -> None:
+    data, built = outcome.parts["film"], load_case(case)
+    for k, models in enumerate(built.models):
+        found = summarise([(built.design, built.operation)], models)
+        for own, name in (("law_efficiency", "mean_efficiency"), ("mean_law_loss", "mean_loss")):
+            assert float(data[own].values[k]) == pytest.approx(float(found[name][0]), rel=1e-5)
+
+
+def test_energy_is_lost_by_sliding_and_rolling(outcome: Outcome) -> None:
+    data = outcome.parts["film"]
+    lost = (data["film_sliding_loss"] + data["film_rolling_loss"]).sum(("pair", "slice"))
+    assert data["film_loss"].values == pytest.approx(lost.values)
+    mean = float(data["film_loss"].values @ data["weight"].values)
+    assert float(data["mean_film_loss"]) == pytest.approx(mean)
+    assert (data["film_sliding_loss"].values[data["load"].values > 0.0] >= 0.0).all()
+    parts = float(data["mean_film_sliding_loss"]) + float(data["mean_film_rolling_loss"])
+    assert float(data["mean_film_loss"]) == pytest.approx(parts)
+
+
+def test_a_film_that_is_not_found_withholds_the_loss(
+    case: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lost(built: Any, given: np.ndarray, done: Any) -> Any:
+        films = honest(built, np.where(np.arange(len(given))[:, None] == 0, np.nan, given), done)
+        return films
+
+    honest = solved._films
+    monkeypatch.setattr(solved, "_films", lost)
+    outcome = running.run(case)["default"]
+    data = outcome.parts["film"]
+    missing = int(data["loaded_contacts"]) - int(data["solved_contacts"])
+    assert missing > 0
+    for name in ("mean_film_loss", "film_efficiency", "mean_film_friction"):
+        assert np.isnan(float(data[name]))
+    assert np.isfinite(float(data["smallest_film"]))
+    told = " ".join(json.loads(data.attrs["warnings"]))
+    assert f"{missing} of {int(data['loaded_contacts'])} loaded contacts have no film" in told
+    assert "loss and efficiency are withheld" in render({"default": outcome})
+
+
+def test_a_run_that_was_stopped_goes_on_with_what_it_has(
+    case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
+) -> None:
+    calls = []
+
+    def stop(built: Any, piece: Any, progress: Any) -> Any:
+        calls.append(piece["first"])
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return part(built, piece, progress)
+
+    part = solved.film_part
+    monkeypatch.setattr(solved, "film_part", stop)
+    with pytest.raises(KeyboardInterrupt):
+        running.run(case, folder=tmp_path)
+    again = running.run(case, folder=tmp_path)["default"].parts["film"]
+    assert calls == [0, 6, 6]
+    for name in PHASES:
+        assert np.array_equal(again[name], outcome.parts["film"][name], equal_nan=True)
+
+
+def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
+    page = render({"default": outcome})
+    for words in (
+        '<section id="film"',
+        'type="range" data-menu="profile0_film"',
+        "Film over composite Rq, and lubrication regimes",
+        "The films are isothermal",
+        "Dowson-Higginson",
+    ):
+        assert words in page
+    (first, second) = SECTION.screen(outcome)
+    assert first.title == "Films"
+    assert [row["friction by"] for row in second.rows] == ["films", "constant", "iso_tr_14179_2"]
+    told = figures(outcome)["film"]
+    assert set(told["film_laws"]) == set(outcome.parts["film"]["film_law"].values)
+    assert told["friction_laws"]["constant"]["mean_law_friction"] == pytest.approx(0.05)
+
+
+def test_keys_that_are_left_out_stand_as_the_model_has_them() -> None:
+    assert film_model(FilmTable(solver="line")) == FilmModel()
+    given = FilmTable(solver="line", nodes=65, asperities="none", inlet="2 mm")
+    assert film_model(given) == FilmModel(nodes=65, asperities="none", inlet=2e-3)
+
+
+def test_smooth_flanks_have_no_film_ratio(case: str) -> None:
+    outcome = running.run(case, settings={"roughness.ra": "0 um", "film.phases": 3})["default"]
+    assert np.isinf(outcome.parts["film"]["smallest_lambda"])
+    assert float(outcome.parts["film"]["largest_asperity_share"]) == 0.0
+    assert figures(outcome)["film"]["smallest_lambda"] is None
+    assert "lubrication regimes" not in render({"default": outcome})
+
+
+def test_without_load_there_is_no_film(case: str) -> None:
+    data = running.run(case, settings={"operation.torque": "0 N m"})["default"].parts["film"]
+    assert int(data["loaded_contacts"]) == 0
+    assert np.isnan(float(data["mean_film_loss"]))
+    assert Code.UNLOADED.sentence in data.attrs["solve"]
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"film.nodes": 100}, "one more than a power of two"),
+        ({"film.nodes": 17}, "allowed is 33 to 1025"),
+        ({"film.solver": "point"}, "use 'line'"),
+        ({"film.viscosity_law": "barrus"}, "did you mean barus_1893"),
+        ({"film.boundary_friction": -0.1}, "allowed is 0 to 2"),
+        ({"film.sigma_over_beta": -1.0}, "allowed is above 0 to 10"),
+        ({"film.limiting_stress": "2 MPa"}, "is no parameter of ree_eyring_1955"),
+        ({"film.asperities": "none", "film.pattern": 2.0}, "was given without asperities"),
+    ],
+)
+def test_what_films_cannot_be_is_told(case: str, settings: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load_case(case, settings=settings)
+    assert str(caught.value.key).startswith("film.")
+    assert words in str(caught.value)
+
+
+def test_ellipses_have_no_line_solver() -> None:
+    with pytest.raises(InputError, match="ellipses have no line solver") as caught:
+        load_case(TORUS, settings={"film.solver": "line"})
+    assert caught.value.key == "film.solver"
