@@ -30,6 +30,7 @@ class Code(IntEnum):
     NOT_SETTLED = 13
     NO_FILM = 14
     UNLOADED = 15
+    FILM_LOST = 16
 
     @property
     def sentence(self) -> str:
@@ -61,6 +62,7 @@ _SENTENCES = {
     Code.NOT_SETTLED: "the vibration had not become steady when the longest run ended",
     Code.NO_FILM: "smooth surfaces that neither draw oil in nor approach each other have no film",
     Code.UNLOADED: "no load presses the bodies together",
+    Code.FILM_LOST: "the film of a contact that carries was not solved",
 }
 
 

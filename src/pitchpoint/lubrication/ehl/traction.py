@@ -1,0 +1,127 @@
+"""Friction of line contacts from their solved films, as a law that a case may choose."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from jax.typing import ArrayLike
+from numpy.typing import NDArray
+
+from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.factored import Numbers
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.solve import Films, solve_lines
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.materials.lubricants import Lubricant
+from pitchpoint.status import Code
+
+__all__ = ["EHL_LINE", "FilmTraction", "ehl_line"]
+
+Each = NDArray[np.float64]
+
+
+def ehl_line(
+    *,
+    line_load: Numbers,
+    radius: Numbers,
+    modulus: Numbers,
+    speed_a: Numbers,
+    speed_b: Numbers,
+    roughness_rq: Numbers,
+) -> Numbers:
+    """The conditions that a solved film asks for; its coefficient is no formula of them.
+
+    A balance of forces and the films take turns, see `FilmTraction`. What asks for a formula is refused.
+
+    Args:
+        line_load: normal load per length of contact line [N/m].
+        radius: relative radius of curvature [m].
+        modulus: E' [Pa].
+        speed_a: surface speed of member 0 relative to the contact [m/s].
+        speed_b: surface speed of member 1 relative to the contact [m/s].
+        roughness_rq: composite Rq [m].
+
+    Raises:
+        InputError: always.
+    """
+    raise InputError(
+        "'ehl_line' solves the film of every contact in turns with the balance of forces, and what is asked "
+        "for here takes a friction law that is a formula"
+    )
+
+
+class FilmTraction:
+    """Friction coefficients of the solved films of an oil: a solver that a balance takes turns with.
+
+    Args:
+        model: how films are solved.
+        oil: between the flanks.
+        temperature: of the oil in the inlet [K].
+
+    Attributes:
+        films: those of the last turn; None before the first.
+    """
+
+    def __init__(self, model: FilmModel, oil: Lubricant, temperature: ArrayLike) -> None:
+        self.model, self.oil, self.temperature = model, oil, temperature
+        self.films: Films | None = None
+
+    def __call__(
+        self,
+        *,
+        line_load: Each,
+        radius: Each,
+        modulus: Each,
+        speed_a: Each,
+        speed_b: Each,
+        roughness_rq: Each,
+    ) -> Each:
+        """Friction of the oil and of asperities over the load of each contact [contact].
+
+        Arguments as in `ehl_line`, NumPy arrays [contact].
+
+        Raises:
+            ConvergenceError: a film was not solved.
+        """
+        contacts = self.model.contacts(
+            line_load=line_load,
+            radius=radius,
+            modulus=modulus,
+            speed_a=speed_a,
+            speed_b=speed_b,
+            oil=self.oil,
+            temperature=self.temperature,
+            roughness_rq=roughness_rq,
+        )
+        self.films = solve_lines(contacts, nodes=self.model.nodes, profiles=False)
+        _demand(self.films)
+        film = self.films.film
+        friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
+        return friction
+
+
+def _demand(films: Films) -> None:
+    """ConvergenceError if a film was not solved, with what became of how many."""
+    lost = ~films.solved
+    if lost.any():
+        worst = Code(int(np.max(np.asarray(films.ended.code))))
+        raise ConvergenceError(
+            f"the film of {lost.sum()} of {lost.size} contacts that carry was not solved: {worst.sentence}"
+        )
+
+
+EHL_LINE: Final = FrictionLaw(
+    name="ehl_line",
+    title="Solved film of every line contact (EHL)",
+    function=ehl_line,
+    sources=("dowson_higginson_1966", "patir_cheng_1978", "greenwood_tripp_1970"),
+    note=(
+        "Shear of the oil and friction of asperities from the pressure and film of each contact, solved in turns "
+        "with the balance of forces until both agree to 1e-6. Rolling resistance stays with its own law. The "
+        "films are those of an oil at its temperature in the inlet."
+    ),
+    shape="line",
+    films=FilmModel(),
+)
+"""Its `films` are the usual choices; a case puts its own in their place."""
