@@ -70,9 +70,7 @@ def demand_convergence(residual: np.ndarray, points: Sequence[Ready], laws: Sequ
         )
 
 
-def demand_films(
-    code: np.ndarray, points: Sequence[Ready], laws: Sequence[str]
-) -> None:
+def demand_films(code: np.ndarray, points: Sequence[Ready], laws: Sequence[str]) -> None:
     """ConvergenceError if films and forces [law, point] found no agreement: no numbers are returned."""
     lost = films_lost(code)
     if lost.any():

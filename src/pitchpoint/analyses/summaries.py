@@ -19,8 +19,9 @@ from pitchpoint.analyses.caveats import (
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import Acting, BuiltDrive, Ready
 from pitchpoint.efficiency.drive_summary import drive_figures
-from pitchpoint.efficiency.profile import profile
+from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
+from pitchpoint.efficiency.rows import NODES
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.rounding import difference
@@ -204,8 +205,8 @@ def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
 
 def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[str]:
     return [
-        f"{law.title}: at {np.sum(code == one)} of {code.size} points {Code(int(one)).sentence}; their figures "
-        "are withheld."
+        f"{law.title}: at {np.sum(code == one)} of {code.size} points {Code(int(one)).sentence}; their "
+        "figures are withheld."
         for one in np.unique(code[films_lost(code)])
     ]
 
@@ -244,10 +245,12 @@ def _in_groups(
 
 
 def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
-    """The mesh cycle under each of some models."""
+    """The mesh cycle under each of some models; where films are solved, at the nodes of all other figures."""
     point, engaged, asperities = (built.design, built.operation), built.engaged, built.asperities
+    solved = any(models.law.films is not None for models in (*built.models, *under))
+    nodes = NODES if solved else FINE
     return [
-        profile(*point, models, built.film, engaged=engaged, asperities=asperities)
+        profile(*point, models, built.film, nodes, engaged=engaged, asperities=asperities)
         for models in under
     ]
 

@@ -4,6 +4,7 @@ from collections import deque
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
@@ -13,7 +14,7 @@ from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.ehl.traction import FilmTraction
 from pitchpoint.status import Code, Status
 
-__all__ = ["InTurns", "in_turns"]
+__all__ = ["InTurns", "first_turn", "in_turns"]
 
 FIRST = 0.03
 """Coefficient of every contact before its film is known."""
@@ -38,16 +39,8 @@ class InTurns:
     lost: str
     warnings: tuple[str, ...]
 
-    @property
-    def told(self) -> str:
-        """How many turns there were, and how near they came, in words."""
-        residual, turns = float(self.status.residual), int(self.status.iterations)
-        return self.lost or f"found in {turns} turns of films and forces, to {residual:.1g}"
 
-
-def in_turns(
-    design: Design, operation: Operation, models: Models, known: Engagement
-) -> InTurns:
+def in_turns(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:
     """Balance at the nodes of a cycle under a friction law that solves films.
 
     Args:
@@ -68,13 +61,33 @@ def in_turns(
 _LAST: deque[tuple[tuple[object, ...], InTurns]] = deque(maxlen=KEPT)
 
 
-def _solved(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:
+def first_turn(
+    design: Design, operation: Operation, models: Models, known: Engagement
+) -> NDArray[np.float64]:
+    """Coefficients [pair, slice, node] of the films under the forces of a small friction.
+
+    Arguments as in `in_turns`.
+
+    Raises:
+        ConvergenceError: a film was not solved.
+    """
+    begin, known, solver = _begin(design, operation, models, known)
+    cycle, _ = solved_cycle(design, operation, begin, solver, engaged=known, most=1)
+    return np.asarray(cycle.state.balance.friction)
+
+
+def _begin(
+    design: Design, operation: Operation, models: Models, known: Engagement
+) -> tuple[Models, Engagement, FilmTraction]:
     films = models.law.films
     assert films is not None
     solver = FilmTraction(films, design.lubricant, operation.temperature)
     first = array(np.full(known.share.shape, FIRST))
-    begin = replace(models.without_friction, held=first)
-    known = replace(known, body=None)
+    return replace(models.without_friction, held=first), replace(known, body=None), solver
+
+
+def _solved(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:
+    begin, known, solver = _begin(design, operation, models, known)
     try:
         cycle, status = solved_cycle(design, operation, begin, solver, engaged=known)
     except ConvergenceError as error:
@@ -93,8 +106,8 @@ def _lost(code: Code) -> Status:
 
 def _why(status: Status) -> str:
     return (
-        f"films and forces did not agree after {int(status.iterations)} turns: the coefficients still changed by "
-        f"{float(status.residual):.2g} of the largest one"
+        f"films and forces did not agree after {int(status.iterations)} turns: the coefficients still "
+        f"changed by {float(status.residual):.2g} of the largest one"
     )
 
 

@@ -26,7 +26,10 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.programs import program
 
-__all__ = ["profile"]
+__all__ = ["FINE", "profile"]
+
+FINE = 48
+"""Usual nodes of a profile in each segment between events."""
 
 
 def profile(
@@ -34,7 +37,7 @@ def profile(
     operation: Operation,
     models: Models,
     film: FilmThickness,
-    nodes: int = 48,
+    nodes: int = FINE,
     engaged: Engagement | None = None,
     asperities: AsperityLoad | None = None,
 ) -> dict[str, np.ndarray]:

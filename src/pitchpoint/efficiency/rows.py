@@ -23,7 +23,16 @@ from pitchpoint.efficiency.quasi_static import (
 from pitchpoint.loading.balance import Balance
 from pitchpoint.programs import program
 
-__all__ = ["CHUNK", "NODES", "Row", "balance_in_rows", "balances", "engagements", "one_engagement", "stacked"]
+__all__ = [
+    "CHUNK",
+    "NODES",
+    "Row",
+    "balance_in_rows",
+    "balances",
+    "engagements",
+    "one_engagement",
+    "stacked",
+]
 
 CHUNK = 8
 """Rows that are computed together: one compiled program serves any number of them."""

@@ -198,8 +198,8 @@ def summarise(
         progress: told the number of finished points after each chunk.
 
     Returns:
-        Figures; those of films that were not solved are NaN, and `turns_code`, `turns` and `turns_change` tell
-        what became of each point where the law solves films.
+        Figures; where the law solves films, `turns_code`, `turns` and `turns_change` tell what became of each
+        point, and figures of films that were not solved are NaN.
     """
     prepared = list(_prepared(points, models))
     if models.law.films is not None:
@@ -255,7 +255,7 @@ def _by_films(
         ends.append(found.status)
         if progress is not None:
             progress(done)
-    told = in_chunks(lambda chunk: _summaries(*chunk, alone), rows)
+    told = in_chunks(lambda chunk: _summaries(chunk[0], chunk[1], alone), rows)
     each = {
         "turns_code": [one.code for one in ends],
         "turns_change": [one.residual for one in ends],
