@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.operation import untransmitted, without_formula
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
@@ -302,7 +302,7 @@ def _without_films(built: Ready) -> str | None:
     if why_not is None or not isinstance(built, Built):
         return None
     if built.design.mesh.touching and built.case.loss_map is None:
-        return Unasked(f"{why_not}, and one that asks for a [loss_map] has it from films between")
+        return f"{why_not}, and one with a table [loss_map] has it from films at few of them"
     return None if built.design.mesh.touching else why_not
 
 

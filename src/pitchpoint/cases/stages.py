@@ -365,8 +365,8 @@ def _check_laws(alone: Sequence[Case]) -> None:
         for choice in alone[number - 1].models.friction:
             if FRICTION[choice.name].films is not None:
                 raise InputError(
-                    f"'{choice.name}' solves films in turns with the forces of one mesh; stages take laws that "
-                    "are formulas",
+                    f"'{choice.name}' solves films in turns with the forces of one mesh; stages take "
+                    "formulas",
                     key=_key(number, "models.friction"),
                 )
         if count not in (1, max(counts)):

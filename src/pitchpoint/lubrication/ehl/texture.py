@@ -37,7 +37,7 @@ class Texture(eqx.Module):
 
     @property
     @abc.abstractmethod
-    def rq(self) -> Float[Array, "..."]:
+    def rq(self) -> Float[Arrays, "..."]:
         """Composite Rq of both surfaces [m]."""
 
     @property
@@ -68,7 +68,7 @@ class Smooth(Texture):
     least: Float[Arrays, "..."]
 
     @property
-    def rq(self) -> Float[Array, "..."]:
+    def rq(self) -> Float[Arrays, "..."]:
         """Composite Rq of both surfaces [m]."""
         return jnp.zeros_like(self.least)
 
@@ -205,7 +205,7 @@ class Rough(Texture):
         self.asperities, self.pattern = ASPERITIES[asperities].name, float(pattern)
 
     @property
-    def rq(self) -> Float[Array, "..."]:
+    def rq(self) -> Float[Arrays, "..."]:
         """Composite Rq of both surfaces [m]."""
         return self.deviation
 
