@@ -304,7 +304,7 @@ def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
 
 def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
-    reasons = [*_leaves(law, run), *map(str, run["outside films"])]
+    reasons = [*_leaves(law, run), *map(str, run.get("outside films", ()))]
     if run["locked"].any():
         reasons.append(f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh")
     loaded = run["load"] > 0.0
