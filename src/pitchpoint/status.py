@@ -49,7 +49,7 @@ _SENTENCES = {
     Code.NOT_PERIODIC: "no stable motion with the period of the mesh was found",
     Code.UNSTABLE: "a Floquet multiplier is larger than one: disturbances grow, and the balance "
     "cannot be reached",
-    Code.UNRESOLVED: "the grid has too few elements for the vibration; take more",
+    Code.UNRESOLVED: "the grid has too few elements for the solution; take more",
     Code.STABILITY_UNKNOWN: "a balance was found; whether it is reached this method cannot say",
     Code.SEPARATES: "a force is negative: the teeth would separate, which this model leaves out",
     Code.LOCKED: "friction locks the mesh: no force moves the load",

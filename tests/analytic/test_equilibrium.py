@@ -15,7 +15,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading import equilibrium as module
 from pitchpoint.loading.compliance import Compliance
-from pitchpoint.loading.equilibrium import equilibrium
+from pitchpoint.loading.equilibrium import equilibrium, touch
 from pitchpoint.loading.sharing import LOAD_SHARING
 
 LANES, STATES = 40, 60
@@ -232,6 +232,28 @@ def test_derivatives_equal_differences():
     difference = np.asarray(figure(step) - figure(-step)) / (2.0 * step)
     np.testing.assert_allclose(forward, difference, rtol=2e-6, atol=1e-8)
     np.testing.assert_allclose(reverse, forward, rtol=1e-9, atol=1e-12)
+
+
+def test_derivatives_do_not_ask_which_value_is_the_largest_or_the_least(monkeypatch):
+    """They ask by an equality, and are 0/0 where a compiler rounds its two sides differently."""
+    compliance, gap, arm, active, load = problems(ring_like, lanes=6, states=2)
+
+    @jax.custom_jvp
+    def lost(value):
+        return value
+
+    lost.defjvp(lambda at, along: (at[0], jnp.nan * along[0]))
+
+    def turned(by):
+        first = touch(by * gap, jnp.asarray(arm), jnp.asarray(active))
+        return jnp.sum(coupled(compliance, by * gap, arm, active, load).approach + first)
+
+    expected = float(jax.jit(jax.grad(turned))(1.0))
+    for name in ("max", "min"):
+        chosen = getattr(jnp, name)
+        monkeypatch.setattr(jnp, name, lambda x, chosen=chosen, **over: lost(chosen(x, **over)))
+    found = jax.jit(jax.grad(lambda by: turned(by)))(1.0)
+    assert float(found) == pytest.approx(expected, rel=1e-12)
 
 
 def test_stiffness_is_the_slope_of_the_load():

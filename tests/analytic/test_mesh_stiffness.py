@@ -268,6 +268,7 @@ def test_shares_of_steel_spur_pairs_beside_sanchez(teeth, model, low, high):
 def test_steel_spur_pair_beside_the_standard(rim_ratio, single, mean):
     """20/20 teeth at 300 N/mm: c' is 11.49 N/(mm um); the standard's own scatter is -8 to +5 %.
 
+    The standard counts load over deflection; the slope at the load is 3 % steeper by Weber's law.
     The deviation hangs on the bore: the body twists between root circle and bore, and the polynomial
     counts that for each tooth. At a bore of half the root radius it is within 2 %; the bore that is
     taken where none is given, 0.3 of the root radius, makes the pair 15 % softer.
@@ -278,9 +279,13 @@ def test_steel_spur_pair_beside_the_standard(rim_ratio, single, mean):
     assert warnings == ()
     assert standard["standard_single_stiffness"] / 20e-3 == pytest.approx(11.487e9, rel=1e-4)
     found = stiffness(mesh, FULL, load=load)
-    largest = found.along_action.max() / standard["standard_single_stiffness"]
+    over_deflection = load / float(mesh.base_radii[1]) ** 2 / found.approach
+    alone = np.sum(found.single > 0.0, axis=0) == 1
+    largest = over_deflection[alone].max() / standard["standard_single_stiffness"]
     assert largest - 1.0 == pytest.approx(single, abs=0.004)
-    assert found.mean / standard["standard_stiffness"] - 1.0 == pytest.approx(mean, abs=0.004)
+    whole = np.sum(over_deflection * found.weight)
+    assert whole / standard["standard_stiffness"] - 1.0 == pytest.approx(mean, abs=0.004)
+    assert 1.02 < found.mean / whole < 1.06
 
 
 def test_estimate_of_the_standard_says_where_it_does_not_hold():

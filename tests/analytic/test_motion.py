@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import array, jnp
+from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.dynamics.bodies import Body, across, motor
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
@@ -132,19 +133,18 @@ def _vibration(design, point, terms, vibrating):
 
 
 def test_parametric_work_of_a_period_is_that_of_springs_that_change_while_pressed():
+    """And of the places from which they push, since Weber's contact stiffens with its load."""
     found = steady_motion(alone(), SPEED, GRID)
     springs, stretch = found.found.stiffness[:, 0], found.found.stretch[:, 0]
-    changed = GRID.integral(GRID.derivative(springs) * stretch**2) / 2.0
-    jump = np.roll(springs, -1, axis=1)[..., 0] - springs[..., -1]
-    expected = np.sum(changed) + np.sum(jump * stretch[..., -1] ** 2) / 2.0
+    receding = springs * stretch * GRID.derivative(found.found.contacts.gap[:, 0])
+    changed = GRID.integral(GRID.derivative(springs) * stretch**2 / 2.0 - receding)
+    energy = springs * stretch**2 / 2.0
+    jump = np.roll(energy, -1, axis=1)[..., 0] - energy[..., -1]
+    # The account ends before the hand-over with which the next period begins.
+    expected = np.sum(changed) + np.sum(jump[:, :-1])
     assert abs(expected) > 1e-3 * np.max(found.energy.contacts)
-    missed = found.energy.mesh[-1] - expected + _last_jump(springs, stretch)
+    missed = found.energy.mesh[-1] - expected
     assert float(missed) == pytest.approx(0.0, abs=1e-8 * float(jnp.max(found.energy.contacts)))
-
-
-def _last_jump(springs, stretch):
-    """The account ends before the hand-over with which the next period begins."""
-    return np.sum((springs[:, 0, 0] - springs[:, -1, -1]) * stretch[:, -1, -1] ** 2) / 2.0
 
 
 def test_a_driver_with_inertia_keeps_its_mean_speed_under_a_constant_torque():
@@ -260,6 +260,28 @@ def test_a_gear_on_a_steady_one_swings_about_its_deflection():
     assert np.sum(np.asarray(found.found.stiffness)[..., 0]) == pytest.approx(stiff)
     expected = rest * (1.0 - np.cos(frequency * times))
     np.testing.assert_allclose(found.place[1] * ACTION[1], expected, atol=1e-8 * rest)
+
+
+def test_an_ellipse_alone_swings_about_its_approach_at_the_slope_of_its_force():
+    """Hertz: F is proportional to approach^1.5, so that dF/d(approach) is 1.5 F/approach."""
+    mesh = torus()
+    design = design_of(dataclasses.replace(mesh, widths=1e12 * mesh.widths))  # rigid teeth
+    phase, arm = array(0.9), float(mesh.line_of_action[1])  # one pair alone
+    contacts = program(mesh.contacts)(phase)
+    (at,) = np.argwhere(np.asarray(contacts.active))
+    contact = hertz_1881(
+        load=LOAD / abs(arm),
+        radius=contacts.radius[tuple(at)],
+        transverse_radius=mesh.transverse_radius,
+        modulus=STEEL.plane_strain_modulus,
+    )
+    rest, frequency = float(contact.approach), abs(arm) * np.sqrt(contact.stiffness / INERTIA[1])
+    bodies = Body(np.inf), Body(INERTIA[1], LOAD)
+    way = passage(design, operation(), models().compliance)
+    times = np.linspace(0.0, 6.0 / frequency, 41)
+    found = transient(moving(bodies, design, passage=way, phase=phase), times)
+    expected = rest * (1.0 - np.cos(frequency * times))
+    np.testing.assert_allclose(found.place[1] * arm, expected, atol=1e-8 * rest)
 
 
 # ---- what cannot be done

@@ -16,7 +16,9 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.compliance import slice_stiffness
+from pitchpoint.loading.mesh_stiffness import mesh_stiffness
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.materials import solids
 
 STEEL = solids.find("steel").build()
@@ -205,6 +207,26 @@ def test_yielding_is_that_of_both_teeth_and_of_an_ellipse():
     # Twice the faces halve what the teeth yield, and leave the contact alone.
     teeth = 2.0 * (1.0 / one - 1.0 / double)
     assert 1.0 / one - teeth == pytest.approx(float(pressed.approach) / load, rel=1e-9)
+
+
+def test_mesh_stiffness_is_the_slope_of_the_wind_up_over_the_load():
+    """Of teeth in series with an ellipse, whose approach grows with the load to the power 2/3."""
+    mesh, load, radius = pair(), 100.0, float(pair().base_radii[1])
+    terms = TOOTH_COMPLIANCE["beam_foundation_weber"].terms
+
+    @eqx.filter_jit
+    def both(mesh, load):
+        found = mesh_stiffness(mesh, (STEEL, STEEL), terms, load)
+        at = found.phase.ravel()
+        return found, wind_up(mesh, (STEEL, STEEL), terms, load, at)
+
+    found, turned = both(mesh, jnp.asarray(load))
+    np.testing.assert_allclose(turned.stiffness, found.total.ravel() * radius**2, rtol=1e-12)
+    step = 1e-3
+    ends = [both(mesh, jnp.asarray(load + sign * step))[0].approach for sign in (-1.0, 1.0)]
+    slope = 2.0 * step / (ends[1] - ends[0])
+    np.testing.assert_allclose(found.total * radius**2, slope, rtol=1e-8)
+    assert np.all(found.total * found.approach * radius**2 > 1.2 * load)
 
 
 def test_derivatives_of_what_misalignment_does():

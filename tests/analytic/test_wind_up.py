@@ -211,16 +211,22 @@ def of_pair(mesh, load):
     found = wind_up(mesh, (STEEL, STEEL), TERMS, load, at)
     other = mesh.other_flanks.contacts(at)
     arm = jnp.abs(along(other.normal, mesh.loaded))
-    return stiffness.total.ravel(), found, touch(other.gap, arm, other.active)
+    return stiffness, found, touch(other.gap, arm, other.active)
 
 
-def test_a_spur_pair_winds_up_by_its_load_over_the_mesh_stiffness():
+def test_the_mesh_stiffness_of_a_spur_pair_is_the_slope_of_its_wind_up():
+    """Springs pass through the load at its wind-up, and along its slope, of Weber's contact."""
     stiffness, found, _ = jax.tree.map(np.asarray, of_pair(SPUR, jnp.asarray(80.0)))
     radius = float(SPUR.base_radii[1])
-    np.testing.assert_allclose(found.wind_up, 80.0 / (stiffness * radius**2), rtol=1e-10)
-    np.testing.assert_array_equal(found.touch, 0.0)
-    # The contact of the teeth stiffens with the load, so the slope is steeper than the secant.
-    assert np.all(found.stiffness > stiffness * radius**2)
+    total, at_rest = stiffness.total.ravel(), found.wind_up * radius
+    np.testing.assert_allclose(stiffness.approach.ravel(), found.wind_up, rtol=1e-12)
+    np.testing.assert_allclose(found.stiffness, total * radius**2, rtol=1e-12)
+    error = stiffness.error.reshape(-1, total.size)
+    force = stiffness.along_action.reshape(error.shape) * (at_rest - error)
+    np.testing.assert_allclose(force.sum(axis=0), 80.0 / radius, rtol=1e-12)
+    np.testing.assert_allclose(force, found.force.sum(axis=1), atol=1e-12 * 80.0 / radius)
+    # The contact of the teeth stiffens with the load, so the slope is steeper than load over wind-up.
+    assert np.all(total * at_rest > 1.03 * 80.0 / radius)
 
 
 def test_between_its_flanks_a_pair_has_its_backlash():

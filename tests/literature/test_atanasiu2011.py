@@ -183,7 +183,8 @@ def test_models_with_a_yielding_body_would_miss_the_rows_without(rows):
             computed(rows, f"{pair}, {model}, mean stiffness")
             for model in ("separate moduli", "yielding body")
         )
-        assert 2.7 < beam / body < 3.25
+        # The contact's slope at the load is 2.6 % steeper than the load over deflection of the reference.
+        assert 2.63 < beam / body < 3.17
 
 
 # ------------------------------------------------------------------ both readings

@@ -29,6 +29,7 @@ from pitchpoint.published.liu_xiong_torus.motion import course
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import Outcome, compare_case
+from pitchpoint.status import Code
 from pitchpoint.views.section import Page
 from pitchpoint.views.sections.formulas import FORMULAS
 
@@ -368,7 +369,7 @@ def test_report_sets_torus_beside_standard():
     }
     page = Page({"as_published": outcome}, {})
     assert FORMULAS.lacking(page) is None
-    note, heading, table = FORMULAS.blocks(page)  # points that were seen are not shown again
+    note, heading, table, panel = FORMULAS.blocks(page)  # points that were seen are not shown again
     assert "follows from its effective radius alone" in note.words
     assert heading.words == title
     assert [one.rpartition(", ")[2] for one in table.head[1:]] == [
@@ -385,6 +386,48 @@ def test_report_sets_torus_beside_standard():
     )
     assert np.all(published[:, 0] > published[:, 1])
     assert np.all(hertz[:, 0] < hertz[:, 1])
+    assert [one.title.partition(",")[0] for one in panel.figures] == [
+        "Dynamic transmission error",
+        "Speed of the gear",
+        "Amplitude of the normal force",
+    ]
+    places = dict.fromkeys(one.rpartition(", ")[0] for one in table.head[1:])
+    assert [one.label for one in panel.choices] == [*places]
+    error, speed, _ = panel.figures
+    for trace, key in zip(error.data, error.keys, strict=True):
+        assert trace["name"] == key.label
+        assert trace["x"][-1] == pytest.approx(case().formulas.mesh_cycles)
+        assert max(trace["y"]) == pytest.approx(published_error(rows, key.label), abs=0.5)
+    assert np.mean(speed.data[0]["y"]) == pytest.approx(10.0 * 40.0 / 49.0, rel=0.2)
+    later = panel.choices[2].changes[error.name][0]
+    assert later.keys() == {"y"}  # places are the same
+    assert later["y"][0] != error.data[0]["y"]
+
+
+def published_error(rows, column):
+    """Largest transmission error of a pair at the first point of the table [um]."""
+    told = next(row for name, row in rows.items() if name.startswith("largest dynamic"))
+    return told[["torus pair", "standard pair"].index(column)]
+
+
+def test_report_tells_what_became_of_solves():
+    status = {"torus": Code.SEPARATES, "standard": Code.UNRESOLVED}
+    every = {
+        name: (("law", "point"), np.array([[np.nan]]))
+        for pair in FORMULAS_BESIDE.rows.values()
+        for name in pair
+    }
+    every |= {
+        f"{pair}_steady_status": (("law", "point"), np.array([[float(code)]]))
+        for pair, code in status.items()
+    }
+    outcome = outcome_of({"steady": xr.Dataset(every, attrs={"title": "at one point"})})
+    _, _, table, *told = FORMULAS.blocks(Page({"physical": outcome}, {}))
+    assert {cell for row in table.rows for cell in row[1:]} == {"not found"}
+    assert [one.words for one in told] == [
+        f"Steady state, torus pair: {Code.SEPARATES.sentence}.",
+        f"Steady state, standard pair: {Code.UNRESOLVED.sentence}.",
+    ]
 
 
 def outcome_of(studies):

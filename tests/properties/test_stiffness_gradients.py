@@ -23,7 +23,7 @@ PA66 = Solid(young=3.54e9, poisson=0.35, density=1140.0)
 NAMES = ("x1", "x2", "helix angle", "width")
 FIGURES = ("mean_stiffness", "transmission_error_range", "static_transmission_error_range")
 GRID = Grid(4)
-STEP = 2e-4
+STEP = 1e-4
 """Relative step of central differences of order four: their own error is of the order of 1e-14."""
 
 

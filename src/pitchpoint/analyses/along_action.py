@@ -6,7 +6,14 @@ from typing import Any
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.analyses.figures import OF_MOTION, VIBRATION, by_torque, numbers
+from pitchpoint.analyses.figures import (
+    OF_CROSSING,
+    OF_MOTION,
+    OF_START,
+    VIBRATION,
+    by_torque,
+    numbers,
+)
 from pitchpoint.analyses.torsion import rigid
 from pitchpoint.cases.build import Built
 
@@ -117,6 +124,29 @@ def _motion_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     }
 
 
+def _critical_speeds(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("motion_against_speed")
+    if data is None:
+        return {"critical_speeds": []}
+    columns = {name: data[name].values.tolist() for name in OF_CROSSING}
+    modes = data["mode"].values[data["critical_mode"].values.astype(int)]
+    rows = zip(*columns.values(), strict=True)
+    return {
+        "critical_speeds": [
+            dict(zip(columns, row, strict=True)) | {"mode": str(mode)}
+            for row, mode in zip(rows, modes, strict=True)
+        ]
+    }
+
+
+def _start_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("start_up")
+    if data is None:
+        return {"start_up": {}}
+    ends = {"time": float(data["time"][-1]), "status": str(data.attrs["sentence"])}
+    return {"start_up": {name: numbers(data[name].values) for name in OF_START} | ends}
+
+
 STIFFNESS = Analysis(
     name="stiffness", title="mesh stiffness", lacks=_no_stiffness, compute=_stiffness
 )
@@ -146,5 +176,14 @@ MOTIONS = Analysis(
     compute=_motions,
     onward=_further,
     joined=_joined,
+    main=OF_CROSSING,
+    figures=_critical_speeds,
 )
-START_UP = Analysis(name="start_up", title="start", lacks=_no_start, compute=_start_up)
+START_UP = Analysis(
+    name="start_up",
+    title="start",
+    lacks=_no_start,
+    compute=_start_up,
+    main=OF_START,
+    figures=_start_figures,
+)

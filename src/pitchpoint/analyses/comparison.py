@@ -57,6 +57,9 @@ def _row(target: Target, results: Mapping[str, xr.Dataset]) -> Row:
     except _OutsideError as error:
         # Nothing that was computed is lost for it: the row misses and says why.
         computed, reason = float("nan"), f"not computed: {error.message}. {reason}"
+    else:
+        if computed is not None and np.isnan(computed):
+            reason = f"not computed: no solution was found there. {reason}".strip()
     return Row(
         quantity=target.quantity,
         where=target.where,

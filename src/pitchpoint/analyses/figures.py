@@ -10,9 +10,12 @@ import xarray as xr
 from pitchpoint.analyses.summaries import AT_CONTACT
 
 __all__ = [
+    "CAMPBELL",
     "CONTACT",
     "MAIN",
+    "OF_CROSSING",
     "OF_MOTION",
+    "OF_START",
     "REACTIONS",
     "STAGES",
     "TEMPERATURES",
@@ -66,6 +69,7 @@ def json_figures(data: Any) -> tuple[str, ...]:
 OF_MOTION = (
     "mean_efficiency",
     "quasi_static_efficiency",
+    "efficiency_difference",
     "mean_transmission_error",
     "transmission_error_rms",
     "transmission_error_range",
@@ -73,10 +77,20 @@ OF_MOTION = (
     "smallest_mesh_force",
     "largest_bearing_force",
     "natural_frequency",
+    "modal_damping_ratio",
     "mesh_frequency",
     "energy_closure",
 )
 """Main figures of a motion with friction."""
+
+OF_START = ("largest_mesh_force", "largest_bearing_force", "energy_closure")
+"""Main figures of a start."""
+
+OF_CROSSING = ("critical_speed", "critical_order", "half_power_width")
+"""Figures of every order that crosses a natural frequency."""
+
+CAMPBELL = 8
+"""Orders of the mesh frequency whose crossings count as critical speeds."""
 
 VIBRATION = (
     "mean_stiffness",

@@ -9,7 +9,9 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
+from pitchpoint import units
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.analyses.figures import CAMPBELL
 from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, vibrating_of
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import MotionTable
@@ -18,7 +20,7 @@ from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, mo
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
-from pitchpoint.dynamics.modes import along_action, mean_stiffness, natural_frequencies
+from pitchpoint.dynamics.modes import Modes, along_action, mean_stiffness, modes
 from pitchpoint.dynamics.passage import passage, tabulated
 from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.steady_motion import Motion, film, periodic_motion
@@ -49,11 +51,6 @@ the square."""
 
 BESIDE = "Motion with friction is that of the teeth alone: it leaves out the losses of [losses]."
 
-ELLIPSES = (
-    "Motion with friction: contacts of ellipses have their stiffness from load and deflection, not the "
-    "steeper slope at the load: natural frequencies are some 10 % low."
-)
-
 SLOWEST = 0.01
 """Speed over that of the operating point below which a start asks the friction law at this one."""
 
@@ -71,8 +68,8 @@ ACCOUNT = ("friction", "rolling", "damping")
 
 
 @lru_cache(maxsize=2)
-def moving_of(built: Built) -> tuple[Moving, np.ndarray]:
-    """Mesh and bodies of a case that asks for their motion, and natural frequencies [Hz].
+def moving_of(built: Built) -> tuple[Moving, Modes]:
+    """Mesh and bodies of a case that asks for their motion, and their modes.
 
     Losses beside the teeth are left out. The damping along the line of action is that which gives the
     bodies on the mean mesh stiffness the damping ratio of the case, unless it has one by value.
@@ -106,11 +103,11 @@ def moving_of(built: Built) -> tuple[Moving, np.ndarray]:
         backlash=vibrating.backlash,
         error=Waves(vibrating.error, array([*map(float, vibrating.orders)]), vibrating.error_phase),
     )
-    damping, fastest, frequencies = _mean(moving, vibrating.damping_ratio)
+    damping, fastest = _mean(moving, vibrating.damping_ratio)
     if asked.mesh_damping is not None:
         damping = array(asked.mesh_damping)
     ready = replace(moving, mesh_damping=damping, creep=CREEP * fastest)
-    return ready, np.asarray(frequencies)
+    return ready, jax.device_get(_modes(ready))
 
 
 def _ends(built: Built) -> tuple[int, int]:
@@ -125,8 +122,8 @@ def _asked(built: Built) -> MotionTable:
 
 
 @program
-def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array, Array]:
-    """Damping along the line of action, the fastest sliding for a unit speed, natural frequencies."""
+def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array]:
+    """Damping along the line of action, and the fastest sliding for a unit speed."""
     assert moving.passage is not None
     mesh = moving.design.mesh
     whole, line = mean_stiffness(moving), mesh.line_of_action
@@ -136,7 +133,12 @@ def _mean(moving: Moving, ratio: Array) -> tuple[Array, Array, Array]:
     contacts, _ = jax.vmap(moving.passage.at)(moving.passage.edges[:-1])
     sliding = jax.vmap(lambda one: along(one.slip_arm, mesh.motion))(contacts)
     fastest = jnp.max(jnp.where(contacts.active, jnp.abs(sliding), 0.0))
-    return damping, fastest, natural_frequencies(moving, whole)
+    return damping, fastest
+
+
+@program
+def _modes(moving: Moving) -> Modes:
+    return modes(moving)
 
 
 def _bodies(built: Built, inertia: np.ndarray) -> Iterator[Body]:
@@ -184,14 +186,14 @@ def _contacts(design: Any) -> Any:
     return design.mesh.contacts(jnp.asarray(0.0))
 
 
-def _grid(built: Built, frequencies: np.ndarray, slowest: float, key: str) -> Grid:
+def _grid(built: Built, own: Modes, slowest: float, key: str) -> Grid:
     """Grid for the highest natural frequency over the mesh frequency, and for the errors.
 
     Twice as fine as for a vibration: friction turns where a pair passes the pitch point.
     """
     assert built.case.dynamics is not None
     mesh_frequency = slowest / float(built.nominal["period"])
-    ratio = float(frequencies.max()) / mesh_frequency
+    ratio = float(own.frequency[-1]) / mesh_frequency
     if not ratio <= MOST_RATIO:
         raise InputError(
             f"the highest natural frequency is {ratio:.3g} times the mesh frequency, and a motion is "
@@ -257,6 +259,7 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
     low, high = found.grid.extremes(jnp.stack([error, force]))
     pairs = found.bearing[size:].reshape(-1, 2, *error.shape)
     bearing = jnp.sqrt(jnp.sum(pairs**2, axis=1))
+    orders = range(ORDERS[-1] * cycles + 1)
     own = {
         "mean_efficiency": found.efficiency,
         "mean_transmission_error": found.mean(error),
@@ -269,7 +272,8 @@ def _figures(moving: Moving, found: Motion, cycles: int) -> dict[str, Array]:
         "largest_multiplier": jnp.max(jnp.abs(found.multipliers)),
         "energy_closure": energy.closure,
         "vibration_status": found.status.code,
-        "spectrum": found.spectrum(error, range(ORDERS[-1] * cycles + 1)),
+        "spectrum": found.spectrum(error, orders),
+        "bearing_spectrum": found.spectrum(found.bearing[size:], orders).T,
         "state": found.state,
     }
     parts = {f"work_{name}": getattr(energy, name)[-1] for name in ACCOUNT}
@@ -299,24 +303,26 @@ def quasi_static(built: Built, speeds: Sequence[float] | np.ndarray) -> np.ndarr
 
 def motion_part(built: Built) -> xr.Dataset:
     """Steady motion at the operating point."""
-    moving, frequencies = moving_of(built)
+    moving, own = moving_of(built)
     asked, speed = _asked(built), built.case.operation.speed
-    grid, cycles = _grid(built, frequencies, speed, "operation.speed"), int(asked.cycles)
+    grid, cycles = _grid(built, own, speed, "operation.speed"), int(asked.cycles)
     start = jnp.full(2 * moving.mass.shape[0], jnp.nan)
     given = moving, array(speed), start, built.film, grid, cycles
     found = jax.device_get(_steady(*given))
     found.pop("state")
     data = {name: (_dims(name, values), values) for name, values in found.items()}
     code = Code(int(found["vibration_status"]))
+    still = quasi_static(built, [speed])[0]
     return dataset(
         {
             **data,
-            "natural_frequency": (("mode",), frequencies[frequencies > 0.0]),
+            **_of_modes(own),
             "mesh_frequency": ((), speed / float(built.nominal["period"])),
-            "quasi_static_efficiency": ((), quasi_static(built, [speed])[0]),
+            "quasi_static_efficiency": ((), still),
+            "efficiency_difference": ((), still - float(found["mean_efficiency"])),
             "mesh_damping": ((), float(moving.mesh_damping)),
         },
-        {**_labels(built), "order": _order(built)},
+        {**_labels(built), **_mode_names(built, own), "order": _order(built)},
         title="motion with friction",
         travels=built.travels,
         warnings=[
@@ -341,11 +347,40 @@ def _labels(built: Built) -> dict[str, Any]:
 
 WAYS = ("along the line of action", "across it")
 
+
+def _of_modes(own: Modes) -> dict[str, Any]:
+    """Natural frequencies and damping ratios of what vibrates."""
+    vibrates = own.frequency > 0.0
+    return {
+        "natural_frequency": (("mode",), own.frequency[vibrates]),
+        "modal_damping_ratio": (("mode",), own.damping[vibrates]),
+    }
+
+
+def _mode_names(built: Built, own: Modes) -> dict[str, list[str]]:
+    """What yields in every mode that vibrates: where most of its elastic energy is."""
+    places = ["teeth"]
+    places += [f"bearings of {one.body} {way}" for one in built.bodies for way in (WAYS[0], ACROSS)]
+    return {"mode": [_mode_name(places, each) for each in own.share[own.frequency > 0.0]]}
+
+
+def _mode_name(places: Sequence[str], share: np.ndarray) -> str:
+    most = np.argsort(-share)[:2]
+    parts = [f"{places[k]} {share[k]:.0%}" for k in most if share[k] >= WORTH]
+    return " and ".join(parts).replace("%", " %") if len(parts) > 1 else places[most[0]]
+
+
+ACROSS = "across the line of action"
+
+WORTH = 0.2
+"""Share of the elastic energy of a mode that is worth a word."""
+
 _LANES = ("load", "friction", "friction_force", "pair_loss", "film_thickness", "lambda_ratio")
 _BODY = {
     "relative_speed": ("body", "node"),
     "bearing_force": ("bearing", "node"),
     "spectrum": ("order",),
+    "bearing_spectrum": ("bearing", "order"),
 }
 
 
@@ -357,11 +392,7 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
 
 def _told(built: Built, codes: np.ndarray, sentence: str) -> list[str]:
     """What a motion leaves out, and what became of it."""
-    asides = {
-        BESIDE: bool(built.case.losses),
-        ELLIPSES: built.design.mesh.shape != "line",
-    }
-    return [*status_sentences(codes, sentence), *(told for told, said in asides.items() if said)]
+    return [*status_sentences(codes, sentence), *([BESIDE] if built.case.losses else [])]
 
 
 def _motor_words(built: Built, needed: float) -> list[str]:
@@ -421,10 +452,10 @@ KEPT = (
 
 def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> xr.Dataset:
     """Motions at a few speeds from one of them on."""
-    moving, frequencies = moving_of(built)
+    moving, own = moving_of(built)
     _, speeds = _course_of_speeds(built)
     slowest, cycles = float(speeds.min()), int(_asked(built).cycles)
-    grid = _grid(built, frequencies, slowest, "dynamics.speeds.start")
+    grid = _grid(built, own, slowest, "dynamics.speeds.start")
     if state is None:
         state = np.full(2 * moving.mass.shape[0], np.nan)
     rows = []
@@ -441,9 +472,9 @@ def _piece(built: Built, done: int, state: np.ndarray | None, progress: Any) -> 
             **{name: (("step", "order")[: values.ndim], values) for name, values in data.items()},
             "speed": (("step",), speeds[taken.start : taken.stop]),
             "state": (("coordinate",), state),
-            "natural_frequency": (("mode",), frequencies[frequencies > 0.0]),
+            **_of_modes(own),
         },
-        {"order": _order(built)},
+        {**_mode_names(built, own), "order": _order(built)},
         travels=built.travels,
         done=taken.stop,
         warnings=[],
@@ -463,25 +494,82 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
     dims = ("direction", "speed", "order")
     data = {name: both(name) for name in KEPT}
-    codes = data["vibration_status"]
+    codes, first = data["vibration_status"], parts[0]
+    critical = _critical(built, first, rising)
     return dataset(
         {
             **{name: (dims[: values.ndim], values) for name, values in data.items()},
             "quasi_static_efficiency": (("speed",), quasi_static(built, rising)),
-            "natural_frequency": (("mode",), parts[0]["natural_frequency"].values),
+            **{name: (("mode",), first[name].values) for name in OF_MODES},
+            **{name: (("crossing",), values) for name, values in critical.items()},
         },
         {
             "direction": ["rising", "falling"][: directions[-1] + 1],
             "speed": ("speed", rising),
-            "order": ("order", parts[0]["order"].values),
+            "order": ("order", first["order"].values),
+            "mode": first["mode"].values,
         },
         title="motion with friction against speed",
         travels=built.travels,
-        warnings=_told(built, codes, "Motion with friction against speed: at {points} {sentence}."),
+        warnings=[
+            *_told(built, codes, "Motion with friction against speed: at {points} {sentence}."),
+            *_coarse(rising, critical, first, data["spectrum"]),
+        ],
         sentences=[code.sentence for code in Code],
         solve=told_of(codes.astype(int)),
         law=built.laws[0].title,
     )
+
+
+OF_MODES = ("natural_frequency", "modal_damping_ratio")
+
+EXCITED = 0.1
+"""Amplitude over the largest one of all orders from which the peaks of an order count."""
+
+
+def _critical(built: Built, own: xr.Dataset, speeds: np.ndarray) -> dict[str, np.ndarray]:
+    """Crossings of orders and natural frequencies between the speeds, by speed.
+
+    At half power a peak is 2 xi n_c wide.
+    """
+    natural, ratio = (own[name].values for name in OF_MODES)
+    orders = np.arange(1, CAMPBELL + 1)
+    mode, order = (one.ravel() for one in np.meshgrid(range(natural.size), orders, indexing="ij"))
+    speed = natural[mode] * float(built.nominal["period"]) / order
+    inside = np.flatnonzero((speed >= speeds[0]) & (speed <= speeds[-1]))
+    kept = inside[np.argsort(speed[inside])]
+    found = {
+        "critical_speed": speed,
+        "critical_order": order.astype(float),
+        "critical_mode": mode.astype(float),
+        "half_power_width": 2.0 * ratio[mode] * speed,
+    }
+    return {name: values[kept] for name, values in found.items()}
+
+
+def _coarse(
+    speeds: np.ndarray, critical: dict[str, np.ndarray], own: xr.Dataset, spectrum: np.ndarray
+) -> list[str]:
+    """A sentence where peaks of excited orders may lie between the speeds."""
+    amplitude = np.max(np.nan_to_num(spectrum), axis=(0, 1))
+    heights = np.interp(critical["critical_order"], own["order"].values, amplitude)
+    width = np.where(
+        heights >= EXCITED * np.max(amplitude[1:]), critical["half_power_width"], np.inf
+    )
+    apart = float(np.max(np.diff(speeds), initial=0.0))
+    if not width.size or not apart > width.min():
+        return []
+    one = int(np.argmin(width))
+    step, at, wide = (
+        float(units.convert(value, "rpm", "rotational speed"))
+        for value in (apart, critical["critical_speed"][one], width[one])
+    )
+    mode = own["mode"].values[int(critical["critical_mode"][one])]
+    return [
+        f"Motion with friction against speed: the speeds are {step:.4g} rpm apart, and the peak at "
+        f"{at:.4g} rpm (order {critical['critical_order'][one]:g}, {mode}) is {wide:.3g} rpm wide at half "
+        "power, so that it may lie between them."
+    ]
 
 
 # ---- from a start
@@ -501,13 +589,17 @@ def start_up_part(built: Built) -> xr.Dataset:
     line = np.asarray(ready.design.mesh.line_of_action)
     act, energy = found.found, found.energy
     code = _code_of_start(moving, found)
-    held = bearing_forces(ready.bodies, array(found.place), array(rates))[size:]
+    held = np.asarray(bearing_forces(ready.bodies, array(found.place), array(rates)))[size:]
+    pressed = np.sum(act.force, axis=1)
+    borne = np.sqrt(np.sum(held.reshape(-1, 2, times.size) ** 2, axis=1))
     return dataset(
         {
             "time": (("time",), times),
             **_speeds(built, rates[:size]),
             "transmission_error": (("time",), line @ found.place[:size]),
-            "load": (("pair", "time"), np.sum(act.force, axis=1)),
+            "load": (("pair", "time"), pressed),
+            "largest_mesh_force": ((), np.max(np.sum(pressed, axis=0))),
+            "largest_bearing_force": ((), np.max(borne) if borne.size else np.nan),
             "friction_force": (("pair", "time"), np.sum(act.drawn, axis=1)),
             "loss": (("time",), lost),
             "bearing_force": (("bearing", "time"), held),

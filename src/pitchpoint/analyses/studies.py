@@ -105,20 +105,24 @@ class _Planned:
 
 
 def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
-    """Variables [law, point] that belong to the source of a case; none for most."""
+    """Variables [law, point] or [point, place] that belong to the source of a case; none for most."""
     source = points[0].case.source
     alone = [point for point in points if isinstance(point, Built)]
     if source not in PUBLICATIONS or not alone:
         return {}
-    read = PUBLICATIONS[source].read
+    read, courses = PUBLICATIONS[source].read, PUBLICATIONS[source].courses
     found = [
         read(Point(point.case.gears, point.design, point.operation, point.case.formulas))
         for point in alone
     ]
-    return {
-        name: (("law", "point"), np.array([[one[name] for one in found]] * laws))
-        for name in found[0]
-    }
+
+    def variable(name: str) -> tuple[tuple[str, str], np.ndarray]:
+        values = np.array([one[name] for one in found])
+        if name in courses:
+            return ("point", courses[name]), values
+        return ("law", "point"), np.array([values] * laws)
+
+    return {name: variable(name) for name in found[0]}
 
 
 def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:

@@ -105,15 +105,8 @@ def stiffness_part(built: Built) -> xr.Dataset:
         title="mesh stiffness",
         warnings=[*told, *lost],
         solve=DIRECT if status is None else summary(status),
-        model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title + _secant(built),
+        model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title,
     )
-
-
-def _secant(built: Built) -> str:
-    """What to know of the stiffness of ellipses; nothing of that of lines, which changes little with load."""
-    if built.design.mesh.shape != "ellipse":
-        return ""
-    return "; load over deflection at the mean load, a secant; torsion has the tangent, which is stiffer"
 
 
 @program
@@ -126,11 +119,8 @@ def _stiffness(
     contacts = mesh.contacts(found.phase)
     length = jnp.sum(jnp.where(contacts.active, contacts.weight, 0.0), axis=1)
     entered = found.phase + jnp.arange(found.single.shape[0])[:, None, None]
-    radius = jnp.abs(mesh.line_of_action @ mesh.loaded)
     single, total = found.along_action, found.total
-    error = load / radius / total
-    if found.state is not None:
-        error = found.state.approach * radius
+    error = found.approach * jnp.abs(mesh.line_of_action @ mesh.loaded)
     mean = jnp.sum(total * found.weight)
     lanes = {"entered": entered, "pair_stiffness": single, "line_length": length}
     whole = {

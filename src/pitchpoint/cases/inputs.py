@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
+from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.loss_sets import SET, marks_of
@@ -166,7 +167,11 @@ def _following(built: Ready) -> Iterator[Row]:
     several = len(built.meshes) > 1
     one_oil = all(one.lubricant == built.meshes[0].lubricant for one in built.meshes)
     for number, one in enumerate(built.meshes, 1):
-        rows = [*_dimensions(one), *(row for gear in (1, 2) for row in _of_solid(one, gear))]
+        rows = [
+            *_dimensions(one),
+            *_inertia(one),
+            *(row for gear in (1, 2) for row in _of_solid(one, gear)),
+        ]
         rows += [] if one_oil else _of_oil(one)
         yield from (_numbered(row, number) if several else row for row in rows)
     if one_oil:
@@ -301,6 +306,18 @@ def _dimensions(built: Built) -> Iterator[Row]:
             variable = VARIABLES.get(name) or VARIABLES[f"{name}_1"]
             value = built.dimensions[name]
             yield _row(DIMENSIONS, name, value, variable.kind, Provenance("derived"))
+
+
+def _inertia(built: Built) -> Iterator[Row]:
+    """Moments of inertia that a vibration takes where the case gives none; those that travel have a mass."""
+    mesh, asked = built.design.mesh, built.case.dynamics
+    if asked is None or asked.inertia is not None or not mesh.along_action:
+        return
+    density = array([float(solid.density) for solid in built.design.solids])
+    every = np.asarray(mesh.inertia(density)).tolist()
+    turning = [value for value, one in zip(every, built.bodies, strict=True) if one.turns]
+    mark = Provenance("derived", note="discs of the material from bore to reference circle")
+    yield _row("dynamics", "inertia", turning, "moment of inertia", mark)
 
 
 def _of_solid(built: Built, gear: int) -> Iterator[Row]:

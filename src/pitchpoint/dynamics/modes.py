@@ -1,13 +1,14 @@
-"""Modes of a mesh and its bodies about the mean of a mesh cycle: stiffness and natural frequencies."""
+"""Modes of a mesh and its bodies about the mean of a mesh cycle: stiffness, frequencies, damping."""
 
+import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.bodies import on_all_coordinates, stiffness
-from pitchpoint.dynamics.right_hand_side import Moving
+from pitchpoint.dynamics.bodies import damping, on_all_coordinates, stiffness
+from pitchpoint.dynamics.right_hand_side import Moving, contact_forces
 from pitchpoint.gears.period import nodes
 
-__all__ = ["along_action", "mean_stiffness", "natural_frequencies"]
+__all__ = ["Modes", "along_action", "mean_stiffness", "modes"]
 
 NODES = 14
 
@@ -51,16 +52,50 @@ def along_action(whole: Matrix, line: Float[Array, " dof"]) -> Float[Array, ""]:
     return line @ own @ line / jnp.sum(line**2) ** 2
 
 
-def natural_frequencies(moving: Moving, whole: Matrix) -> Float[Array, " coordinate"]:
-    """Natural frequencies without damping, rising; zero for what turns as a whole [Hz].
+class Modes(eqx.Module):
+    """Modes without friction, in the order of their frequencies.
+
+    Attributes:
+        frequency: without damping; zero for what turns as a whole [Hz].
+        damping: damping ratio of each mode by itself; zero for what turns as a whole.
+        share: of the elastic energy of a mode, in the teeth first, then in the bearings of every
+            translation.
+    """
+
+    frequency: Float[Array, " coordinate"]
+    damping: Float[Array, " coordinate"]
+    share: Float[Array, "coordinate place"]
+
+
+def modes(moving: Moving) -> Modes:
+    """Modes of mesh and bodies about the mean of a mesh cycle.
 
     Args:
-        moving: mesh and bodies; what a prescribed speed holds does not vibrate.
-        whole: of `mean_stiffness`.
+        moving: mesh and bodies, with a passage; what a prescribed speed holds does not vibrate.
 
-    From the eigenvalues of M^-1/2 K M^-1/2.
+    From the eigenvectors of M^-1/2 K M^-1/2, and C and the parts of K in them.
     """
+    whole, bearings = mean_stiffness(moving), stiffness(moving.bodies)
     root = jnp.where(jnp.isinf(moving.mass), 0.0, 1.0 / jnp.sqrt(moving.mass))
-    square = jnp.linalg.eigvalsh(root[:, None] * whole * root)
-    frequency = jnp.sqrt(jnp.maximum(square, 0.0)) / (2.0 * jnp.pi)
-    return jnp.where(frequency > RIGID * frequency[-1], frequency, 0.0)
+    square, vectors = jnp.linalg.eigh(root[:, None] * whole * root)
+    turning = jnp.sqrt(jnp.maximum(square, 0.0))
+    vibrates = turning > RIGID * turning[-1]
+    shape, some = root[:, None] * vectors, jnp.where(vibrates, turning, 1.0)
+    held = shape * (bearings @ shape)
+    teeth = jnp.sum(shape * ((whole - bearings) @ shape), axis=0)
+    damped = jnp.sum(shape * (_damping(moving, whole) @ shape), axis=0)
+    translations = held[len(moving.bodies) :]
+    share = jnp.concatenate([teeth[None], translations]) / some**2
+    return Modes(
+        frequency=jnp.where(vibrates, turning, 0.0) / (2.0 * jnp.pi),
+        damping=jnp.where(vibrates, damped / (2.0 * some), 0.0),
+        share=jnp.where(vibrates, share, 0.0).T,
+    )
+
+
+def _damping(moving: Moving, whole: Matrix) -> Matrix:
+    """Of the bearings, of the contacts in proportion to their stiffness, and along the line of action."""
+    still = jnp.zeros(moving.mass.shape[0])
+    line = contact_forces(moving, still, still).line
+    of_contacts = moving.relaxation * (whole - stiffness(moving.bodies))
+    return damping(moving.bodies) + of_contacts + moving.mesh_damping * jnp.outer(line, line)

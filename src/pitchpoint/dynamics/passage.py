@@ -1,6 +1,6 @@
 """Pairs of teeth on their way through the mesh, read from polynomials between events."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -16,17 +16,17 @@ from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, lobatto, nodes
-from pitchpoint.loading.compliance import compliance
+from pitchpoint.loading.springs import springs
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.programs import program
 
 __all__ = [
     "Passage",
     "PathStiffness",
+    "on_springs",
     "passage",
     "polynomial",
     "sampled",
-    "springs_of_teeth",
     "tabulated",
 ]
 
@@ -41,7 +41,8 @@ class Passage(eqx.Module):
 
     Attributes:
         edges: phases between which everything is smooth [periods]; the last is the first plus one.
-        contacts: every value as coefficients [power ... segment] of polynomials on [-1, 1].
+        contacts: with the gaps from which their springs push; every value as coefficients
+            [power ... segment] of polynomials on [-1, 1].
         stiffness: of each slice along its normal likewise, zero out of contact [N/m].
     """
 
@@ -176,19 +177,22 @@ def sampled(
     return _with_softest(design, operation, terms, curve)[0]
 
 
-def springs_of_teeth(
+def on_springs(
     design: Design, contacts: Contacts, terms: Terms, load: Float[Array, ""]
-) -> Lanes:
-    """Stiffness of each slice along its normal, zero out of contact [N/m].
+) -> tuple[Contacts, Lanes]:
+    """Contacts with gaps from which springs push, and the stiffness of these, see `Springs`.
 
     Args:
         design: mesh and materials.
         contacts: of the mesh.
         terms: of the model by which teeth yield.
         load: that the driven coordinate carries [N m or N].
+
+    Returns:
+        Stiffness of each slice along its normal, zero out of contact [N/m].
     """
-    yields = compliance(design.mesh, contacts, design.solids, terms, load)
-    return jnp.where(contacts.active, 1.0 / yields.of_teeth(contacts), 0.0)
+    found = springs(design.mesh, contacts, design.solids, terms, load)
+    return replace(contacts, gap=found.gap), found.stiffness
 
 
 @program
@@ -204,13 +208,11 @@ def _with_softest(
     """The passage, and the least stiffness with its place."""
     events = _breaks(design.mesh, curve)
     phase, _ = nodes(events, NODES)
-    contacts = design.mesh.contacts(phase)
-    springs: Callable[[], Lanes] = (
-        (lambda: springs_of_teeth(design, contacts, terms, operation.load))
-        if curve is None
-        else (lambda: _along_path(contacts, curve))
-    )
-    stiffness = springs()
+    rigid = design.mesh.contacts(phase)
+    if curve is None:
+        contacts, stiffness = on_springs(design, rigid, terms, operation.load)
+    else:
+        contacts, stiffness = rigid, _along_path(rigid, curve)
     found = Passage(
         edges=edges(events),
         contacts=jax.tree.map(lambda values: _powers(jnp.asarray(values, float)), contacts),

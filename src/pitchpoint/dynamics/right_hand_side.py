@@ -18,7 +18,7 @@ from pitchpoint.dynamics.bodies import (
 )
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.excitation import Waves
-from pitchpoint.dynamics.passage import Passage, springs_of_teeth
+from pitchpoint.dynamics.passage import Passage, on_springs
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.lubrication.conditions import Conditions, evaluate
@@ -359,10 +359,7 @@ def _engaged(moving: Moving, phase: Each) -> tuple[Contacts, Lanes]:
     contacts = moving.design.mesh.contacts(phase)
     if moving.stiffness is not None:
         return contacts, jnp.where(contacts.active, moving.stiffness, 0.0)
-    teeth = springs_of_teeth(
-        moving.design, contacts, moving.models.compliance, moving.operation.load
-    )
-    return contacts, teeth
+    return on_springs(moving.design, contacts, moving.models.compliance, moving.operation.load)
 
 
 def _leaning(mesh: Mesh, contacts: Contacts) -> Lanes:

@@ -49,8 +49,9 @@ ROUNDING = 1e-12
 MOST_STEPS = 1_000_000
 """Steps after which a transient is given up."""
 
-SHORTEST = 1e-15
-"""Step over the whole duration below which it is given up too."""
+SHORTEST = 1e-22
+"""Step over the whole duration below which it is given up too; a step that ends a rounding before a time at
+which the motion is kept leaves one that is that short."""
 
 CLOSED = 1e-6
 """Largest closure of the energy of a motion that counts as found."""

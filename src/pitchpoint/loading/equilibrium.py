@@ -298,7 +298,10 @@ def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each
     From the gap of each contact, which closes by its arm times the approach.
     """
     touches = active & (arm > 0.0)
-    return jnp.min(jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf), axis=(0, 1))
+    each = jnp.where(touches, gap / jnp.where(touches, arm, 1.0), jnp.inf)
+    flat = each.reshape(-1, *each.shape[2:])
+    # By its number: the derivative of a least value may be 0/0, see `_solve`.
+    return jnp.take_along_axis(flat, jnp.argmin(flat, axis=0)[None], axis=0)[0]
 
 
 def _where(solved: Bool[Array, "*b"], values: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -502,8 +505,9 @@ def _solve(problem: _Problem, loaded: Bool[Array, "*b lane"]) -> _Solution:
     stiffness = jnp.sum(sides[..., 0] * solved[..., 0], axis=-1)
     carries = stiffness > 0.0
     carried = problem.load + jnp.sum(sides[..., 0] * solved[..., 1], axis=-1)
-    # With no lane at all the loaded body moves until every one is wrong.
-    far = FAR * (1.0 + jnp.max(problem.gap, axis=-1))
+    # With no lane at all the loaded body moves until every one is wrong. The derivative of a largest value
+    # asks by an equality which one it is: 0/0 where a compiler rounds its two sides differently.
+    far = FAR * (1.0 + jax.lax.stop_gradient(jnp.max(problem.gap, axis=-1)))
     approach = jnp.where(carries, carried / jnp.where(carries, stiffness, 1.0), far)
     force = solved[..., 0] * approach[..., None] - solved[..., 1]
     slack = problem.moved(force) + problem.gap - problem.arm * approach[..., None]

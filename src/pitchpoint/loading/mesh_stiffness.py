@@ -1,15 +1,15 @@
 """Stiffness of a mesh: every pair of teeth as a spring along the normal of its contacts."""
 
 import equinox as eqx
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes
-from pitchpoint.loading.compliance import Compliance, compliance
-from pitchpoint.loading.equilibrium import Equilibrium, equilibrium
+from pitchpoint.loading.equilibrium import Equilibrium
+from pitchpoint.loading.springs import springs
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 
@@ -19,7 +19,7 @@ Lanes = Float[Array, "pair slice *#b"]
 
 
 class MeshStiffness(eqx.Module):
-    """Springs of all pairs over one period.
+    """Springs of all pairs over one period, for small motions about their places under the load.
 
     One arm and one separation stand for the whole contact line of a pair. Where flanks have gaps, the
     line is as long as it carries in the equilibrium under the load.
@@ -28,9 +28,11 @@ class MeshStiffness(eqx.Module):
         edges: phases between which the stiffness is smooth [periods].
         phase: of the nodes [periods].
         weight: of each node in a mean over the period.
-        single: normal stiffness of each pair, the sum over its contact line; zero out of contact [N/m].
+        single: normal stiffness of each pair, force over closing for small changes of both, the sum over
+            its contact line; zero out of contact [N/m].
         arm: closing of each contact along its normal for a unit of transmission error.
-        error: separation of the unloaded flanks, the mean over the springs of a contact line [m].
+        error: closing at which these springs carry nothing, the mean over a contact line, see `Springs` [m].
+        approach: of the loaded coordinate under the load [rad or m].
         state: the equilibrium; None where the flanks touch along the whole of every contact line.
     """
 
@@ -40,6 +42,7 @@ class MeshStiffness(eqx.Module):
     single: Float[Array, "pair segment node"]
     arm: Float[Array, "pair segment node"]
     error: Float[Array, "pair segment node"]
+    approach: Float[Array, "segment node"]
     state: Equilibrium | None = None
 
     @property
@@ -88,35 +91,19 @@ def mesh_stiffness(
     events = mesh.events()
     phase, weight = nodes(events, count)
     contacts = mesh.contacts(phase)
-    yields = compliance(mesh, contacts, solids, terms, load)
-    gap = yields.gap(contacts)
-    each = jnp.where(contacts.active, yields.stiffness * contacts.weight, 0.0)
-    state = None if mesh.touching else _settled(mesh, contacts, yields, each > 0.0)
-    if state is not None:
-        each = jnp.where(state.loaded, each, 0.0)
-        each = jnp.where(jnp.isfinite(state.approach), each, jnp.nan)
+    found = springs(mesh, contacts, solids, terms, load)
+    each = jnp.where(found.loaded, found.stiffness, 0.0)
+    if found.state is not None:
+        each = jnp.where(jnp.isfinite(found.approach), each, jnp.nan)
     return MeshStiffness(
         edges=edges(events),
         phase=phase,
         weight=weight,
         single=jnp.sum(each, axis=1),
         arm=_action_arm(mesh, contacts)[:, 0],
-        error=gap[:, 0] if mesh.touching else _mean_gap(gap, each),
-        state=state,
-    )
-
-
-def _settled(
-    mesh: Mesh, contacts: Contacts, yields: Compliance, acts: Bool[Array, "pair slice *#b"]
-) -> Equilibrium:
-    """Which springs carry the load, and how far it moves them."""
-    return equilibrium(
-        yields.of_teeth(contacts),
-        yields.body,
-        gap=yields.gap(contacts),
-        arm=jnp.abs(along(contacts.normal, mesh.loaded)),
-        active=acts,
-        load=yields.load,
+        error=_mean_gap(found.gap, each),
+        approach=found.approach,
+        state=found.state,
     )
 
 

@@ -3,12 +3,15 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+from jaxtyping import Float
+
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.input.tables import Table
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.variable import Variable
 
-__all__ = ["Beside", "Point", "Publication", "Reading"]
+__all__ = ["Beside", "Curves", "Point", "Publication", "Read", "Reading"]
 
 
 @dataclass(frozen=True)
@@ -28,8 +31,26 @@ class Point:
     formulas: Table | None = None
 
 
-Reading = Callable[[Point], dict[str, float]]
+Read = Mapping[str, "float | Float[np.ndarray, ' place']"]
+"""Numbers and courses by name."""
+
+Reading = Callable[[Point], Read]
 """What its formulas give at a point."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Courses that the report draws over each other.
+
+    Attributes:
+        title: of the figure.
+        along: variable of the places that all of them run over.
+        names: variables of the courses, in the order of the columns.
+    """
+
+    title: str
+    along: str
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -40,11 +61,15 @@ class Beside:
         columns: what stands beside each other, in words.
         rows: by words for the quantity, the variable of each column; of one kind and unit.
         note: what they are, and what to see in them.
+        curves: drawn under the numbers.
+        solves: by words for a solve, the variable of each column that holds its `status.Code`.
     """
 
     columns: tuple[str, ...]
     rows: Mapping[str, tuple[str, ...]]
     note: str
+    curves: tuple[Curves, ...] = ()
+    solves: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -57,6 +82,7 @@ class Publication:
         readings: each gives values by the name of their variable.
         variables: of the readings.
         beside: those that the report sets beside each other; None for most.
+        courses: dimension of each reading that is a course, by name.
     """
 
     name: str
@@ -64,8 +90,9 @@ class Publication:
     readings: tuple[Reading, ...] = ()
     variables: Mapping[str, Variable] = field(default_factory=dict)
     beside: Beside | None = None
+    courses: Mapping[str, str] = field(default_factory=dict)
 
-    def read(self, point: Point) -> dict[str, float]:
+    def read(self, point: Point) -> Read:
         """Values of all readings at a point."""
         found = [reading(point) for reading in self.readings]
         return {name: value for one in found for name, value in one.items()}

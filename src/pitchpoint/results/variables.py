@@ -97,6 +97,7 @@ VARIABLES: dict[str, Variable] = {
     "spectrum": deviation("amplitude of the transmission error", "|δ_n|"),
     "natural_frequency": Variable("natural frequency", "f_n", "1/s", "Hz", "frequency"),
     "mesh_frequency": Variable("mesh frequency", "f_z", "1/s", "Hz", "frequency"),
+    "modal_damping_ratio": percent("damping ratio of the mode", "ξ"),
     "equivalent_mass": Variable("equivalent mass", "m_e", "kg", "g", "mass"),
     "turned": Variable("mesh cycles that the driver has turned", "φ", "1"),
     "time": Variable("time", "t", "s", "ms", "time"),
@@ -105,10 +106,12 @@ VARIABLES: dict[str, Variable] = {
     "friction_force": force("friction force of the pair", "F_f"),
     "pair_loss": power("power loss of the pair", "P_loss"),
     "bearing_force": force("force on the bearings", "F_B"),
+    "bearing_spectrum": force("amplitude of the force on the bearings", "|F_B,n|"),
     "largest_bearing_force": force("largest force on the bearings of a gear", "F_B max"),
     "largest_mesh_force": force("largest normal force of all pairs", "F_n max"),
     "smallest_mesh_force": force("smallest normal force of all pairs", "F_n min"),
     "quasi_static_efficiency": percent("mean efficiency without vibration", "η_0"),
+    "efficiency_difference": percent("what vibration takes of the mean efficiency", "η_0 - η"),
     "mesh_damping": Variable(
         "damping along the line of action", "c", "N s/m", "N s/m", "viscous damping"
     ),
@@ -127,6 +130,10 @@ VARIABLES: dict[str, Variable] = {
         "kg m2",
         "kg m2",
         "moment of inertia",
+    ),
+    "critical_order": Variable("order of the mesh frequency", "n", "1"),
+    "half_power_width": Variable(
+        "width of the peak at half power", "Δn_c", "rad/s", "rpm", "rotational speed"
     ),
     "wave_order": Variable("waves in a turn of the driver", "n", "1"),
     "wave_amplitude": Variable("amplitude of the error", "|Δφ_n|", "rad", "arcsec", "angle"),

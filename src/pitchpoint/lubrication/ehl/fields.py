@@ -22,7 +22,7 @@ Each = Float[Arrays, "*b"]
 BROKEN: Final = 1e-9
 """Pressure below which a film is broken, in units of Hertz's pressure."""
 
-_GAUSS = np.polynomial.legendre.leggauss(4)
+_GAUSS = np.polynomial.legendre.leggauss(8)
 
 
 class LineFilm(eqx.Module):
@@ -48,6 +48,8 @@ class LineFilm(eqx.Module):
         shear_force: shear of the oil on member 0, along positive speeds; minus that on member 1 [N/m].
         boundary_force: friction of asperities on member 0, in the same way [N/m].
         pumping_power: that the flow under pressure turns into heat [W/m].
+        half_width: of the dry contact [m].
+        hertz_pressure: largest one of the dry contact [Pa].
     """
 
     x: Nodes
@@ -67,6 +69,8 @@ class LineFilm(eqx.Module):
     shear_force: Each
     boundary_force: Each
     pumping_power: Each
+    half_width: Each
+    hertz_pressure: Each
 
     @property
     def traction_a(self) -> Each:
@@ -123,6 +127,8 @@ def line_film(
         * contact.line_load
         * jnp.sign(sliding),
         pumping_power=pumping * flow.pressure * flow.height * problem.speed,
+        half_width=contact.half_width,
+        hertz_pressure=flow.pressure,
     )
     return _turned(film, contact.entrainment < 0.0)
 
@@ -162,7 +168,7 @@ def _filled(flow: Flow, oil: Array, room: Array) -> Array:
     return jnp.where(place > last, jnp.minimum(mass[last] / mass, 1.0), 1.0)
 
 
-def _minimum(x: Array, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
+def _minimum(x: Arrays, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
     """Place and value of the lowest point of the parabola through the lowest node and its neighbours."""
     low = jnp.clip(jnp.argmin(jnp.where(where, film, jnp.inf)), 1, x.shape[0] - 2)
     near = low + jnp.arange(-1, 2)

@@ -26,6 +26,12 @@ SLOWEST: Final = 1e-9
 SUMMITS: Final = 4.0
 """Gap over Rq up to which asperities are counted when the length of a contact is chosen."""
 
+INLETS: Final = 3.0
+"""Square of the length of a contact between rigid bodies, over radius and film."""
+
+LEAST: Final = 0.1
+"""Gap of smooth surfaces over its guess below which no solution has it; a trial may."""
+
 FLOODED: Final = 1e9
 """Distance at which oil begins where there is enough of it [m]."""
 
@@ -46,13 +52,13 @@ class LineContact(eqx.Module):
             starves the contact.
     """
 
-    line_load: Float[Array, "..."]
-    radius: Float[Array, "..."]
-    modulus: Float[Array, "..."]
-    speed_a: Float[Array, "..."]
-    speed_b: Float[Array, "..."]
-    approach: Float[Array, "..."]
-    inlet: Float[Array, "..."]
+    line_load: Float[Arrays, "..."]
+    radius: Float[Arrays, "..."]
+    modulus: Float[Arrays, "..."]
+    speed_a: Float[Arrays, "..."]
+    speed_b: Float[Arrays, "..."]
+    approach: Float[Arrays, "..."]
+    inlet: Float[Arrays, "..."]
     fluid: Fluid
     texture: Texture | None
 
@@ -76,17 +82,17 @@ class LineContact(eqx.Module):
         self.fluid, self.texture = fluid, texture
 
     @property
-    def entrainment(self) -> Float[Array, "..."]:
+    def entrainment(self) -> Float[Arrays, "..."]:
         """Mean of the surface speeds, with its sign [m/s]."""
         return 0.5 * (self.speed_a + self.speed_b)
 
     @property
-    def half_width(self) -> Float[Array, "..."]:
+    def half_width(self) -> Float[Arrays, "..."]:
         """Half-width b of the dry contact [m]."""
         return line_half_width(line_load=self.line_load, radius=self.radius, modulus=self.modulus)
 
     @property
-    def hertz_pressure(self) -> Float[Array, "..."]:
+    def hertz_pressure(self) -> Float[Arrays, "..."]:
         """Largest pressure of the dry contact [Pa]."""
         return line_pressure(line_load=self.line_load, radius=self.radius, modulus=self.modulus)
 
@@ -136,7 +142,7 @@ def problem_of(contact: LineContact) -> Problem:
     film = jax.lax.stop_gradient(guess(contact))
     # Thick films and rough surfaces carry on a length beyond that of the dry contact.
     rough = 0.0 if contact.texture is None else contact.texture.rq
-    beyond = contact.radius * (film + SUMMITS * rough) / half_width**2
+    beyond = contact.radius * (INLETS * film + SUMMITS * rough) / half_width**2
     ratio = jnp.sqrt(1.0 + jax.lax.stop_gradient(beyond))
     # In steps, so that the grid keeps its places in the contact while inputs change a little.
     ratio = 2.0 ** (jnp.ceil(4.0 * jnp.log2(ratio) - 1e-9) / 4.0)
@@ -145,7 +151,7 @@ def problem_of(contact: LineContact) -> Problem:
     fluid = contact.fluid
     flow = Flow(
         fluid,
-        contact.texture or Smooth(0.1 * film),
+        contact.texture or Smooth(LEAST * film),
         pressure,
         height,
         12.0 * fluid.viscosity * unit * contact.radius**2 / (length**3 * pressure),

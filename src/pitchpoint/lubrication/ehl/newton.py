@@ -28,7 +28,7 @@ LONGEST_STEP: Final = 0.3
 MOST: Final = 40
 """Steps after which an attempt on a grid is given up."""
 
-THICK: Final = 1.5
+THICK: Final = 2.5
 """First guess of the film over the one that a regression gives."""
 
 FASTER: Final = (1.0, 8.0, 4.0, 2.0, 1.0)
@@ -37,7 +37,17 @@ from a thick film, which every guess leads to, down to the thin one."""
 
 
 class State(NamedTuple):
-    """Where an iteration stands, of one contact, in units of the contact."""
+    """Where an iteration stands, of one contact, in units of the contact.
+
+    Attributes:
+        pressure: at the nodes.
+        level: of the surfaces.
+        speed: number of that in `FASTER` at which it is.
+        steps: since the last start.
+        total: all steps.
+        residual: largest one.
+        coarse: gap in the middle that was found on the grid before; NaN on the first one.
+    """
 
     pressure: Float[Array, " node"]
     level: Float[Array, ""]
@@ -45,6 +55,7 @@ class State(NamedTuple):
     steps: Int[Array, ""]
     total: Int[Array, ""]
     residual: Float[Array, ""]
+    coarse: Float[Array, ""]
 
 
 def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array:
@@ -164,7 +175,7 @@ def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State
         )
 
     zero = jnp.asarray(0)
-    begin = State(pressure, level, zero, zero, zero, jnp.asarray(jnp.inf))
+    begin = State(pressure, level, zero, zero, zero, jnp.asarray(jnp.inf), jnp.asarray(jnp.nan))
     found: State = jax.lax.while_loop(unfinished, onward, begin)
     return found
 
@@ -181,7 +192,9 @@ def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
     for before, at in pairwise(grids):
         finer = prolongation(before.x.shape[0], at.x.shape[0])
         pressure = jnp.maximum(finer @ state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
-        state = iterated(problem, pressure, state.level, at)
+        middle = jnp.argmin(jnp.abs(before.x))
+        coarse = problem.gap(state.pressure, state.level, before)[middle]
+        state = iterated(problem, pressure, state.level, at)._replace(coarse=coarse)
         total = total + state.total
     return state._replace(total=total)
 

@@ -15,7 +15,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import Ends, Grid, fewer, grid
-from pitchpoint.lubrication.ehl.line import LineContact, problem_of
+from pitchpoint.lubrication.ehl.line import LEAST, LineContact, problem_of
 from pitchpoint.lubrication.ehl.newton import ENOUGH, from_coarse, iterated, polished, residual
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -27,6 +27,9 @@ NODES: Final = 129
 
 PORTION: Final = 64
 """Contacts of a program at once; between portions progress is told, and an interrupt is heard."""
+
+COARSE: Final = 0.03
+"""Error by the grid from which on it is told."""
 
 WIDE: Final = 0.1
 """Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
@@ -41,6 +44,8 @@ class Ended(eqx.Module):
         load: defect of the load over it.
         gap: defect of the gap over the smallest one: elastic deformation against the gap of the result.
         iterations: of Newton's method, on all grids.
+        grid: estimate of the error of the film in the middle that the grid makes, over that film, from the
+            film on the grid before; NaN where there was none.
     """
 
     code: Int[Any, "*b"]
@@ -48,6 +53,7 @@ class Ended(eqx.Module):
     load: Float[Any, "*b"]
     gap: Float[Any, "*b"]
     iterations: Int[Any, "*b"]
+    grid: Float[Any, "*b"]
 
 
 @dataclass(frozen=True)
@@ -71,8 +77,7 @@ class Films:
     @property
     def solved(self) -> NDArray[np.bool_]:
         """Whether each contact was solved."""
-        found: NDArray[np.bool_] = np.asarray(self.ended.code) == Code.SOLVED
-        return found
+        return np.asarray(np.asarray(self.ended.code) == Code.SOLVED)
 
 
 def line_films(contact: LineContact, nodes: int = NODES) -> LineFilm:
@@ -126,12 +131,13 @@ def solve_lines(
     begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
     portions = list(_portions(flat, grids, begin, profiles, progress))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts), *portions)
+    warnings = tuple(_warnings(flat, film, ended, size))
     film, ended = (
-        jax.tree.map(lambda leaf: leaf.reshape(*shape, *leaf.shape[1:]), one)
+        jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), one)
         for one in (film, ended)
     )
-    domain = np.moveaxis(domain.reshape(*shape, 2), -1, 0)
-    return Films(film, ended, nodes, domain, tuple(_warnings(flat, ended, size)))
+    domain = np.moveaxis(domain.reshape((*shape, 2)), -1, 0)
+    return Films(film, ended, nodes, domain, warnings)
 
 
 def _ladder(nodes: int, ends: Ends) -> tuple[Grid, ...]:
@@ -212,17 +218,30 @@ def _solved(
     pressure, level = polished(problem, state, at)
     film = line_film(contact, problem, pressure, level, at)
     rest = residual(problem, pressure, level, at)
-    found = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
     gap = problem.gap(pressure, level, at)
+    converged = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
+    code = jnp.where(converged, Code.SOLVED, Code.NOT_CONVERGED)
+    if contact.texture is None:  # whose trial gaps may close, but no solution does
+        thin = jnp.min(gap) < LEAST * problem.film
+        code = jnp.where(converged & thin, Code.UNRESOLVED, code)
+    found = code == Code.SOLVED
+    at_middle = gap[jnp.argmin(jnp.abs(at.x))]
     off = jnp.max(jnp.abs(film.gap / problem.flow.height - _as_turned(gap, contact)))
     ended = Ended(
-        jnp.where(found, Code.SOLVED, Code.NOT_CONVERGED),
+        code,
         jnp.max(jnp.abs(rest[:-1])),
         jnp.abs(rest[-1]) / problem.load,
         off / jnp.min(jnp.abs(gap)),
         state.total,
+        jnp.abs(at_middle - state.coarse) / _gain(grids) / jnp.abs(at_middle),
     )
     return _withheld(film, found), ended, at.x[jnp.array([0, -1])] / problem.yielding
+
+
+def _gain(grids: tuple[Grid, ...]) -> float:
+    """By how much the last grid is better than the one before, but for one: errors are of second order."""
+    fine, coarse = grids[-1].x.shape[0], grids[max(len(grids) - 2, 0)].x.shape[0]
+    return ((fine - 1) / (coarse - 1)) ** 2 - 1.0
 
 
 def _as_turned(gap: Array, contact: LineContact) -> Array:
@@ -294,25 +313,32 @@ def _check(contact: LineContact) -> None:
             raise InputError(f"{what} of {low * scale:.4g} {unit}: it must be positive", key=key)
 
 
-def _warnings(contact: LineContact, ended: Ended, size: float | None) -> Iterator[str]:
-    solved = np.asarray(ended.code).reshape(-1) == Code.SOLVED
+def _warnings(
+    contact: LineContact, film: LineFilm, ended: Ended, size: float | None
+) -> Iterator[str]:
+    solved = np.asarray(ended.code) == Code.SOLVED
     if not solved.any():
         return
     some: LineContact = jax.tree.map(lambda leaf: np.asarray(leaf)[solved], contact)
-    yield from _of_pressure(some)
-    yield from _of_half_space(some, size)
+    half_width = np.asarray(film.half_width)[solved]
+    yield from _of_pressure(some, np.asarray(film.hertz_pressure)[solved])
+    yield from _of_half_space(some, half_width, size)
+    yield from _of_inlet(some, half_width)
+    yield from _of_grid(np.asarray(ended.grid)[solved])
     if some.texture is not None:
-        yield from _of_roughness(some)
+        yield from _of_roughness(np.asarray(some.texture.rq), half_width)
 
 
-def _of_pressure(contact: LineContact) -> Iterator[str]:
-    told = contact.fluid.outside(np.asarray(contact.hertz_pressure))
+def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[str]:
+    told = contact.fluid.outside(pressure)
     if told is not None:
         yield f"{told}: films and traction there are extrapolated"
 
 
-def _of_half_space(contact: LineContact, size: float | None) -> Iterator[str]:
-    half_width, radius = np.asarray(contact.half_width), np.asarray(contact.radius)
+def _of_half_space(
+    contact: LineContact, half_width: NDArray[np.float64], size: float | None
+) -> Iterator[str]:
+    radius = np.asarray(contact.radius)
     sizes = {"the relative radius": radius}
     if size is not None:
         sizes["the size of a tooth"] = np.full_like(radius, size)
@@ -325,13 +351,42 @@ def _of_half_space(contact: LineContact, size: float | None) -> Iterator[str]:
             )
 
 
-def _of_roughness(contact: LineContact) -> Iterator[str]:
-    assert contact.texture is not None
-    rough = np.broadcast_to(np.asarray(contact.texture.rq), contact.radius.shape)
-    half_width = np.asarray(contact.half_width)
+def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[str]:
     worst = np.argmax(rough / half_width)
     if rough[worst] > WIDE * half_width[worst]:
         yield (
             f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
             f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little"
         )
+
+
+def _of_grid(error: NDArray[np.float64]) -> Iterator[str]:
+    rough = error > COARSE
+    if rough.any():
+        yield (
+            f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
+            f"off by {100.0 * error.max():.2g} %; take more nodes"
+        )
+
+
+def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[str]:
+    given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
+    worst = np.argmin(given / needed)
+    if given[worst] < needed[worst]:
+        yield (
+            f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
+            f"one draws it from {needed[worst]:.0f} on: the contact is starved"
+        )
+
+
+def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
+    """Length of inlet beyond which oil no longer changes the film by more than a hundredth [half-widths].
+
+    3 above a load parameter M = w/(E' R) (2 eta0 u/(E' R))^(-1/2) of 30, 4 above 5, else 6: contacts with
+    thick films draw oil from further away. From films of inlets of 2 to 6 half-widths.
+    """
+    modulus, radius = np.asarray(contact.modulus), np.asarray(contact.radius)
+    speed = np.abs(np.asarray(contact.entrainment)) * np.asarray(contact.fluid.viscosity)
+    scaled = np.maximum(2.0 * speed / (modulus * radius), 1e-30)
+    load = np.asarray(contact.line_load) / (modulus * radius) / np.sqrt(scaled)
+    return np.where(load > 30.0, 3.0, np.where(load > 5.0, 4.0, 6.0))

@@ -42,7 +42,7 @@ class Texture(eqx.Module):
 
     @property
     @abc.abstractmethod
-    def boundary_friction(self) -> Float[Array, "..."]:
+    def boundary_friction(self) -> Float[Arrays, "..."]:
         """Coefficient of friction of asperities that touch [1]."""
 
     @abc.abstractmethod
@@ -73,7 +73,7 @@ class Smooth(Texture):
         return jnp.zeros_like(self.least)
 
     @property
-    def boundary_friction(self) -> Float[Array, "..."]:
+    def boundary_friction(self) -> Float[Arrays, "..."]:
         """Coefficient of friction of asperities that touch [1]."""
         return jnp.zeros_like(self.least)
 
@@ -179,11 +179,11 @@ class Rough(Texture):
         InputError: there is no law of this name; the message has the nearest ones.
     """
 
-    deviation: Float[Array, "..."]
-    modulus: Float[Array, "..."]
-    eta_beta_sigma: Float[Array, "..."]
-    sigma_over_beta: Float[Array, "..."]
-    friction: Float[Array, "..."]
+    deviation: Float[Arrays, "..."]
+    modulus: Float[Arrays, "..."]
+    eta_beta_sigma: Float[Arrays, "..."]
+    sigma_over_beta: Float[Arrays, "..."]
+    friction: Float[Arrays, "..."]
     asperities: str = eqx.field(static=True)
     pattern: float = eqx.field(static=True)
 
@@ -210,7 +210,7 @@ class Rough(Texture):
         return self.deviation
 
     @property
-    def boundary_friction(self) -> Float[Array, "..."]:
+    def boundary_friction(self) -> Float[Arrays, "..."]:
         """Coefficient of friction of asperities that touch [1]."""
         return self.friction
 

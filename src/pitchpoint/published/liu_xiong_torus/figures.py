@@ -29,9 +29,16 @@ class Oil(eqx.Module):
     whole: Float[Array, ""]
 
 
+LINES = 480
+"""Lines that are kept of it, the first at one order over the whole mesh cycles."""
+
+INSTANTS = 2400
+"""Places of equal distance from the start on at which a course is kept."""
+
+
 @program
-def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, ""]]:
-    """Numbers of a motion by the end of their names.
+def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
+    """Numbers and courses of a motion by the end of their names.
 
     Where flanks would pull, a pair has neither friction nor rolling, and no film to be counted.
 
@@ -59,7 +66,16 @@ def figures(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, ""]
         "friction_heat": _mean(moved, heat),
         "energy_imbalance": (driven + _mean(moved, heat)) / put_in,
         **_force(drive, moved, oil),
+        **_courses(drive, moved),
     }
+
+
+def _courses(drive: Drive, moved: Course) -> dict[str, Float[Array, " instant"]]:
+    """Transmission error and speed of the gear from the start on [m, rad/s]."""
+    times = jnp.arange(INSTANTS) / (INSTANTS - 1.0) * moved.time[-1]
+    turning = (moved.rate[:, 5] + drive.speed * drive.base_radii[0]) / drive.base_radii[1]
+    kept = {"error": moved.error, "gear_speed": turning}
+    return {name: jnp.interp(times, moved.time, values) for name, values in kept.items()}
 
 
 def _mean(moved: Course, values: Float[Array, " time"]) -> Float[Array, ""]:
@@ -123,14 +139,15 @@ def _friction_power(drive: Drive, moved: Course) -> Float[Array, " time"]:
     return jnp.sum(moved.friction * (passing + shifting), axis=1)
 
 
-def _force(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, ""]]:
-    """Mean of the whole normal force over whole mesh cycles, and where its spectrum is highest [N, Hz].
+def _force(drive: Drive, moved: Course, oil: Oil) -> dict[str, Float[Array, "..."]]:
+    """Mean of the whole normal force over whole mesh cycles, its spectrum and where it is highest [N, Hz].
 
     Of the spectrum only what lies below one and a half of the mesh frequency counts.
     """
     force, last = jnp.sum(moved.force, axis=1), oil.whole * drive.period
     even = jnp.interp(jnp.arange(BINS) / BINS * last, moved.time, force)
-    height = jnp.abs(jnp.fft.rfft(even)[1 : BINS // 2])
+    height = 2.0 / BINS * jnp.abs(jnp.fft.rfft(even)[1 : BINS // 2])
     rate = jnp.arange(1, BINS // 2) / oil.whole
     peak = rate[jnp.argmax(jnp.where(rate < 1.5, height, 0.0))]
-    return {"mean_force": jnp.mean(even), "force_peak": peak / drive.period}
+    found = {"mean_force": jnp.mean(even), "force_peak": peak / drive.period}
+    return {**found, "spectrum": height[:LINES]}

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import ceil, floor, sin
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Array, Float
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax, jnp
@@ -19,11 +19,12 @@ from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
 from pitchpoint.programs import program
-from pitchpoint.published.liu_xiong_torus.figures import Oil, figures
+from pitchpoint.published.liu_xiong_torus import steady
+from pitchpoint.published.liu_xiong_torus.figures import INSTANTS, LINES, Oil, figures
 from pitchpoint.published.liu_xiong_torus.motion import Drive, Piece, course
-from pitchpoint.published.liu_xiong_torus.steady import Springs, steady_figures
+from pitchpoint.published.liu_xiong_torus.steady import Springs
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
-from pitchpoint.published.publication import Point
+from pitchpoint.published.publication import Point, Read
 
 __all__ = ["pair_stiffness", "pieces", "readings"]
 
@@ -84,7 +85,7 @@ def pieces(*, single: float, pitch: float, cycles: float) -> Piece:
     )
 
 
-def readings(point: Point) -> dict[str, float]:
+def readings(point: Point) -> Read:
     """What the formulas give for a torus pair, under the names of result variables."""
     mesh, gears = point.design.mesh, point.gears
     if not isinstance(mesh, TorusPair) or not isinstance(gears, TorusGears):
@@ -188,7 +189,7 @@ def _quadratic(gears: TorusGears) -> dict[str, float]:
     }
 
 
-def _literal(point: Point, mesh: TorusPair) -> dict[str, float]:
+def _literal(point: Point, mesh: TorusPair) -> Read:
     """The motion of both pairs by the equations as printed; nothing without their inputs."""
     given = point.formulas
     if not isinstance(given, TorusFormulas):
@@ -196,29 +197,39 @@ def _literal(point: Point, mesh: TorusPair) -> dict[str, float]:
     known: Known = jax.device_get(_conditions(point.design, point.operation))
     line: Known = jax.device_get(_line(mesh))
     turn = _pieces(line, given)
+    whole = float(floor(given.mesh_cycles))
     oil = Oil(
-        array(known.pop("pressure_viscosity")),
-        array(line["transverse_radius"]),
-        array(float(floor(given.mesh_cycles))),
+        array(known.pop("pressure_viscosity")), array(line["transverse_radius"]), array(whole)
     )
-    found: dict[str, float] = {}
+    found: dict[str, float | Values] = {
+        "start_cycles": np.linspace(0.0, given.mesh_cycles, INSTANTS),
+        "start_orders": np.arange(1.0, LINES + 1.0) / whole,
+    }
     for name in PAIRS:
         drive = _drive(name, given, {**known, **line}, point.operation)
         told = jax.device_get(figures(drive, course(drive, turn), oil))
         _check_found(name, told)
-        found |= {f"{name}_{key}": float(value) for key, value in told.items()}
+        found |= _named(name, told)
     return {**found, **_beside(found)}
 
 
+def _named(pair: str, told: Mapping[str, Values | Array]) -> dict[str, float | Values]:
+    """Numbers and courses of a pair."""
+    return {
+        f"{pair}_{key}": np.asarray(value) if np.ndim(value) else float(value)
+        for key, value in told.items()
+    }
+
+
 def _check_found(name: str, told: Known) -> None:
-    if not all(np.isfinite(value) for value in told.values()):
+    if not all(np.all(np.isfinite(value)) for value in told.values()):
         raise ConvergenceError(
             f"the motion of the {name} pair by the printed equations was not found: it grows without bound, "
             "or takes more steps than are allowed"
         )
 
 
-def _beside(found: Mapping[str, float]) -> dict[str, float]:
+def _beside(found: Read) -> Read:
     """Torus pair over standard pair."""
     torus, standard = (found[f"{name}_film_0"] + found[f"{name}_film_1"] for name in PAIRS)
     return {
@@ -228,7 +239,7 @@ def _beside(found: Mapping[str, float]) -> dict[str, float]:
     }
 
 
-def _steady(point: Point, mesh: TorusPair) -> dict[str, float]:
+def _steady(point: Point, mesh: TorusPair) -> Read:
     """The motion of both pairs in steady state by the corrected equations, where it is asked for."""
     given, gears = point.formulas, point.gears
     if not isinstance(given, TorusFormulas) or not isinstance(gears, TorusGears):
@@ -237,11 +248,14 @@ def _steady(point: Point, mesh: TorusPair) -> dict[str, float]:
         return {}
     known: Known = jax.device_get({**_conditions(point.design, point.operation), **_line(mesh)})
     meshes = {"torus": mesh, "standard": middle_pair(gears, _PINION)}
-    found: dict[str, float] = {}
+    found: dict[str, float | Values] = {
+        "steady_cycles": np.linspace(0.0, 1.0, steady.INSTANTS),
+        "steady_orders": np.arange(1.0, steady.ORDERS + 1.0),
+    }
     for name in PAIRS:
         springs = _springs(_drive(name, given, known, point.operation), known, given)
-        told = steady_figures(replace(point.design, mesh=meshes[name]), point.operation, springs)
-        found |= {f"{name}_{key}": value for key, value in told.items()}
+        own = replace(point.design, mesh=meshes[name])
+        found |= _named(name, steady.steady_figures(own, point.operation, springs))
     over = {name: found[f"torus_{name}"] / found[f"standard_{name}"] for name in _OVER}
     return {**found, **{f"{name}_ratio": value for name, value in over.items()}}
 

@@ -1,9 +1,10 @@
 """What Liu and Xiong print beside what the library computes, as quantities of a result."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from pitchpoint.published.liu_xiong_torus import printed
-from pitchpoint.published.publication import Beside, Publication
+from pitchpoint.published.publication import Beside, Curves, Publication
 from pitchpoint.results.variable import Variable, deviation, force, length, percent, power
 
 __all__ = ["PUBLICATION"]
@@ -101,6 +102,21 @@ _STEADY = {
 }
 """Numbers of the motion in steady state by the corrected equations, of one pair."""
 
+_PLACES = {
+    "start_cycles": _plain("mesh cycles from the start on", "t/t_c"),
+    "steady_cycles": _plain("mesh cycles in steady state", "t/t_c"),
+    "start_orders": _plain("order of the mesh frequency", "f t_c"),
+    "steady_orders": _plain("order of the mesh frequency", "f t_c"),
+}
+
+_COURSES = {
+    "error": deviation("dynamic transmission error", "ε_d"),
+    "gear_speed": Variable("speed of the gear", "ω_g", "rad/s", "rad/s", "rotational speed"),
+    "spectrum": force("amplitude of the normal force", "F_n"),
+}
+
+_STATUS = {"steady_status": _plain("status of the solve", "")}
+
 _STEADY_RATIOS = {
     "steady_friction_ratio": _plain(
         "sliding friction, torus over standard pair, steady state", "F/F"
@@ -111,6 +127,23 @@ _STEADY_RATIOS = {
 }
 
 _HIDDEN = ("film_parts", "mean_force", "force_peak")
+
+
+def _curves() -> Iterator[Curves]:
+    """Courses of both pairs over each other, from the start on and in steady state."""
+    for begin, which in (("", "as published"), ("steady_", "steady state")):
+        for name, one in _COURSES.items():
+            along = "orders" if name == "spectrum" else "cycles"
+            yield Curves(
+                f"{one.long_name}, {which}",
+                f"{begin or 'start_'}{along}",
+                tuple(f"{pair}_{begin}{name}" for pair in printed.PAIRS),
+            )
+
+
+def _dimensions() -> dict[str, str]:
+    """Dimension of every course, and of the places that it runs over."""
+    return {name: f"{one.along}_place" for one in _curves() for name in (one.along, *one.names)}
 
 
 def _of(pair: str, numbers: dict[str, Variable], which: str) -> dict[str, Variable]:
@@ -158,6 +191,8 @@ _SIDE_BY_SIDE = Beside(
         "under the heavy load the teeth store a third of the kinetic energy of the discs, and a constant "
         "torque does not keep these turning."
     ),
+    curves=tuple(_curves()),
+    solves={"steady state": tuple(f"{pair}_steady_status" for pair in printed.PAIRS)},
 )
 
 PUBLICATION = Publication(
@@ -168,8 +203,12 @@ PUBLICATION = Publication(
         **_AT_PITCH,
         **_BESIDE,
         **_every(_OF_MOTION, "as published"),
-        **_every(_STEADY, "steady state"),
+        **_every({**_STEADY, **_STATUS}, "steady state"),
+        **_every(_COURSES, "as published"),
+        **_every({f"steady_{name}": one for name, one in _COURSES.items()}, "steady state"),
+        **_PLACES,
         **_STEADY_RATIOS,
     },
     beside=_SIDE_BY_SIDE,
+    courses=_dimensions(),
 )

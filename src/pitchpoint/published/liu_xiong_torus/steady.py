@@ -13,6 +13,7 @@ from pitchpoint.dynamics.bodies import Body, across
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.modes import modes
 from pitchpoint.dynamics.passage import passage, polynomial
 from pitchpoint.dynamics.right_hand_side import Moving, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
@@ -26,7 +27,14 @@ from pitchpoint.status import Code
 
 __all__ = ["Springs", "corrected", "steady_figures"]
 
-GRID = Grid(16, 20)
+LEAST, NODES = 16, 20
+"""Elements of a mesh cycle, and nodes in each of them; more elements where the mesh is slow."""
+
+INSTANTS = 1200
+"""Places of equal distance in a mesh cycle at which a course is kept."""
+
+ORDERS = 160
+"""Orders of the mesh frequency that are kept of a spectrum."""
 
 CREEP = 1e-4
 """Sliding speed at which 76 % of the friction is reached [m/s]."""
@@ -37,6 +45,7 @@ _FILM = {"ellipse": "hamrock_dowson_1977", "line": "dowson_higginson_1959"}
 
 Each = Float[Array, ""]
 Two = Float[Array, "2"]
+Values = Float[np.ndarray, "..."]
 
 
 class Springs(eqx.Module):
@@ -116,8 +125,11 @@ def _bodies(operation: Operation, springs: Springs) -> tuple[Body, Body]:
     return driver, Body(gear, operation.load[None], support=second)
 
 
-def steady_figures(design: Design, operation: Operation, springs: Springs) -> dict[str, float]:
-    """Numbers of the motion in steady state by the end of their names; NaN where none is found.
+def steady_figures(design: Design, operation: Operation, springs: Springs) -> dict[str, Values]:
+    """Numbers and courses of the motion in steady state by the end of their names.
+
+    NaN where none is found, where it cannot be reached, and where the grid does not resolve it; the status
+    says which. Where flanks pull the motion is that of linear contacts, of which the status tells too.
 
     Args:
         design: either pair.
@@ -125,11 +137,26 @@ def steady_figures(design: Design, operation: Operation, springs: Springs) -> di
         springs: of the bodies.
     """
     moving = corrected(design, operation, springs)
-    moved = steady_motion(moving, float(operation.speed), GRID)
+    speed = float(operation.speed)
+    moved = steady_motion(moving, speed, _grid(moving, speed))
     law = FILM_THICKNESS[_FILM[design.mesh.shape]]
     told = jax.device_get(_told(moving, moved, law))
-    lost = Code(int(moved.status.code)) is Code.UNSTABLE
-    return {name: np.nan if lost else float(value) for name, value in told.items()}
+    code = Code(int(moved.status.code))
+    counts = code in (Code.SOLVED, Code.SEPARATES)
+    known = {name: value if counts else np.full_like(value, np.nan) for name, value in told.items()}
+    return {**known, "steady_status": np.asarray(float(code))}
+
+
+def _grid(moving: Moving, speed: float) -> Grid:
+    """Grid that resolves the highest natural frequency, and friction where it turns: twice as fine."""
+    ratio = float(_highest(moving)) * float(moving.design.mesh.period) / speed
+    return Grid(max(LEAST, Grid.resolving(2.0 * ratio).elements), NODES)
+
+
+@program
+def _highest(moving: Moving) -> Each:
+    """Highest natural frequency [Hz]."""
+    return modes(moving).frequency[-1]
 
 
 @program
@@ -152,7 +179,18 @@ def _told(moving: Moving, moved: Motion, law: FilmThickness) -> dict[str, Array]
         "steady_reaction_left": jnp.max(jnp.abs(pushed[0] + pushed[1])) / jnp.max(found.force),
         "steady_pulled": moved.mean(jnp.where(total(found.force) < 0.0, 1.0, 0.0)),
         "steady_film": _film(moving, moved, law),
+        **_courses(moved, error),
     }
+
+
+def _courses(moved: Motion, error: Float[Array, "element node"]) -> dict[str, Array]:
+    """Transmission error and speed of the gear over a mesh cycle, and orders of the mesh force."""
+    places = jnp.arange(INSTANTS) / (INSTANTS - 1.0) * moved.bounds[-1]
+    turned = moved.turned.ravel()
+    kept = {"steady_error": error, "steady_gear_speed": jnp.abs(moved.rate[1])}
+    spectrum = moved.spectrum(total(moved.found.force), range(1, ORDERS + 1))
+    courses = {name: jnp.interp(places, turned, values.ravel()) for name, values in kept.items()}
+    return {**courses, "steady_spectrum": spectrum}
 
 
 def _parted(moving: Moving, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:

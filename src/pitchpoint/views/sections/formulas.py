@@ -1,14 +1,29 @@
 """What the formulas of a publication give, side by side as it compares them."""
 
 from collections.abc import Iterator
+from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
-from pitchpoint.published.publication import Beside
+from pitchpoint.published.publication import Beside, Curves
 from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.status import Code
 from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    PALETTE,
+    Choice,
+    Figure,
+    Key,
+    Panel,
+    display,
+    layout,
+    plain,
+    rounded,
+    short_axis,
+)
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
 
 __all__ = ["FORMULAS"]
@@ -61,9 +76,67 @@ def _blocks(page: Page) -> Iterator[Block]:
     beside = _beside(page)
     assert beside is not None
     yield Paragraph(beside.note, "note")
-    for data in _studies(page, beside):
+    for position, data in enumerate(_studies(page, beside)):
         yield Heading(str(data.attrs["title"]))
         yield _table(data, beside)
+        yield from _solves(data, beside)
+        panel = _panel(f"formulas{position}", data, beside)
+        yield from [panel] if panel.figures else []
+
+
+def _solves(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
+    """What became of solves that are not plainly solved, and where."""
+    for told, names in beside.solves.items():
+        found: dict[Code, list[str]] = {}
+        for column, name in zip(beside.columns, names, strict=True):
+            codes = data[name].values[0] if name in data else np.zeros(0)
+            for place, code in zip(_places(data), codes, strict=False):
+                where = " at ".join(filter(None, (column, place)))
+                found.setdefault(Code(int(code)), []).append(where)
+        for code, places in found.items():
+            if not code.ok:
+                words = f"{told.capitalize()}, {', '.join(places)}: {code.sentence}."
+                yield Paragraph(words, "warning")
+
+
+def _panel(name: str, data: xr.Dataset, beside: Beside) -> Panel:
+    """Courses of a study, with a menu of its points; empty where it has none."""
+    there = [one for one in beside.curves if all(each in data for each in one.names)]
+    curves = {f"{name}_{k}": one for k, one in enumerate(there)}
+    figures = [_figure(each, one, data, beside) for each, one in curves.items()]
+    choices = [
+        Choice(place, {each: [_changed(one, data, point), {}] for each, one in curves.items()})
+        for point, place in enumerate(_places(data))
+    ]
+    several = len(choices) > 1 and bool(figures)
+    return Panel("", figures, choices=choices if several else [], menu="Shown at")
+
+
+def _changed(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
+    """What a choice of a point changes: values, and places where they are others."""
+    places = data[one.along].values
+    moved = not np.array_equal(places[point], places[0])
+    x = {"x": [_shown(one.along, data, point)] * len(one.names)} if moved else {}
+    return {**x, "y": [_shown(name, data, point) for name in one.names]}
+
+
+def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
+    return rounded(display(name, data[name].values[point]))
+
+
+def _figure(name: str, one: Curves, data: xr.Dataset, beside: Beside) -> Figure:
+    """Courses over each other at the first point."""
+    keys = [Key(column, PALETTE[k]) for k, column in enumerate(beside.columns)]
+    unit, places = show.unit_of(one.names[0]), display(one.along, data[one.along].values[0])
+    traces = [
+        plain(key, places, display(each, data[each].values[0]), unit, opacity=0.75)
+        for key, each in zip(keys, one.names, strict=True)
+    ]
+    for trace in traces:
+        trace["line"]["width"] = 1  # of vibrations that lie close
+    axes = layout(show.axis_title(one.along), short_axis(one.names[0]))
+    title = one.title[0].upper() + one.title[1:]
+    return Figure(name, title, traces, axes, keys=tuple(keys), missing="No motion was found.")
 
 
 def _table(data: xr.Dataset, beside: Beside) -> Table:
@@ -87,7 +160,9 @@ def _titled(told: str, name: str) -> str:
 def _cells(data: xr.Dataset, names: tuple[str, ...]) -> Iterator[str]:
     for point in range(data.sizes["point"]):
         for name in names:
-            yield show.quantity(name, float(data[name].values[0, point]), with_unit=False)
+            value = float(data[name].values[0, point])
+            known = np.isfinite(value)
+            yield show.quantity(name, value, with_unit=False) if known else "not found"
 
 
 def _places(data: xr.Dataset) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from pitchpoint.analyses.figures import CAMPBELL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.campbell import campbell
@@ -24,6 +25,7 @@ from pitchpoint.views.figures import (
     plain,
     rounded,
     short_axis,
+    text,
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
@@ -47,6 +49,7 @@ NONE = "No steady motion was found."
 _FIGURES = (
     "mean_efficiency",
     "quasi_static_efficiency",
+    "efficiency_difference",
     "mean_input_torque",
     "mean_transmission_error",
     "transmission_error_rms",
@@ -60,6 +63,7 @@ _FIGURES = (
 _ON_SCREEN = (
     "mean_efficiency",
     "quasi_static_efficiency",
+    "efficiency_difference",
     "transmission_error_rms",
     "transmission_error_range",
     "largest_mesh_force",
@@ -75,8 +79,6 @@ _WORKS = (
 )
 _OF_PAIRS = ("load", "friction", "friction_force", "lambda_ratio", "pair_loss")
 _AGAINST_SPEED = ("transmission_error_rms", "transmission_error_range", "largest_mesh_force")
-_ORDERS = 8
-"""Orders of the mesh frequency whose lines are drawn in the diagram of Campbell."""
 
 
 def motion_answer(outcome: Outcome) -> str:
@@ -87,9 +89,16 @@ def motion_answer(outcome: Outcome) -> str:
     names = ("mean_efficiency", "quasi_static_efficiency", "transmission_error_rms")
     moving, still, error = (show.quantity(name, float(data[name]), of=data) for name in names)
     return (
-        f"{moving} of the teeth with vibration and friction together, {still} without vibration; "
-        f"transmission error {error} rms, {_parts(data)}"
+        f"{moving} of the teeth with vibration and friction together, {still} without vibration, "
+        f"{_taken(data)}; transmission error {error} rms, {_parts(data)}"
     )
+
+
+def _taken(data: xr.Dataset) -> str:
+    """What vibration takes of the efficiency, to digits that say something."""
+    taken = float(data["efficiency_difference"])
+    points = show.number(abs(100.0 * taken), 3)
+    return f"which is {points} percentage points {'more' if taken >= 0.0 else 'less'}"
 
 
 def _parts(data: xr.Dataset) -> str:
@@ -115,7 +124,9 @@ def motion_panel(name: str, outcome: Outcome) -> Panel:
         _course(f"{name}_efficiency", data, "efficiency", _NOW),
         _spectrum(f"{name}_spectrum", data),
     ]
-    return Panel("", [*figures, *_bearings(name, data)])
+    if data.sizes.get("bearing"):
+        figures += [*_bearings(name, data), _bearing_spectrum(f"{name}_bearing_spectrum", data)]
+    return Panel("", figures)
 
 
 def _bearings(name: str, data: xr.Dataset) -> Iterator[Figure]:
@@ -175,22 +186,43 @@ def _speed_of(data: xr.Dataset) -> str:
 
 
 def _spectrum(name: str, data: xr.Dataset) -> Figure:
+    """Amplitudes of the orders of the transmission error."""
+    bars = [_orders(data, "spectrum", data["spectrum"].values, Key("", PALETTE[0], ""))]
+    return _of_orders(name, "Orders of the transmission error", "spectrum", bars)
+
+
+def _bearing_spectrum(name: str, data: xr.Dataset) -> Figure:
+    """Those of the forces on the bearings of every gear."""
+    names = data["bearing"].values
+    keys = [Key(str(one), PALETTE[k % len(PALETTE)], "") for k, one in enumerate(names)]
+    values = data["bearing_spectrum"].values
+    bars = [
+        _orders(data, "bearing_spectrum", one, key) for one, key in zip(values, keys, strict=True)
+    ]
+    title = "Orders of the force on the bearings"
+    return replace(_of_orders(name, title, "bearing_spectrum", bars), keys=tuple(keys))
+
+
+def _orders(data: xr.Dataset, variable: str, values: np.ndarray, key: Key) -> Trace:
     """Amplitudes of the orders of the mesh frequency; that of order zero is the mean."""
     orders = data["order"].values
-    shown_orders = (orders > 0.0) & (orders <= 20.0)
-    bars: Trace = {
+    kept = (orders > 0.0) & (orders <= 20.0)
+    return {
         "type": "bar",
-        "name": "",
+        "name": text(key.label),
         "meta": "",
-        "x": orders[shown_orders].tolist(),
-        "y": rounded(display("spectrum", data["spectrum"].values[shown_orders])),
-        "marker": {"color": PALETTE[0]},
-        "hovertemplate": "%{y:.4~g} µm<br>order %{x}",
+        "x": orders[kept].tolist(),
+        "y": rounded(display(variable, values[kept])),
+        "marker": {"color": key.colour},
+        "hovertemplate": f"%{{y:.4~g}} {show.unit_of(variable)}<br>order %{{x}}",
     }
+
+
+def _of_orders(name: str, title: str, variable: str, bars: list[Trace]) -> Figure:
     axes = layout(
-        "order of the mesh frequency", short_axis("spectrum"), yaxis={"rangemode": "tozero"}
+        "order of the mesh frequency", short_axis(variable), yaxis={"rangemode": "tozero"}
     )
-    return Figure(name, "Orders of the transmission error", [bars], axes, missing=NONE)
+    return Figure(name, title, bars, axes, missing=NONE)
 
 
 def _table(data: xr.Dataset) -> Table:
@@ -199,12 +231,27 @@ def _table(data: xr.Dataset) -> Table:
         (f"{titled(name, data)} {show.described(name, data).symbol}", _cell(data, name))
         for name in names
     ]
-    rows.insert(-2, ("Natural frequencies with the mean stiffness", _frequencies(data)))
     return Table(["", ""], rows, compact=True)
+
+
+def _modes(data: xr.Dataset) -> Table:
+    """Natural frequencies with the mean stiffness, what yields in them, and how they are damped."""
+    rows = [
+        (str(name), *(show.quantity(one, float(data[one][k]), of=data) for one in _OF_MODES))
+        for k, name in enumerate(data["mode"].values)
+    ]
+    return Table(
+        ["Mode: elastic energy in", *(titled(one, data) for one in _OF_MODES)], rows, compact=True
+    )
+
+
+_OF_MODES = ("natural_frequency", "modal_damping_ratio")
 
 
 def _cell(data: xr.Dataset, name: str) -> str:
     value = float(data[name])
+    if name == "efficiency_difference" and np.isfinite(value):
+        return f"{show.number(100.0 * value, 3)} percentage points"
     return show.quantity(name, value, of=data) if np.isfinite(value) else "none"
 
 
@@ -294,7 +341,7 @@ def _waterfall(name: str, data: xr.Dataset) -> Figure:
 def _campbell(name: str, outcome: Outcome) -> Figure:
     """Frequencies of the orders over speed, with the natural frequencies."""
     data, cycle = outcome.parts["motion_against_speed"], period_of(outcome).angle
-    orders = [(Key(str(one), PALETTE[0]), one / cycle) for one in range(1, _ORDERS + 1)]
+    orders = [(Key(str(one), PALETTE[0]), one / cycle) for one in range(1, CAMPBELL + 1)]
     natural = data["natural_frequency"].values
     found = campbell(
         f"{name}_campbell",
@@ -312,7 +359,53 @@ def _campbell(name: str, outcome: Outcome) -> Figure:
     return replace(found, title="Campbell's diagram", note=note, keys=keys, missing=NONE)
 
 
+def _critical(data: xr.Dataset) -> Iterator[Block]:
+    """Crossings in the diagram of Campbell between the slowest speed and the fastest."""
+    natural = "natural_frequency"
+    heads = [_headed(name, data) for name in (natural, "critical_speed", "half_power_width")]
+    rows = [_crossing(data, k) for k in range(data.sizes["crossing"])]
+    if rows:
+        yield Paragraph("Critical speeds, where an order of the mesh frequency meets a mode:")
+        yield Table(["Mode: elastic energy in", "Order", *heads], rows)
+    else:
+        yield Paragraph(f"No order up to {CAMPBELL} meets a natural frequency at these speeds.")
+
+
+def _headed(name: str, data: xr.Dataset) -> str:
+    return f"{_HEADS.get(name) or titled(name, data)} [{show.unit_of(name, data)}]"
+
+
+_HEADS = {"critical_speed": "Driver speed", "half_power_width": "Width at half power"}
+
+
+def _crossing(data: xr.Dataset, number: int) -> tuple[str, ...]:
+    mode = int(data["critical_mode"][number])
+    values = {
+        "natural_frequency": data["natural_frequency"][mode],
+        **{name: data[name][number] for name in ("critical_speed", "half_power_width")},
+    }
+    told = (
+        show.quantity(name, float(one), with_unit=False, of=data) for name, one in values.items()
+    )
+    return str(data["mode"].values[mode]), f"{float(data['critical_order'][number]):g}", *told
+
+
 # ---- from a start
+
+
+def _start_table(data: xr.Dataset) -> Table:
+    """The largest of the forces, and where a start ends."""
+    names = ["largest_mesh_force", *(["largest_bearing_force"] if "bearing" in data else [])]
+    rows = [(titled(name, data), _cell(data, name)) for name in names]
+    rows.append(("Time at the end", show.quantity("time", float(data["time"][-1]), of=data)))
+    rows += [(f"Speed of {body} at the end", told) for body, told in _last_speeds(data)]
+    lost = ("work_put_in", "work_friction", "work_rolling", "work_damping", "kinetic_energy")
+    rows += [
+        (f"{titled(name, data)}, at the end", show.quantity(name, float(data[name][-1]), of=data))
+        for name in lost
+        if float(data[name][-1])
+    ]
+    return Table(["", ""], rows, compact=True)
 
 
 def start_panel(name: str, outcome: Outcome) -> Panel:
@@ -336,16 +429,20 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield from _of_period(position, outcome)
     for position, title, outcome in page.each("motion_against_speed"):
         yield Heading(f"Against speed: {title}" if title else "Against speed")
-        yield from _gaps(outcome.parts["motion_against_speed"])
+        data = outcome.parts["motion_against_speed"]
+        yield from _gaps(data)
+        yield from _critical(data)
         yield speeds_panel(f"speeds{position}", outcome)
     for position, title, outcome in page.each("start_up"):
         yield Heading(f"Start: {title}" if title else "Start")
         data = outcome.parts["start_up"]
         yield Paragraph(
-            f"{_end_of_start(data)}. Under the torques of the case: {data.attrs['sentence']}. Of the "
-            f"balance of energy {float(data['energy_closure']):.0e} of its largest part is left. At rest "
+            f"Under the torques of the case: {data.attrs['sentence']}. Of the balance of energy "
+            f"{float(data['energy_closure']):.0e} of its largest part is left. At rest "
             "nothing sticks; below a hundredth of the operating speed friction is that of the law at it."
         )
+        if np.isfinite(data["largest_mesh_force"]):
+            yield _start_table(data)
         yield start_panel(f"start{position}", outcome)
 
 
@@ -369,6 +466,7 @@ def _of_period(position: int, outcome: Outcome) -> Iterator[Block]:
         "note",
     )
     yield _works(data)
+    yield _modes(data)
     yield motion_panel(f"motion{position}", outcome)
 
 
@@ -402,10 +500,19 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
 
 def _end_of_start(data: xr.Dataset) -> str:
     """Speeds at the end of a start, in words."""
+    if not np.isfinite(data["largest_mesh_force"]):
+        return f"Start: no values are shown: {data.attrs['sentence']}"
+    told = ", ".join(f"{body} {speed}" for body, speed in _last_speeds(data))
+    force = show.quantity("largest_mesh_force", float(data["largest_mesh_force"]), of=data)
+    after = show.quantity("time", float(data["time"][-1]), of=data)
+    return f"Start, after {after}: {told}; largest normal force {force}"
+
+
+def _last_speeds(data: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Every body, and its speed at the end of a start."""
     name = _speed_of(data)
-    ends = zip(data["body"].values, data[name].values[:, -1], strict=True)
-    told = ", ".join(f"{body} {show.quantity(name, float(value), of=data)}" for body, value in ends)
-    return f"Start, after {show.quantity('time', float(data['time'][-1]), of=data)}: {told}"
+    for body, value in zip(data["body"].values, data[name].values[:, -1], strict=True):
+        yield str(body), show.quantity(name, float(value), of=data)
 
 
 def _frequencies(data: xr.Dataset) -> str:

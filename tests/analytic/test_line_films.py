@@ -1,0 +1,388 @@
+"""Films of line contacts: limits in closed form, converged references, balances, derivatives, statuses."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.grid import grid
+from pitchpoint.lubrication.ehl.line import LineContact, problem_of
+from pitchpoint.lubrication.ehl.newton import dry, step
+from pitchpoint.lubrication.ehl.solve import flooded_inlet, line_films, solve_lines
+from pitchpoint.lubrication.ehl.texture import Rough
+from pitchpoint.lubrication.film_thickness import moes_1992
+from pitchpoint.materials.fluid import Fluid
+from pitchpoint.status import Code
+
+MODULUS = 2.26e11
+OIL = {"viscosity": 0.04, "pressure_viscosity": 2.2e-8}
+SIMPLE = {"viscosity_law": "barus_1893", "density_law": "incompressible"}
+
+
+def contact(pressure=1e9, speed=1.0, radius=0.01, *, slide=0.0, **others):
+    """Steel on steel with the oil of the references, by Hertz's pressure and mean speed."""
+    pressure, speed, radius = map(np.asarray, (pressure, speed, radius))
+    line_load = 2.0 * np.pi * (pressure / MODULUS) ** 2 * MODULUS * radius
+    given = {
+        "line_load": line_load,
+        "radius": radius,
+        "modulus": MODULUS,
+        "speed_a": speed * (1.0 + slide / 2.0),
+        "speed_b": speed * (1.0 - slide / 2.0),
+        "fluid": Fluid(**OIL),
+    }
+    return LineContact(**(given | others))
+
+
+def of_moes(M, L, speed=1.0, radius=0.01, viscosity=0.04):
+    """Contact of given load and material parameters of Moes, and its oil."""
+    U = 2.0 * viscosity * speed / (MODULUS * radius)
+    load = np.asarray(M) * np.sqrt(U) * MODULUS * radius
+    alpha = np.asarray(L) / (U**0.25 * MODULUS)
+    fluid = Fluid(viscosity=viscosity, pressure_viscosity=alpha, **SIMPLE)
+    return contact(speed=speed, radius=radius, fluid=fluid, line_load=load)
+
+
+# ---- references and limits
+
+
+def test_films_are_those_of_converged_references():
+    """Richardson's extrapolation of grids of 551 and 1101 nodes, inlet of four half-widths."""
+    case = contact(
+        *map(np.array, ([0.3e9, 0.5e9, 1e9, 1e9], [0.1, 1.0, 0.1, 1.0], [0.1, 0.01, 0.01, 0.01]))
+    )
+    found = solve_lines(dataclasses.replace(case, inlet=4.0 * case.half_width), nodes=513)
+    assert found.solved.all()
+    np.testing.assert_allclose(
+        found.film.central_film * 1e9, [164.67, 338.2, 55.25, 285.2], rtol=4e-3
+    )
+    np.testing.assert_allclose(
+        found.film.minimum_film * 1e9, [135.55, 288.2, 48.64, 250.9], rtol=7e-3
+    )
+    np.testing.assert_allclose(found.film.rolling, [15.88, 37.27, 8.545, 44.83], rtol=1.5e-2)
+
+
+def test_incompressible_films_follow_moes():
+    M, L = np.array([5.0, 10.0, 20.0, 50.0, 100.0, 200.0]), np.array([5.0, *5 * [10.0]])
+    reference = np.array([4.126, 5.633, 5.262, 4.749, 4.367, 4.003])
+    case = of_moes(M, L)
+    found = solve_lines(case, nodes=257)
+    law = moes_1992(
+        line_load=case.line_load,
+        entrainment=1.0,
+        viscosity=0.04,
+        pressure_viscosity=case.fluid.pressure_viscosity,
+        radius=0.01,
+        modulus=MODULUS,
+    )
+    assert found.solved.all()
+    off = found.film.central_film / np.asarray(law) - 1.0
+    assert (np.abs(off) < 0.05).all()
+    unit = 0.01 * np.sqrt(2.0 * 0.04 / (MODULUS * 0.01))
+    # References have an inlet of four to six half-widths, which starves the first by 1 %, the last on a grid
+    # of its own.
+    np.testing.assert_allclose(found.film.central_film / unit, reference, rtol=0.04)
+
+
+def test_rigid_bodies_with_a_thin_oil_have_the_film_of_martin():
+    """h = 4.896 eta u R/w between rigid bodies with an oil that pressure does not thicken."""
+    fluid = Fluid(viscosity=0.04, pressure_viscosity=1e-12, **SIMPLE)
+    case = contact(line_load=1e4, modulus=1e16, speed=np.array([1.0, 3.0]), fluid=fluid)
+    found = solve_lines(case)
+    martin = 4.896 * 0.04 * np.array([1.0, 3.0]) * 0.01 / 1e4 * 0.01 / 0.01
+    np.testing.assert_allclose(found.film.minimum_film, martin, rtol=5e-3)
+
+
+def test_soft_bodies_with_a_thin_oil_have_the_film_of_herrebrugh():
+    """Central film 2.621 M^-0.2 in units of Moes, the elastic limit of isoviscous oil."""
+    found = solve_lines(of_moes(np.array([20.0, 50.0]), 1e-3), nodes=257)
+    unit = 0.01 * np.sqrt(2.0 * 0.04 / (MODULUS * 0.01))
+    expected = 2.621 * np.array([20.0, 50.0]) ** -0.2
+    np.testing.assert_allclose(found.film.central_film / unit, expected, rtol=0.045)
+
+
+def test_without_speed_and_roughness_pressure_is_that_of_hertz():
+    case = contact(speed=0.0, texture=Rough(rq=1e-9, modulus=MODULUS))
+    found = solve_lines(case, nodes=257)
+    place = found.film.x / float(case.half_width)
+    hertz = 1e9 * np.sqrt(np.clip(1.0 - place**2, 0.0, None))
+    inside = np.abs(place) < 0.95
+    assert found.film.asperity_share == pytest.approx(1.0, abs=1e-9)
+    np.testing.assert_allclose(found.film.pressure[inside], hertz[inside], atol=1e6)
+
+
+def test_a_squeezed_film_is_that_between_rigid_bodies():
+    """h = (3 pi sqrt(2) eta V R^1.5/w)^(2/3) of a cylinder that approaches a plane."""
+    speed = np.array([1e-3, 1e-2])
+    fluid = Fluid(viscosity=0.04, pressure_viscosity=1e-12, **SIMPLE)
+    case = contact(line_load=1e4, modulus=1e15, speed=0.0, fluid=fluid, approach=speed)
+    film = (3.0 * np.pi * np.sqrt(2.0) * 0.04 * speed * 0.01**1.5 / 1e4) ** (2.0 / 3.0)
+    np.testing.assert_allclose(solve_lines(case).film.central_film, film, rtol=6e-3)
+
+
+def test_a_longer_inlet_changes_nothing_and_a_short_one_starves():
+    case = contact([0.5e9, 1e9], [1.0, 1.0])
+    full = solve_lines(case)
+    long = solve_lines(dataclasses.replace(case, inlet=8.0 * case.half_width))
+    short = solve_lines(dataclasses.replace(case, inlet=1.5 * case.half_width))
+    np.testing.assert_allclose(long.film.central_film, full.film.central_film, rtol=5e-3)
+    assert (short.film.central_film < 0.9 * full.film.central_film).all()
+    assert full.warnings == long.warnings == ()
+    assert "starved" in short.warnings[-1] and "1.5 half-widths" in short.warnings[-1]
+    np.testing.assert_array_equal(flooded_inlet(contact([1e8, 0.5e9, 2e9])), [6.0, 4.0, 3.0])
+
+
+def test_films_converge_with_second_order():
+    case = contact(*map(np.array, ([0.3e9, 0.8e9], [0.1, 0.5], [0.1, 0.01])))
+    film, pump = (
+        np.array([getattr(solve_lines(case, nodes=n).film, name) for n in (129, 257, 513)])
+        for name in ("central_film", "rolling")
+    )
+    order = np.log2((film[0] - film[1]) / (film[1] - film[2]))
+    assert (order > 1.7).all() and (order < 2.7).all()
+    assert (np.abs(film[2] / film[1] - 1.0) < 2e-3).all()
+    assert (np.abs(pump[2] / pump[1] - 1.0) < 1e-2).all()
+
+
+# ---- balances
+
+
+def test_load_gap_and_energy_are_balanced():
+    case = contact(np.array([0.4e9, 0.8e9]), np.array([0.5, 1.0]), slide=0.1)
+    for texture in (None, Rough(rq=0.1e-6, modulus=MODULUS)):
+        found = solve_lines(dataclasses.replace(case, texture=texture))
+        assert (found.ended.load < 1e-10).all() and (found.ended.gap < 1e-10).all()
+        speed = np.asarray(case.entrainment)
+        np.testing.assert_allclose(
+            found.film.pumping_power, 2.0 * speed * found.film.rolling, rtol=1e-8
+        )
+        power = found.film.traction_a * case.speed_a + found.film.traction_b * case.speed_b
+        sheared = (found.film.shear_force + found.film.boundary_force) * (
+            case.speed_b - case.speed_a
+        )
+        np.testing.assert_allclose(-power, sheared + found.film.pumping_power, rtol=1e-8)
+
+
+def test_the_flow_of_oil_is_the_same_through_every_face():
+    case = contact(0.5e9)
+    problem, at = problem_of(case), grid(129)
+    film = solve_lines(case).film
+    pressure, gap = film.pressure / problem.flow.pressure, film.gap / problem.flow.height
+    mass, conductance = problem.flow.mass_and_conductance(pressure, gap, at)
+    drawn = (2.0 * mass[2:] + 5.0 * mass[1:-1] - mass[:-2]) / 6.0
+    flow = drawn - (conductance * np.diff(pressure))[1:]
+    full = pressure[1:-1] > 1e-9
+    np.testing.assert_allclose(flow[full], flow[full][0], rtol=1e-8)
+    # Behind the film the same oil fills a part of the gap.
+    carried = film.filled * film.film * problem.flow.density(pressure)
+    end = film.filled < 1.0
+    np.testing.assert_allclose(carried[end], carried[end][0], rtol=1e-12)
+
+
+def test_films_are_mirrored_when_surfaces_turn_round():
+    one, other = (solve_lines(contact(0.6e9, sign * 1.0, slide=0.2)).film for sign in (1.0, -1.0))
+    np.testing.assert_array_equal(one.pressure, other.pressure[::-1])
+    np.testing.assert_array_equal(one.x, -other.x[::-1])
+    assert one.minimum_place == -other.minimum_place
+    assert one.rolling == -other.rolling and one.shear_force == -other.shear_force
+
+
+def test_contacts_together_are_those_alone():
+    pressure, speed = np.array([[0.4e9, 0.9e9, 0.7e9]]), np.array([[0.1], [2.0]])
+    together = solve_lines(contact(pressure, speed))
+    for i, j in ((0, 0), (1, 2)):
+        alone = solve_lines(contact(pressure[0, j], speed[i, 0]))
+        np.testing.assert_array_equal(together.film.pressure[i, j], alone.film.pressure)
+        assert together.film.rolling[i, j] == alone.film.rolling
+
+
+# ---- mixed lubrication
+
+
+def test_asperities_carry_less_of_the_load_the_faster_thicker_and_smoother_it_runs():
+    share = lambda found: np.asarray(found.film.asperity_share)  # noqa: E731
+    rough = Rough(rq=0.3e-6, modulus=MODULUS)
+    speed = share(solve_lines(contact(0.5e9, np.geomspace(0.003, 3.0, 9), texture=rough)))
+    oil = Fluid(viscosity=np.geomspace(0.005, 0.5, 9), pressure_viscosity=2e-8)
+    thick = share(solve_lines(contact(0.5e9, 0.1, texture=rough, fluid=oil)))
+    heights = Rough(rq=np.geomspace(0.02, 2.0, 9) * 1e-6, modulus=MODULUS)
+    high = share(solve_lines(contact(0.5e9, 0.1, texture=heights)))
+    assert (np.diff(speed) < 0.0).all() and speed[0] > 0.5 and speed[-1] < 0.01
+    assert (np.diff(thick) < 0.0).all()
+    assert (np.diff(high) > 0.0).all() and high[0] < 1e-4
+
+
+def test_ever_smoother_surfaces_become_smooth_ones():
+    smooth = solve_lines(contact(0.5e9)).film
+    rough = [
+        solve_lines(contact(0.5e9, texture=Rough(rq=rq, modulus=MODULUS))).film
+        for rq in (20e-9, 5e-9)
+    ]
+    off = [abs(film.central_film / smooth.central_film - 1.0) for film in rough]
+    assert off[1] < off[0] < 1e-2 and off[1] < 1e-3
+
+
+def test_mean_planes_that_overlap_are_solved():
+    soft = Rough(rq=0.8e-6, modulus=MODULUS, eta_beta_sigma=0.03, sigma_over_beta=1e-3)
+    found = solve_lines(contact(1.2e9, 1e-3, texture=soft))
+    assert found.solved and found.film.gap.min() < 0.0 < found.film.film.min()
+    total = found.film.asperity_pressure + np.clip(found.film.pressure, 0.0, None)
+    assert np.isfinite(total).all() and 0.05 < found.film.asperity_share < 1.0
+
+
+# ---- derivatives
+
+
+@pytest.mark.parametrize("texture", [None, Rough(rq=0.2e-6, modulus=MODULUS)])
+def test_the_matrix_is_that_of_differences(texture):
+    """Balances of cells that are full: rows of the matrix times the scale of their defects."""
+    problem, at = problem_of(contact(0.6e9, texture=texture)), grid(33)
+
+    def gain(given):
+        pressure = jnp.zeros(33).at[1:-1].set(given[:-1])
+        gap = problem.gap(pressure, given[-1], at)
+        oil = pressure - problem.flow.asperity_pressure(gap)
+        return problem.flow.balance(oil, gap, at)
+
+    @jax.jit
+    def compared():
+        pressure, level = dry(problem, at)
+        bump = 0.02 + 0.1 * jnp.exp(-((at.x[1:-1] + 0.5) ** 2))
+        given = jnp.append(pressure[1:-1] + bump, level)
+        balance, own = gain(given)
+        scale = own + at.widths[1:-1]
+        _, matrix = step(problem, jnp.zeros(33).at[1:-1].set(given[:-1]), level, at)
+        moved = jax.vmap(lambda e: (gain(given + e)[0] - gain(given - e)[0]) / 2e-6)
+        full = given[:-1] > -balance / scale
+        return full, -moved(1e-6 * jnp.eye(32)).T / scale[:, None], matrix[:-1]
+
+    full, differences, matrix = map(np.asarray, compared())
+    largest = np.abs(matrix).max(axis=1, keepdims=True)
+    assert full.sum() > 25
+    np.testing.assert_allclose((differences / largest)[full], (matrix / largest)[full], atol=1e-6)
+
+
+def test_gradients_of_film_and_traction_are_those_of_differences():
+    names = ("line_load", "speed", "viscosity", "radius", "rq", "alpha")
+
+    def answers(logarithms):
+        line_load, speed, viscosity, radius, rq, alpha = jnp.exp(logarithms)
+        fluid = Fluid(viscosity=viscosity, pressure_viscosity=alpha, shear_law="ree_eyring_1955")
+        film = line_films(
+            LineContact(
+                line_load=line_load,
+                radius=radius,
+                modulus=MODULUS,
+                speed_a=1.05 * speed,
+                speed_b=0.95 * speed,
+                fluid=fluid,
+                texture=Rough(rq=rq, modulus=MODULUS),
+            ),
+            nodes=33,
+        )
+        return jnp.stack([film.mean_film * 1e7, film.traction_a * 1e-3, film.asperity_share])
+
+    at = jnp.log(jnp.array([2e5, 1.0, 0.04, 0.012, 0.2e-6, 2e-8]))
+    compiled = jax.jit(answers)
+    slopes = np.asarray(jax.jit(jax.jacfwd(answers))(at))
+    for k in range(len(names)):
+        e = 1e-4 * np.eye(len(names))[k]
+        one, two = (compiled(at + n * e) - compiled(at - n * e) for n in (1.0, 2.0))
+        difference = (8.0 * one - two) / 12e-4
+        scale = np.abs(slopes).max(axis=1)
+        np.testing.assert_allclose(slopes[:, k] / scale, difference / scale, atol=1e-6)
+
+
+def test_films_rise_with_the_speed_to_seven_tenths():
+    film = solve_lines(contact(0.6e9, np.array([0.97, 1.03]))).film.central_film
+    assert np.diff(np.log(film))[0] / np.log(1.03 / 0.97) == pytest.approx(0.7, abs=0.04)
+
+
+# ---- statuses, warnings, bad input
+
+
+def test_a_film_that_is_too_thin_for_the_grid_is_told():
+    """An oil that pressure does not thicken leaves a film far thinner than the inlet is long."""
+    found = solve_lines(of_moes(np.array([20.0, 1000.0]), 1e-3), nodes=65)
+    codes = [Code(int(code)) for code in found.ended.code]
+    assert codes[0] == Code.SOLVED and codes[1] in (Code.UNRESOLVED, Code.NOT_CONVERGED)
+    thin = solve_lines(of_moes(np.array([100.0]), 1e-3), nodes=129)
+    exact = solve_lines(of_moes(np.array([100.0]), 1e-3), nodes=513)
+    off = abs(thin.film.central_film / exact.film.central_film - 1.0)
+    assert (thin.ended.grid > 0.5 * off).all()
+    assert "the grid is coarse for the thin films of 1 of 1 contacts" in thin.warnings[-1]
+
+
+def test_what_has_no_film_says_so_and_shows_no_numbers():
+    case = contact(
+        line_load=np.array([1e5, 0.0, np.nan, 1e5]), speed=np.array([0.0, 1.0, 1.0, 1.0])
+    )
+    found = solve_lines(case)
+    codes = [Code(int(code)) for code in found.ended.code]
+    assert codes == [Code.NO_FILM, Code.UNLOADED, Code.NOT_FINITE, Code.SOLVED]
+    assert np.isnan(found.film.central_film[:3]).all() and found.film.central_film[3] > 0.0
+    assert np.isnan(found.film.pressure[:3]).all()
+
+
+def test_surfaces_that_roll_against_each_other_lie_on_their_asperities():
+    rough = Rough(rq=0.4e-6, modulus=MODULUS, boundary_friction=0.12)
+    case = contact(
+        0.6e9, texture=rough, speed_a=np.array([0.5, 0.0]), speed_b=np.array([-0.5, 0.0])
+    )
+    found = solve_lines(case)
+    np.testing.assert_allclose(found.film.asperity_share, 1.0, rtol=1e-9)
+    np.testing.assert_allclose(
+        found.film.boundary_force, [-0.12 * float(case.line_load), 0.0], rtol=1e-9
+    )
+
+
+def test_a_solution_is_a_start_for_its_neighbours():
+    first = solve_lines(contact([0.6e9, 0.8e9]))
+    onward = solve_lines(contact([0.62e9, 0.83e9]), start=first)
+    afresh = solve_lines(contact([0.62e9, 0.83e9]))
+    np.testing.assert_allclose(onward.film.central_film, afresh.film.central_film, rtol=1e-8)
+    with pytest.raises(InputError, match="films of 2 contacts on 129 nodes are no start for 1"):
+        solve_lines(contact(0.6e9), start=first)
+
+
+def test_doubtful_contacts_are_told_with_numbers():
+    told = solve_lines(contact([1.6e9])).warnings
+    assert told == (
+        "a pressure of 1.6 GPa is outside the range of 'roelands_1966', up to 1 GPa: films and traction "
+        "there are extrapolated",
+    )
+    wide = solve_lines(contact(0.3e9, 0.1, 1.0), size=0.5e-3).warnings
+    assert "mm wide, and the size of a tooth is 0.5 mm: the bodies are no half spaces" in wide[0]
+    rough = solve_lines(contact(0.3e9, texture=Rough(rq=20e-6, modulus=MODULUS))).warnings
+    assert rough[0].startswith("a roughness Rq of 20 um is large against a contact")
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"radius": np.array([0.01, 0.0])}, "a relative radius of curvature of 0 m: it must"),
+        ({"modulus": -2e11}, "a modulus E' of -200 GPa: it must be positive"),
+        ({"fluid": Fluid(viscosity=0.0, pressure_viscosity=2e-8)}, "a viscosity of 0 mPa s"),
+        ({"texture": Rough(rq=0.0, modulus=MODULUS)}, "a composite roughness Rq of 0 um"),
+    ],
+)
+def test_bad_input_is_one_sentence(given, sentence):
+    case = {"line_load": 1e5, "speed_a": 1.0, "speed_b": 1.0, "radius": 0.01} | given
+    with pytest.raises(InputError, match=sentence):
+        solve_lines(LineContact(**({"modulus": MODULUS, "fluid": Fluid(**OIL)} | case)))
+
+
+@pytest.mark.parametrize("nodes", [2, 17, 128, 130])
+def test_nodes_are_one_more_than_a_power_of_two(nodes):
+    with pytest.raises(InputError, match=f"{nodes} nodes across a contact; their number is one"):
+        solve_lines(contact(), nodes=nodes)
+
+
+def test_progress_is_told_and_profiles_can_be_left_out():
+    seen = []
+    case = contact(np.linspace(0.3e9, 0.9e9, 70))
+    found = solve_lines(case, nodes=33, profiles=False, progress=lambda *done: seen.append(done))
+    assert seen == [(64, 70), (70, 70)]
+    assert found.film.pressure.shape == (70, 0) and found.solved.all()
