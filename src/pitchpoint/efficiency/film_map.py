@@ -76,7 +76,6 @@ def film_map(
     speeds: Values,
     degrees: Values,
     known: Callable[[float], Engagement],
-    progress: Callable[[int], None] | None = None,
 ) -> FilmMap:
     """Friction of solved films at few points of a map.
 
@@ -89,7 +88,6 @@ def film_map(
         speeds: of the map [rad/s]; standstill counts as the slowest of the others.
         degrees: temperatures of the map [K].
         known: contacts and shares by load, whose nodes are those of the map.
-        progress: told the number of operating points that are solved.
 
     Raises:
         ConvergenceError: a film was not solved.
@@ -97,11 +95,9 @@ def film_map(
     ends = _log(loads[loads > 0.0]), _log(speeds[speeds > 0.0]), degrees
     axes = tuple(_levels(one, most) for one, most in zip(ends, LEVELS, strict=True))
     found = []
-    for done, (load, speed, degree) in enumerate(product(*axes), 1):
+    for load, speed, degree in product(*axes):
         point = Operation(array(np.exp(load)), array(np.exp(speed)), array(degree))
         found.append(first_turn(design, point, models, known(float(np.exp(load)))))
-        if progress is not None:
-            progress(done)
     shape = tuple(one.size for one in axes)
     first, second, third = axes
     return FilmMap((first, second, third), np.stack(found).reshape(*shape, *found[0].shape))

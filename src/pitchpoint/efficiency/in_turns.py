@@ -49,7 +49,7 @@ def in_turns(design: Design, operation: Operation, models: Models, known: Engage
         models: laws; the one that acts has `films`.
         known: contacts and shares with their nodes.
     """
-    asked = design, operation, models.law, known.nodes
+    asked = design, operation, models, known.nodes
     for before, found in _LAST:
         if all(one is other for one, other in zip(asked, before, strict=True)):
             return found
@@ -97,7 +97,7 @@ def _solved(design: Design, operation: Operation, models: Models, known: Engagem
     balance: Balance = jax.device_get(cycle.state.balance)
     if code not in (Code.SOLVED, Code.LOCKED):
         return InTurns(_withheld(balance), status, _why(status), ())
-    return InTurns(balance, status, "", solver.films.warnings if solver.films else ())
+    return InTurns(balance, status, "", solver.warnings)
 
 
 def _lost(code: Code) -> Status:
