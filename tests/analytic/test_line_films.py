@@ -61,7 +61,7 @@ def test_films_are_those_of_converged_references():
     np.testing.assert_allclose(
         found.film.minimum_film * 1e9, [135.55, 288.2, 48.64, 250.9], rtol=7e-3
     )
-    np.testing.assert_allclose(found.film.rolling, [15.88, 37.27, 8.545, 44.83], rtol=1.5e-2)
+    np.testing.assert_allclose(found.film.rolling, [15.88, 37.27, 8.545, 44.83], rtol=2.5e-2)
 
 
 def test_incompressible_films_follow_moes():

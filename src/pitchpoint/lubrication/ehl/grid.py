@@ -51,6 +51,8 @@ class Grid(eqx.Module):
         ahead: whether a face between neighbours is ahead of the middle, shape (face,).
         kernel: deflection at a node by a pressure of one on the cell of another, but for a constant,
             shape (node, node).
+        reached: the same at the inner nodes by rows from two before each of them to one behind it, where the
+            first one stands for what would be before it, shape (node + 1, node - 2).
     """
 
     x: Float[Arrays, " node"]
@@ -58,6 +60,7 @@ class Grid(eqx.Module):
     spacing: Float[Arrays, " face"]
     ahead: Bool[Arrays, " face"]
     kernel: Float[Arrays, "node node"]
+    reached: Float[Arrays, "_ inner"]
 
     @property
     def middle(self) -> int:
@@ -88,7 +91,9 @@ def grid(nodes: int, ends: Ends = "entrained") -> Grid:
     x = places(steps)
     faces = places(0.5 * (steps[1:] + steps[:-1]))
     edges = np.concatenate(([x[0]], faces, [x[-1]]))
-    found: Any = x, np.diff(edges), np.diff(x), faces < 0.0, line_kernel(x, edges)
+    kernel = line_kernel(x, edges)
+    reached = np.concatenate((kernel[:1], kernel))[:, 1:-1]
+    found: Any = x, np.diff(edges), np.diff(x), faces < 0.0, kernel, reached
     return Grid(*found)
 
 

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from jaxtyping import Array, Float, Int
+from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.ehl.grid import Grid, prolongation
@@ -109,16 +110,21 @@ def _shifted(values: Array) -> Array:
 def _matrix(by_deflection: Array, by_pressure: Array, by_level: Array, at: Grid) -> Array:
     """Derivatives of all balances to pressures and level, shape (node - 1, node - 1)."""
     inner = by_level.shape[0]
-    kernel = jnp.concatenate((at.kernel[:1], at.kernel))[:, 1:-1]
-    block = sum(by_deflection[k][:, None] * kernel[k : k + inner] for k in range(REACH))
-    matrix = jnp.zeros((inner + 1, inner + 1))
-    matrix = matrix.at[:inner, :inner].set(block).at[:inner, inner].set(by_level)
-    matrix = matrix.at[inner, :inner].set(at.widths[1:-1])
-    rows = np.arange(inner)
-    for k in range(REACH):
-        kept = (rows + k - 2 >= 0) & (rows + k - 2 < inner)
-        matrix = matrix.at[rows[kept], rows[kept] + k - 2].add(by_pressure[k][kept])
-    return matrix
+    block = sum(by_deflection[k][:, None] * at.reached[k : k + inner] for k in range(REACH))
+    rows, columns, kept = _bands(inner)
+    every, last = np.arange(inner), np.full(inner, inner)
+    # One scatter: each of them copies the whole matrix.
+    values = jnp.concatenate((by_pressure.reshape(-1)[kept], by_level, at.widths[1:-1]))
+    where = np.concatenate((rows, every, last)), np.concatenate((columns, last, every))
+    return jnp.pad(block, (0, 1)).at[where].add(values)
+
+
+def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.int_]]:
+    """Rows and columns of what is known of each cell, and which of it is inside the matrix."""
+    rows = np.tile(np.arange(inner), (REACH, 1))
+    columns = rows + np.arange(REACH)[:, None] - 2
+    kept = np.flatnonzero((columns >= 0) & (columns < inner))
+    return rows.reshape(-1)[kept], columns.reshape(-1)[kept], kept
 
 
 def dry(problem: Problem, at: Grid, factor: Array | float = 1.0) -> tuple[Array, Array]:

@@ -1,0 +1,116 @@
+"""Line contacts with an oil film: the package beside a loop in NumPy.
+
+    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/films.py
+
+64 contacts of .4 to 1.5 GPa and .3 to 10 m/s. `rivals/ehl_line.py` solves one after the other with the same
+equations, the same scheme and as many nodes on a uniform grid of its own; its films are compared. Then a mesh
+cycle of 100 phases with two pairs of teeth, and ten thousand contacts without profiles with the memory that
+they take. Times are those of the processor, the first run, which compiles, is told apart.
+"""
+
+import os
+import resource
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
+sys.path.insert(0, str(Path(__file__).parent / "rivals"))
+
+import ehl_line as rival
+import numpy as np
+
+from pitchpoint.lubrication.ehl.line import LineContact
+from pitchpoint.lubrication.ehl.solve import solve_lines
+from pitchpoint.lubrication.ehl.texture import Rough
+from pitchpoint.materials.fluid import Fluid
+
+MODULUS, RADIUS, VISCOSITY, ALPHA = 2.26e11, 0.01, 0.04, 2.2e-8
+TURNS = 5
+
+
+def drawn(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Loads [N/m] and mean speeds [m/s]."""
+    random = np.random.default_rng(0)
+    pressure = random.uniform(0.4e9, 1.5e9, count)
+    speed = np.exp(random.uniform(np.log(0.3), np.log(10.0), count))
+    return 2.0 * np.pi * (pressure / MODULUS) ** 2 * MODULUS * RADIUS, speed
+
+
+def contacts(load: Any, speed: Any, **more: Any) -> LineContact:
+    fluid = Fluid(viscosity=VISCOSITY, pressure_viscosity=ALPHA)
+    given = {"line_load": load, "radius": RADIUS, "modulus": MODULUS, "fluid": fluid}
+    return LineContact(**given, speed_a=1.05 * speed, speed_b=0.95 * speed, **more)
+
+
+def timed(action: Callable[[], Any]) -> tuple[float, float, Any]:
+    """Processor time of the first run and the least of those after it, and the result."""
+    times = []
+    for _ in range(TURNS + 1):
+        begin = time.process_time()
+        found = action()
+        times.append(time.process_time() - begin)
+    return times[0], min(times[1:]), found
+
+
+def beside_the_rival(nodes: int) -> None:
+    load, speed = drawn(64)
+    cases = [
+        rival.Case(w, u, RADIUS, MODULUS, VISCOSITY, ALPHA)
+        for w, u in zip(load, speed, strict=True)
+    ]
+    _, loop, theirs = timed(lambda: [rival.solve(one, nodes) for one in cases])
+    first, ours, films = timed(lambda: solve_lines(contacts(load, speed), nodes=nodes))
+    width = np.asarray(films.film.half_width)
+    middle = [one.film[np.argmin(np.abs(one.x))] for one in theirs]
+    off = films.film.central_film / (np.array(middle) * width**2 / RADIUS) - 1.0
+    print(
+        f"64 contacts on {nodes} nodes: loop {1e3 * loop / 64:.2f} ms each, "
+        f"{sum(one.residual < 1e-9 for one in theirs)} solved; package {1e3 * ours / 64:.2f} ms each, "
+        f"{int(films.solved.sum())} solved, {loop / ours:.1f} times as fast, first run {first:.1f} s; "
+        f"films differ by {100 * np.nanmedian(np.abs(off)):.2g} % in the median"
+    )
+
+
+def a_mesh_cycle() -> None:
+    phase = np.linspace(0.0, 1.0, 100)[:, None]
+    share = np.clip(np.stack([phase, 1.0 - phase], axis=-1)[:, 0], 0.05, None)
+    load, radius = 2.5e5 * share, 0.004 + 0.006 * np.hstack([phase, 1.0 - phase])
+    rough = Rough(rq=0.4e-6, modulus=MODULUS)
+    case = LineContact(
+        line_load=load,
+        radius=radius,
+        modulus=MODULUS,
+        speed_a=3.0 + phase,
+        speed_b=4.0 - phase,
+        fluid=Fluid(viscosity=VISCOSITY, pressure_viscosity=ALPHA),
+        texture=rough,
+    )
+    first, again, films = timed(lambda: solve_lines(case))
+    print(
+        f"mesh cycle of 100 phases with 2 pairs, rough, 129 nodes: {again:.2f} s, first run {first:.1f} s, "
+        f"{int(films.solved.sum())} of 200 solved"
+    )
+
+
+def many() -> None:
+    load, speed = drawn(10_000)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    begin = time.process_time()
+    films = solve_lines(contacts(load, speed), nodes=65, profiles=False)
+    took = time.process_time() - begin
+    grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+    print(
+        f"10000 contacts on 65 nodes without profiles: {took:.1f} s, {int(films.solved.sum())} solved, "
+        f"{grown:.0f} MB more memory at the most"
+    )
+
+
+if __name__ == "__main__":
+    for nodes in (129, 257):
+        beside_the_rival(nodes)
+    a_mesh_cycle()
+    many()
