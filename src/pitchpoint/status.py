@@ -31,6 +31,7 @@ class Code(IntEnum):
     NO_FILM = 14
     UNLOADED = 15
     NO_STEADY_HEAT = 16
+    FILM_LOST = 17
 
     @property
     def sentence(self) -> str:
@@ -63,6 +64,7 @@ _SENTENCES = {
     Code.NO_FILM: "smooth surfaces that neither draw oil in nor approach each other have no film",
     Code.UNLOADED: "no load presses the bodies together",
     Code.NO_STEADY_HEAT: "surfaces that both stand still in their contact have no steady temperature",
+    Code.FILM_LOST: "the film of a contact that carries was not solved",
 }
 
 

@@ -32,6 +32,7 @@ def test_shapes_of_the_library():
         "frictionless": None,
         "iso_tr_14179_2": "line",
         "xu_2007": None,
+        "ehl_line": "line",
         "dowson_higginson_1959": "line",
         "dowson_1968": "line",
         "dowson_toyoda_1979": "line",

@@ -18,16 +18,19 @@ from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.status import Code
 
 __all__ = [
     "asperity_warning",
     "beyond_face",
     "conformal_warning",
     "demand_convergence",
+    "demand_films",
     "demand_motion",
     "face_warning",
     "faces_warning",
     "film_warning",
+    "films_lost",
     "jamming_words",
     "pressure_warning",
     "proportions_counted",
@@ -65,6 +68,21 @@ def demand_convergence(residual: np.ndarray, points: Sequence[Ready], laws: Sequ
             f"the torque balance did not converge (relative residual {residual[law, point]:.2g}, "
             f"allowed {TOLERANCE:g}) with {laws[law]} {_where(points[min(point, len(points) - 1)])}"
         )
+
+
+def demand_films(code: np.ndarray, points: Sequence[Ready], laws: Sequence[str]) -> None:
+    """ConvergenceError if films and forces [law, point] found no agreement: no numbers are returned."""
+    lost = films_lost(code)
+    if lost.any():
+        law, point = divmod(int(np.argmax(lost)), code.shape[1])
+        told = Code(int(code[law, point])).sentence
+        raise ConvergenceError(f"{told}, with {laws[law]} {_where(points[point])}")
+
+
+def films_lost(code: np.ndarray) -> np.ndarray:
+    """True where the turns of films and forces ended without a result."""
+    found: np.ndarray = (code != Code.SOLVED) & (code != Code.LOCKED)
+    return found
 
 
 def demand_motion(
@@ -286,7 +304,7 @@ def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
 
 def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
     """Why a law does not hold at an operating point, in words; empty where it does."""
-    reasons = _leaves(law, run)
+    reasons = [*_leaves(law, run), *map(str, run.get("outside films", ()))]
     if run["locked"].any():
         reasons.append(f"its friction coefficient, {run['friction'].max():.2g}, locks the mesh")
     loaded = run["load"] > 0.0

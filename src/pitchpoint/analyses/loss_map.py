@@ -1,5 +1,6 @@
 """The loss map of a case: mean loss and efficiency over torque, speed and temperature."""
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
@@ -10,10 +11,12 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
-from pitchpoint.analyses.operation import untransmitted
+from pitchpoint.analyses.operation import untransmitted, without_formula
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.efficiency.drive_summary import drive_figures
+from pitchpoint.efficiency.film_map import FilmMap, film_map
+from pitchpoint.efficiency.in_turns import in_turns
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
@@ -22,9 +25,11 @@ from pitchpoint.efficiency.quasi_static import (
     cycle,
     cycle_nodes,
 )
-from pitchpoint.efficiency.rows import NODES
+from pitchpoint.efficiency.rows import NODES, one_engagement
 from pitchpoint.efficiency.summary import at_points, engaged
+from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.sharing import LoadSharing
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
@@ -80,6 +85,7 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         for k, law in enumerate(built.laws)
         if where[k].any()
     ]
+    told += [*dict.fromkeys(text for part in parts for text in json.loads(part.attrs["warnings"]))]
     found = dataset(
         {name: (_DIMS, data[name].values) for name in _NAMES},
         {name: (name, data[name].values) for name in _DIMS},
@@ -109,8 +115,14 @@ def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
             "speed": ("speed", speeds),
             "temperature": ("temperature", degrees),
         },
-        warnings=[],
+        warnings=_told(built),
     )
+
+
+def _told(built: Ready) -> list[str]:
+    """How near the friction of films comes that is interpolated over the map."""
+    laws = [law for law in built.laws if law.films is not None]
+    return [_solved_films(built, law)[1] for law in laws] if isinstance(built, Built) else []
 
 
 Map = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -136,7 +148,75 @@ def _of_mesh(built: Built, torque: float, speeds: np.ndarray, degrees: np.ndarra
     known = known and known.loaded()
     together = max(1, min(speeds.size, STATES // (lanes * degrees.size)))
     for models in built.models:
-        yield _map(built.design, torque, speeds, degrees, models, known, together)
+        if models.law.films is None:
+            yield _map(built.design, torque, speeds, degrees, models, known, together)
+        else:
+            yield _of_films(built, torque, speeds, degrees, models)
+
+
+def _of_films(
+    built: Built, torque: float, speeds: np.ndarray, degrees: np.ndarray, models: Models
+) -> Map:
+    """The map at one torque with the friction of films that were solved at few points of the whole map."""
+    films, _ = _solved_films(built, models.law)
+    known, load = _known(built, torque), array(torque)
+    if films is None:
+        nothing = np.full((speeds.size, degrees.size), np.nan)
+        return nothing, nothing, np.zeros(nothing.shape, bool)
+    parts = []
+    for speed in speeds:
+        held = replace(
+            models.without_friction, held=array(films.at(torque, np.array([speed]), degrees))
+        )
+        found = _figures(built.design, load, array(speed[None]), array(degrees), held, known)
+        parts.append(jax.device_get(found))
+    loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return loss, efficiency, locked
+
+
+def _known(built: Built, torque: float) -> Engagement:
+    alone = built.models[0].without_friction
+    return one_engagement(built.design, array(torque), alone, NODES)
+
+
+@lru_cache(maxsize=4)
+def _solved_films(built: Built, law: FrictionLaw) -> tuple[FilmMap | None, str]:
+    """Friction of films over the map, and what there is to say about it."""
+    models = next(one for one in built.models if one.law is law)
+    known = lru_cache(lambda load: _known(built, load))
+    axes = map_axes(built)
+    try:
+        films = film_map(built.design, models, *axes, known)
+        errors = [_off(built, models, films, point) for point in films.between]
+    except ConvergenceError as error:
+        return None, f"{law.title}: {error}; its part of the map is withheld."
+    points, solved = int(np.prod([one.size for one in axes])), films.friction[..., 0, 0, 0].size
+    return films, (
+        f"{law.title}: films were solved at {solved} operating points for the {points} of the map, and "
+        f"their friction follows a polynomial in between; at {len(errors)} points half way between these the "
+        f"mean loss in the teeth is off by up to {100.0 * max(errors):.2g} % of that of films solved there."
+    )
+
+
+def _off(built: Built, models: Models, films: FilmMap, point: tuple[float, float, float]) -> float:
+    """Relative error of the mean loss in the teeth with interpolated friction at a point."""
+    load, speed, degree = point
+    known, design = _known(built, load), replace(built.design, drag=())
+    operation = Operation(*map(array, point))
+    solved = in_turns(design, operation, models, known)
+    if solved.lost:
+        raise ConvergenceError(solved.lost)
+    there = films.at(load, np.array([speed]), np.array([degree]))[:, :, 0, 0]
+    loss = [
+        _loss(design, operation, replace(models.without_friction, held=array(held)), known)
+        for held in (there, np.asarray(solved.balance.friction))
+    ]
+    return abs(float(loss[0] / loss[1]) - 1.0)
+
+
+@program
+def _loss(design: Design, operation: Operation, models: Models, known: Engagement) -> Array:
+    return cycle(design, operation, models, engaged=known).mean_loss
 
 
 def _of_drive(
@@ -215,11 +295,22 @@ def _figures(
 
 _figures_of_many = fast_program(_figures.function)
 
+
+def _without_films(built: Ready) -> str | None:
+    """Why films are not solved over a map."""
+    why_not = without_formula(built)
+    if why_not is None or not isinstance(built, Built):
+        return None
+    if built.design.mesh.touching and built.case.loss_map is None:
+        return f"{why_not}, and one with a table [loss_map] has it from films at few of them"
+    return None if built.design.mesh.touching else why_not
+
+
 LOSS_MAP = Analysis(
     name="loss_map",
     title="loss map",
     alone="",
-    lacks=untransmitted,
+    lacks=lambda built: untransmitted(built) or _without_films(built),
     compute=at_torque,
     pieces=pieces,
     joined=_joined,

@@ -27,6 +27,7 @@ __all__ = [
     "LAWS_THERE",
     "OPERATION",
     "untransmitted",
+    "without_formula",
 ]
 
 
@@ -107,6 +108,17 @@ def _backward_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 def untransmitted(built: Ready) -> str | None:
     """Why there is no part on the power that goes through."""
     return None if built.transmits else "nothing is transmitted by a test rig"
+
+
+def without_formula(built: Ready) -> str | None:
+    """Why there is no part on very many operating points, whose friction asks for formulas."""
+    solved = [law.name for law in built.laws if law.films is not None]
+    if not solved:
+        return None
+    return (
+        f"it takes friction at very many operating points, and '{solved[0]}' solves the films of each; a "
+        "case with formulas alone has it"
+    )
 
 
 OPERATION = Analysis(

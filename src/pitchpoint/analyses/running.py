@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint._jax import array, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.loss_map import map_axes
-from pitchpoint.analyses.operation import untransmitted
+from pitchpoint.analyses.operation import untransmitted, without_formula
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import TEMPERATURE
 from pitchpoint.cases.stages import BuiltDrive, Ready
@@ -180,7 +180,7 @@ def _with(values: np.ndarray, one: float) -> np.ndarray:
 
 def _free(built: Ready) -> str | None:
     told = None if _places(built) else Unasked("the case has no [losses] beside its teeth")
-    return untransmitted(built) or told
+    return untransmitted(built) or told or without_formula(built)
 
 
 def _computed(built: Ready, _: Piece, __: Progress) -> xr.Dataset:

@@ -9,17 +9,24 @@ import xarray as xr
 
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Progress
-from pitchpoint.analyses.caveats import demand_convergence, demand_motion, faces_warning
+from pitchpoint.analyses.caveats import (
+    demand_convergence,
+    demand_films,
+    demand_motion,
+    faces_warning,
+    films_lost,
+)
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import Acting, BuiltDrive, Ready
 from pitchpoint.efficiency.drive_summary import drive_figures
-from pitchpoint.efficiency.profile import profile
+from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
+from pitchpoint.efficiency.rows import NODES
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost
+from pitchpoint.status import Code, locked_or_lost
 from pitchpoint.status import told as told_of
 
 __all__ = [
@@ -83,15 +90,18 @@ def summaries(
     names = [models.law.name for models in under]
     travels = points[0].travels
     runs = [_grouped(points, models, progress) for models in under]
+    turns = _turns(runs)
+    lost = films_lost(turns["turns_code"])
     out = {name: np.stack([run[name] for run in runs]) for name in runs[0]}
     carrying, slices = (out.pop(name, None) for name in ("carrying_slices", "slices"))
     if not may_lock and len(points) == 1:
+        demand_films(turns["turns_code"], points, names)
         ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
         demand_motion(out["locked"], *ends, points, names)
     for name, values in out.items():
         if values.dtype.kind == "f" and name in _WITH_FRICTION:
             values[out["locked"]] = np.nan
-    residual = np.where(out["locked"], 0.0, out["residual"])
+    residual = np.where(out["locked"] | lost, 0.0, out["residual"])
     demand_convergence(residual, points, names)
     if points[0].case.models.averaging == "path":
         for name in ("mean_loss", "mean_efficiency", "mean_input_torque"):
@@ -114,9 +124,13 @@ def summaries(
     if carrying is not None and slices is not None:
         carried = np.where(out["locked"], np.nan, carrying)
         warnings += faces_warning(_meshes(points), carried, slices[0])
+    for models, code in zip(under, turns["turns_code"], strict=True):
+        warnings += _lost_warning(models.law, code)
     if not may_lock:
         for models, locked in zip(under, out["locked"], strict=True):
             warnings += _lock_warning(models.law, locked)
+    if any(models.law.films is not None for models in under):
+        out |= {name: turns[name] for name in ("turns", "turns_change")}
     data = dataset(
         {**{name: (_dims(name, values), values) for name, values in out.items()}, **extra},
         {"law": names, **_labels(points[0])},
@@ -132,6 +146,15 @@ def summaries(
     return data
 
 
+def _turns(runs: Sequence[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """What became of the turns of films and forces [law, point], taken out; formulas have none."""
+    none = np.zeros(runs[0]["locked"].shape)
+    return {
+        name: np.stack([run.pop(name, none) for run in runs])
+        for name in ("turns_code", "turns_change", "turns")
+    }
+
+
 def _warming(points: Sequence[Ready]) -> dict[str, Any]:
     """What became of the balances of heat, modulus and friction; nothing where no teeth warm up."""
     found = [point.warming for point in _meshes(points)]
@@ -143,7 +166,8 @@ def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
     """What became of the balances behind the figures [law, point]."""
     found = (np.asarray(values[name]) for name in ("locked", "residual", "iterations"))
     locked, residual, iterations = found
-    return told_of(locked_or_lost(locked.astype(bool)), residual, iterations)
+    lost = np.isnan(residual)
+    return told_of(locked_or_lost(locked.astype(bool), lost), residual, iterations)
 
 
 def _labels(built: Ready) -> dict[str, Any]:
@@ -177,6 +201,14 @@ def _lock_warning(law: FrictionLaw, locked: np.ndarray) -> list[str]:
     if not locked.any():
         return []
     return [f"{law.title}: friction locks the mesh at {locked.sum()} of {locked.size} points."]
+
+
+def _lost_warning(law: FrictionLaw, code: np.ndarray) -> list[str]:
+    return [
+        f"{law.title}: at {np.sum(code == one)} of {code.size} points {Code(int(one)).sentence}; their "
+        "figures are withheld."
+        for one in np.unique(code[films_lost(code)])
+    ]
 
 
 def _grouped(
@@ -213,10 +245,12 @@ def _in_groups(
 
 
 def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
-    """The mesh cycle under each of some models."""
+    """The mesh cycle under each of some models; where films are solved, at the nodes of all other figures."""
     point, engaged, asperities = (built.design, built.operation), built.engaged, built.asperities
+    solved = any(models.law.films is not None for models in (*built.models, *under))
+    nodes = NODES if solved else FINE
     return [
-        profile(*point, models, built.film, engaged=engaged, asperities=asperities)
+        profile(*point, models, built.film, nodes, engaged=engaged, asperities=asperities)
         for models in under
     ]
 

@@ -432,7 +432,7 @@ def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
 
 def _models(case: Case, own: FrictionLaw | None) -> tuple[Models, ...]:
     """Models under each law of the case, or under the user's own."""
-    laws = [FRICTION[choice.name] for choice in case.models.friction] if own is None else [own]
+    laws = [_law(choice.name, case) for choice in case.models.friction] if own is None else [own]
     given = {choice.name: choice.parameters for choice in case.models.friction}
     common = Models(
         friction=(),
@@ -453,9 +453,22 @@ def _inlet(law: Inlet, case: Case) -> Inlet:
 def _under(
     laws: Sequence[FrictionLaw], models: Models, given: Mapping[str, Mapping[str, float]]
 ) -> tuple[Models, ...]:
-    """Models under each of some laws, with the parameters that are given of them."""
-    parameters = {law.name: _parameters(law, given.get(law.name, {})) for law in laws}
-    return replace(models, friction=tuple(laws), parameters=parameters).each
+    """Models under each of some laws, with the parameters that are given of them.
+
+    Formulas share programs; a law that solves films is in none.
+    """
+    formulas = tuple(law for law in laws if law.films is None)
+    parameters = {law.name: _parameters(law, given.get(law.name, {})) for law in formulas}
+    sharing = iter(replace(models, friction=formulas, parameters=parameters).each)
+    return tuple(
+        next(sharing) if law.films is None else replace(models.without_friction, friction=(law,))
+        for law in laws
+    )
+
+
+def _law(name: str, case: Case) -> FrictionLaw:
+    """A friction law; one that solves films with the choices of the case."""
+    return FRICTION[name]
 
 
 def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.Array]:
@@ -537,6 +550,19 @@ def _check_heat(case: Case, mesh: Mesh) -> None:
             f"'{case.models.tooth_temperature}' asks for {missing}; use isothermal",
             key="models.tooth_temperature",
         )
+    if told := _solved_first(case):
+        raise InputError(f"the heat of the teeth {told}", key="models.friction")
+
+
+def _solved_first(case: Case) -> str | None:
+    """What is wrong with a first friction law that solves films, where a formula is asked for."""
+    first = FRICTION[case.models.friction[0].name]
+    if first.films is None:
+        return None
+    return (
+        f"follows from the first friction law of a case, and '{first.name}' is no formula; name a formula "
+        "before it"
+    )
 
 
 def _check_masses(case: Case, mesh: Mesh) -> None:
@@ -564,6 +590,8 @@ def _check_motion(case: Case, mesh: Mesh) -> None:
     asked = case.dynamics.motion
     if asked is None:
         return
+    if told := _solved_first(case):
+        raise InputError(f"a motion {told}", key="models.friction")
     if mesh.couples:
         raise InputError(
             "motion with friction takes each pair of teeth as a spring of its own, and the rim of these "

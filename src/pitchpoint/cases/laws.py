@@ -4,6 +4,7 @@ from math import inf
 
 from pitchpoint import units
 from pitchpoint.lubrication.conditions import UNITS
+from pitchpoint.lubrication.ehl.traction import EHL_LINE
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.registry import Registry
@@ -15,7 +16,7 @@ CASE_LAWS: tuple[FrictionLaw, ...] = tuple(
 )
 """Readings of a publication that are needed to reproduce its tables; no spread counts them."""
 
-FRICTION: Registry[FrictionLaw] = Registry("friction law", *LAWS, *CASE_LAWS)
+FRICTION: Registry[FrictionLaw] = Registry("friction law", *LAWS, EHL_LINE, *CASE_LAWS)
 
 
 def limits_words(name: str, limits: tuple[float, float]) -> str:

@@ -23,6 +23,7 @@ from pitchpoint.cases.build import (
 )
 from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.failures import in_stage
+from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
@@ -361,6 +362,13 @@ def _check_laws(alone: Sequence[Case]) -> None:
     """InputError if stages have several friction laws, but not as many as the others."""
     counts = [len(one.models.friction) for one in alone]
     for number, count in enumerate(counts, 1):
+        for choice in alone[number - 1].models.friction:
+            if FRICTION[choice.name].films is not None:
+                raise InputError(
+                    f"'{choice.name}' solves films in turns with the forces of one mesh; stages take "
+                    "formulas",
+                    key=_key(number, "models.friction"),
+                )
         if count not in (1, max(counts)):
             raise InputError(
                 f"{count} friction laws were given where another stage has {max(counts)}; give one, which "

@@ -8,15 +8,16 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import total
+from pitchpoint.efficiency.in_turns import in_turns
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
     Models,
     Operation,
     cycle_of,
-    engagement_alone,
 )
-from pitchpoint.efficiency.rows import balance_in_rows
+from pitchpoint.efficiency.rows import balance_in_rows, one_engagement
+from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.applicability import Limited
 from pitchpoint.lubrication.asperity_load import AsperityLoad
@@ -25,7 +26,10 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.programs import program
 
-__all__ = ["profile"]
+__all__ = ["FINE", "profile"]
+
+FINE = 48
+"""Usual nodes of a profile in each segment between events."""
 
 
 def profile(
@@ -33,7 +37,7 @@ def profile(
     operation: Operation,
     models: Models,
     film: FilmThickness,
-    nodes: int = 48,
+    nodes: int = FINE,
     engaged: Engagement | None = None,
     asperities: AsperityLoad | None = None,
 ) -> dict[str, np.ndarray]:
@@ -52,11 +56,15 @@ def profile(
         Quantities by name, [node] for the mesh and [node, pair, slice] for each contact; zero where
         a pair is not in contact. Losses beside the teeth are among them where the design has some.
         Without any load there is no film (NaN), which the laws let grow without limit; over smooth
-        flanks its ratio to their roughness is infinite.
+        flanks its ratio to their roughness is infinite. Names that begin with "outside" tell where laws are
+        out of their ranges, and what to be wary of about solved films.
+
+    Raises:
+        ConvergenceError: a film was not solved, or films and forces do not agree.
     """
     chosen: list[Limited] = [models.law, film, *([asperities] if asperities else [])]
-    known = engaged or _engagement(design, operation.load, models.without_friction, nodes)
-    found = balance_in_rows(design, operation, known, models)
+    known = engaged or one_engagement(design, operation.load, models.without_friction, nodes)
+    found, warnings = _balance(design, operation, known, models)
     limited = _limiting(chosen, film)
     told, ranged = jax.device_get(
         _profile(design, operation, replace(known, body=None), found, film, asperities, limited)
@@ -66,10 +74,19 @@ def profile(
         for one in chosen
         for name, limits in one.ranges.items()
     }
-    return {**told, **outside}
+    return {**told, **outside, "outside films": np.array(warnings)}
 
 
-_engagement = program(engagement_alone)
+def _balance(
+    design: Design, operation: Operation, known: Engagement, models: Models
+) -> tuple[Balance, tuple[str, ...]]:
+    """Forces at the nodes, and what to be wary of about films that were solved for them."""
+    if models.law.films is None:
+        return balance_in_rows(design, operation, known, models), ()
+    found = in_turns(design, operation, models, known)
+    if found.lost:
+        raise ConvergenceError(f"{models.law.title}: {found.lost}")
+    return found.balance, found.warnings
 
 
 @program

@@ -23,7 +23,16 @@ from pitchpoint.efficiency.quasi_static import (
 from pitchpoint.loading.balance import Balance
 from pitchpoint.programs import program
 
-__all__ = ["CHUNK", "NODES", "Row", "balance_in_rows", "balances", "engagements", "stacked"]
+__all__ = [
+    "CHUNK",
+    "NODES",
+    "Row",
+    "balance_in_rows",
+    "balances",
+    "engagements",
+    "one_engagement",
+    "stacked",
+]
 
 CHUNK = 8
 """Rows that are computed together: one compiled program serves any number of them."""
@@ -41,6 +50,10 @@ def engagements(designs: Design, load: Float[Array, " row"], models: Models) -> 
         lambda design, one: engagement_alone(design, one, models, NODES)
     )(designs, load)
     return found
+
+
+one_engagement = program(engagement_alone)
+"""Contacts and shares of one point, see `engagement_alone`."""
 
 
 @program

@@ -12,6 +12,7 @@ from jaxtyping import Array
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import along, total
 from pitchpoint.efficiency.drag import bearing_loads
+from pitchpoint.efficiency.in_turns import in_turns
 from pitchpoint.efficiency.quasi_static import (
     Cycle,
     Design,
@@ -24,7 +25,15 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_of,
     engagement,
 )
-from pitchpoint.efficiency.rows import CHUNK, Row, balances, engagements, stacked
+from pitchpoint.efficiency.rows import (
+    CHUNK,
+    NODES,
+    Row,
+    balances,
+    engagements,
+    one_engagement,
+    stacked,
+)
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
@@ -187,8 +196,14 @@ def summarise(
         points: designs and operating points of equal static structure (lanes, undercut).
         models: laws.
         progress: told the number of finished points after each chunk.
+
+    Returns:
+        Figures; where the law solves films, `turns_code`, `turns` and `turns_change` tell what became of each
+        point, and figures of films that were not solved are NaN.
     """
     prepared = list(_prepared(points, models))
+    if models.law.films is not None:
+        return _by_films(prepared, models, progress)
     return in_chunks(lambda chunk: _figures(chunk, models), prepared, progress=progress)
 
 
@@ -226,6 +241,27 @@ def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
         known = engagements(design, operation.load, alone)
     rows = design, operation, known
     return _summaries(rows, balances(rows, models), alone)
+
+
+def _by_films(
+    prepared: Sequence[Prepared], models: Models, progress: Callable[[int], None] | None
+) -> dict[str, np.ndarray]:
+    """Summaries of points whose films are solved, one after the other."""
+    alone, rows, ends = models.without_friction, [], []
+    for done, (design, operation, engaged) in enumerate(prepared, 1):
+        known = engaged or one_engagement(design, operation.load, alone, NODES)
+        found = in_turns(design, operation, models, known)
+        rows.append(((design, operation, replace(known, body=None)), found.balance))
+        ends.append(found.status)
+        if progress is not None:
+            progress(done)
+    told = in_chunks(lambda chunk: _summaries(chunk[0], chunk[1], alone), rows)
+    each = {
+        "turns_code": [one.code for one in ends],
+        "turns_change": [one.residual for one in ends],
+        "turns": [one.iterations for one in ends],
+    }
+    return {**told, **{name: np.array(values) for name, values in each.items()}}
 
 
 def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:

@@ -21,6 +21,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Numbers, as_array, log, scaled
+from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
     "LAWS",
@@ -68,15 +69,18 @@ class FrictionLaw:
         local: True if the law holds at each contact, False if it gives one mean for the mesh.
         note: what it was fitted on, and cautions.
         full_film: True if it describes contacts that a film separates.
-        check: arguments in SI and the value computed from the printed formula in printed units.
+        check: arguments in SI and the value computed from the printed formula in printed units; None of a
+            law that is no formula.
         shape: of the contacts for which it holds; None where what it asks for says that.
+        films: choices by which the films of the contacts are solved, in turns with the balance of forces;
+            None of a formula.
     """
 
     name: str
     title: str
     function: Callable[..., Array]
     sources: tuple[str, ...]
-    check: tuple[dict[str, float], float]
+    check: tuple[dict[str, float], float] | None = None
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     local: bool = True
     note: str = ""
@@ -84,6 +88,7 @@ class FrictionLaw:
     largest: float = math.inf
     whole: bool = False
     shape: Shape | None = None
+    films: FilmModel | None = None
 
     @property
     def rivals(self) -> "Iterable[FrictionLaw]":

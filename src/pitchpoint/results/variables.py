@@ -35,6 +35,8 @@ VARIABLES: dict[str, Variable] = {
     ),
     "jamming_coefficient": Variable("friction coefficient at which the mesh locks", "μ lock", "1"),
     "largest_friction": Variable("largest friction coefficient of the contacts", "μ max", "1"),
+    "turns": Variable("turns of films and forces", "n", "1"),
+    "turns_change": Variable("change of the friction coefficient in the last turn", "Δμ/μ", "1"),
     "nearest_friction": Variable(
         "friction coefficient where the mesh is nearest to locking", "μ", "1"
     ),

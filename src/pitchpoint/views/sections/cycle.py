@@ -22,7 +22,7 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import Points, folded, gapped, titled
 from pitchpoint.views.path import path_of
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import Block, Page, Paragraph, Section
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section
 
 __all__ = ["CYCLE", "cycle_panel"]
 
@@ -206,6 +206,26 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
     return "; ".join(f"{words} ({', '.join(names)})" for words, names in seen.items())
 
 
+def _turns(outcome: Outcome, law: str) -> list[tuple[str, str]]:
+    """How films and forces were found together, name and words; nothing of a formula."""
+    data = outcome.parts.get("operation")
+    if data is None or "turns" not in data or law not in laws(data):
+        return []
+    turns, change = (
+        float(data[name].values[laws(data).index(law), 0]) for name in ("turns", "turns_change")
+    )
+    if not turns:
+        return []
+    agree = f"agree after {turns:.0f} turns, the coefficients to {change:.1g} of the largest one"
+    return [("films and forces", agree)]
+
+
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    for law in outcome.manifest["laws"]:
+        for name, words in _turns(outcome, law["name"]):
+            yield Printed(line=f"{law['title']}: {name} {words}.")
+
+
 CYCLE = Section(
     name="cycle",
     title="Over the mesh cycle",
@@ -213,4 +233,6 @@ CYCLE = Section(
     order=200.0,
     parts=("teeth",),
     blocks=_blocks,
+    card=_turns,
+    screen=_screen,
 )

@@ -1,0 +1,120 @@
+"""Balances of mesh cycles whose friction comes from solved films, and what became of their turns."""
+
+from collections import deque
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pitchpoint._jax import array, jax
+from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint.efficiency.solved import solved_cycle
+from pitchpoint.errors import ConvergenceError
+from pitchpoint.loading.balance import Balance
+from pitchpoint.lubrication.ehl.traction import FilmTraction
+from pitchpoint.status import Code, Status
+
+__all__ = ["InTurns", "first_turn", "in_turns"]
+
+FIRST = 0.03
+"""Coefficient of every contact before its film is known."""
+
+KEPT = 8
+"""Points that are kept: parts of a case ask for the same ones."""
+
+
+@dataclass(frozen=True)
+class InTurns:
+    """Forces of a mesh cycle and the films that agree with them.
+
+    Attributes:
+        balance: at the nodes; NaN where the turns did not end well.
+        status: of the turns.
+        lost: why they did not end well, in one sentence without its stop; empty where they did.
+        warnings: what to be wary of about the films, in sentences.
+    """
+
+    balance: Balance
+    status: Status
+    lost: str
+    warnings: tuple[str, ...]
+
+
+def in_turns(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:
+    """Balance at the nodes of a cycle under a friction law that solves films.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: one operating point.
+        models: laws; the one that acts has `films`.
+        known: contacts and shares with their nodes.
+    """
+    asked = design, operation, models, known.nodes
+    for before, found in _LAST:
+        if all(one is other for one, other in zip(asked, before, strict=True)):
+            return found
+    found = _solved(design, operation, models, known)
+    _LAST.append((asked, found))
+    return found
+
+
+_LAST: deque[tuple[tuple[object, ...], InTurns]] = deque(maxlen=KEPT)
+
+
+def first_turn(
+    design: Design, operation: Operation, models: Models, known: Engagement
+) -> NDArray[np.float64]:
+    """Coefficients [pair, slice, node] of the films under the forces of a small friction.
+
+    Arguments as in `in_turns`.
+
+    Raises:
+        ConvergenceError: a film was not solved.
+    """
+    begin, known, solver = _begin(design, operation, models, known)
+    cycle, _ = solved_cycle(design, operation, begin, solver, engaged=known, most=1)
+    return np.asarray(cycle.state.balance.friction)
+
+
+def _begin(
+    design: Design, operation: Operation, models: Models, known: Engagement
+) -> tuple[Models, Engagement, FilmTraction]:
+    films = models.law.films
+    assert films is not None
+    solver = FilmTraction(films, design.lubricant, operation.temperature)
+    first = array(np.full(known.share.shape, FIRST))
+    return replace(models.without_friction, held=first), replace(known, body=None), solver
+
+
+def _solved(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:
+    begin, known, solver = _begin(design, operation, models, known)
+    try:
+        cycle, status = solved_cycle(design, operation, begin, solver, engaged=known)
+    except ConvergenceError as error:
+        cycle, _ = solved_cycle(design, operation, begin, solver, engaged=known, most=0)
+        return InTurns(_withheld(cycle.state.balance), _lost(Code.FILM_LOST), str(error), ())
+    code = Code(int(status.code))
+    balance: Balance = jax.device_get(cycle.state.balance)
+    if code not in (Code.SOLVED, Code.LOCKED):
+        return InTurns(_withheld(balance), status, _why(status), ())
+    return InTurns(balance, status, "", solver.warnings)
+
+
+def _lost(code: Code) -> Status:
+    return Status(array(int(code)), array(np.nan), array(0))
+
+
+def _why(status: Status) -> str:
+    return (
+        f"films and forces did not agree after {int(status.iterations)} turns: the coefficients still "
+        f"changed by {float(status.residual):.2g} of the largest one"
+    )
+
+
+def _withheld(balance: Balance) -> Balance:
+    """The same without its numbers."""
+    found: Balance = jax.tree.map(
+        lambda leaf: np.full(leaf.shape, np.nan) if leaf.dtype.kind == "f" else np.asarray(leaf),
+        jax.device_get(balance),
+    )
+    return found

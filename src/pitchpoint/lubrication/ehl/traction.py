@@ -1,0 +1,171 @@
+"""Friction of line contacts from their solved films, as a law that a case may choose."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from jax.typing import ArrayLike
+from numpy.typing import NDArray
+
+from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.factored import Numbers
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.solve import Films, solve_lines
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.materials.lubricants import Lubricant
+from pitchpoint.status import Code
+
+__all__ = ["EHL_LINE", "FilmTraction", "ehl_line"]
+
+Each = NDArray[np.float64]
+
+SWINGS: Final = 0.1
+"""Change over two turns, over that of the last one, below which a coefficient goes to and fro."""
+
+LEAST: Final = 1e-7
+"""Change over the largest coefficient below which a coefficient stands still."""
+
+
+def ehl_line(
+    *,
+    line_load: Numbers,
+    radius: Numbers,
+    modulus: Numbers,
+    speed_a: Numbers,
+    speed_b: Numbers,
+    roughness_rq: Numbers,
+) -> Numbers:
+    """The conditions that a solved film asks for; its coefficient is no formula of them.
+
+    A balance of forces and the films take turns, see `FilmTraction`. What asks for a formula is refused.
+
+    Args:
+        line_load: normal load per length of contact line [N/m].
+        radius: relative radius of curvature [m].
+        modulus: E' [Pa].
+        speed_a: surface speed of member 0 relative to the contact [m/s].
+        speed_b: surface speed of member 1 relative to the contact [m/s].
+        roughness_rq: composite Rq [m].
+
+    Raises:
+        InputError: always.
+    """
+    raise InputError(
+        "'ehl_line' solves the film of every contact in turns with the balance of forces, and what is asked "
+        "for here takes a friction law that is a formula"
+    )
+
+
+class FilmTraction:
+    """Friction coefficients of the solved films of an oil: a solver that a balance takes turns with.
+
+    Args:
+        model: how films are solved.
+        oil: between the flanks.
+        temperature: of the oil in the inlet [K].
+
+    Attributes:
+        films: those of the last turn; None before the first.
+        turns: coefficients of the last two turns [contact].
+        jumps: how far coefficients that go to and fro do so [contact]; zero of others.
+    """
+
+    def __init__(self, model: FilmModel, oil: Lubricant, temperature: ArrayLike) -> None:
+        self.model, self.oil, self.temperature = model, oil, temperature
+        self.films: Films | None = None
+        self.turns: list[Each] = []
+        self.jumps: Each = np.zeros(0)
+
+    def __call__(
+        self,
+        *,
+        line_load: Each,
+        radius: Each,
+        modulus: Each,
+        speed_a: Each,
+        speed_b: Each,
+        roughness_rq: Each,
+    ) -> Each:
+        """Friction of the oil and of asperities over the load of each contact [contact].
+
+        Arguments as in `ehl_line`, NumPy arrays [contact].
+
+        Raises:
+            ConvergenceError: a film was not solved.
+        """
+        contacts = self.model.contacts(
+            line_load=line_load,
+            radius=radius,
+            modulus=modulus,
+            speed_a=speed_a,
+            speed_b=speed_b,
+            oil=self.oil,
+            temperature=self.temperature,
+            roughness_rq=roughness_rq,
+        )
+        self.films = solve_lines(contacts, nodes=self.model.nodes, profiles=False)
+        _demand(self.films)
+        film = self.films.film
+        friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
+        return self._settled(friction)
+
+    def _settled(self, friction: Each) -> Each:
+        """Coefficients, of contacts that go to and fro between two values their mean from then on.
+
+        The grid of a contact changes its length in steps with the load. Where a step lies at the load that is
+        looked for, no load has the friction that belongs to it.
+        """
+        if not self.turns or self.turns[-1].shape != friction.shape:
+            self.turns, self.jumps = [], np.zeros(friction.shape)
+        if len(self.turns) > 1:
+            before, last = self.turns[-2:]
+            jump = np.abs(friction - last)
+            swings = (np.abs(friction - before) < SWINGS * jump) & (jump > LEAST * friction.max())
+            friction = np.where(self.jumps > 0.0, last, friction)
+            begins = swings & (self.jumps == 0.0)
+            friction = np.where(begins, 0.5 * (friction + last), friction)
+            self.jumps = np.where(begins, jump, self.jumps)
+        self.turns = [*self.turns[-1:], friction]
+        return friction
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What to be wary of about the films of the last turn, in sentences without their stop."""
+        if self.films is None:
+            return ()
+        count = int(np.sum(self.jumps > 0.0))
+        if not count:
+            return self.films.warnings
+        part = 100.0 * float(np.max(self.jumps / self.turns[-1]))
+        return (
+            *self.films.warnings,
+            f"the friction of {count} of {self.jumps.size} contacts jumps by up to {part:.2g} % where their "
+            "grid changes its length; its mean is taken, and more nodes make the jump smaller",
+        )
+
+
+def _demand(films: Films) -> None:
+    """ConvergenceError if a film was not solved, with what became of how many."""
+    lost = ~films.solved
+    if lost.any():
+        worst = Code(int(np.max(np.asarray(films.ended.code))))
+        raise ConvergenceError(
+            f"the film of {lost.sum()} of {lost.size} contacts that carry was not solved: {worst.sentence}"
+        )
+
+
+EHL_LINE: Final = FrictionLaw(
+    name="ehl_line",
+    title="Solved film of every line contact (EHL)",
+    function=ehl_line,
+    sources=("dowson_higginson_1966", "patir_cheng_1978", "greenwood_tripp_1970"),
+    note=(
+        "Shear of the oil and friction of asperities from pressure and film of each contact, solved in turns"
+        " with the balance of forces until both agree to 1e-6. Rolling resistance stays with its own law. A"
+        " contact takes about 10 ms a turn: a helical mesh with many slices takes minutes."
+    ),
+    shape="line",
+    films=FilmModel(),
+)
+"""Its `films` are the usual choices; a case puts its own in their place."""
