@@ -8,7 +8,7 @@ import equinox as eqx
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import jnp
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
@@ -143,13 +143,11 @@ def problem_of(contact: LineContact) -> Problem:
     half_width, pressure = contact.half_width, contact.hertz_pressure
     speed = jnp.abs(contact.entrainment)
     unit = jnp.maximum(speed + jnp.abs(contact.approach) * contact.radius / half_width, SLOWEST)
-    film = jax.lax.stop_gradient(guess(contact))
+    film = guess(contact)
     # Thick films and rough surfaces carry on a length beyond that of the dry contact.
     rough = 0.0 if contact.texture is None else contact.texture.rq
     beyond = contact.radius * (INLETS * film + SUMMITS * rough) / half_width**2
-    ratio = jnp.sqrt(1.0 + jax.lax.stop_gradient(beyond))
-    # In steps, so that the grid keeps its places in the contact while inputs change a little.
-    ratio = 2.0 ** (jnp.ceil(4.0 * jnp.log2(ratio) - 1e-9) / 4.0)
+    ratio = jnp.sqrt(1.0 + beyond)
     length = half_width * ratio
     height = length**2 / contact.radius
     fluid = contact.fluid
@@ -175,8 +173,10 @@ def guess(contact: LineContact) -> Array:
     the same film, (3 pi sqrt(2) eta V R^(3/2)/w)^(2/3) for the one and 6 eta u R/w for the other.
     """
     load, oil, radius = contact.line_load, contact.fluid.viscosity, contact.radius
-    closing = jnp.maximum(contact.approach, 0.0)
-    squeezed = (3.0 * jnp.pi * jnp.sqrt(2.0) * oil * closing * radius**1.5 / load) ** (2.0 / 3.0)
+    closes = contact.approach > 0.0
+    closing = jnp.where(closes, contact.approach, 1.0)
+    alone = (3.0 * jnp.pi * jnp.sqrt(2.0) * oil * closing * radius**1.5 / load) ** (2.0 / 3.0)
+    squeezed = jnp.where(closes, alone, 0.0)
     speed = jnp.abs(contact.entrainment) + squeezed * load / (6.0 * oil * radius)
     return moes_1992(
         line_load=contact.line_load,
