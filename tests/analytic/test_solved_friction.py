@@ -140,6 +140,12 @@ def test_smooth_flanks_in_a_thin_oil_have_hardly_any_friction():
     assert (rough < COARSE.boundary_friction).all()
 
 
+def test_films_are_solved_by_the_choices_of_the_case():
+    chosen = {"solver": "line", "nodes": 65, "boundary_friction": 0.08}
+    films = built(film=chosen).models[0].law.films
+    assert films == FilmModel(nodes=65, boundary_friction=0.08)
+
+
 def test_a_contact_whose_friction_jumps_at_its_load_gets_the_mean(monkeypatch):
     """A jump at the load that is looked for: more than it below, less above, and no load in agreement."""
     films = []

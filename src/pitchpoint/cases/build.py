@@ -10,6 +10,7 @@ import numpy as np
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
+from pitchpoint.cases.films import film_model
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.schema import (
@@ -467,8 +468,11 @@ def _under(
 
 
 def _law(name: str, case: Case) -> FrictionLaw:
-    """A friction law; one that solves films with the choices of the case."""
-    return FRICTION[name]
+    """A friction law; one that solves films does so by the choices of the case."""
+    law = FRICTION[name]
+    if law.films is None or case.film is None:
+        return law
+    return replace(law, films=film_model(case.film))
 
 
 def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.Array]:
