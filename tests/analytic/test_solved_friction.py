@@ -146,24 +146,6 @@ def test_films_are_solved_by_the_choices_of_the_case():
     assert films == FilmModel(nodes=65, boundary_friction=0.08)
 
 
-def test_a_contact_whose_friction_jumps_at_its_load_gets_the_mean(monkeypatch):
-    """A jump at the load that is looked for: more than it below, less above, and no load in agreement."""
-    films = []
-
-    def jumping(contacts, **asked):
-        found = solve_lines(contacts, **asked)
-        films.append(found)
-        more = np.where(np.arange(found.solved.size) == 7, 1.0 + 0.05 * (len(films) % 2), 1.0)
-        film = replace(found.film, shear_force=found.film.shear_force * more)
-        return replace(found, film=replace(film, boundary_force=film.boundary_force * more))
-
-    monkeypatch.setattr(traction, "solve_lines", jumping)
-    found, _ = solved(built(operation={"torque": "53 N m"}))
-    assert Code(int(found.status.code)).ok
-    assert int(found.status.iterations) <= 8
-    assert any("contacts jumps by up to" in told for told in found.warnings)
-
-
 def test_a_film_that_was_not_solved_gives_no_numbers(monkeypatch):
     def losing(contacts, **asked):
         films = solve_lines(contacts, **asked)

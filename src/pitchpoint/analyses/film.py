@@ -31,7 +31,9 @@ from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.fields import LineFilm
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.programs import program
@@ -245,9 +247,12 @@ def _solved(
     return films, codes, back
 
 
+def _model(built: Built) -> FilmModel:
+    return film_model(_asked(built), [used.record for used in built.solids])
+
+
 def _films(built: Built, given: np.ndarray, done: Done) -> Films:
-    model = film_model(_asked(built))
-    design = built.design
+    model, design = _model(built), built.design
     contacts = model.contacts(
         **dict(zip(_GIVEN, given.T, strict=True)),
         modulus=float(design.modulus),
@@ -277,6 +282,7 @@ def _values(
         "minimum_film": lane(film.minimum_film),
         "film_pressure": lane(film.largest_pressure),
         "asperity_share": lane(film.asperity_share),
+        "film_rise": lane(0.0 * film.rolling if film.heat is None else film.heat.largest_film),
         "film_friction": np.abs(drawn) / load,
         "boundary_part": np.abs(lane(film.boundary_force)) / load,
         "rolling_resistance": rolling,
@@ -420,7 +426,11 @@ def _figures(
 def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Smallest and largest values of the films that were found."""
     low = {"smallest_film": "minimum_film", "smallest_lambda": "minimum_lambda"}
-    high = {"largest_film_pressure": "film_pressure", "largest_asperity_share": "asperity_share"}
+    high = {
+        "largest_film_pressure": "film_pressure",
+        "largest_asperity_share": "asperity_share",
+        "largest_film_rise": "film_rise",
+    }
 
     def end(name: str, reduce: Any) -> Any:
         some = found[name][~np.isnan(found[name])]
@@ -504,12 +514,13 @@ def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
 def _about(built: Built, states: Mapping[str, np.ndarray]) -> list[str]:
     """What the films leave out."""
     run = {"load": np.where(states["loaded"], states["load"], 0.0), "radius": states["radius"]}
-    return [COLD, *(f"Films: {text}" for text in conformal_warning(built.design.mesh, run))]
+    cold = [COLD] if _model(built).thermal == ISOTHERMAL else []
+    return [*cold, *(f"Films: {text}" for text in conformal_warning(built.design.mesh, run))]
 
 
 def _choices(built: Built) -> dict[str, Any]:
     """The choices behind the films, by name."""
-    model = film_model(_asked(built))
+    model = _model(built)
     return {
         "nodes": model.nodes,
         "viscosity_law": model.viscosity_law,
@@ -517,6 +528,7 @@ def _choices(built: Built) -> dict[str, Any]:
         "shear_law": model.shear_law,
         "asperities": model.asperities,
         "boundary_friction": model.boundary_friction,
+        "thermal": model.thermal,
     }
 
 

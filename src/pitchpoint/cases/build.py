@@ -362,6 +362,8 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         _check_shapes(case, mesh, own)
         _check_models(case, mesh)
         _check_hardness(case, used)
+        if case.film is not None:
+            film_model(case.film, [one.record for one in used])
     except InputError as error:
         raise error.at(file=document.name) from None
     design = Design(
@@ -374,7 +376,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     )
     told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
     told += _half_of_a_line(case.lubricant)
-    models = _models(case, own)
+    models = _models(case, own, used)
     name = named_set(document.tree.get("losses"))
     fitted = loss_sets()[name].fitted if name else None
     point = operation_at(case.operation)
@@ -431,9 +433,10 @@ def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
     return replace(built, design=design, solids=used)
 
 
-def _models(case: Case, own: FrictionLaw | None) -> tuple[Models, ...]:
+def _models(case: Case, own: FrictionLaw | None, used: Sequence[SolidInUse]) -> tuple[Models, ...]:
     """Models under each law of the case, or under the user's own."""
-    laws = [_law(choice.name, case) for choice in case.models.friction] if own is None else [own]
+    names = [choice.name for choice in case.models.friction]
+    laws = [_law(name, case, used) for name in names] if own is None else [own]
     given = {choice.name: choice.parameters for choice in case.models.friction}
     common = Models(
         friction=(),
@@ -467,12 +470,12 @@ def _under(
     )
 
 
-def _law(name: str, case: Case) -> FrictionLaw:
+def _law(name: str, case: Case, used: Sequence[SolidInUse]) -> FrictionLaw:
     """A friction law; one that solves films does so by the choices of the case."""
     law = FRICTION[name]
     if law.films is None or case.film is None:
         return law
-    return replace(law, films=film_model(case.film))
+    return replace(law, films=film_model(case.film, [one.record for one in used]))
 
 
 def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.Array]:

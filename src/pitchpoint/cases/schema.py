@@ -217,6 +217,12 @@ def _shears() -> list[str]:
     return list(SHEAR_STRESS)
 
 
+def _thermals() -> list[str]:
+    from pitchpoint.lubrication.ehl.conduction import THERMAL
+
+    return list(THERMAL)
+
+
 def _asperities() -> list[str]:
     from pitchpoint.lubrication.ehl.model import SMOOTH
     from pitchpoint.lubrication.ehl.texture import ASPERITIES
@@ -705,6 +711,9 @@ class FilmTable(Table):
     pattern: Annotated[float, PATTERN] | None = None
     boundary_friction: Annotated[float, COEFFICIENT] | None = None
     inlet: Annotated[float, INLET] | None = None
+    thermal: (
+        Annotated[str, BeforeValidator(named(_thermals, "thermal effect of a film"))] | None
+    ) = None
 
     @property
     def shear_parameters(self) -> dict[str, float]:

@@ -77,6 +77,13 @@ VARIABLES: dict[str, Variable] = {
         "largest pressure of the film, solved", "p_max", "Pa", "MPa", "pressure"
     ),
     "asperity_share": percent("part of the load on asperities, solved", "L_a"),
+    "film_rise": Variable(
+        "largest temperature of the film above its inlet, solved",
+        "ΔT_m",
+        "K",
+        "K",
+        "temperature difference",
+    ),
     "film_friction": Variable("friction coefficient of the film, solved", "μ_EHL", "1"),
     "boundary_part": Variable("friction coefficient by asperities that touch, solved", "μ_b", "1"),
     "rolling_resistance": force("rolling resistance of each surface, solved", "F_roll"),
@@ -98,6 +105,13 @@ VARIABLES: dict[str, Variable] = {
         "largest pressure of the films", "p_max", "Pa", "MPa", "pressure"
     ),
     "largest_asperity_share": percent("largest part of a contact's load on asperities", "L_a max"),
+    "largest_film_rise": Variable(
+        "largest temperature of the films above their inlet",
+        "ΔT_m max",
+        "K",
+        "K",
+        "temperature difference",
+    ),
     "mean_film_friction": Variable("mean friction coefficient by the films", "μ_EHL mean", "1"),
     "mean_boundary_part": Variable("of it by asperities that touch", "μ_b mean", "1"),
     "mean_law_friction": Variable("mean friction coefficient by the law", "μ mean", "1"),

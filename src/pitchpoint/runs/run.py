@@ -38,6 +38,7 @@ from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL
 from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
 from pitchpoint.lubrication.ehl.texture import ASPERITIES
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
@@ -606,7 +607,7 @@ def _of_mesh(built: Built) -> dict[str, Any]:
     if case.dynamics is not None and built.design.mesh.along_action:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
     if case.film is not None:
-        found |= _of_films(film_model(case.film))
+        found |= _of_films(film_model(case.film, [used.record for used in built.solids]))
     found |= _bearings(case.losses)
     if case.models.tooth_temperature != "isothermal":
         found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
@@ -620,6 +621,8 @@ def _of_films(model: FilmModel) -> dict[str, Any]:
         "density under pressure": DENSITY[model.density_law],
         "shear of the oil": SHEAR_STRESS[model.shear_law],
     }
+    if model.thermal != ISOTHERMAL:
+        found["heat of the film"] = THERMAL[model.thermal]
     if model.asperities != SMOOTH:
         found["asperities that touch"] = ASPERITIES[model.asperities]
     return found

@@ -32,7 +32,7 @@ from pitchpoint.lubrication.ehl.newton import (
     residual,
 )
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
-from pitchpoint.programs import program
+from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
 __all__ = ["NODES", "Films", "line_films", "solve_lines"]
@@ -45,6 +45,9 @@ PORTION: Final = 64
 
 COARSE: Final = 0.03
 """Error by the grid from which on it is told."""
+
+FEW: Final = 128
+"""Contacts up to which a program that compiles quickly is done sooner than one that runs twice as fast."""
 
 WIDE: Final = 0.1
 """Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
@@ -189,19 +192,19 @@ def _portions(
     progress: Callable[[int, int], None] | None,
 ) -> Iterator[tuple[LineFilm, Ended, NDArray[np.float64]]]:
     every = flat.line_load.shape[0]
+    solve = _soon if every <= FEW else _fast
     for first in range(0, every, PORTION):
         count = min(PORTION, every - first)
         # A last portion that is short is filled up with contacts that nobody solves.
         which = np.minimum(np.arange(first, first + PORTION), every - 1)
         part, given = jax.tree.map(lambda leaf: leaf[which], (flat, begin))  # noqa: B023
-        film, ended, domain = _portion(part, np.arange(PORTION) < count, given, grids)
+        film, ended, domain = solve(part, np.arange(PORTION) < count, given, grids)
         film = film if profiles else _without_profiles(film)
         yield jax.tree.map(lambda leaf: np.asarray(leaf)[:count], (film, ended, domain))  # noqa: B023
         if progress is not None:
             progress(first + count, every)
 
 
-@program
 def _portion(
     contact: LineContact,
     wanted: Bool[Any, " b"],
@@ -217,6 +220,9 @@ def _portion(
 
     found: tuple[LineFilm, Ended, Array] = jax.lax.map(one, (contact, wanted, start))
     return found
+
+
+_soon, _fast = program(_portion), fast_program(_portion)
 
 
 def _before(contact: LineContact) -> Array:

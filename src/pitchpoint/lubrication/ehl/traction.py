@@ -20,12 +20,6 @@ __all__ = ["EHL_LINE", "FilmTraction", "ehl_line"]
 
 Each = NDArray[np.float64]
 
-SWINGS: Final = 0.1
-"""Change over two turns, over that of the last one, below which a coefficient goes to and fro."""
-
-LEAST: Final = 1e-7
-"""Change over the largest coefficient below which a coefficient stands still."""
-
 
 def ehl_line(
     *,
@@ -67,15 +61,11 @@ class FilmTraction:
 
     Attributes:
         films: those of the last turn; None before the first.
-        turns: coefficients of the last two turns [contact].
-        jumps: how far coefficients that go to and fro do so [contact]; zero of others.
     """
 
     def __init__(self, model: FilmModel, oil: Lubricant, temperature: ArrayLike) -> None:
         self.model, self.oil, self.temperature = model, oil, temperature
         self.films: Films | None = None
-        self.turns: list[Each] = []
-        self.jumps: Each = np.zeros(0)
 
     def __call__(
         self,
@@ -108,41 +98,12 @@ class FilmTraction:
         _demand(self.films)
         film = self.films.film
         friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
-        return self._settled(friction)
-
-    def _settled(self, friction: Each) -> Each:
-        """Coefficients, of contacts that go to and fro between two values their mean from then on.
-
-        The grid of a contact changes its length in steps with the load. Where a step lies at the load that is
-        looked for, no load has the friction that belongs to it.
-        """
-        if not self.turns or self.turns[-1].shape != friction.shape:
-            self.turns, self.jumps = [], np.zeros(friction.shape)
-        if len(self.turns) > 1:
-            before, last = self.turns[-2:]
-            jump = np.abs(friction - last)
-            swings = (np.abs(friction - before) < SWINGS * jump) & (jump > LEAST * friction.max())
-            friction = np.where(self.jumps > 0.0, last, friction)
-            begins = swings & (self.jumps == 0.0)
-            friction = np.where(begins, 0.5 * (friction + last), friction)
-            self.jumps = np.where(begins, jump, self.jumps)
-        self.turns = [*self.turns[-1:], friction]
         return friction
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to be wary of about the films of the last turn, in sentences without their stop."""
-        if self.films is None:
-            return ()
-        count = int(np.sum(self.jumps > 0.0))
-        if not count:
-            return self.films.warnings
-        part = 100.0 * float(np.max(self.jumps / self.turns[-1]))
-        return (
-            *self.films.warnings,
-            f"the friction of {count} of {self.jumps.size} contacts jumps by up to {part:.2g} % where their "
-            "grid changes its length; its mean is taken, and more nodes make the jump smaller",
-        )
+        return () if self.films is None else self.films.warnings
 
 
 def _demand(films: Films) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import xarray as xr
 
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -379,8 +380,15 @@ def _status(data: xr.Dataset) -> str:
         f"{data.sizes['phase']} phases of the mesh cycle under the forces of the balance with the first "
         f"friction law: {solve['sentence']}; at most {solve['iterations']} iterations, largest defect "
         f"{solve['residual']:.0e} of Hertz's pressure. {chosen['nodes']} nodes across a contact; {laws}, "
-        f"boundary friction {chosen['boundary_friction']:g}. Isothermal."
+        f"boundary friction {chosen['boundary_friction']:g}. {_warmth(data, chosen['thermal'])}"
     )
+
+
+def _warmth(data: xr.Dataset, thermal: str) -> str:
+    if thermal == ISOTHERMAL:
+        return "Isothermal."
+    warmest = _told(data, "largest_film_rise")
+    return f"With heat ({thermal.replace('_', ' ')}): up to {warmest} above the inlet."
 
 
 _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
