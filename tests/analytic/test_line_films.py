@@ -109,7 +109,7 @@ def test_without_speed_and_roughness_pressure_is_that_of_hertz():
     place = found.film.x / float(case.half_width)
     hertz = 1e9 * np.sqrt(np.clip(1.0 - place**2, 0.0, None))
     inside = np.abs(place) < 0.95
-    assert found.film.asperity_share == pytest.approx(1.0, abs=1e-9)
+    assert found.film.asperity_share == pytest.approx(1.0, abs=1e-7)
     np.testing.assert_allclose(found.film.pressure[inside], hertz[inside], atol=1e6)
 
 
@@ -308,10 +308,10 @@ def test_a_film_that_is_too_thin_for_the_grid_is_told():
     found = solve_lines(of_moes(np.array([20.0, 1000.0]), 1e-3), nodes=65)
     codes = [Code(int(code)) for code in found.ended.code]
     assert codes[0] == Code.SOLVED and codes[1] in (Code.UNRESOLVED, Code.NOT_CONVERGED)
-    thin = solve_lines(of_moes(np.array([100.0]), 1e-3), nodes=129)
+    thin = solve_lines(of_moes(np.array([100.0]), 1e-3), nodes=65)
     exact = solve_lines(of_moes(np.array([100.0]), 1e-3), nodes=513)
     off = abs(thin.film.central_film / exact.film.central_film - 1.0)
-    assert (thin.ended.grid > 0.5 * off).all()
+    assert (thin.ended.grid > off).all() and (thin.ended.grid < 2.0 * off).all()
     assert "the grid is coarse for the thin films of 1 of 1 contacts" in thin.warnings[-1]
 
 
@@ -332,9 +332,9 @@ def test_surfaces_that_roll_against_each_other_lie_on_their_asperities():
         0.6e9, texture=rough, speed_a=np.array([0.5, 0.0]), speed_b=np.array([-0.5, 0.0])
     )
     found = solve_lines(case)
-    np.testing.assert_allclose(found.film.asperity_share, 1.0, rtol=1e-9)
+    np.testing.assert_allclose(found.film.asperity_share, 1.0, rtol=1e-7)
     np.testing.assert_allclose(
-        found.film.boundary_force, [-0.12 * float(case.line_load), 0.0], rtol=1e-9
+        found.film.boundary_force, [-0.12 * float(case.line_load), 0.0], rtol=1e-7
     )
 
 

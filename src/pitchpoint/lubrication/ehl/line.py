@@ -27,7 +27,7 @@ SLOWEST: Final = 1e-9
 SUMMITS: Final = 4.0
 """Gap over Rq up to which asperities are counted when the length of a contact is chosen."""
 
-INLETS: Final = 3.0
+INLETS: Final = 4.0
 """Square of the length of a contact between rigid bodies, over radius and film."""
 
 LEAST: Final = 0.1
