@@ -7,6 +7,7 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012
 from pitchpoint.lubrication.ehl.grid import grid
 from pitchpoint.lubrication.ehl.line import LineContact, problem_of
 from pitchpoint.lubrication.ehl.newton import dry, step
@@ -212,6 +213,25 @@ def test_asperities_carry_less_of_the_load_the_faster_thicker_and_smoother_it_ru
     assert (np.diff(speed) < 0.0).all() and speed[0] > 0.5 and speed[-1] < 0.01
     assert (np.diff(thick) < 0.0).all()
     assert (np.diff(high) > 0.0).all() and high[0] < 1e-4
+
+
+def test_load_on_stiff_asperities_is_that_of_masjedi_and_khonsari():
+    """Summits 12.6 times as stiff as textbooks have them carry what a regression of other solutions says."""
+    speed = np.array([0.03, 0.1, 0.3, 1.0])
+    stiff = Rough(rq=0.2e-6, modulus=MODULUS, eta_beta_sigma=0.05 * np.sqrt(12.6))
+    case = contact(1e9, speed, texture=stiff)
+    law = masjedi_khonsari_2012(
+        line_load=case.line_load,
+        entrainment=speed,
+        viscosity=0.04,
+        pressure_viscosity=2.2e-8,
+        radius=0.01,
+        modulus=MODULUS,
+        roughness_rq=0.2e-6,
+        hardness=0.02 * MODULUS,
+    )
+    share = solve_lines(case).film.asperity_share
+    np.testing.assert_allclose(share, np.asarray(law), atol=0.07)
 
 
 def test_ever_smoother_surfaces_become_smooth_ones():
