@@ -180,9 +180,9 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
 
 
 def test_keys_that_are_left_out_stand_as_the_model_has_them() -> None:
-    assert film_model(FilmTable(solver="line"), ()) == FilmModel()
+    assert film_model(FilmTable(solver="line"), (), None) == FilmModel()
     given = FilmTable(solver="line", nodes=65, asperities="none", inlet="2 mm")
-    assert film_model(given, ()) == FilmModel(nodes=65, asperities="none", inlet=2e-3)
+    assert film_model(given, (), 3e-3) == FilmModel(nodes=65, asperities="none", inlet=2e-3)
 
 
 def test_smooth_flanks_have_no_film_ratio(case: str) -> None:

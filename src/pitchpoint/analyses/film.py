@@ -14,7 +14,7 @@ from jaxtyping import Array
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.caveats import conformal_warning
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.films import film_model
 from pitchpoint.cases.schema import FilmTable
 from pitchpoint.contact.contacts import Contacts
@@ -248,7 +248,8 @@ def _solved(
 
 
 def _model(built: Built) -> FilmModel:
-    return film_model(_asked(built), [used.record for used in built.solids])
+    solids = [used.record for used in built.solids]
+    return film_model(_asked(built), solids, tooth_size(built.design.mesh))
 
 
 def _films(built: Built, given: np.ndarray, done: Done) -> Films:
@@ -260,8 +261,7 @@ def _films(built: Built, given: np.ndarray, done: Done) -> Films:
         temperature=float(built.operation.temperature),
         roughness_rq=float(design.roughness.composite_rq),
     )
-    size = built.dimensions.get("module")
-    size = None if size is None else float(size)
+    size = tooth_size(design.mesh)
     return solve_lines(contacts, nodes=model.nodes, size=size, progress=done)
 
 
@@ -528,6 +528,7 @@ def _choices(built: Built) -> dict[str, Any]:
         "shear_law": model.shear_law,
         "asperities": model.asperities,
         "boundary_friction": model.boundary_friction,
+        "inlet": model.inlet,
         "thermal": model.thermal,
     }
 

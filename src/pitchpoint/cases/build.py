@@ -19,6 +19,7 @@ from pitchpoint.cases.schema import (
     TORQUE,
     Case,
     Dynamics,
+    FilmTable,
     Loss,
     Oil,
     Operating,
@@ -363,7 +364,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         _check_models(case, mesh)
         _check_hardness(case, used)
         if case.film is not None:
-            film_model(case.film, [one.record for one in used])
+            film_model(case.film, [one.record for one in used], None)
     except InputError as error:
         raise error.at(file=document.name) from None
     design = Design(
@@ -376,7 +377,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     )
     told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
     told += _half_of_a_line(case.lubricant)
-    models = _models(case, own, used)
+    models = _models(case, own, used, mesh)
     name = named_set(document.tree.get("losses"))
     fitted = loss_sets()[name].fitted if name else None
     point = operation_at(case.operation)
@@ -433,10 +434,12 @@ def _of_solids(built: Built, used: tuple[SolidInUse, SolidInUse]) -> Built:
     return replace(built, design=design, solids=used)
 
 
-def _models(case: Case, own: FrictionLaw | None, used: Sequence[SolidInUse]) -> tuple[Models, ...]:
+def _models(
+    case: Case, own: FrictionLaw | None, used: Sequence[SolidInUse], mesh: Mesh
+) -> tuple[Models, ...]:
     """Models under each law of the case, or under the user's own."""
     names = [choice.name for choice in case.models.friction]
-    laws = [_law(name, case, used) for name in names] if own is None else [own]
+    laws = [_law(name, case, used, mesh) for name in names] if own is None else [own]
     given = {choice.name: choice.parameters for choice in case.models.friction}
     common = Models(
         friction=(),
@@ -470,12 +473,20 @@ def _under(
     )
 
 
-def _law(name: str, case: Case, used: Sequence[SolidInUse]) -> FrictionLaw:
+def tooth_size(mesh: Mesh) -> float | None:
+    """Module of the teeth [m], which is about the height that their flanks have; None without teeth."""
+    found = jax.device_get(_dimensions(mesh)).get("module")
+    return None if found is None else float(found)
+
+
+def _law(name: str, case: Case, used: Sequence[SolidInUse], mesh: Mesh) -> FrictionLaw:
     """A friction law; one that solves films does so by the choices of the case."""
     law = FRICTION[name]
-    if law.films is None or case.film is None:
+    if law.films is None:
         return law
-    return replace(law, films=film_model(case.film, [one.record for one in used]))
+    table = case.film or FilmTable(solver="line")
+    films = film_model(table, [one.record for one in used], tooth_size(mesh))
+    return replace(law, films=films)
 
 
 def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.Array]:

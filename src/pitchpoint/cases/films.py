@@ -13,12 +13,14 @@ from pitchpoint.materials.solids import SolidRecord
 __all__ = ["film_model"]
 
 
-def film_model(table: FilmTable, solids: Sequence[SolidRecord]) -> FilmModel:
+def film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | None) -> FilmModel:
     """What a table `[film]` says, the rest as `FilmModel` has it.
 
     Args:
         table: as validated.
         solids: of both members, whose surfaces warm where the film is not isothermal.
+        size: of the teeth [m], which is where oil begins unless the table says otherwise: there is no flank
+            further ahead; None where bodies have no teeth.
 
     Raises:
         InputError: the conductivity or specific heat of a member is not known, and asked for.
@@ -28,6 +30,8 @@ def film_model(table: FilmTable, solids: Sequence[SolidRecord]) -> FilmModel:
     chosen = {name: value for name, value in given.items() if value is not None}
     if "nodes" in chosen:
         chosen["nodes"] = int(chosen["nodes"])
+    if size is not None:
+        chosen.setdefault("inlet", size)
     model = FilmModel(**chosen, shear_parameters=table.shear_parameters)
     return model if model.thermal == ISOTHERMAL else replace(model, members=_members(solids))
 

@@ -607,7 +607,7 @@ def _of_mesh(built: Built) -> dict[str, Any]:
     if case.dynamics is not None and built.design.mesh.along_action:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
     if case.film is not None:
-        found |= _of_films(film_model(case.film, [used.record for used in built.solids]))
+        found |= _of_films(film_model(case.film, [used.record for used in built.solids], None))
     found |= _bearings(case.losses)
     if case.models.tooth_temperature != "isothermal":
         found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]
