@@ -18,6 +18,7 @@ from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.films import film_model
 from pitchpoint.cases.schema import FilmTable
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.efficiency.in_turns import balance_under
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
@@ -27,7 +28,6 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_of,
     engagement_alone,
 )
-from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
@@ -68,7 +68,7 @@ _OF_PIECE = ("point", "pair", "slice")
 _MASKED = ("pressure", "friction", "film_by_law")
 _PROFILES = {
     "profile_place": "x",
-    "profile_film": "film",
+    "profile_film": "gap",
     "profile_pressure": "pressure",
     "profile_asperity_pressure": "asperity_pressure",
 }
@@ -120,7 +120,7 @@ def _under(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Contacts and cycle in balance under one friction law."""
     given = built.design, built.operation
-    found = balance_in_rows(*given, known, models)
+    found, _ = balance_under(*given, known, models)
     lanes, cycle = jax.device_get(_computed(*given, replace(known, body=None), found))
     return {name: _in_pairs(built, values) for name, values in lanes.items()}, cycle
 

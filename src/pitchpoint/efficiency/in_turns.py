@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.ehl.traction import FilmTraction
 from pitchpoint.status import Code, Status
 
-__all__ = ["InTurns", "first_turn", "in_turns"]
+__all__ = ["InTurns", "balance_under", "first_turn", "in_turns"]
 
 FIRST = 0.03
 """Coefficient of every contact before its film is known."""
@@ -56,6 +57,24 @@ def in_turns(design: Design, operation: Operation, models: Models, known: Engage
     found = _solved(design, operation, models, known)
     _LAST.append((asked, found))
     return found
+
+
+def balance_under(
+    design: Design, operation: Operation, known: Engagement, models: Models
+) -> tuple[Balance, tuple[str, ...]]:
+    """Forces at the nodes, and what to be wary of about films that were solved for them.
+
+    Arguments as in `in_turns`, under any friction law.
+
+    Raises:
+        ConvergenceError: films and forces did not agree.
+    """
+    if models.law.films is None:
+        return balance_in_rows(design, operation, known, models), ()
+    found = in_turns(design, operation, models, known)
+    if found.lost:
+        raise ConvergenceError(f"{models.law.title}: {found.lost}")
+    return found.balance, found.warnings
 
 
 _LAST: deque[tuple[tuple[object, ...], InTurns]] = deque(maxlen=KEPT)

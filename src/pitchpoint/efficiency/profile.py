@@ -8,7 +8,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.efficiency.in_turns import in_turns
+from pitchpoint.efficiency.in_turns import balance_under
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
@@ -16,8 +16,7 @@ from pitchpoint.efficiency.quasi_static import (
     Operation,
     cycle_of,
 )
-from pitchpoint.efficiency.rows import balance_in_rows, one_engagement
-from pitchpoint.errors import ConvergenceError
+from pitchpoint.efficiency.rows import one_engagement
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.applicability import Limited
 from pitchpoint.lubrication.asperity_load import AsperityLoad
@@ -64,7 +63,7 @@ def profile(
     """
     chosen: list[Limited] = [models.law, film, *([asperities] if asperities else [])]
     known = engaged or one_engagement(design, operation.load, models.without_friction, nodes)
-    found, warnings = _balance(design, operation, known, models)
+    found, warnings = balance_under(design, operation, known, models)
     limited = _limiting(chosen, film)
     told, ranged = jax.device_get(
         _profile(design, operation, replace(known, body=None), found, film, asperities, limited)
@@ -75,18 +74,6 @@ def profile(
         for name, limits in one.ranges.items()
     }
     return {**told, **outside, "outside films": np.array(warnings)}
-
-
-def _balance(
-    design: Design, operation: Operation, known: Engagement, models: Models
-) -> tuple[Balance, tuple[str, ...]]:
-    """Forces at the nodes, and what to be wary of about films that were solved for them."""
-    if models.law.films is None:
-        return balance_in_rows(design, operation, known, models), ()
-    found = in_turns(design, operation, models, known)
-    if found.lost:
-        raise ConvergenceError(f"{models.law.title}: {found.lost}")
-    return found.balance, found.warnings
 
 
 @program

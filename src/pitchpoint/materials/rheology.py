@@ -99,7 +99,8 @@ class RheologyLaw:
         for name in filter(values.__contains__, self.ranges):
             low, high = self.ranges[name]
             given = np.asarray(values[name], dtype=float)
-            beyond = given[~((given >= low) & (given <= high))]
+            some = 1e-3 * (high - low)  # what three digits would not show
+            beyond = given[~((given >= low - some) & (given <= high + some))]
             if beyond.size:
                 return self._told(name, float(beyond[np.argmax(abs(beyond))]))
         return None

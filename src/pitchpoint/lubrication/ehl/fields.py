@@ -31,10 +31,10 @@ class LineFilm(eqx.Module):
         film: mean gap that is open to the oil [m].
         filled: part of it that oil fills, below one where the film is broken.
         shear_stress: of the oil on member 0, half way between the surfaces [Pa].
-        central_film: in the middle of the contact [m].
-        minimum_film: smallest one [m].
+        central_film: gap of the mean planes in the middle of the contact [m].
+        minimum_film: smallest gap [m].
         minimum_place: its place [m].
-        mean_film: mean over the width of the dry contact [m].
+        mean_film: mean gap over the width of the dry contact [m].
         largest_pressure: [Pa].
         asperity_share: part of the load that asperities carry.
         rolling: resistance to rolling, which the oil in the inlet does to each surface [N/m].
@@ -99,7 +99,7 @@ def line_film(
     full = filled(flow, oil, room)
     stress = full * shear_stress(flow, oil, room, sliding)
     carried = jnp.sum(at.widths * asperities) / problem.load
-    place, least = _minimum(at.x, room, jnp.abs(at.x) < 1.5 / problem.yielding)
+    place, least = _minimum(at.x, gap, jnp.abs(at.x) < 1.5 / problem.yielding)
     rolling, pumping = work_of_pressure(flow, oil, gap, at)
     film = LineFilm(
         x=at.x * length,
@@ -109,10 +109,10 @@ def line_film(
         film=room * flow.height,
         filled=full,
         shear_stress=stress,
-        central_film=room[jnp.argmin(jnp.abs(at.x))] * flow.height,
+        central_film=gap[jnp.argmin(jnp.abs(at.x))] * flow.height,
         minimum_film=least * flow.height,
         minimum_place=place * length,
-        mean_film=_mean(at, room, problem.yielding) * flow.height,
+        mean_film=_mean(at, gap, problem.yielding) * flow.height,
         largest_pressure=jnp.max(pressure) * flow.pressure,
         asperity_share=carried,
         rolling=rolling * flow.pressure * flow.height,

@@ -103,7 +103,8 @@ def fewer(nodes: int) -> int | None:
     Raises:
         InputError: not a number of nodes that a grid may have.
     """
-    if nodes < FEWEST or (nodes - 1) & (nodes - 2):
+    whole = isinstance(nodes, int | np.integer)
+    if not whole or nodes < FEWEST or (nodes - 1) & (nodes - 2):
         raise InputError(
             f"{nodes} nodes across a contact; their number is one more than a power of two, "
             f"{FEWEST}, 65, 129, 257, ..."

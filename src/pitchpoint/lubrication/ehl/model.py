@@ -97,6 +97,7 @@ class FilmModel:
         Raises:
             InputError: there is no thermal effect of this name, or it lacks what `members` tells.
         """
+        _check(oil, temperature, roughness_rq)
         fluid = Fluid.of(
             oil,
             temperature,
@@ -139,4 +140,23 @@ class FilmModel:
             asperities=self.asperities,
             pattern=self.pattern,
             boundary_friction=self.boundary_friction,
+        )
+
+
+def _check(oil: Lubricant, temperature: ArrayLike, roughness_rq: ArrayLike) -> None:
+    """InputError for an oil too cold or too warm, and for roughness that no surface has."""
+    warm = np.asarray(temperature)
+    if not np.all(np.asarray(oil.in_range(warm))):
+        low, high = (float(np.min(np.asarray(one))) - 273.15 for one in (oil.T_min, oil.T_max))
+        worst = warm.reshape(-1)[np.argmax(np.abs(warm - 0.5 * (oil.T_min + oil.T_max)))] - 273.15
+        raise InputError(
+            f"an oil at {worst:.4g} degC, whose values are meant for {low:.4g} to {high:.4g} degC",
+            key="temperature",
+        )
+    rq = np.asarray(roughness_rq)
+    if np.any(rq < 0.0):
+        raise InputError(f"a composite roughness Rq of {1e6 * rq.min():.4g} um", key="roughness_rq")
+    if np.any(rq == 0.0) and np.any(rq > 0.0):
+        raise InputError(
+            "some contacts are rough and some smooth; solve each kind by itself", key="roughness_rq"
         )

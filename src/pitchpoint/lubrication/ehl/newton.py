@@ -47,7 +47,7 @@ class State(NamedTuple):
         steps: since the last start.
         total: all steps.
         residual: largest one.
-        coarse: gap in the middle that was found on the grid before; NaN on the first one.
+        coarse: film in the middle that was found on the grid before; NaN on the first one.
     """
 
     pressure: Float[Array, " node"]
@@ -199,7 +199,7 @@ def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
         finer = prolongation(before.x.shape[0], at.x.shape[0])
         pressure = jnp.maximum(finer @ state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
         middle = jnp.argmin(jnp.abs(before.x))
-        coarse = problem.gap(state.pressure, state.level, before)[middle]
+        coarse = problem.flow.room(problem.gap(state.pressure, state.level, before))[middle]
         state = iterated(problem, pressure, state.level, at)._replace(coarse=coarse)
         total = total + state.total
     return state._replace(total=total)

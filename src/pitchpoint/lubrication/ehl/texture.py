@@ -17,6 +17,7 @@ from pitchpoint.contact.asperities import (
     greenwood_williamson_1966,
     hu_1994,
 )
+from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.lubrication.flow_factors import mean_gap, patir_cheng_1978
 from pitchpoint.materials._leaves import as_array
@@ -30,6 +31,13 @@ USUAL_ASPERITIES: Final = "greenwood_tripp_1970"
 
 BOUNDARY_FRICTION: Final = 0.1
 """Usual coefficient of friction of steel asperities with oil between them: assumed, of 0.08 to 0.15."""
+
+
+PATTERNS: Final = (1.0 / 9.0, 9.0)
+"""Patterns of roughness of which flow factors are known."""
+
+NARROW: Final = 1.0 / 3.0
+"""Part of Rq about which the gap for flow under pressure goes over into one that stays positive."""
 
 
 class Texture(eqx.Module):
@@ -171,13 +179,13 @@ class Rough(Texture):
         pattern: Peklenik's gamma, length of asperities along the flow over that across it, 1/9 to 9; static.
         boundary_friction: coefficient of friction of asperities that touch, shape (...) [1].
 
-    The film under pressure flows as between smooth surfaces with the mean room of Gaussian heights, times the
-    flow factor of Patir and Cheng (1978) for the gap. Where mean planes overlap both stay positive, which
-    is a choice. Flow that sliding carries in the valleys is left out: it is none where both sides are
-    equally rough.
+    Surfaces draw along the mean room of Gaussian heights; under pressure oil flows as through the gap of the
+    mean planes times the flow factor of Patir and Cheng (1978). Where that gap comes near Rq it goes over
+    into one that stays positive, which is a choice and adds 6 % to the flow at half of Rq, .2 % at Rq. Flow
+    that sliding carries in the valleys is left out: it is none where both sides are equally rough.
 
     Raises:
-        InputError: there is no law of this name; the message has the nearest ones.
+        InputError: there is no law of this name, or no flow factor of this pattern.
     """
 
     deviation: Float[Arrays, "..."]
@@ -204,6 +212,10 @@ class Rough(Texture):
         self.sigma_over_beta = as_array(sigma_over_beta)
         self.friction = as_array(boundary_friction)
         self.asperities, self.pattern = ASPERITIES[asperities].name, float(pattern)
+        if not PATTERNS[0] <= self.pattern <= PATTERNS[1]:
+            raise InputError(
+                f"a pattern of {pattern:.4g}: it must be between 1/9 and 9", key="pattern"
+            )
 
     @property
     def rq(self) -> Float[Arrays, "..."]:
@@ -232,4 +244,7 @@ class Rough(Texture):
 
     def flow_factor(self, gap: Each) -> Each:
         """Flow along the pressure gradient over that between smooth surfaces with this room."""
-        return jnp.maximum(patir_cheng_1978(ratio=gap / self.rq, pattern=self.pattern), 1e-9)
+        factor = patir_cheng_1978(ratio=gap / self.rq, pattern=self.pattern)
+        # The factor belongs to the cube of the gap itself, which is not positive where mean planes overlap.
+        nominal = mean_gap(gap=gap, roughness_rq=self.rq * NARROW)
+        return jnp.maximum(factor * (nominal / self.room(gap)) ** 3, 1e-9)
