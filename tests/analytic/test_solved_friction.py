@@ -79,7 +79,7 @@ def test_films_and_forces_agree_as_in_a_loop_of_ones_own(spur):
     for _ in range(6):
         at = (found := program(jnp.asarray(coefficients))).state.conditions
         films = solve_lines(
-            COARSE.contacts(
+            case.models[0].law.films.contacts(
                 line_load=np.asarray(at.line_load)[carries],
                 radius=np.asarray(at.radius)[carries],
                 modulus=float(at.modulus),
@@ -143,7 +143,7 @@ def test_smooth_flanks_in_a_thin_oil_have_hardly_any_friction():
 def test_films_are_solved_by_the_choices_of_the_case():
     chosen = {"solver": "line", "nodes": 65, "boundary_friction": 0.08}
     films = built(film=chosen).models[0].law.films
-    assert films == FilmModel(nodes=65, boundary_friction=0.08)
+    assert films == FilmModel(nodes=65, boundary_friction=0.08, inlet=2e-3)
 
 
 def test_a_film_that_was_not_solved_gives_no_numbers(monkeypatch):

@@ -19,7 +19,6 @@ from pitchpoint.cases.schema import (
     TORQUE,
     Case,
     Dynamics,
-    FilmTable,
     Loss,
     Oil,
     Operating,
@@ -484,9 +483,10 @@ def _law(name: str, case: Case, used: Sequence[SolidInUse], mesh: Mesh) -> Frict
     law = FRICTION[name]
     if law.films is None:
         return law
-    table = case.film or FilmTable(solver="line")
-    films = film_model(table, [one.record for one in used], tooth_size(mesh))
-    return replace(law, films=films)
+    size = tooth_size(mesh)
+    if case.film is not None:
+        return replace(law, films=film_model(case.film, [one.record for one in used], size))
+    return law if size is None else replace(law, films=replace(law.films, inlet=size))
 
 
 def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.Array]:

@@ -366,7 +366,7 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
     yield Paragraph(
         "Film by regression less that solved at the same place, over that solved: mean of all contacts that "
         "carry, and where it is largest. Regressions know no roughness. A film here is the distance of "
-        "the mean planes, which is negative where they overlap: asperities carry load and hinder the flow of oil.",
+        "the mean planes, negative where they overlap: asperities carry load and hinder the flow of oil.",
         "note",
     )
 
