@@ -452,16 +452,19 @@ def _course(found: Mapping[str, np.ndarray], loaded: np.ndarray, known: np.ndarr
 def _deviations(
     by_law: np.ndarray, found: Mapping[str, np.ndarray], known: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Films by law over those solved at the same place less one: mean, and where it is largest."""
+    """Films by law over those solved at the same place less one: mean, and where it is largest.
+
+    Where mean planes overlap there is no film to compare with.
+    """
     solved = {"minimum": found["minimum_film"], "central": found["central_film"]}
+    apart = {place: known & (film > 0.0) for place, film in solved.items()}
     each = [
-        law_film[known] / solved[law.place][known] - 1.0
+        law_film[apart[law.place]] / solved[law.place][apart[law.place]] - 1.0
         for law, law_film in zip(_laws(), by_law, strict=True)
     ]
-    empty = not known.any()
-    largest = [np.nan if empty else one[np.argmax(np.abs(one))] for one in each]
+    largest = [one[np.argmax(np.abs(one))] if one.size else np.nan for one in each]
     return {
-        "film_deviation": np.array([np.nan if empty else one.mean() for one in each]),
+        "film_deviation": np.array([one.mean() if one.size else np.nan for one in each]),
         "largest_film_deviation": np.array(largest),
     }
 

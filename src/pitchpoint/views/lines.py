@@ -14,7 +14,7 @@ _EVENT, SHORT = 1e-7, 1e-6
 """Nodes beside an event are closer than the first; a segment shorter than the second is no segment."""
 
 _REGIMES = (
-    (0.0, 1.0, "#fbe9e2", "boundary"),
+    (-np.inf, 1.0, "#fbe9e2", "boundary"),
     (1.0, 3.0, "#fdf5dc", "mixed"),
     (3.0, np.inf, "#e7f2ea", "full film"),
 )
@@ -66,7 +66,7 @@ def regimes(look: dict[str, Any], traces: list[Trace]) -> None:
     """
     values = [y for t in traces for y in t["y"] if y is not None]
     top = max(1.25, 1.1 * max(values, default=1.0))
-    bottom = 0.0
+    bottom = min(1.1 * min(values, default=0.0), 0.0)  # mean planes of rough flanks may overlap
     if look["yaxis"].get("type") == "log":
         bottom = 0.7 * min(values)
         top *= 1.3

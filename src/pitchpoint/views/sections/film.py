@@ -119,8 +119,8 @@ def _points(lines: Sequence[Trace]) -> dict[str, list[list[float]]]:
 def _film_profile(name: str, data: xr.Dataset) -> Figure:
     middle = np.argmin(np.abs(data["profile_place"].values), axis=-1)[..., None]
     film = np.take_along_axis(data["profile_film"].values, middle, axis=-1)
-    top = 2.5 * np.nanmax(film, initial=0.0)
-    axes = _across(data, "profile_film", top)
+    ends = 1.1 * np.nanmin(film, initial=0.0), 2.5 * np.nanmax(film, initial=0.0)
+    axes = _across(data, "profile_film", *ends)
     title = titled("profile_film", data)
     return Figure(
         name, title, _film_lines(data, int(_in_order(data)[0])), axes, "", tuple(_keys(data)), NONE
@@ -129,7 +129,7 @@ def _film_profile(name: str, data: xr.Dataset) -> Figure:
 
 def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
     top = 1.08 * np.nanmax(data["profile_pressure"].values, initial=0.0)
-    axes = _across(data, "profile_pressure", top)
+    axes = _across(data, "profile_pressure", 0.0, top)
     keys = [*_keys(data), Key("of it on asperities", GREY, "dot")]
     title = titled("profile_pressure", data)
     return Figure(
@@ -137,7 +137,7 @@ def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
     )
 
 
-def _across(data: xr.Dataset, name: str, top: float) -> dict[str, object]:
+def _across(data: xr.Dataset, name: str, low: float, top: float) -> dict[str, object]:
     """Layout with axes that stay as they are while the phase slides."""
     wide = display("profile_place", data["profile_place"].values)[_pressed(data)]
     ends = [1.5 * np.min(wide, initial=-1e-6), 1.5 * np.max(wide, initial=1e-6)]
@@ -146,7 +146,7 @@ def _across(data: xr.Dataset, name: str, top: float) -> dict[str, object]:
         f"x [{show.unit_of('profile_place')}]",
         short_axis(name),
         xaxis={"range": [float(end) for end in ends]},
-        yaxis={"range": [0.0, high]},
+        yaxis={"range": [float(display(name, low)), high]},
     )
 
 
@@ -357,6 +357,8 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "warning",
         )
     yield _table(outcome)
+    if _overlap(data):
+        yield Paragraph(OVERLAP, "note")
     yield Heading("Across the contacts")
     yield Paragraph(_of_profiles(data), "note")
     yield profiles_panel(f"profile{position}", data)
@@ -365,8 +367,9 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
     yield _film_laws(data)
     yield Paragraph(
         "Film by regression less that solved at the same place, over that solved: mean of all contacts that "
-        "carry, and where it is largest. Regressions know no roughness. A film here is the distance of "
-        "the mean planes, negative where they overlap: asperities carry load and hinder the flow of oil.",
+        "carry, and where it is largest. Regressions know no roughness. A film here is the distance of the "
+        "mean planes: asperities carry load and hinder the flow of oil. Nothing is compared where these "
+        "overlap.",
         "note",
     )
 
@@ -459,7 +462,15 @@ def _row(
 
 def _counted(data: xr.Dataset) -> str:
     found, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
-    return f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
+    told = f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
+    return f"{told} {OVERLAP}" if _overlap(data) else told
+
+
+def _overlap(data: xr.Dataset) -> bool:
+    return float(data["smallest_film"]) < 0.0
+
+
+OVERLAP = "Films below zero: the mean planes of the rough flanks overlap."
 
 
 FILM = Section(
