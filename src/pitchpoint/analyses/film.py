@@ -26,8 +26,8 @@ from pitchpoint.efficiency.quasi_static import (
     Operation,
     cycle_nodes,
     cycle_of,
-    engagement_alone,
 )
+from pitchpoint.efficiency.rows import one_engagement
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
@@ -109,10 +109,8 @@ def _known(built: Built) -> Engagement:
     """Contacts and shares over the cycle."""
     given, nodes = (built.design, built.operation), _nodes(built)
     known = engaged(*given, built.models[0], nodes)
-    if known is None:
-        alone = built.models[0].without_friction
-        known = _engagement(built.design, built.operation.load, alone, nodes)
-    return known
+    alone = built.models[0].without_friction
+    return known or one_engagement(built.design, built.operation.load, alone, nodes)
 
 
 def _under(
@@ -131,9 +129,6 @@ def _nodes(built: Built) -> int:
     shape = jax.eval_shape(lambda mesh: cycle_nodes(mesh, sharing, 3)[0], built.design.mesh)
     segments = int(shape.size) // 3
     return max(3, -(-int(_asked(built).phases) // segments))
-
-
-_engagement = program(engagement_alone)
 
 
 @program

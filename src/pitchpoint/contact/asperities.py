@@ -14,6 +14,7 @@ __all__ = [
     "SIGMA_OVER_BETA",
     "gaussian_moment",
     "greenwood_tripp_1970",
+    "greenwood_tripp_stiffness",
     "greenwood_williamson_1966",
     "greenwood_williamson_1966_exponential",
     "hu_1994",
@@ -124,8 +125,20 @@ def greenwood_tripp_1970(
         >>> round(float(pressure) / 1e6, 3)
         10.805
     """
-    stiff = 16.0 * np.sqrt(2.0) * np.pi / 15.0 * eta_beta_sigma**2 * jnp.sqrt(sigma_over_beta)
-    found: Each = stiff * 0.5 * modulus * gaussian_moment(gap / roughness_rq, 2.5)
+    stiff = greenwood_tripp_stiffness(modulus, eta_beta_sigma, sigma_over_beta)
+    found: Each = stiff * gaussian_moment(gap / roughness_rq, 2.5)
+    return found
+
+
+def greenwood_tripp_stiffness(
+    modulus: Each, eta_beta_sigma: Each | float, sigma_over_beta: Each | float
+) -> Array:
+    """Pressure of asperities over the moment F_5/2, 16 sqrt(2) pi/15 (eta beta sigma)^2 sqrt(sigma/beta) E*.
+
+    Arguments as in `greenwood_tripp_1970`. Source: Greenwood and Tripp (1970).
+    """
+    whole = 16.0 * np.sqrt(2.0) * np.pi / 15.0 * eta_beta_sigma**2 * jnp.sqrt(sigma_over_beta)
+    found: Array = whole * 0.5 * modulus
     return found
 
 

@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Numbers
+from pitchpoint.lubrication.groups import line_groups
 from pitchpoint.registry import Registry
 
 __all__ = ["ASPERITY_LOAD", "AsperityLoad", "masjedi_khonsari_2012", "none"]
@@ -80,13 +81,9 @@ def masjedi_khonsari_2012(
         >>> round(float(share), 4)
         0.6488
     """
-    groups = {
-        "W": line_load / (modulus * radius),
-        "U": viscosity * entrainment / (modulus * radius),
-        "G": pressure_viscosity * modulus,
-        "s": roughness_rq / radius,
-        "V": hardness / modulus,
-    }
+    film = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    own = {"s": roughness_rq / radius, "V": hardness / modulus}
+    groups = dict(zip("WUG", film, strict=True)) | own
     logs = {name: _log(value) for name, value in groups.items()}
     inner = jnp.log(4470.0) + _sum(logs, s=6.015, V=1.168, W=0.485, U=-3.741, G=-2.898)
     outer = jnp.log(0.005e-2) + _sum(logs, W=-0.408, U=-0.088, G=0.103)

@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Numbers
+from pitchpoint.lubrication.groups import line_groups
 from pitchpoint.registry import Registry
 
 __all__ = [
@@ -82,7 +83,7 @@ def dowson_higginson_1959(
         >>> round(float(film) * 1e6, 3)
         0.986
     """
-    groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     return radius * _product(1.6, groups, (-0.13, 0.7, 0.6))
 
 
@@ -115,7 +116,7 @@ def dowson_1968(
         >>> round(float(film) * 1e6, 3)
         0.986
     """
-    groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     return radius * _product(2.65, groups, (-0.13, 0.7, 0.54))
 
 
@@ -148,7 +149,7 @@ def dowson_toyoda_1979(
         >>> round(float(film) * 1e6, 3)
         1.254
     """
-    groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     return radius * _product(3.06, groups, (-0.1, 0.69, 0.56))
 
 
@@ -182,7 +183,7 @@ def pan_hamrock_1989(
         >>> round(float(film) * 1e6, 3)
         0.908
     """
-    groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     return radius * _product(1.714, groups, (-0.128, 0.694, 0.568))
 
 
@@ -216,7 +217,7 @@ def pan_hamrock_1989_central(
         >>> round(float(film) * 1e6, 3)
         1.039
     """
-    groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     return radius * _product(2.922, groups, (-0.166, 0.692, 0.47))
 
 
@@ -252,7 +253,7 @@ def moes_1992(
         >>> round(float(film) * 1e6, 3)
         1.253
     """
-    groups = _line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
     film = (groups[0] > 0.0) & (groups[1] > 0.0)
     load, speed, material = (jnp.log(jnp.where(film & (one > 0.0), one, _LEAST)) for one in groups)
     pace = speed + jnp.log(2.0)
@@ -355,17 +356,6 @@ def _ellipse_groups(
     """Load, speed and material parameters W, U, G of an ellipse."""
     return (
         load / (modulus * radius**2),
-        viscosity * entrainment / (modulus * radius),
-        alpha * modulus,
-    )
-
-
-def _line_groups(
-    line_load: Each, entrainment: Each, viscosity: Each, alpha: Each, radius: Each, modulus: Each
-) -> tuple[Each, Each, Each]:
-    """Load, speed and material parameters W, U, G."""
-    return (
-        line_load / (modulus * radius),
         viscosity * entrainment / (modulus * radius),
         alpha * modulus,
     )

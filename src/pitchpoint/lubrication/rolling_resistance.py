@@ -8,6 +8,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.lubrication.groups import line_groups
 from pitchpoint.registry import Registry
 
 __all__ = [
@@ -85,9 +86,8 @@ def wu_cheng_1991(
         >>> round(float(resistance))
         136
     """
-    material = pressure_viscosity * modulus
-    speed = viscosity * entrainment / (modulus * radius)
-    load = line_load / (modulus * radius)
+    groups = line_groups(line_load, entrainment, viscosity, pressure_viscosity, radius, modulus)
+    load, speed, material = groups
     positive = (speed > 0.0) & (load > 0.0)
     exponent = 0.658 * _log(material * speed, positive) + 0.0126 * _log(load, positive)
     return jnp.where(positive, 4.318 * jnp.exp(exponent) * radius / pressure_viscosity, 0.0)

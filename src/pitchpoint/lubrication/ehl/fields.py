@@ -109,7 +109,7 @@ def line_film(
         film=room * flow.height,
         filled=full,
         shear_stress=stress,
-        central_film=gap[jnp.argmin(jnp.abs(at.x))] * flow.height,
+        central_film=gap[at.middle] * flow.height,
         minimum_film=least * flow.height,
         minimum_place=place * length,
         mean_film=_mean(at, gap, problem.yielding) * flow.height,
@@ -153,21 +153,11 @@ def _mean(at: Grid, film: Array, half_width: Array) -> Array:
 
 def _turned(film: LineFilm, turned: Array) -> LineFilm:
     """The other way round where the surfaces run against their positive sense."""
-    along = ("pressure", "asperity_pressure", "gap", "film", "filled", "shear_stress")
+    mirrored = jax.tree.map(
+        lambda leaf: jnp.where(turned, leaf[::-1], leaf) if leaf.ndim else leaf, film
+    )
     sign = jnp.where(turned, -1.0, 1.0)
-    changed = {
-        name: jnp.where(turned, getattr(film, name)[::-1], getattr(film, name)) for name in along
-    }
-    changed |= {
-        "x": jnp.where(turned, -film.x[::-1], film.x),
-        "minimum_place": sign * film.minimum_place,
-        "rolling": sign * film.rolling,
-    }
-    if film.heat is not None:
-        changed["heat"] = jax.tree.map(
-            lambda leaf: jnp.where(turned, leaf[::-1], leaf) if leaf.ndim else leaf, film.heat
-        )
     found: LineFilm = eqx.tree_at(
-        lambda one: [getattr(one, name) for name in changed], film, list(changed.values())
+        lambda one: (one.x, one.minimum_place, one.rolling), mirrored, replace_fn=lambda v: sign * v
     )
     return found

@@ -6,9 +6,10 @@ from typing import Any, Final, Literal
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 from numpy.typing import NDArray
 
+from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 
@@ -63,9 +64,9 @@ class Grid(eqx.Module):
     reached: Float[Arrays, "_ inner"]
 
     @property
-    def middle(self) -> int:
+    def middle(self) -> Int[Array, ""]:
         """Number of the node at zero."""
-        return int(np.argmin(np.abs(np.asarray(self.x))))
+        return jnp.argmin(jnp.abs(jnp.asarray(self.x)))
 
 
 @lru_cache(maxsize=16)

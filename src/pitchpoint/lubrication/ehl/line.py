@@ -124,6 +124,16 @@ class Problem(eqx.Module):
         """Gap of the mean planes at every node, shape (node,)."""
         return level + 0.5 * at.x**2 + self.yielding * (at.kernel @ pressure)
 
+    def film_in_the_middle(self, pressure: Array, level: Array, at: Grid) -> Array:
+        """Gap that is open to the oil at the middle node."""
+        found: Array = self.flow.room(self.gap(pressure, level, at))[at.middle]
+        return found
+
+    def carrying(self, pressure: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
+        """Pressure of a shape that carries the load, and the level for a gap in the middle."""
+        carries = pressure * self.load / (at.widths @ pressure)
+        return carries, gap - self.gap(carries, jnp.zeros(()), at)[at.middle]
+
     def wet(self, at: Grid) -> Array:
         """Whether there is oil at each inner node, shape (node - 2,)."""
         half_way = 0.5 * (at.x[1:-1] + at.x[2:])

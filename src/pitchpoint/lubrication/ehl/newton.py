@@ -67,17 +67,23 @@ def residual(problem: Problem, pressure: Array, level: Array, at: Grid) -> Array
     """
     gap = problem.gap(pressure, level, at)
     oil = pressure - problem.flow.asperity_pressure(gap)
-    defect = _defect(*problem.flow.balance(oil, gap, at), at)
+    gain, own = problem.flow.balance(oil, gap, at)
+    return _rest(problem, pressure, oil, gain, _scale(own, at), at)[0]
+
+
+def _scale(own: Array, at: Grid) -> Array:
+    """What turns a defect of balances into one of pressures; no part of derivatives."""
+    return jax.lax.stop_gradient(own + at.widths[1:-1])
+
+
+def _rest(
+    problem: Problem, pressure: Array, oil: Array, gain: Array, scale: Array, at: Grid
+) -> tuple[Array, Array]:
+    """What is left of balances and load, and which cells are full of oil."""
+    defect = -gain / scale
     full = (oil[1:-1] > defect) & problem.wet(at)
-    return _with_load(jnp.where(full, defect, oil[1:-1]), problem, pressure, at)
-
-
-def _defect(gain: Array, own: Array, at: Grid) -> Array:
-    return -gain / jax.lax.stop_gradient(own + at.widths[1:-1])
-
-
-def _with_load(rest: Array, problem: Problem, pressure: Array, at: Grid) -> Array:
-    return jnp.append(rest, at.widths @ pressure - problem.load)
+    rest = jnp.where(full, defect, oil[1:-1])
+    return jnp.append(rest, at.widths @ pressure - problem.load), full
 
 
 def step(problem: Problem, pressure: Array, level: Array, at: Grid) -> tuple[Array, Array]:
@@ -90,14 +96,12 @@ def step(problem: Problem, pressure: Array, level: Array, at: Grid) -> tuple[Arr
     carried, softer = jax.jvp(problem.flow.asperity_pressure, (gap,), (jnp.ones_like(gap),))
     oil = pressure - carried
     found = banded(problem.flow, oil, gap, at)
-    defect = _defect(found.gain, found.own, at)
-    full = (oil[1:-1] > defect) & problem.wet(at)
-    scale = found.own + at.widths[1:-1]
+    scale = _scale(found.own, at)
+    rest, full = _rest(problem, pressure, oil, found.gain, scale, at)
     by_pressure = jnp.where(full, -found.by_pressure / scale, 0.0).at[2].add(~full * 1.0)
     by_gap = jnp.where(full, -found.by_gap / scale, 0.0) - by_pressure * _shifted(softer)
-    rest = jnp.where(full, defect, oil[1:-1])
     matrix = _matrix(problem.yielding * by_gap, by_pressure, jnp.sum(by_gap, axis=0), at)
-    return _with_load(rest, problem, pressure, at), matrix
+    return rest, matrix
 
 
 def _shifted(values: Array) -> Array:
@@ -137,10 +141,7 @@ def dry(problem: Problem, at: Grid, factor: Array | float = 1.0) -> tuple[Array,
     """
     half_width = jnp.maximum(problem.yielding, 0.5)
     inside = jnp.maximum(1.0 - (at.x / half_width) ** 2, 0.0)
-    pressure = jnp.sqrt(inside)
-    pressure = pressure * problem.load / (at.widths @ pressure)
-    sunk = problem.gap(pressure, jnp.zeros(()), at)[jnp.argmin(jnp.abs(at.x))]
-    return pressure, THICK * problem.film * factor**0.7 - sunk
+    return problem.carrying(jnp.sqrt(inside), THICK * problem.film * factor**0.7, at)
 
 
 def iterated(problem: Problem, pressure: Array, level: Array, at: Grid) -> State:
@@ -198,8 +199,7 @@ def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
     for before, at in pairwise(grids):
         finer = prolongation(before.x.shape[0], at.x.shape[0])
         pressure = jnp.maximum(finer @ state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
-        middle = jnp.argmin(jnp.abs(before.x))
-        coarse = problem.flow.room(problem.gap(state.pressure, state.level, before))[middle]
+        coarse = problem.film_in_the_middle(state.pressure, state.level, before)
         state = iterated(problem, pressure, state.level, at)._replace(coarse=coarse)
         total = total + state.total
     return state._replace(total=total)

@@ -33,6 +33,7 @@ from pitchpoint.lubrication.ehl.newton import (
 )
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
+from pitchpoint.lubrication.groups import line_groups
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
@@ -168,10 +169,14 @@ def solve_lines(
     # Each on the grid that it would have alone, and back in the order in which they came.
     groups = [np.flatnonzero(one) for one in (~closes, closes)]
     portions: list[tuple[LineFilm, Ended, NDArray[np.float64]]] = []
+    done = 0
     for ends, which in zip(ENDS, groups, strict=True):
-        if which.size:
-            some, given = _taken(flat, which), _taken(begin, which)
-            portions += _portions(some, given, _ladder(nodes, ends), profiles, progress)
+        some, given = _taken(flat, which), _taken(begin, which)
+        for portion in _portions(some, given, nodes, ends, profiles):
+            portions.append(portion)
+            done += portion[1].code.size
+            if progress is not None:
+                progress(done, closes.size)
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
     warnings = tuple(_warnings(flat, film, ended, size))
@@ -217,9 +222,9 @@ def _flat(contact: LineContact) -> tuple[tuple[int, ...], LineContact]:
 def _portions(
     flat: LineContact,
     begin: tuple[Any, Any] | None,
-    grids: tuple[Grid, ...],
+    nodes: int,
+    ends: Ends,
     profiles: bool,
-    progress: Callable[[int, int], None] | None,
 ) -> Iterator[tuple[LineFilm, Ended, NDArray[np.float64]]]:
     every = flat.line_load.shape[0]
     solve = _soon if every <= FEW else _fast
@@ -228,11 +233,10 @@ def _portions(
         # A last portion that is short is filled up with contacts that nobody solves.
         which = np.minimum(np.arange(first, first + PORTION), every - 1)
         part, given = _taken((flat, begin), which)
-        film, ended, domain = solve(part, np.arange(PORTION) < count, given, grids)
+        wanted = np.arange(PORTION) < count
+        film, ended, domain = solve(part, wanted, given, _ladder(nodes, ends))
         film = film if profiles else _without_profiles(film)
         yield jax.tree.map(lambda leaf: np.asarray(leaf)[:count], (film, ended, domain))  # noqa: B023
-        if progress is not None:
-            progress(first + count, every)
 
 
 def _portion(
@@ -286,14 +290,13 @@ def _solved(
     if off_heat is not None:
         code = jnp.where(off_heat < WARM_ENOUGH, code, Code.NOT_CONVERGED)
     found = code == Code.SOLVED
-    room = problem.flow.room(gap)
-    at_middle = room[jnp.argmin(jnp.abs(at.x))]
+    at_middle = problem.film_in_the_middle(pressure, level, at)
     off = jnp.max(jnp.abs(film.gap / problem.flow.height - _as_turned(gap, contact)))
     ended = Ended(
         code,
         jnp.max(jnp.abs(rest[:-1])),
         jnp.abs(rest[-1]) / problem.load,
-        off / jnp.min(room),
+        off / jnp.min(problem.flow.room(gap)),
         state.total,
         jnp.abs(at_middle - state.coarse) / _gain(grids) / at_middle,
         off_heat,
@@ -310,26 +313,17 @@ def _iterated(
     if begin is None:
         state = from_coarse(problem, grids)
     else:
-        state = iterated(problem, *_guessed(problem, begin, at), at)
+        shape, gap = begin
+        state = iterated(problem, *problem.carrying(shape, gap / problem.flow.height, at), at)
     if contact.conduction is None:
         return problem, state, None
     warm = turned(contact, problem, state, at)
-    cold, hot = (_in_the_middle(problem, one, at) for one in (state, warm.state))
+    cold, hot = (
+        problem.film_in_the_middle(one.pressure, one.level, at) for one in (state, warm.state)
+    )
     # The grid makes as large a part of the warm film its error as of the isothermal one.
     found = warm.state._replace(total=warm.total, coarse=state.coarse * hot / cold)
     return warmed(problem, warm.rise), found, warm.turns
-
-
-def _in_the_middle(problem: Problem, state: State, at: Grid) -> Array:
-    room = problem.flow.room(problem.gap(state.pressure, state.level, at))
-    return room[jnp.argmin(jnp.abs(at.x))]
-
-
-def _guessed(problem: Problem, begin: tuple[Array, Array], at: Grid) -> tuple[Array, Array]:
-    """Pressure that carries the load, and the level for a film in the middle."""
-    guess = begin[0] * problem.load / (at.widths @ begin[0])
-    sunk = problem.gap(guess, jnp.zeros(()), at)[jnp.argmin(jnp.abs(at.x))]
-    return guess, begin[1] / problem.flow.height - sunk
 
 
 def _gain(grids: tuple[Grid, ...]) -> float:
@@ -364,18 +358,9 @@ def _withheld(film: LineFilm, found: Array) -> LineFilm:
     return kept
 
 
-_PROFILES: Final = ("x", "pressure", "asperity_pressure", "gap", "film", "filled", "shear_stress")
-
-
 def _without_profiles(film: LineFilm) -> LineFilm:
-    empty = [getattr(film, name)[..., :0] for name in _PROFILES]
-    some = lambda one: [getattr(one, name) for name in _PROFILES]  # noqa: E731
-    found: LineFilm = eqx.tree_at(some, film, empty)
-    if film.heat is None:
-        return found
-    along = film.film.ndim
-    heat = jax.tree.map(lambda leaf: leaf[..., :0] if leaf.ndim == along else leaf, film.heat)
-    found = eqx.tree_at(lambda one: one.heat, found, heat)
+    along = film.x.ndim
+    found: LineFilm = jax.tree.map(lambda leaf: leaf[..., :0] if leaf.ndim == along else leaf, film)
     return found
 
 
@@ -408,8 +393,8 @@ def _check(contact: LineContact) -> None:
             1e9,
             "1/GPa",
         ),
+        "inlet": (contact.inlet, "a distance at which oil begins", 1e3, "mm"),
     }
-    positive["inlet"] = (contact.inlet, "a distance at which oil begins", 1e3, "mm")
     for name, value in fluid.shear_parameters.items():
         positive[name] = (value, f"a shear parameter {name}", 1.0, "in SI units")
     if texture is not None:
@@ -531,8 +516,9 @@ def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
     contacts with thick films draw oil from further away. Rolling resistance falls off with it much more
     slowly: it is 10 to 20 % below that of an endless inlet. From films of inlets of 2 to 12 half-widths.
     """
-    modulus, radius = np.asarray(contact.modulus), np.asarray(contact.radius)
-    speed = np.abs(np.asarray(contact.entrainment)) * np.asarray(contact.fluid.viscosity)
-    scaled = np.maximum(2.0 * speed / (modulus * radius), 1e-30)
-    load = np.asarray(contact.line_load) / (modulus * radius) / np.sqrt(scaled)
+    oil = contact.fluid
+    speed = abs(contact.entrainment)
+    given = oil.viscosity, oil.pressure_viscosity, contact.radius, contact.modulus
+    W, U, _ = map(np.asarray, line_groups(contact.line_load, speed, *given))
+    load = W / np.sqrt(np.maximum(2.0 * U, 1e-30))
     return np.select([load > 30.0, load > 10.0, load > 5.0], [3.0, 4.0, 8.0], 12.0)

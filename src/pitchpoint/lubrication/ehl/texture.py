@@ -14,6 +14,7 @@ from pitchpoint.contact.asperities import (
     ETA_BETA_SIGMA,
     SIGMA_OVER_BETA,
     greenwood_tripp_1970,
+    greenwood_tripp_stiffness,
     greenwood_williamson_1966,
     hu_1994,
 )
@@ -114,19 +115,9 @@ def _fitted(
     *, gap: Each, roughness_rq: Each, modulus: Each, eta_beta_sigma: Each, sigma_over_beta: Each
 ) -> Array:
     """Greenwood and Tripp's pressure with the usual fit of its integral [Pa]."""
-    by_one = greenwood_tripp_1970(
-        gap=jnp.zeros(()),
-        roughness_rq=roughness_rq,
-        modulus=modulus,
-        eta_beta_sigma=eta_beta_sigma,
-        sigma_over_beta=sigma_over_beta,
-    )
-    found: Array = by_one / F_AT_ZERO * hu_1994(ratio=gap / roughness_rq)
+    stiff = greenwood_tripp_stiffness(modulus, eta_beta_sigma, sigma_over_beta)
+    found: Array = stiff * hu_1994(ratio=gap / roughness_rq)
     return found
-
-
-F_AT_ZERO: Final = 0.6166341243
-"""Moment F_5/2 of Gaussian heights about their mean, Gamma(7/4) 2^(1/4)/sqrt(pi)."""
 
 
 def _one_rough_side(
