@@ -1,0 +1,210 @@
+"""Deflection of two elastic half spaces by the pressure on the cells of a rectangular grid."""
+
+from typing import Any, Final, TypeAlias
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+from numpy.typing import NDArray
+
+from pitchpoint._jax import jnp
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays, Numbers
+
+__all__ = ["ENDS", "HalfSpace", "graded_edges", "half_space"]
+
+ENDS: Final[dict[str, float]] = {"half_space": 0.0, "mirrored": 1.0}
+"""Share of the pressure that acts once more, mirrored at both end faces: nothing where the bodies go on
+beyond the contact, all of it where both end with it."""
+
+UNEVEN: Final = 1e-9
+"""Largest difference of spacings of a uniform grid, over the spacing."""
+
+_Cells: TypeAlias = NDArray[np.float64]
+
+
+class HalfSpace(eqx.Module):
+    """Two half spaces on a grid, and what pressure that is constant on each cell deflects.
+
+    Lengths are in any unit that is the same for all of them; [m] stands for it below. Fields have the
+    shape (y, x).
+
+    Attributes:
+        x: of the cells' middles, in uniform steps, shape (x,) [m].
+        edges: of the cells across x, shape (y + 1,) [m].
+        spectrum: deflection times E' at a row by a pressure of one on the cells of another, by wave along x,
+            shape (wave, y, y); real, as the deflection is even in x [m].
+        rows: deflection times E' at a row by a pressure of one on the cell of the same row that lies 0, 1, 2,
+            ... steps of x away, shape (y, x) [m].
+    """
+
+    x: Float[Arrays, " x"]
+    edges: Float[Arrays, " edge"]
+    spectrum: Float[Arrays, "wave y y"]
+    rows: Float[Arrays, "y x"]
+
+    @property
+    def y(self) -> Float[Arrays, " y"]:
+        """Middles of the cells, shape (y,) [m]."""
+        return 0.5 * (self.edges[1:] + self.edges[:-1])
+
+    @property
+    def areas(self) -> Float[Arrays, " y"]:
+        """Area of a cell of each row, shape (y,) [m^2]."""
+        return (self.edges[1:] - self.edges[:-1]) * (self.x[-1] - self.x[0]) / (len(self.x) - 1)
+
+    def load(self, pressure: Float[Arrays, "y x"]) -> Float[Array, ""]:
+        """Normal load of a pressure [N]."""
+        return jnp.asarray(self.areas) @ jnp.sum(pressure, axis=1)
+
+    def deflection(self, pressure: Float[Arrays, "y x"], modulus: Numbers) -> Float[Array, "y x"]:
+        """Normal deflection of both bodies together in the middle of every cell, shape (y, x) [m].
+
+        Args:
+            pressure: on the cells, shape (y, x) [Pa].
+            modulus: E' [Pa], 2/E' = sum of (1 - nu^2)/E over both members.
+
+        u = 2/(pi E') int p/r dA. Source: Johnson, Contact Mechanics (1985), eqs. 3.22 and 3.25 (Love 1929).
+        """
+        nodes, period = pressure.shape[1], 2 * (self.spectrum.shape[0] - 1)
+        waves = jnp.fft.rfft(pressure, n=period, axis=1).T
+        parts = jnp.stack([waves.real, waves.imag], axis=-1)
+        found = jnp.einsum("kij,kjc->kic", self.spectrum, parts)
+        back = jnp.fft.irfft((found[..., 0] + 1j * found[..., 1]).T, n=period, axis=1)
+        return back[:, :nodes] / modulus
+
+    def lines(self) -> Float[Arrays, "y x x"]:
+        """Deflection times E' in a row by a pressure of one on each of its own cells, shape (y, x, x) [m]."""
+        steps = np.arange(self.rows.shape[1])
+        return self.rows[:, np.abs(steps[:, None] - steps)]
+
+
+def half_space(
+    x: NDArray[np.float64], edges: NDArray[np.float64], ends: str = "half_space"
+) -> HalfSpace:
+    """Two half spaces on a grid.
+
+    Args:
+        x: of the cells' middles, in uniform steps, shape (x,) [m].
+        edges: of the cells across x, of any widths, shape (y + 1,) [m].
+        ends: "half_space" where both bodies go on beyond the first and the last edge; "mirrored" where both
+            end there with free faces: the pressure mirrored at each face takes the shear stress, not the
+            normal one, from that face, and the pressure of flush ends falls.
+
+    Raises:
+        InputError: x not in uniform steps, edges that do not rise, fewer than three cells either way, other
+            ends.
+
+    Example: the deflection in the middle of a square of 1 mm under 1 MPa, and 5 mm beside it.
+
+        >>> import numpy as np
+        >>> from pitchpoint.contact.half_space import half_space
+        >>> x = np.linspace(-5e-3, 5e-3, 11)
+        >>> bodies = half_space(x, np.linspace(-5.5e-3, 5.5e-3, 12))
+        >>> pressure = np.zeros((11, 11))
+        >>> pressure[5, 5] = 1e6
+        >>> found = bodies.deflection(pressure, 226.4e9)
+        >>> round(float(found[5, 5]) * 1e9, 3), round(float(found[5, 10]) * 1e9, 3)
+        (9.913, 0.563)
+    """
+    _check(x, edges, ends)
+    cells = _deflections(x, edges, edges)
+    share = ENDS[ends]
+    if share:
+        cells += share * sum(_mirrored(x, edges, face) for face in (edges[0], edges[-1]))
+    rows = np.diagonal(cells, axis1=1, axis2=2)[:-1].T
+    found: Any = x, edges, _spectrum(cells), np.ascontiguousarray(rows)
+    return HalfSpace(*found)
+
+
+def graded_edges(length: float, cells: int, end: float) -> NDArray[np.float64]:
+    """Edges of cells that grow from both ends of a line to its middle by one ratio, shape (cells + 1,) [m].
+
+    Args:
+        length: of the line, whose middle is at zero [m].
+        cells: an even number of them.
+        end: width of the first and of the last one [m], less than that of uniform ones.
+
+    Raises:
+        InputError: an odd number of cells, or end cells that leave nothing to grow.
+
+    Example:
+        >>> graded_edges(14.0, 6, 1.0).round(9).tolist()
+        [-7.0, -6.0, -4.0, 0.0, 4.0, 6.0, 7.0]
+    """
+    half = cells // 2
+    if cells % 2 or half < 2 or not 0.0 < end < length / cells * (1.0 - UNEVEN):
+        raise InputError(
+            f"{cells} cells on a line {length:.4g} m long with end cells of {end:.4g} m: take an even number "
+            "of at least 4, and end cells narrower than those of a uniform grid"
+        )
+    ratio = _ratio(half, 0.5 * length / end)
+    inwards = end * np.concatenate(([0.0], np.cumsum(ratio ** np.arange(half))))
+    outwards = 0.5 * length - inwards[:-1]
+    return np.concatenate((-outwards, [0.0], outwards[::-1]))
+
+
+def _ratio(terms: int, total: float) -> float:
+    """Ratio of a geometric series that begins with one and has that sum."""
+    low, high = 1.0, total
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        less = np.sum(middle ** np.arange(terms)) < total
+        low, high = (middle, high) if less else (low, middle)
+    return high
+
+
+def _deflections(x: _Cells, edges: _Cells, loaded: _Cells) -> NDArray[np.float64]:
+    """Deflection times E' by cells 0, 1, ... steps of x away, shape (x + 1, y, cell).
+
+    Args:
+        x: of the cells' middles.
+        edges: of the rows in whose middles it is asked for.
+        loaded: edges of the loaded cells.
+    """
+    spacing = (x[-1] - x[0]) / (len(x) - 1)
+    away = spacing * (np.arange(len(x) + 1) + 0.5)
+    distance = 0.5 * (edges[1:] + edges[:-1])[:, None] - loaded
+    corner = _corner(away[:, None, None], distance)
+    strip = corner[..., :-1] - corner[..., 1:]
+    return 2.0 / np.pi * np.concatenate((2.0 * strip[:1], np.diff(strip, axis=0)))
+
+
+def _corner(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integral of 1/r over the rectangle between the point and (x, y), x positive; odd in y."""
+    across = np.abs(y)
+    distance = np.sqrt(x**2 + across**2)
+    beside = np.where(across == 0.0, 1.0, across)
+    one_way = x * np.log((across + distance) / x) + across * np.log((x + distance) / beside)
+    found: NDArray[np.float64] = np.sign(y) * one_way
+    return found
+
+
+def _mirrored(x: _Cells, edges: _Cells, face: np.float64) -> NDArray[np.float64]:
+    """Deflection times E' by the cells mirrored at a face, in their own order."""
+    return _deflections(x, edges, (2.0 * face - edges)[::-1])[..., ::-1]
+
+
+def _spectrum(cells: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Cosine transform of the even, periodic continuation along the first axis."""
+    steps = len(cells) - 1
+    number = np.arange(steps + 1)
+    weight = np.where((number == 0) | (number == steps), 1.0, 2.0)
+    cosine = np.cos(np.pi * (np.outer(number, number) % (2 * steps)) / steps) * weight
+    found: NDArray[np.float64] = (cosine @ cells.reshape(steps + 1, -1)).reshape(cells.shape)
+    return found
+
+
+def _check(x: NDArray[np.float64], edges: NDArray[np.float64], ends: str) -> None:
+    if ends not in ENDS:
+        raise InputError(f'there are no ends "{ends}"', key="ends", allowed=ENDS)
+    if x.ndim != 1 or edges.ndim != 1 or len(x) < 3 or len(edges) < 4:
+        raise InputError(
+            "a grid needs at least three cells each way, along x and between the edges"
+        )
+    steps, widths = np.diff(x), np.diff(edges)
+    # Written so that NaN fails.
+    if not (steps[0] > 0.0 and np.all(np.abs(steps - steps.mean()) < UNEVEN * steps.mean())):
+        raise InputError("the places x of a grid have to rise in uniform steps", key="x")
+    if not np.all(widths > 0.0):
+        raise InputError("the edges of the cells of a grid have to rise", key="edges")
