@@ -32,8 +32,8 @@ class HalfSpace(eqx.Module):
     Attributes:
         x: of the cells' middles, in uniform steps, shape (x,) [m].
         edges: of the cells across x, shape (y + 1,) [m].
-        spectrum: deflection times E' at a row by a pressure of one on the cells of another, by wave along x,
-            shape (wave, y, y); real, as the deflection is even in x [m].
+        spectrum: deflection times E' by a pressure of one on a row of cells, at another row, by wave along x,
+            shape (wave, y, y): the loaded row comes first; real, as the deflection is even in x [m].
         rows: deflection times E' at a row by a pressure of one on the cell of the same row that lies 0, 1, 2,
             ... steps of x away, shape (y, x) [m].
     """
@@ -68,9 +68,10 @@ class HalfSpace(eqx.Module):
         """
         nodes, period = pressure.shape[1], 2 * (self.spectrum.shape[0] - 1)
         waves = jnp.fft.rfft(pressure, n=period, axis=1).T
-        parts = jnp.stack([waves.real, waves.imag], axis=-1)
-        found = jnp.einsum("kij,kjc->kic", self.spectrum, parts)
-        back = jnp.fft.irfft((found[..., 0] + 1j * found[..., 1]).T, n=period, axis=1)
+        # Both parts at once, as rows: so every matrix is read once and in the order in which it lies.
+        parts = jnp.stack([waves.real, waves.imag], axis=1)
+        found = jnp.einsum("kcj,kji->kci", parts, self.spectrum)
+        back = jnp.fft.irfft((found[:, 0] + 1j * found[:, 1]).T, n=period, axis=1)
         return back[:, :nodes] / modulus
 
     def lines(self) -> Float[Arrays, "y x x"]:
@@ -146,7 +147,7 @@ def graded_edges(length: float, cells: int, end: float) -> NDArray[np.float64]:
 
 def _ratio(terms: int, total: float) -> float:
     """Ratio of a geometric series that begins with one and has that sum."""
-    low, high = 1.0, total
+    low, high = 1.0, float(total ** (1.0 / (terms - 1)))
     for _ in range(200):
         middle = 0.5 * (low + high)
         less = np.sum(middle ** np.arange(terms)) < total
@@ -155,7 +156,7 @@ def _ratio(terms: int, total: float) -> float:
 
 
 def _deflections(x: _Cells, edges: _Cells, loaded: _Cells) -> NDArray[np.float64]:
-    """Deflection times E' by cells 0, 1, ... steps of x away, shape (x + 1, y, cell).
+    """Deflection times E' by cells 0, 1, ... steps of x away, shape (x + 1, cell, y).
 
     Args:
         x: of the cells' middles.
@@ -164,9 +165,9 @@ def _deflections(x: _Cells, edges: _Cells, loaded: _Cells) -> NDArray[np.float64
     """
     spacing = (x[-1] - x[0]) / (len(x) - 1)
     away = spacing * (np.arange(len(x) + 1) + 0.5)
-    distance = 0.5 * (edges[1:] + edges[:-1])[:, None] - loaded
+    distance = 0.5 * (edges[1:] + edges[:-1]) - loaded[:, None]
     corner = _corner(away[:, None, None], distance)
-    strip = corner[..., :-1] - corner[..., 1:]
+    strip = corner[:, :-1] - corner[:, 1:]
     return 2.0 / np.pi * np.concatenate((2.0 * strip[:1], np.diff(strip, axis=0)))
 
 
@@ -182,7 +183,7 @@ def _corner(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float6
 
 def _mirrored(x: _Cells, edges: _Cells, face: np.float64) -> NDArray[np.float64]:
     """Deflection times E' by the cells mirrored at a face, in their own order."""
-    return _deflections(x, edges, (2.0 * face - edges)[::-1])[..., ::-1]
+    return _deflections(x, edges, (2.0 * face - edges)[::-1])[:, ::-1]
 
 
 def _spectrum(cells: NDArray[np.float64]) -> NDArray[np.float64]:
