@@ -41,10 +41,10 @@ class Stresses(eqx.Module):
             (self.zx, self.yz, self.zz),
         )
         tensor = jnp.stack([jnp.stack(row, axis=-1) for row in rows], axis=-2)
-        return jnp.linalg.eigvalsh(tensor)
+        return jnp.asarray(jnp.linalg.eigvalsh(tensor))
 
     def largest_shear(self) -> Section:
-        """Half the difference of the largest and the smallest principal stress (Tresca), shape (depth, x) [Pa]."""
+        """Half the difference of the outer principal stresses (Tresca), shape (depth, x) [Pa]."""
         found = self.principal()
         return 0.5 * (found[..., 2] - found[..., 0])
 
@@ -117,7 +117,7 @@ def stresses_below(
         poisson: Poisson's ratio of the solid.
 
     The pressure is constant on every cell; mirrored ends leave it as it is. Source: Love (1929); Johnson,
-    Contact Mechanics (1985), eqs. 3.11 to 3.17.
+    Contact Mechanics (1985), section 3.2.
     """
     nodes = pressure.shape[1]
     kernels = _of_cells(bodies, jnp.asarray(place), jnp.asarray(depth), jnp.asarray(poisson))
@@ -150,8 +150,10 @@ def _of_cells(bodies: HalfSpace, place: Array, depth: Array, poisson: Array) -> 
 
 
 def _corners(x: Array, y: Array, z: Array, poisson: Array) -> Array:
-    """Stresses, times 2 pi, below the corner of a quadrant loaded by one: the double primitive of those of a
-    point load, from which differences at four corners make those of a rectangle."""
+    """Primitive along x and y of the stresses below a point load of one, times 2 pi, shape (6, ...).
+
+    Its differences at four corners are the stresses below a rectangle.
+    """
     distance = jnp.sqrt(x**2 + y**2 + z**2)
     along, across, both = x**2 + z**2, y**2 + z**2, x * y
     sink = -jnp.arctan2(both, z * distance)
@@ -175,8 +177,12 @@ def _check(
 ) -> None:
     shape = len(bodies.y), len(bodies.x)
     if pressure.shape != shape or not np.all(np.isfinite(pressure)):
-        raise InputError(f"stresses need a finite pressure on each of {shape} cells", key="pressure")
+        raise InputError(
+            f"stresses need a finite pressure on each of {shape} cells", key="pressure"
+        )
     if depth.ndim != 1 or not np.all((depth > 0.0) & (depth < np.inf)):
         raise InputError("depths below the surface have to be positive", key="depth")
     if not 0.0 <= poisson <= 0.5:
-        raise InputError(f"a Poisson's ratio of {poisson:.4g}: it lies from 0 to 0.5", key="poisson")
+        raise InputError(
+            f"a Poisson's ratio of {poisson:.4g}: it lies from 0 to 0.5", key="poisson"
+        )
