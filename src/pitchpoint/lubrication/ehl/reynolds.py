@@ -17,6 +17,7 @@ REACH = 4
 """Nodes on which the balance of a cell depends: two before it, its own, one behind it."""
 
 Nodes = Float[Arrays, " node"]
+Places = Float[Arrays, "*place"]
 
 
 class Flow(eqx.Module):
@@ -42,11 +43,11 @@ class Flow(eqx.Module):
     approach: Float[Arrays, ""]
     temperature_rise: Float[Arrays, "..."]
 
-    def room(self, gap: Nodes) -> Nodes:
+    def room(self, gap: Places) -> Places:
         """Mean gap that is open to the oil."""
         return self.texture.room(gap * self.height) / self.height
 
-    def asperity_pressure(self, gap: Nodes) -> Nodes:
+    def asperity_pressure(self, gap: Places) -> Places:
         """Pressure that asperities carry."""
         return self.texture.pressure(gap * self.height) / self.pressure
 
@@ -72,7 +73,7 @@ class Flow(eqx.Module):
         gain = jnp.diff(net) + self.approach * density * at.widths[1:-1]
         return gain, conductance[1:] + conductance[:-1]
 
-    def density(self, film_pressure: Nodes, temperature_rise: Array | None = None) -> Nodes:
+    def density(self, film_pressure: Places, temperature_rise: Array | None = None) -> Places:
         """Density over that of the inlet, at the temperature of the film unless another is given."""
         pressure = jnp.maximum(film_pressure, 0.0) * self.pressure
         warmth = self.temperature_rise if temperature_rise is None else temperature_rise
@@ -82,23 +83,27 @@ class Flow(eqx.Module):
         self, film_pressure: Nodes, gap: Nodes, at: Grid
     ) -> tuple[Array, Array]:
         """Mass under each node, and flow through each face for a fall of pressure of one."""
+        mass, yields = self.mass_and_ease(film_pressure, gap)
+        return mass, at_faces(yields, at.ahead) / at.spacing
+
+    def mass_and_ease(self, film_pressure: Places, gap: Places) -> tuple[Places, Places]:
+        """Mass under each place, and flow along a slope of the pressure of one."""
         pressure = jnp.maximum(film_pressure, 0.0) * self.pressure
         room = self.room(gap)
         thicker = self.fluid.viscosity_at(pressure, self.temperature_rise) / self.fluid.viscosity
         mass = self.density(film_pressure) * room
         open_ = self.texture.flow_factor(gap * self.height)
-        yields = open_ * mass * room**2 / (thicker * self.resistance)
-        return mass, at_faces(yields, at.ahead) / at.spacing
+        return mass, open_ * mass * room**2 / (thicker * self.resistance)
 
 
-def at_faces(values: Nodes, ahead: Bool[Arrays, " face"]) -> Array:
+def at_faces(values: Float[Arrays, "node *row"], ahead: Bool[Arrays, "face *#row"]) -> Array:
     """Mean of neighbours: geometric ahead of the middle, arithmetic behind; of positive values."""
     one, other = values[:-1], values[1:]
     product = jnp.maximum(one * other, 1e-300)
     return jnp.where(ahead, jnp.sqrt(product), 0.5 * (one + other))
 
 
-def upwind(values: Nodes) -> Array:
+def upwind(values: Float[Arrays, "node *row"]) -> Array:
     """Values at the faces from the nodes around them, two of them on the side where the flow comes from."""
     padded = jnp.concatenate((values[:1], values))
     return (2.0 * padded[2:] + 5.0 * padded[1:-1] - padded[:-2]) / 6.0

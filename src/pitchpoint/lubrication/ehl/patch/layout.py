@@ -1,0 +1,305 @@
+"""Grids over the patch of a contact, and the contact on one of them in units of its own."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any, Final, NamedTuple
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+from numpy.typing import NDArray
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.dry_contact import pressed
+from pitchpoint.contact.ellipse import hertz_1881
+from pitchpoint.contact.half_space import HalfSpace, graded_edges, half_space
+from pitchpoint.contact.hertz import line_half_width, line_pressure
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.line import LEAST, SLOWEST
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.reynolds import Flow
+from pitchpoint.lubrication.ehl.texture import Smooth
+from pitchpoint.lubrication.film_thickness import moes_1992
+from pitchpoint.programs import fast_program
+
+__all__ = ["FEWEST", "Layout", "Problem", "laid_out", "ladder", "problem_on"]
+
+Field = Float[Arrays, "y x"]
+
+FEWEST: Final = 33
+"""Nodes along x of the coarsest grid; across it there is one cell less."""
+
+OUTLET: Final = 1.5
+"""End of the grid behind the middle, in half-widths."""
+
+BESIDE: Final = 1.6
+"""Ends of the grid on both sides of an ellipse, in its semi-axes."""
+
+END_CELL: Final = 0.1
+"""Width of the cells at the ends of a line, in half-widths, unless uniform ones are narrower."""
+
+SPREAD: Final = 4.0
+"""Square of what a film adds to the length of a contact, over radius and film."""
+
+TRIAL: Final = (65, 64)
+"""Grid of the dry contact that tells where a line carries."""
+
+ROOM: Final = 3.0
+"""Half-widths of the mean load on both sides of that grid; doubled while they do not do."""
+
+HEAVY: Final = 0.9
+"""Part of the rows whose load is below the one that the units are taken from."""
+
+MOST_ROOM: Final = 4
+"""Doublings after which a line is said not to fit."""
+
+
+class Layout(NamedTuple):
+    """Where the grid of a contact lies, and its units.
+
+    Attributes:
+        inlet: beginning of the grid along x [m].
+        outlet: end of it [m].
+        first, last: its ends across [m].
+        end: width of the first and the last cell of a line that ends there [m]; None for uniform cells.
+        half_width: of the contact along x, which is the unit of length [m].
+        pressure: largest one of the contact, but for edges, which is the unit of pressures [Pa].
+        film: guess of it in the middle [m].
+    """
+
+    inlet: float
+    outlet: float
+    first: float
+    last: float
+    end: float | None
+    half_width: float
+    pressure: float
+    film: float
+
+    def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
+        """Half spaces on a grid of so many nodes along and cells across, in half-widths.
+
+        The edges are every one, every second, ... of those of the finest grid.
+        """
+        x = np.linspace(self.inlet, self.outlet, nodes) / self.half_width
+        edges = self._edges(finest)[:: finest // cells] / self.half_width
+        return _bodies(tuple(x), tuple(edges), ends)
+
+    def _edges(self, cells: int) -> NDArray[np.float64]:
+        if self.end is None:
+            return np.linspace(self.first, self.last, cells + 1)
+        length = self.last - self.first
+        return 0.5 * (self.first + self.last) + graded_edges(length, cells, self.end)
+
+
+@lru_cache(maxsize=8)
+def _bodies(x: tuple[float, ...], edges: tuple[float, ...], ends: str) -> HalfSpace:
+    return half_space(np.array(x), np.array(edges), ends)
+
+
+def laid_out(contact: PatchContact, cells: int) -> Layout:
+    """Where the grid of a contact lies.
+
+    Args:
+        contact: one, of values.
+        cells: across it.
+
+    Raises:
+        InputError: a line whose contact is wider than any grid, or that carries nowhere.
+    """
+    if contact.length is None:
+        return _of_ellipse(contact)
+    return _of_line(contact, cells)
+
+
+def _of_ellipse(contact: PatchContact) -> Layout:
+    radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
+    given = {"load": contact.load, "radius": radius, "transverse_radius": across}
+    ellipse = hertz_1881(**given, modulus=contact.modulus)
+    half_width, side = float(ellipse.along), float(ellipse.across)
+    pressure = float(ellipse.pressure)
+    film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
+    longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
+    reach = BESIDE * side * wider
+    ends = -inlet * half_width * longer, OUTLET * half_width * longer
+    return Layout(*ends, -reach, reach, None, half_width, pressure, film)
+
+
+def _of_line(contact: PatchContact, cells: int) -> Layout:
+    half_width, pressure, (low, high) = _carrying(contact)
+    radius, length = float(np.mean(contact.radius)), float(contact.length)  # type: ignore[arg-type]
+    film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
+    longer = _longer(contact, radius, film, half_width)
+    ends = -inlet * half_width * longer, OUTLET * half_width * longer
+    beyond = (BESIDE - 1.0) * 0.5 * (high - low)
+    first, last = max(low - beyond, -0.5 * length), min(high + beyond, 0.5 * length)
+    reaches = first == -0.5 * length or last == 0.5 * length
+    end = END_CELL * half_width
+    fine = not reaches or end >= (last - first) / cells * (1.0 - 1e-6)
+    return Layout(*ends, first, last, None if fine else end, half_width, pressure, film)
+
+
+def _longer(contact: PatchContact, radius: float, film: float, half_width: float) -> float:
+    """Length over which a contact carries, over that of the dry one: thick films and asperities add to it."""
+    rough = 0.0 if contact.texture is None else float(contact.texture.rq)
+    return float(np.sqrt(1.0 + radius * SPREAD * (film + rough) / half_width**2))
+
+
+def _film_and_inlet(
+    contact: PatchContact, radius: float, half_width: float, pressure: float
+) -> tuple[float, float]:
+    """Guess of the film in the middle [m], and length of inlet that floods it [half-widths]."""
+    line_load = 0.5 * np.pi * pressure * half_width
+    speed = max(float(np.max(np.abs(entrainment_of(contact)))), SLOWEST)
+    oil, modulus = contact.fluid, float(contact.modulus)
+    film = moes_1992(
+        line_load=line_load,
+        entrainment=speed,
+        viscosity=oil.viscosity,
+        pressure_viscosity=oil.pressure_viscosity,
+        radius=radius,
+        modulus=modulus,
+    )
+    speeds = 2.0 * float(oil.viscosity) * speed / (modulus * radius)
+    load = line_load / (modulus * radius) / np.sqrt(speeds)
+    inlet = np.select([load > 30.0, load > 10.0, load > 5.0], [3.0, 4.0, 5.0], 6.0)
+    return float(film), float(inlet)
+
+
+def entrainment_of(contact: PatchContact) -> NDArray[np.float64]:
+    """Mean surface speed at every place, of both directions together [m/s]."""
+    along = 0.5 * np.asarray(contact.speed_a + contact.speed_b)
+    across = 0.5 * float(contact.across_a + contact.across_b)
+    return np.hypot(along, across)
+
+
+def _carrying(contact: PatchContact) -> tuple[float, float, tuple[float, float]]:
+    """Largest half-width and pressure along a dry line, but for its edges, and from where to where it carries."""
+    length, radius = float(contact.length), float(np.mean(contact.radius))  # type: ignore[arg-type]
+    given = {"line_load": float(contact.load) / length, "radius": radius}
+    half_width = float(line_half_width(**given, modulus=float(contact.modulus)))
+    nodes, cells = TRIAL
+    for doubled in range(MOST_ROOM):
+        reach = ROOM * 2.0**doubled * half_width
+        bodies = half_space(
+            np.linspace(-reach, reach, nodes), np.linspace(-0.5 * length, 0.5 * length, cells + 1)
+        )
+        gap = contact.gap(array(np.asarray(bodies.x)), array(np.asarray(bodies.y)))
+        dry = np.asarray(_dry(bodies, gap, contact.modulus, contact.load).pressure)
+        if not np.any(dry[:, [0, -1]] > 0.0):
+            return _of_dry(contact, bodies, dry, radius)
+    raise InputError(
+        f"no contact line of {1e3 * length:.4g} mm carries {float(contact.load):.4g} N: look at its relief",
+        key="relief",
+    )
+
+
+def _of_dry(
+    contact: PatchContact, bodies: HalfSpace, dry: NDArray[np.float64], radius: float
+) -> tuple[float, float, tuple[float, float]]:
+    held = np.flatnonzero(np.any(dry > 0.0, axis=1))
+    spacing = float(bodies.x[1] - bodies.x[0])
+    # Next to an edge a row carries more, and its pressure is a number of the grid.
+    line_load = float(np.quantile(np.sum(dry[held], axis=1), HEAVY)) * spacing
+    given = {"line_load": line_load, "radius": radius, "modulus": float(contact.modulus)}
+    edges = np.asarray(bodies.edges)
+    ends = float(edges[held[0]]), float(edges[held[-1] + 1])
+    return float(line_half_width(**given)), float(line_pressure(**given)), ends
+
+
+_dry = fast_program(pressed)
+
+
+def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
+    """Grids from a coarse one to that of so many nodes and cells.
+
+    Raises:
+        InputError: numbers that no grid has.
+    """
+    for what, number, even in (("nodes", nodes, nodes - 1), ("cells", cells, cells)):
+        if number != int(number) or even < FEWEST - 1 or even & (even - 1):
+            raise InputError(
+                f"{number} {what}: their number is a power of two from {FEWEST - 1} on"
+                + (" and one more" if what == "nodes" else ""),
+                key=what,
+            )
+    grids = [(nodes, cells)]
+    while grids[0][0] > 2 * FEWEST and grids[0][1] >= 2 * FEWEST:
+        grids.insert(0, (grids[0][0] // 2 + 1, grids[0][1] // 2))
+    return tuple(grids)
+
+
+class Problem(eqx.Module):
+    """One contact on a grid, in units of its own half-width, pressure and speed.
+
+    Attributes:
+        flow: of the oil.
+        bodies: half spaces on their grid.
+        apart: gap where the bodies just touch, shape (y, x).
+        along: entrainment along x over the unit of speed, shape (y,).
+        across: the same along y.
+        yielding: deflection by a pressure of one on bodies with E' of one.
+        load: over pressure and square of the half-width.
+        film: guess of it, for a start.
+        speed: unit of speed [m/s].
+        length: unit of length [m].
+    """
+
+    flow: Flow
+    bodies: HalfSpace
+    apart: Float[Arrays, "y x"]
+    along: Float[Arrays, " y"]
+    across: Float[Arrays, ""]
+    yielding: Float[Arrays, ""]
+    load: Float[Arrays, ""]
+    film: Float[Arrays, ""]
+    speed: Float[Arrays, ""]
+    length: Float[Arrays, ""]
+
+    def gap(self, pressure: Field, level: Array) -> Array:
+        """Gap of the mean planes in every cell, shape (y, x)."""
+        return level + self.apart + self.bodies.deflection(pressure, 1.0 / self.yielding)
+
+    def mean(self, field: Field, where: Field) -> Array:
+        """Mean of a field over some cells."""
+        return self.bodies.load(field * where) / self.bodies.load(where)
+
+
+def problem_on(
+    contact: PatchContact, layout: Layout, nodes: int, cells: int, finest: int
+) -> Problem:
+    """A contact on one grid of a ladder; what the layout gives counts as constant for derivatives."""
+    length, pressure = layout.half_width, layout.pressure
+    bodies = layout.bodies(nodes, cells, finest, contact.ends)
+    x, y = (length * np.asarray(one) for one in (bodies.x, bodies.y))
+    radius = float(np.mean(contact.radius))
+    height, film = length**2 / radius, layout.film
+    entrainment = contact.entrainment(array(y))
+    across = 0.5 * (contact.across_a + contact.across_b)
+    still = max(float(np.max(entrainment_of(contact))), SLOWEST)
+    unit = still + abs(float(contact.approach)) * radius / length
+    fluid: Any = contact.fluid
+    flow = Flow(
+        fluid,
+        contact.texture or Smooth(array(LEAST * film)),
+        array(pressure),
+        array(height),
+        12.0 * fluid.viscosity * unit * radius**2 / (length**3 * pressure),
+        jnp.ones(()),
+        contact.approach * radius / (length * unit),
+        jnp.zeros(()),
+    )
+    return Problem(
+        flow,
+        jax.tree.map(array, bodies),
+        contact.gap(array(x), array(y)) / height,
+        entrainment / unit,
+        across / unit,
+        pressure * length / (height * contact.modulus),
+        contact.load / (pressure * length**2),
+        array(film / height),
+        array(unit),
+        array(length),
+    )

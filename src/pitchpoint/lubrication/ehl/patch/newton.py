@@ -1,0 +1,276 @@
+"""Newton's method on a patch: pressure of every cell and the load at once, rows as the preconditioner."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from jax.scipy.sparse.linalg import gmres
+from jaxtyping import Array, Float
+from numpy.typing import NDArray
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, stencil
+from pitchpoint.lubrication.ehl.patch.layout import Problem
+from pitchpoint.programs import fast_program
+
+__all__ = ["ENOUGH", "Linear", "Progress", "State", "iterated", "linear", "mended", "rows"]
+
+Progress = Callable[[int, float], None]
+
+TOLERANCE: Final = 1e-8
+"""Residual at which an iteration ends, in units of the largest dry pressure."""
+
+ENOUGH: Final = 1e-6
+"""Residual of a solution that rounding keeps from coming closer."""
+
+LONGEST_STEP: Final = 0.3
+"""Largest change of a pressure in a step, in units of the largest dry pressure."""
+
+MOST: Final = 60
+"""Steps after which an attempt is given up."""
+
+FIRST_TIME: Final = 0.5
+"""Time over which the first step lets oil flow, in which surfaces pass half a half-width."""
+
+LONGER: Final = 2.5
+"""Factor by which that time grows with each full step."""
+
+STEADY: Final = 1e-4
+"""Residual from which on oil has all the time that it needs, and one over the time below which it has."""
+
+INEXACT: Final = 1e-2
+"""What a linear solve leaves of its right-hand side."""
+
+DIRECTIONS: Final = 12
+"""Directions of a linear solve that are known at once."""
+
+RESTARTS: Final = 4
+"""Times that these are looked for, after which a result is taken as it is."""
+
+AGE: Final = 3
+"""Steps for which rows that were inverted once do, near a solution."""
+
+NEAR: Final = 0.05
+"""Residual from which on they are not inverted anew in each step."""
+
+
+class State(NamedTuple):
+    """Where an iteration stands.
+
+    Attributes:
+        pressure: that oil and asperities carry, shape (y, x).
+        level: of the surfaces.
+        residual: largest one.
+        load: defect of the load over it.
+        steps: of Newton's method, on all grids.
+    """
+
+    pressure: Any
+    level: Any
+    residual: float
+    load: float
+    steps: int
+
+
+class Linear(NamedTuple):
+    """The balance of every cell and of the load near a pressure.
+
+    Attributes:
+        rest: what is left of the balance of the inner cells, shape (y, inner).
+        load: of the load, over it.
+        by_pressure: derivatives of the rest to pressures.
+        by_gap: to deflections.
+        by_level: to the level of the surfaces, shape (y, inner).
+        share: of the load by a pressure of one on a cell of each row, shape (y,).
+        problem: the contact.
+    """
+
+    rest: Float[Array, "y inner"]
+    load: Float[Array, ""]
+    by_pressure: Stencil
+    by_gap: Stencil
+    by_level: Float[Array, "y inner"]
+    share: Float[Array, " y"]
+    problem: Problem
+
+
+class Rows(NamedTuple):
+    """Every row solved as if it stood alone, with the load they carry together.
+
+    Attributes:
+        inverse: of the derivatives of a row to its own pressures, shape (y, inner, inner).
+        lifted: pressures by which rows answer to a level of one, shape (y, inner).
+        carried: load of these.
+    """
+
+    inverse: Float[Array, "y inner inner"]
+    lifted: Float[Array, "y inner"]
+    carried: Float[Array, ""]
+
+
+def linear(problem: Problem, pressure: Array, level: Array, rate: Array) -> Linear:
+    """Balances and their derivatives at a pressure.
+
+    A cell is full of oil, and balanced, or its oil is without pressure, as in a line. Cells at the first and
+    the last node of each row are without pressure.
+    """
+    gap = problem.gap(pressure, level)
+    carried, softer = jax.jvp(problem.flow.asperity_pressure, (gap,), (jnp.ones_like(gap),))
+    oil = pressure - carried
+    gain, own, by_oil, by_gap = stencil(problem, oil, gap, rate)
+    scale = own + jnp.asarray(problem.bodies.areas)[:, None]
+    defect = -gain / scale
+    full = oil[:, 1:-1] > defect
+    rest = jnp.where(full, defect, oil[:, 1:-1])
+    own_row = jnp.where(full, -by_oil.along / scale, 0.0).at[2].add(~full * 1.0)
+    by_pressure = Stencil(own_row, jnp.where(full, -by_oil.across / scale, 0.0))
+    by_height = Stencil(
+        *(jnp.where(full, -one / scale, 0.0) for one in (by_gap.along, by_gap.across))
+    )
+    softened = _softened(by_pressure, softer)
+    to_gap = jax.tree.map(lambda one, other: one - other, by_height, softened)
+    areas = jnp.asarray(problem.bodies.areas) / problem.load
+    return Linear(
+        rest,
+        areas @ jnp.sum(pressure, axis=1) - 1.0,
+        by_pressure,
+        to_gap,
+        jnp.sum(to_gap.along, axis=0) + jnp.sum(to_gap.across, axis=0),
+        areas,
+        problem,
+    )
+
+
+def _softened(by_pressure: Stencil, softer: Array) -> Stencil:
+    """What gaps change by the pressure that asperities take from the oil."""
+    along, across = _around(softer)
+    return Stencil(by_pressure.along * along, by_pressure.across * across)
+
+
+def _around(field: Array) -> tuple[Array, Array]:
+    """Values at the cells that each inner cell knows: of its row, and of its column."""
+    rows, nodes = field.shape
+    inner = nodes - 2
+    row = jnp.pad(field, ((0, 0), (1, 0)), mode="edge")
+    column = jnp.pad(field[:, 1:-1], ((2, 1), (0, 0)))
+    return (
+        jnp.stack([row[:, k : k + inner] for k in range(ALONG)]),
+        jnp.stack([column[k : k + rows] for k in (0, 1, 3)]),
+    )
+
+
+def _times(found: Stencil, field: Array) -> Array:
+    along, across = _around(field)
+    return jnp.sum(found.along * along, axis=0) + jnp.sum(found.across * across, axis=0)
+
+
+def product(at: Linear, change: Array) -> Array:
+    """Change of all balances, the load at last, with that of inner pressures, the level at last."""
+    inner = change[:-1].reshape(at.rest.shape)
+    pressure = jnp.pad(inner, ((0, 0), (1, 1)))
+    sinks = at.problem.bodies.deflection(pressure, 1.0 / at.problem.yielding)
+    rest = _times(at.by_pressure, pressure) + _times(at.by_gap, sinks) + at.by_level * change[-1]
+    return jnp.append(rest, at.share @ jnp.sum(inner, axis=1))
+
+
+def rows(at: Linear) -> Rows:
+    """Rows inverted: what they do to themselves by flow and by deflection."""
+    bodies, inner = at.problem.bodies, at.rest.shape[1]
+    lines = at.problem.yielding * bodies.lines()
+    reached = jnp.concatenate((lines[:, :1], lines), axis=1)[:, :, 1:-1]
+    matrix = sum(
+        at.by_gap.along[k][:, :, None] * reached[:, k : k + inner] for k in range(ALONG)
+    )
+    row, column, which = _bands(inner)
+    found = jnp.asarray(matrix).at[:, row, column].add(at.by_pressure.along[which, :, row].T)
+    inverse = jnp.linalg.inv(found)
+    lifted = jnp.einsum("yij,yj->yi", inverse, at.by_level)
+    return Rows(inverse, lifted, at.share @ jnp.sum(lifted, axis=1))
+
+
+def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.int_]]:
+    """Rows and columns of the band of a matrix, and which diagonal each entry is on."""
+    row = np.tile(np.arange(inner), (ALONG, 1))
+    column = row + np.arange(ALONG)[:, None] - 2
+    kept = (column >= 0) & (column < inner)
+    return row[kept], column[kept], np.nonzero(kept)[0]
+
+
+def by_rows(alone: Rows, share: Array, rest: Array) -> Array:
+    """Change that would mend what is left, if rows felt each other by the load alone."""
+    each = rest[:-1].reshape(alone.lifted.shape)
+    change = jnp.einsum("yij,yj->yi", alone.inverse, each)
+    level = (share @ jnp.sum(change, axis=1) - rest[-1]) / alone.carried
+    return jnp.append(change - alone.lifted * level, level)
+
+
+def mended(at: Linear, alone: Rows, rest: Array) -> Array:
+    """Change of inner pressures, the level at last, that takes a rest away from all balances.
+
+    Args:
+        at: balances.
+        alone: rows inverted, there or nearby.
+        rest: of all inner cells, the load at last.
+    """
+    found, _ = gmres(
+        lambda change: product(at, change),
+        rest,
+        M=lambda one: by_rows(alone, at.share, one),
+        tol=INEXACT,
+        restart=DIRECTIONS,
+        maxiter=RESTARTS,
+        solve_method="batched",
+    )
+    return found
+
+
+_linear, _rows, _mended = fast_program(linear), fast_program(rows), fast_program(mended)
+
+
+def iterated(
+    problem: Problem,
+    pressure: Any,
+    level: Any,
+    time: float = FIRST_TIME,
+    told: Progress | None = None,
+) -> State:
+    """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
+
+    Args:
+        problem: the contact.
+        pressure: guess, shape (y, x).
+        level: of the surfaces.
+        time: of the first step; the shorter, the closer each step stays to the film before.
+        told: called with the number of steps and the residual after each of them.
+    """
+    state = State(pressure, level, np.inf, np.inf, 0)
+    rate, alone, age = 1.0 / time, None, 0
+    for step in range(MOST + 1):
+        at = _linear(problem, state.pressure, state.level, array(rate))
+        residual = float(jnp.max(jnp.abs(at.rest)))
+        state = state._replace(residual=residual, load=float(at.load), steps=step)
+        if told is not None:
+            told(step, residual)
+        if not np.isfinite(residual) or step == MOST or (residual < TOLERANCE and rate == 0.0):
+            break
+        if alone is None or residual > NEAR or age >= AGE:
+            alone, age = _rows(at), 0
+        age += 1
+        rest = np.append(np.ravel(at.rest), float(at.load))
+        change = np.asarray(_mended(at, alone, array(-rest)))
+        short = min(1.0, LONGEST_STEP / float(np.max(np.abs(change[:-1]))))
+        state = _moved(state, short * change)
+        if short == 1.0:
+            rate /= LONGER
+        if rate < STEADY or residual < STEADY:
+            rate = 0.0
+    return state
+
+
+def _moved(state: State, change: NDArray[np.float64]) -> State:
+    inner = change[:-1].reshape(state.pressure.shape[0], -1)
+    pressure = state.pressure + array(np.pad(inner, ((0, 0), (1, 1))))
+    level = state.level + array(change[-1])
+    return state._replace(pressure=pressure, level=level)

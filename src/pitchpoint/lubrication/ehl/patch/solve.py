@@ -1,0 +1,85 @@
+"""Contacts of finite length solved: from the dry contact, from coarse to fine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+from jaxtyping import Array
+from numpy.typing import NDArray
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.contact.dry_contact import pressed
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.newton import State, iterated
+from pitchpoint.programs import fast_program
+
+THICK: Final = 1.5
+"""First guess of the film over the one that a regression gives."""
+
+FINER_TIME: Final = 2.0
+"""Time over which the first step lets oil flow on a grid that starts from a coarser one."""
+
+_dry = fast_program(pressed)
+
+
+def dry_start(problem: Problem) -> tuple[NDArray[np.float64], Any]:
+    """Dry pressure, and the level at which the mean film under it is as guessed."""
+    dry = _dry(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
+    pressure = np.array(dry.pressure)
+    pressure[:, [0, -1]] = 0.0
+    gap = np.asarray(_gap(problem, array(pressure), array(0.0)))
+    held = pressure > 0.0
+    areas = np.asarray(problem.bodies.areas)[:, None] * held
+    return pressure, THICK * float(problem.film) - float(np.sum(gap * areas) / np.sum(areas))
+
+
+def gap_of(problem: Problem, pressure: Array, level: Array) -> Array:
+    return problem.gap(pressure, level)
+
+
+_gap = fast_program(gap_of)
+
+
+def finer(
+    coarse: Problem, state: State, dry: NDArray[np.float64], fine: Problem, fine_dry: NDArray[np.float64]
+) -> tuple[Any, Any]:
+    """Pressure and level on a finer grid: what the film adds to the dry pressure changes slowly."""
+    added = np.asarray(state.pressure) - dry
+    along = _between(np.asarray(coarse.bodies.x), np.asarray(fine.bodies.x))
+    across = _between(np.asarray(coarse.bodies.y), np.asarray(fine.bodies.y))
+    pressure = np.maximum(fine_dry + across @ added @ along.T, 0.0)
+    pressure[:, [0, -1]] = 0.0
+    areas = np.asarray(fine.bodies.areas)[:, None]
+    pressure *= float(fine.load) / np.sum(pressure * areas)
+    held = dry > 0.0
+    before = np.asarray(_gap(coarse, state.pressure, array(state.level)))
+    weight = np.asarray(coarse.bodies.areas)[:, None] * held
+    mean = np.sum(before * weight) / np.sum(weight)
+    found = np.asarray(_gap(fine, array(pressure), array(0.0)))
+    weight = areas * (fine_dry > 0.0)
+    return pressure, mean - np.sum(found * weight) / np.sum(weight)
+
+
+def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Matrix that takes values at coarse places to fine ones, linearly."""
+    one = np.eye(len(coarse))
+    return np.stack([np.interp(fine, coarse, row) for row in one], axis=1)
+
+
+def solve(contact: PatchContact, nodes: int = 129, cells: int = 128, told=None):
+    grids = ladder(nodes, cells)
+    layout = laid_out(contact, cells)
+    before = None
+    for grid in grids:
+        problem = problem_on(contact, layout, *grid, cells)
+        dry, level = dry_start(problem)
+        if before is None:
+            state = iterated(problem, array(dry), array(level), told=told)
+        else:
+            p, l = finer(*before, problem, dry)
+            state = iterated(problem, array(p), array(l), FINER_TIME, told=told)
+        before = problem, state, dry
+    return layout, problem, state
