@@ -100,8 +100,8 @@ def rollers() -> None:
             lambda: dry_contact(bodies, gap, MODULUS, load=load, to_ends=True)  # noqa: B023
         )
         print(
-            f"straight roller, {nodes} x {cells}: {seconds:.3f} s, {int(found.status.iterations)} iterations; "
-            f"kernel of the grid {kernel:.3f} s"
+            f"straight roller, {nodes} x {cells}: {seconds:.3f} s, {int(found.status.iterations)} "
+            f"iterations; kernel of the grid {kernel:.3f} s"
         )
 
 

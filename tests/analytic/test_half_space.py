@@ -37,19 +37,31 @@ def by_cell(x, y, left, right, low, high):
 
 def summed(bodies, pressure, modulus):
     """Deflection as the sum over all cells, at all cells."""
+    edges = bodies.edges
     step = X[1] - X[0]
     found = np.zeros(pressure.shape)
     for (i, j), _ in np.ndenumerate(found):
         for (k, m), one in np.ndenumerate(pressure):
-            sides = X[m] - step / 2, X[m] + step / 2, EDGES[k], EDGES[k + 1]
+            sides = X[m] - step / 2, X[m] + step / 2, edges[k], edges[k + 1]
             found[i, j] += one * by_cell(X[j], bodies.y[i], *sides)
     return found / modulus
 
 
-def test_the_convolution_is_the_direct_sum(bodies, pressure):
+@pytest.mark.parametrize(
+    "edges",
+    [EDGES, EDGES - 1e-3, np.linspace(-2.0, 1.0, 10) * 1e-3, np.geomspace(1.0, 2.0, 11) * 1e-3],
+    ids=["symmetric", "symmetric about another middle", "with a row in the middle", "other"],
+)
+def test_the_convolution_is_the_direct_sum(edges, pressure):
+    bodies, pressure = half_space(X, edges), pressure[: len(edges) - 1]
     found = bodies.deflection(pressure, MODULUS)
     direct = summed(bodies, pressure, MODULUS)
     np.testing.assert_allclose(found, direct, rtol=0, atol=1e-12 * direct.max())
+
+
+def test_symmetric_edges_need_half_the_numbers():
+    even, other = half_space(X, EDGES), half_space(X, np.geomspace(1.0, 2.0, 11) * 1e-3)
+    assert even.spectrum.size == other.spectrum.size // 2
 
 
 def test_a_symmetric_pressure_deflects_symmetrically(bodies, pressure):

@@ -93,10 +93,9 @@ class _Pressed(eqx.Module):
 
     def _sharpened(self, defect: Array) -> Array:
         """Pressure that would deflect by as much if every row stood alone and had no end."""
-        spectrum = self.bodies.spectrum
-        period = 2 * (spectrum.shape[0] - 1)
-        alone = jnp.diagonal(spectrum, axis1=1, axis2=2).T
-        waves = jnp.fft.rfft(defect, n=period, axis=1) / alone
+        own = self.bodies.own
+        period = 2 * (own.shape[1] - 1)
+        waves = jnp.fft.rfft(defect, n=period, axis=1) / own
         return jnp.fft.irfft(waves, n=period, axis=1)[:, : defect.shape[1]] * self.modulus
 
     @property
