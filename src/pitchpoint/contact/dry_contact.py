@@ -27,6 +27,10 @@ ENOUGH: Final = 1e-8
 MOST: Final = 400
 """Iterations after which a solve is given up."""
 
+JOINING: Final = 0.01
+"""Pressure with which a cell joins the contact, over what would take away its overlap if it stood alone. With
+much more, many that join at once never settle: rough surfaces on long cells."""
+
 FEWEST: Final = 8
 """Cells across the contact below which no grid resolves it."""
 
@@ -219,7 +223,7 @@ def _step(given: _Pressed, state: _State) -> _State:
     length = given.sum(defect * direction) / given.sum(yields * direction)
     free = state.pressure - length * direction
     joins = ~held & (state.defect < 0.0)
-    pressure = jnp.where(joins, -0.5 * state.defect / given.soft, jnp.maximum(free, 0.0))
+    pressure = jnp.where(joins, -JOINING * state.defect / given.soft, jnp.maximum(free, 0.0))
     fresh = jnp.any(joins)
     deflection = jax.lax.cond(
         fresh | jnp.any(free < 0.0),
