@@ -182,12 +182,13 @@ def _solved(given: _Pressed, most: int) -> DryContact:
 
 
 def _start(given: _Pressed) -> _State:
-    """The load spread evenly, or every cell as soft as it is alone."""
+    """The load spread evenly, or every row as soft as it is alone."""
     shape, zero = given.gap.shape, jnp.zeros(given.gap.shape)
     if given.approach is None:
         pressure = jnp.broadcast_to(given.scale(jnp.ones(shape)), shape)
     else:
-        pressure = jnp.maximum(given.approach - given.gap, 0.0) / given.soft
+        alone = jnp.asarray(given.bodies.own)[:, :1] / given.modulus
+        pressure = jnp.maximum(given.approach - given.gap, 0.0) / alone
     blank = jnp.zeros(()), jnp.zeros((), int)
     state = _State(
         pressure, zero, blank[0], zero, zero, zero, jnp.ones(()), jnp.array(True), *blank
@@ -342,8 +343,10 @@ def _check_grid(held: NDArray[np.bool_], to_ends: bool) -> None:
         raise InputError(
             "the grid cuts the contact: there is pressure at its border; take a larger one"
         )
-    cells = int(np.max(np.sum(held, axis=1))), int(np.sum(np.any(held, axis=1)))
-    if 0 < min(cells) < FEWEST:
+    if not np.any(held):
+        return
+    cells = [int(np.ptp(np.flatnonzero(np.any(held, axis=axis)))) + 1 for axis in (0, 1)]
+    if min(cells) < FEWEST:
         raise InputError(
             f"the contact covers {cells[0]} cells along x and {cells[1]} across; "
             f"the grid needs at least {FEWEST} each way"
