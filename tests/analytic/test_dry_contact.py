@@ -59,8 +59,8 @@ def straight_roller():
 @pytest.mark.parametrize("transverse", [0.01, 0.04, 0.004])
 def test_points_are_those_of_hertz(transverse):
     bodies, hertz, found = point(RADIUS, transverse)
-    assert found.pressure.max() == pytest.approx(float(hertz.pressure), rel=3e-3)
-    assert float(found.approach) == pytest.approx(float(hertz.approach), rel=3e-3)
+    assert found.pressure.max() == pytest.approx(float(hertz.pressure), rel=5e-4)
+    assert float(found.approach) == pytest.approx(float(hertz.approach), rel=5e-4)
     held = found.pressure > 0.0
     along, across = (np.ptp(axis[held.any(axis=k)]) for k, axis in enumerate((bodies.x, bodies.y)))
     assert along == pytest.approx(2.0 * float(hertz.along), abs=2.0 * (bodies.x[1] - bodies.x[0]))
