@@ -27,6 +27,10 @@ ENOUGH: Final = 1e-8
 MOST: Final = 400
 """Iterations after which a solve is given up."""
 
+JOINING: Final = 0.01
+"""Pressure with which a cell joins the contact, over what would take away its overlap if it stood alone. With
+much more, many that join at once never settle: rough surfaces on long cells."""
+
 FEWEST: Final = 8
 """Cells across the contact below which no grid resolves it."""
 
@@ -93,10 +97,9 @@ class _Pressed(eqx.Module):
 
     def _sharpened(self, defect: Array) -> Array:
         """Pressure that would deflect by as much if every row stood alone and had no end."""
-        spectrum = self.bodies.spectrum
-        period = 2 * (spectrum.shape[0] - 1)
-        alone = jnp.diagonal(spectrum, axis1=1, axis2=2).T
-        waves = jnp.fft.rfft(defect, n=period, axis=1) / alone
+        own = self.bodies.own
+        period = 2 * (own.shape[1] - 1)
+        waves = jnp.fft.rfft(defect, n=period, axis=1) / own
         return jnp.fft.irfft(waves, n=period, axis=1)[:, : defect.shape[1]] * self.modulus
 
     @property
@@ -179,12 +182,13 @@ def _solved(given: _Pressed, most: int) -> DryContact:
 
 
 def _start(given: _Pressed) -> _State:
-    """The load spread evenly, or every cell as soft as it is alone."""
+    """The load spread evenly, or every row as soft as it is alone."""
     shape, zero = given.gap.shape, jnp.zeros(given.gap.shape)
     if given.approach is None:
         pressure = jnp.broadcast_to(given.scale(jnp.ones(shape)), shape)
     else:
-        pressure = jnp.maximum(given.approach - given.gap, 0.0) / given.soft
+        alone = jnp.asarray(given.bodies.own)[:, :1] / given.modulus
+        pressure = jnp.maximum(given.approach - given.gap, 0.0) / alone
     blank = jnp.zeros(()), jnp.zeros((), int)
     state = _State(
         pressure, zero, blank[0], zero, zero, zero, jnp.ones(()), jnp.array(True), *blank
@@ -220,7 +224,7 @@ def _step(given: _Pressed, state: _State) -> _State:
     length = given.sum(defect * direction) / given.sum(yields * direction)
     free = state.pressure - length * direction
     joins = ~held & (state.defect < 0.0)
-    pressure = jnp.where(joins, -0.5 * state.defect / given.soft, jnp.maximum(free, 0.0))
+    pressure = jnp.where(joins, -JOINING * state.defect / given.soft, jnp.maximum(free, 0.0))
     fresh = jnp.any(joins)
     deflection = jax.lax.cond(
         fresh | jnp.any(free < 0.0),
@@ -339,8 +343,10 @@ def _check_grid(held: NDArray[np.bool_], to_ends: bool) -> None:
         raise InputError(
             "the grid cuts the contact: there is pressure at its border; take a larger one"
         )
-    cells = int(np.max(np.sum(held, axis=1))), int(np.sum(np.any(held, axis=1)))
-    if 0 < min(cells) < FEWEST:
+    if not np.any(held):
+        return
+    cells = [int(np.ptp(np.flatnonzero(np.any(held, axis=axis)))) + 1 for axis in (0, 1)]
+    if min(cells) < FEWEST:
         raise InputError(
             f"the contact covers {cells[0]} cells along x and {cells[1]} across; "
             f"the grid needs at least {FEWEST} each way"

@@ -12,7 +12,7 @@ __all__ = ["elliptic_gap", "line_gap", "missing_along"]
 
 def elliptic_gap(
     bodies: HalfSpace, radius: Numbers, transverse_radius: Numbers
-) -> Float[Array, "y x"]:
+) -> Float[Arrays, "y x"]:
     """Gap of two bodies with curvatures along x and y, shape (y, x) [m].
 
     Args:
@@ -22,13 +22,12 @@ def elliptic_gap(
 
     Source: Johnson, Contact Mechanics (1985), eq. 4.3.
     """
-    across = jnp.asarray(bodies.y)[:, None] ** 2 / (2.0 * transverse_radius)
-    return jnp.asarray(bodies.x) ** 2 / (2.0 * radius) + across
+    return bodies.x**2 / (2.0 * radius) + bodies.y[:, None] ** 2 / (2.0 * transverse_radius)
 
 
 def line_gap(
     bodies: HalfSpace, radius: Float[Numbers, "*#y"], relief: Float[Numbers, "*#y"]
-) -> Float[Array, "y x"]:
+) -> Float[Arrays, "y x"]:
     """Gap of two bodies along a contact line, shape (y, x) [m].
 
     Args:
@@ -36,9 +35,13 @@ def line_gap(
         radius: relative radius along x at every row, or one for all, shape (y,) or () [m].
         relief: by which the bodies lie apart at every row, shape (y,) or () [m]; see `missing_along`.
     """
-    curved = jnp.asarray(bodies.x) ** 2 / (2.0 * jnp.reshape(jnp.asarray(radius), (-1, 1)))
-    lifted: Array = curved + jnp.reshape(jnp.asarray(relief), (-1, 1))
-    return jnp.broadcast_to(lifted, (len(bodies.y), len(bodies.x)))
+    found: Arrays = bodies.x**2 / (2.0 * _column(radius)) + _column(relief)
+    return found + 0.0 * bodies.y[:, None]
+
+
+def _column(values: Numbers) -> Numbers:
+    found: Numbers = values[:, None] if jnp.ndim(values) else values
+    return found
 
 
 def missing_along(surfaces: tuple[Surface, ...], y: Float[Arrays, " y"]) -> Float[Array, " y"]:

@@ -1,5 +1,6 @@
 """Deflection of two elastic half spaces by the pressure on the cells of a rectangular grid."""
 
+from math import isqrt
 from typing import Any, Final, TypeAlias
 
 import equinox as eqx
@@ -20,6 +21,13 @@ beyond the contact, all of it where both end with it."""
 UNEVEN: Final = 1e-9
 """Largest difference of spacings of a uniform grid, over the spacing."""
 
+LARGEST_FACTOR: Final = 11
+"""Largest prime factor of a length for which transforms have a way of their own: with 514 = 2 x 257 they
+take five times as long as with 528."""
+
+EVEN: Final = 1e-14
+"""Largest difference of symmetric edges from their images, over their length."""
+
 _Cells: TypeAlias = NDArray[np.float64]
 
 
@@ -32,15 +40,19 @@ class HalfSpace(eqx.Module):
     Attributes:
         x: of the cells' middles, in uniform steps, shape (x,) [m].
         edges: of the cells across x, shape (y + 1,) [m].
-        spectrum: deflection times E' by a pressure of one on a row of cells, at another row, by wave along x,
-            shape (wave, y, y): the loaded row comes first; real, as the deflection is even in x [m].
+        spectrum: deflection times E' by a pressure of one on a row of cells, at another row, by wave along
+            x, shape (1, wave, y, y): the loaded row comes first; real, as the deflection is even in x. Edges
+            that are symmetric about their middle need half the numbers: sums and differences of both sides
+            do not mix, shape (2, wave, half, half) [m].
+        own: the same of every row on itself, shape (y, wave) [m].
         rows: deflection times E' at a row by a pressure of one on the cell of the same row that lies 0, 1, 2,
             ... steps of x away, shape (y, x) [m].
     """
 
     x: Float[Arrays, " x"]
     edges: Float[Arrays, " edge"]
-    spectrum: Float[Arrays, "wave y y"]
+    spectrum: Float[Arrays, "part wave half half"]
+    own: Float[Arrays, "y wave"]
     rows: Float[Arrays, "y x"]
 
     @property
@@ -66,13 +78,29 @@ class HalfSpace(eqx.Module):
 
         u = 2/(pi E') int p/r dA. Source: Johnson, Contact Mechanics (1985), eqs. 3.22 and 3.25 (Love 1929).
         """
-        nodes, period = pressure.shape[1], 2 * (self.spectrum.shape[0] - 1)
+        nodes, period = pressure.shape[1], 2 * (self.own.shape[1] - 1)
         waves = jnp.fft.rfft(pressure, n=period, axis=1).T
         # Both parts at once, as rows: so every matrix is read once and in the order in which it lies.
-        parts = jnp.stack([waves.real, waves.imag], axis=1)
-        found = jnp.einsum("kcj,kji->kci", parts, self.spectrum)
+        given = self._apart(jnp.stack([waves.real, waves.imag], axis=1))
+        found = self._together(jnp.einsum("pkcj,pkji->pkci", given, self.spectrum))
         back = jnp.fft.irfft((found[:, 0] + 1j * found[:, 1]).T, n=period, axis=1)
         return back[:, :nodes] / modulus
+
+    def _apart(self, field: Float[Array, "wave 2 y"]) -> Float[Array, "part wave 2 half"]:
+        """Sums and differences of rows that are images of each other, where the edges are symmetric."""
+        if self.spectrum.shape[0] == 1:
+            return field[None]
+        half = self.spectrum.shape[-1]
+        one, image = field[..., :half], field[..., ::-1][..., :half]
+        return jnp.stack([one + image, one - image])
+
+    def _together(self, field: Float[Array, "part wave 2 half"]) -> Float[Array, "wave 2 y"]:
+        """All rows from those parts."""
+        if self.spectrum.shape[0] == 1:
+            return field[0]
+        images = len(self.edges) - 1 - field.shape[-1]
+        one, image = field[0] + field[1], field[0] - field[1]
+        return jnp.concatenate([one, image[..., :images][..., ::-1]], axis=-1)
 
     def lines(self) -> Float[Arrays, "y x x"]:
         """Deflection times E' in a row by a pressure of one on each of its own cells, shape (y, x, x) [m]."""
@@ -109,12 +137,18 @@ def half_space(
         (9.913, 0.563)
     """
     _check(x, edges, ends)
-    cells = _deflections(x, edges, edges)
-    share = ENDS[ends]
-    if share:
-        cells += share * sum(_mirrored(x, edges, face) for face in (edges[0], edges[-1]))
-    rows = np.diagonal(cells, axis1=1, axis2=2)[:-1].T
-    found: Any = x, edges, _spectrum(cells), np.ascontiguousarray(rows)
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    even = np.allclose(edges + edges[::-1], edges[0] + edges[-1], 0.0, EVEN * np.ptp(edges))
+    asked = middles[: (len(middles) + 1) // 2] if even else middles
+    away = (np.arange(_period(len(x)) // 2 + 1) + 0.5) * (x[-1] - x[0]) / (len(x) - 1)
+    cells = _deflections(away, asked, edges)
+    if share := ENDS[ends]:
+        cells += share * sum(_mirrored(away, asked, edges, face) for face in (edges[0], edges[-1]))
+    rows = np.diagonal(cells, axis1=1, axis2=2)
+    rows = np.concatenate((rows, rows[:, : len(middles) - len(asked)][:, ::-1]), axis=1)
+    parts = np.stack([_spectrum(part) for part in _parts(cells)])
+    own, near = (np.ascontiguousarray(one.T) for one in (_spectrum(rows), rows[: len(x)]))
+    found: Any = x, edges, parts, own, near
     return HalfSpace(*found)
 
 
@@ -155,17 +189,31 @@ def _ratio(terms: int, total: float) -> float:
     return high
 
 
-def _deflections(x: _Cells, edges: _Cells, loaded: _Cells) -> NDArray[np.float64]:
-    """Deflection times E' by cells 0, 1, ... steps of x away, shape (x + 1, cell, y).
+def _period(nodes: int) -> int:
+    """Length of a cyclic convolution in which nothing comes round: even, and quick to transform."""
+    length = 2 * nodes
+    while max(_factors(length)) > LARGEST_FACTOR:
+        length += 2
+    return length
+
+
+def _factors(number: int) -> list[int]:
+    """Prime factors of a number above one."""
+    for factor in range(2, isqrt(number) + 1):
+        if number % factor == 0:
+            return [factor, *_factors(number // factor)]
+    return [number]
+
+
+def _deflections(away: _Cells, asked: _Cells, loaded: _Cells) -> NDArray[np.float64]:
+    """Deflection times E' by cells 0, 1, ... steps of x away, shape (step, cell, y).
 
     Args:
-        x: of the cells' middles.
-        edges: of the rows in whose middles it is asked for.
+        away: 0.5, 1.5, ... steps of x.
+        asked: places y where it is asked for.
         loaded: edges of the loaded cells.
     """
-    spacing = (x[-1] - x[0]) / (len(x) - 1)
-    away = spacing * (np.arange(len(x) + 1) + 0.5)
-    distance = 0.5 * (edges[1:] + edges[:-1]) - loaded[:, None]
+    distance = asked - loaded[:, None]
     corner = _corner(away[:, None, None], distance)
     strip = corner[:, :-1] - corner[:, 1:]
     return 2.0 / np.pi * np.concatenate((2.0 * strip[:1], np.diff(strip, axis=0)))
@@ -181,9 +229,21 @@ def _corner(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float6
     return found
 
 
-def _mirrored(x: _Cells, edges: _Cells, face: np.float64) -> NDArray[np.float64]:
+def _mirrored(away: _Cells, asked: _Cells, edges: _Cells, face: np.float64) -> NDArray[np.float64]:
     """Deflection times E' by the cells mirrored at a face, in their own order."""
-    return _deflections(x, edges, (2.0 * face - edges)[::-1])[:, ::-1]
+    return _deflections(away, asked, (2.0 * face - edges)[::-1])[:, ::-1]
+
+
+def _parts(cells: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """What sums and differences of images deflect, where it is asked for on one side alone; else all."""
+    loaded, half = cells.shape[1:]
+    if loaded == half:
+        return [cells]
+    one, image = cells[:, :half], cells[:, ::-1][:, :half]
+    total = 0.5 * (one + image)
+    if loaded % 2:
+        total[:, -1] *= 0.5  # the middle row is its own image, and twice in a sum
+    return [total, 0.5 * (one - image)]
 
 
 def _spectrum(cells: NDArray[np.float64]) -> NDArray[np.float64]:
