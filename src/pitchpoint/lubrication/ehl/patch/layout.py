@@ -43,6 +43,9 @@ END_CELL: Final = 0.1
 SPREAD: Final = 4.0
 """Square of what a film adds to the length of a contact, over radius and film."""
 
+HALF: Final = 0.5
+"""Length of the dry contact, over that with a thick film, from which a solution is looked for."""
+
 TRIAL: Final = (65, 64)
 """Grid of the dry contact that tells where a line carries."""
 
@@ -64,9 +67,12 @@ class Layout(NamedTuple):
         outlet: end of it [m].
         first, last: its ends across [m].
         end: width of the first and the last cell of a line that ends there [m]; None for uniform cells.
-        half_width: of the contact along x, which is the unit of length [m].
-        pressure: largest one of the contact, but for edges, which is the unit of pressures [Pa].
+        length: half-width of the contact along x, with what a thick film adds to it; unit of length [m].
+        pressure: largest one of the dry contact, but for edges, and less for thick films; unit of pressures
+            [Pa].
         film: guess of it in the middle [m].
+        softer: modulus of the bodies over that of bodies on which a dry contact is half as long as the one with
+            a thick film; one of thin films.
     """
 
     inlet: float
@@ -74,17 +80,18 @@ class Layout(NamedTuple):
     first: float
     last: float
     end: float | None
-    half_width: float
+    length: float
     pressure: float
     film: float
+    softer: float
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
-        """Half spaces on a grid of so many nodes along and cells across, in half-widths.
+        """Half spaces on a grid of so many nodes along and cells across, in units of length.
 
         The edges are every one, every second, ... of those of the finest grid.
         """
-        x = np.linspace(self.inlet, self.outlet, nodes) / self.half_width
-        edges = self._edges(finest)[:: finest // cells] / self.half_width
+        x = np.linspace(self.inlet, self.outlet, nodes) / self.length
+        edges = self._edges(finest)[:: finest // cells] / self.length
         return _bodies(tuple(x), tuple(edges), ends)
 
     def _edges(self, cells: int) -> NDArray[np.float64]:
@@ -122,23 +129,27 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     pressure = float(ellipse.pressure)
     film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
-    reach = BESIDE * side * wider
-    ends = -inlet * half_width * longer, OUTLET * half_width * longer
-    return Layout(*ends, -reach, reach, None, half_width, pressure, film)
+    length, reach = half_width * longer, BESIDE * side * wider
+    ends = -inlet * length, OUTLET * length
+    softer = max(1.0, HALF * longer) ** 2 * max(1.0, HALF * wider)
+    return Layout(*ends, -reach, reach, None, length, pressure / (longer * wider), film, softer)
 
 
 def _of_line(contact: PatchContact, cells: int) -> Layout:
     half_width, pressure, (low, high) = _carrying(contact)
-    radius, length = float(np.mean(contact.radius)), float(contact.length)  # type: ignore[arg-type]
+    radius, face = float(np.mean(contact.radius)), float(contact.length)  # type: ignore[arg-type]
     film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
     longer = _longer(contact, radius, film, half_width)
-    ends = -inlet * half_width * longer, OUTLET * half_width * longer
-    beyond = (BESIDE - 1.0) * 0.5 * (high - low)
-    first, last = max(low - beyond, -0.5 * length), min(high + beyond, 0.5 * length)
-    reaches = first == -0.5 * length or last == 0.5 * length
-    end = END_CELL * half_width
+    length = half_width * longer
+    ends = -inlet * length, OUTLET * length
+    beyond = (BESIDE - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
+    first, last = max(low - beyond, -0.5 * face), min(high + beyond, 0.5 * face)
+    reaches = first == -0.5 * face or last == 0.5 * face
+    end = END_CELL * length
     fine = not reaches or end >= (last - first) / cells * (1.0 - 1e-6)
-    return Layout(*ends, first, last, None if fine else end, half_width, pressure, film)
+    cell = None if fine else end
+    softer = max(1.0, HALF * longer) ** 2
+    return Layout(*ends, first, last, cell, length, pressure / longer, film, softer)
 
 
 def _longer(contact: PatchContact, radius: float, film: float, half_width: float) -> float:
@@ -232,7 +243,7 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
 
 
 class Problem(eqx.Module):
-    """One contact on a grid, in units of its own half-width, pressure and speed.
+    """One contact on a grid, in units of its own length, pressure and speed.
 
     Attributes:
         flow: of the oil.
@@ -241,8 +252,9 @@ class Problem(eqx.Module):
         along: entrainment along x over the unit of speed, shape (y,).
         across: the same along y.
         yielding: deflection by a pressure of one on bodies with E' of one.
-        load: over pressure and square of the half-width.
+        load: over pressure and square of the length.
         film: guess of it, for a start.
+        softer: as in `Layout`.
         speed: unit of speed [m/s].
         length: unit of length [m].
     """
@@ -255,6 +267,7 @@ class Problem(eqx.Module):
     yielding: Float[Arrays, ""]
     load: Float[Arrays, ""]
     film: Float[Arrays, ""]
+    softer: Float[Arrays, ""]
     speed: Float[Arrays, ""]
     length: Float[Arrays, ""]
 
@@ -271,7 +284,7 @@ def problem_on(
     contact: PatchContact, layout: Layout, nodes: int, cells: int, finest: int
 ) -> Problem:
     """A contact on one grid of a ladder; what the layout gives counts as constant for derivatives."""
-    length, pressure = layout.half_width, layout.pressure
+    length, pressure = layout.length, layout.pressure
     bodies = layout.bodies(nodes, cells, finest, contact.ends)
     x, y = (length * np.asarray(one) for one in (bodies.x, bodies.y))
     radius = float(np.mean(contact.radius))
@@ -300,6 +313,7 @@ def problem_on(
         pressure * length / (height * contact.modulus),
         contact.load / (pressure * length**2),
         array(film / height),
+        array(layout.softer),
         array(unit),
         array(length),
     )

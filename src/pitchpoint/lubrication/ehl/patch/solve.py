@@ -27,7 +27,8 @@ _dry = fast_program(pressed)
 
 def dry_start(problem: Problem) -> tuple[NDArray[np.float64], Any]:
     """Dry pressure, and the level at which the mean film under it is as guessed."""
-    dry = _dry(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
+    modulus = 1.0 / (problem.yielding * problem.softer)
+    dry = _dry(problem.bodies, problem.apart, modulus, problem.load)
     pressure = np.array(dry.pressure)
     pressure[:, [0, -1]] = 0.0
     gap = np.asarray(_gap(problem, array(pressure), array(0.0)))
