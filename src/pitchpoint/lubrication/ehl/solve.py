@@ -31,6 +31,12 @@ from pitchpoint.lubrication.ehl.newton import (
     polished,
     residual,
 )
+from pitchpoint.lubrication.ehl.response import (
+    answer,
+    pushed,
+    pushed_rest,
+    stiffness_and_damping,
+)
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
 from pitchpoint.lubrication.groups import line_groups
@@ -130,7 +136,12 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
     def one(single: LineContact) -> LineFilm:
         problem = problem_of(single)
         state = from_coarse(jax.lax.stop_gradient(problem), grids)
-        film = line_film(single, problem, *polished(problem, state, grids[-1]), grids[-1])
+        at = grids[-1]
+        pressure, level, _ = polished(problem, state, at)
+        push = pushed(single, problem)
+        answers = answer(problem, push, pressure, level, at)
+        response = stiffness_and_damping(single, problem, push, pressure, level, answers, at)
+        film = line_film(single, problem, pressure, level, response, at)
         found = state.residual < ENOUGH
         if single.texture is None:
             found = found & ~_torn(film.gap / problem.flow.height, problem)
@@ -278,8 +289,11 @@ def _solved(
 ) -> tuple[LineFilm, Ended, Array]:
     at = grids[-1]
     problem, state, turns = _iterated(contact, begin, grids)
-    pressure, level = polished(problem, state, at)
-    film = line_film(contact, problem, pressure, level, at)
+    push = pushed(contact, problem)
+    others = pushed_rest(problem, push, state.pressure, state.level, at)
+    pressure, level, answers = polished(problem, state, at, others)
+    response = stiffness_and_damping(contact, problem, push, pressure, level, answers, at)
+    film = line_film(contact, problem, pressure, level, response, at)
     rest = residual(problem, pressure, level, at)
     gap = problem.gap(pressure, level, at)
     converged = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
