@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -18,7 +19,7 @@ import xarray as xr
 
 from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
-from pitchpoint.results.variable import End
+from pitchpoint.results.variable import End, Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.status import DIRECT
 
@@ -50,6 +51,7 @@ def dataset(
     *,
     solve: Mapping[str, Any] = DIRECT,
     travels: Collection[End] = (),
+    own: Mapping[str, Variable] = MappingProxyType({}),
     **attributes: Any,
 ) -> xr.Dataset:
     """Dataset whose variables carry unit, long name and symbol.
@@ -59,6 +61,7 @@ def dataset(
         coordinates: values by dimension.
         solve: what became of the solves behind it, see `status.told`; kept as JSON.
         travels: members that travel in place of turning, whose quantities have other units.
+        own: variables of this dataset alone, by name, before those of `VARIABLES`.
         attributes: strings and numbers; anything else is stored as JSON.
     """
     data = xr.Dataset(
@@ -66,10 +69,10 @@ def dataset(
         coords=dict(coordinates),
     )
     for name in data.variables:
-        described = VARIABLES.get(str(name))
+        described = own.get(str(name), VARIABLES.get(str(name)))
         if described is not None:
-            own = described.where(travels)
-            data[name].attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
+            one = described.where(travels)
+            data[name].attrs.update(units=one.unit, long_name=one.long_name, symbol=one.symbol)
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
         version=version("pitchpoint"),
