@@ -151,14 +151,18 @@ def films_of_dataset(data: xr.Dataset) -> Films:
     Raises:
         InputError: it lacks a variable of films.
     """
-    try:
-        heat = Temperatures(**_part(data, "heat_")) if "heat_film" in data else None
-        film = LineFilm(**_part(data, ""), heat=heat)
-        given: dict[str, Any] = {"temperature": None, "turns": None} | _part(data, "ended_")
-        warnings = tuple(json.loads(data.attrs["warnings"]))
-        return Films(film, Ended(**given), int(data.attrs["nodes"]), data["domain"].values, warnings)
-    except (KeyError, TypeError) as error:
-        raise InputError(f"a dataset without {error} is none of films") from None
+    lacks = [name for name in (*_FILM, "ended_code", "domain") if name not in data.variables]
+    if lacks:
+        raise InputError(f"a dataset without '{lacks[0]}' is none of solved films")
+    heat = Temperatures(**_part(data, "heat_")) if "heat_film" in data else None
+    ended: dict[str, Any] = {"temperature": None, "turns": None} | _part(data, "ended_")
+    return Films(
+        film=LineFilm(**_part(data, ""), heat=heat),
+        ended=Ended(**ended),
+        nodes=int(data.attrs["nodes"]),
+        domain=data["domain"].values,
+        warnings=tuple(json.loads(data.attrs["warnings"])),
+    )
 
 
 def _axes(count: int, dims: Sequence[str] | None) -> tuple[str, ...]:

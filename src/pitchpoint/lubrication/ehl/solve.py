@@ -15,7 +15,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
-from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid
+from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid, prolongation
 from pitchpoint.lubrication.ehl.heat import (
     WARM_ENOUGH,
     defect,
@@ -165,7 +165,8 @@ def solve_lines(
         contact: its arrays broadcast against each other to `*b`.
         nodes: across a contact: 33, 65, 129, 257, ...
         profiles: whether fields are kept; without them the memory stays small for any number of contacts.
-        start: films of as many contacts on as many nodes, with profiles, from whose pressures solves begin.
+        start: films of as many contacts, with profiles on any grid, from whose pressures solves begin, such
+            as those of a saved dataset.
         size: of the teeth, such as the module [m]; contacts that are wide against it are told.
         progress: called with the number of contacts that are done and that of all.
 
@@ -327,8 +328,7 @@ def _iterated(
     if begin is None:
         state = from_coarse(problem, grids)
     else:
-        shape, gap = begin
-        state = iterated(problem, *problem.carrying(shape, gap / problem.flow.height, at), at)
+        state = _onward(problem, begin[0], begin[1] / problem.flow.height, grids)
     if contact.conduction is None:
         return problem, state, None
     warm = turned(contact, problem, state, at)
@@ -338,6 +338,19 @@ def _iterated(
     # The grid makes as large a part of the warm film its error as of the isothermal one.
     found = warm.state._replace(total=warm.total, coarse=state.coarse * hot / cold)
     return warmed(problem, warm.rise), found, warm.turns
+
+
+def _onward(problem: Problem, shape: Array, gap: Array, grids: tuple[Grid, ...]) -> State:
+    """Solution from a pressure that is near it; the one on the grid before tells the error by the grid."""
+    at = grids[-1]
+    state = iterated(problem, *problem.carrying(shape, gap, at), at)
+    if len(grids) == 1:
+        return state
+    before = grids[-2]
+    fewer_nodes = state.pressure[:: (at.x.shape[0] - 1) // (before.x.shape[0] - 1)]
+    coarse = iterated(problem, *problem.carrying(fewer_nodes, gap, before), before)
+    film = problem.film_in_the_middle(coarse.pressure, coarse.level, before)
+    return state._replace(coarse=film, total=state.total + coarse.total)
 
 
 def _gain(grids: tuple[Grid, ...]) -> float:
@@ -379,16 +392,30 @@ def _without_profiles(film: LineFilm) -> LineFilm:
 
 
 def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
-    """Pressures and films in the middle from which solves begin."""
-    pressure = np.asarray(start.film.pressure).reshape(-1, start.film.pressure.shape[-1])
-    if pressure.shape != (count, nodes):
+    """Pressures along the grid and films in the middle from which solves begin."""
+    across = np.shape(start.film.pressure)[-1]
+    x, pressure, gap = (
+        np.asarray(one).reshape(-1, across)
+        for one in (start.film.x, start.film.pressure, start.film.gap)
+    )
+    if not across or len(x) != count:
         raise InputError(
-            f"films of {pressure.shape[0]} contacts on {pressure.shape[1]} nodes are no start for "
+            f"films of {start.ended.code.size} contacts on {across} nodes are no start for "
             f"{count} contacts on {nodes} nodes"
         )
-    gap = np.asarray(start.film.gap).reshape(count, nodes)
-    middle = np.argmin(np.abs(np.asarray(start.film.x).reshape(count, nodes)), axis=-1)
-    return pressure, gap[np.arange(count), middle]
+    middle = np.argmin(np.abs(x), axis=-1)
+    # A grid follows the entrainment, and has its long side ahead.
+    turned = np.abs(x[:, -1]) > 1.5 * np.abs(x[:, 0])
+    along = np.where(turned[:, None], pressure[:, ::-1], pressure)
+    return _on_nodes(along, nodes), gap[np.arange(count), middle]
+
+
+def _on_nodes(values: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
+    """Values at the nodes of a grid from those at the nodes of a finer or coarser one, along the last axis."""
+    given = values.shape[-1]
+    if given >= nodes:
+        return values[:, :: (given - 1) // (nodes - 1)]
+    return np.maximum(values @ prolongation(given, nodes).T, 0.0)
 
 
 # ---- what is wrong with an input, and what is doubtful about a result
