@@ -277,6 +277,15 @@ def test_a_surface_that_stands_still_takes_no_heat_and_is_told(sliding):
     assert sliding[1].warnings == ()
 
 
+def test_an_oil_that_does_not_thin_is_told_where_it_is_warm():
+    dull = Fluid(**(OIL | {"viscosity_slope": 0.0}), shear_law="ree_eyring_1955")
+    told = solve_lines(contact(slide=np.array([0.1]), fluid=dull), nodes=65).warnings
+    assert told == (
+        "the temperature of the film is solved for with an oil that does not thin as it warms: its "
+        "`viscosity_slope` is 0 1/K",
+    )
+
+
 def test_profiles_can_be_left_out():
     heat = solve_lines(contact(slide=SLIDES), nodes=65, profiles=False).film.heat
     assert heat.film.shape == (9, 0) and heat.largest_film.shape == (9,)

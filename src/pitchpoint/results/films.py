@@ -11,7 +11,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.heat import Temperatures
 from pitchpoint.lubrication.ehl.solve import Ended, Films
-from pitchpoint.results.store import dataset
+from pitchpoint.results.store import dataset, describe
 from pitchpoint.results.variable import Variable, deviation, length, percent
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
@@ -105,7 +105,9 @@ _NODES: Final = {
 }
 """Names of the fields across the contact."""
 
-_OWN: Final = {f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()}
+_OWN: Final = {
+    f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()
+}
 _OWN["domain"] = _number("first and last place, over the half-width", "x/b")
 
 
@@ -118,25 +120,26 @@ def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:
             more than one.
 
     Returns:
-        Dataset on (contact, node) with the coordinate `x` [m]; every variable has `units` and `long_name`, the
-        status its sentences and the dataset its warnings, as JSON.
+        Dataset on (contact, node) with the coordinate `x` [m]. Every variable has `units` and `long_name`;
+        the status has its sentences and the dataset its warnings, as JSON.
 
     Raises:
         InputError: more or fewer names than axes.
     """
     axes = _axes(np.ndim(films.ended.code), dims)
-    along = lambda name: (*axes, "node") if name in _NODES else axes  # noqa: E731
-    values = {name: (along(name), one) for name, one in _values(films)}
+    values = {
+        name: ((*axes, "node") if name in _NODES else axes, one) for name, one in _values(films)
+    }
     code = np.asarray(films.ended.code)
     data = dataset(
         {**values, "domain": (("end", *axes), films.domain)},
         {},
-        own=_OWN,
         title="films",
         nodes=films.nodes,
         warnings=list(films.warnings),
         solve=told_of(code, np.asarray(films.ended.reynolds), np.asarray(films.ended.iterations)),
     )
+    describe(data, _OWN)
     found = {int(one): Code(int(one)).sentence for one in np.unique(code)}
     data["ended_code"].attrs["sentences"] = json.dumps(found)
     return data.set_coords("x")

@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -25,6 +24,7 @@ from pitchpoint.status import DIRECT
 
 __all__ = [
     "dataset",
+    "describe",
     "fingerprint",
     "load",
     "make_folder",
@@ -51,7 +51,6 @@ def dataset(
     *,
     solve: Mapping[str, Any] = DIRECT,
     travels: Collection[End] = (),
-    own: Mapping[str, Variable] = MappingProxyType({}),
     **attributes: Any,
 ) -> xr.Dataset:
     """Dataset whose variables carry unit, long name and symbol.
@@ -61,23 +60,26 @@ def dataset(
         coordinates: values by dimension.
         solve: what became of the solves behind it, see `status.told`; kept as JSON.
         travels: members that travel in place of turning, whose quantities have other units.
-        own: variables of this dataset alone, by name, before those of `VARIABLES`.
         attributes: strings and numbers; anything else is stored as JSON.
     """
     data = xr.Dataset(
         {name: (dims, np.asarray(values)) for name, (dims, values) in variables.items()},
         coords=dict(coordinates),
     )
-    for name in data.variables:
-        described = own.get(str(name), VARIABLES.get(str(name)))
-        if described is not None:
-            one = described.where(travels)
-            data[name].attrs.update(units=one.unit, long_name=one.long_name, symbol=one.symbol)
+    describe(data, {name: one.where(travels) for name, one in VARIABLES.items()})
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
         version=version("pitchpoint"),
     )
     return data
+
+
+def describe(data: xr.Dataset, variables: Mapping[str, Variable]) -> None:
+    """Write unit, long name and symbol to those variables of a dataset that are described."""
+    for name in data.variables:
+        own = variables.get(str(name))
+        if own is not None:
+            data[name].attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
 
 
 def fingerprint(*parts: Any) -> str:

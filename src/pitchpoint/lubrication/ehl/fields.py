@@ -52,9 +52,8 @@ class LineFilm(eqx.Module):
         boundary_force: friction of asperities on member 0, in the same way [N/m].
         friction: of oil and asperities together over the load, without rolling resistance.
         film_ratio: smallest gap over the composite Rq; infinite between smooth surfaces.
-        stiffness: -dw/dh of the load on a metre of contact line by the mean film, that over the width that the
-            dry contact has then; speeds, approach and oil are held, and its temperature where it is
-            solved for [N/m2].
+        stiffness: -dw/dh of the load on a metre of contact line by the mean film, whose width grows with the
+            load; speeds, approach and oil are held, and its temperature where it is solved for [N/m2].
         damping: dw/dV of that load by the speed V at which the surfaces approach, with the mean film held and
             all else as for the stiffness. Not a number where surfaces stand still on their asperities
             [N s/m2].

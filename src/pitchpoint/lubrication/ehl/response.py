@@ -29,7 +29,8 @@ def pushed(contact: LineContact, problem: Problem) -> Problem:
 
     def changed(more: Array) -> Problem:
         load, approach = contact.line_load * (1.0 + more[0]), contact.approach + more[1]
-        other = eqx.tree_at(lambda one: (one.line_load, one.approach), contact, (load, approach))
+        given: Any = load, approach
+        other = eqx.tree_at(lambda one: (one.line_load, one.approach), contact, given)
         return warmed(problem_of(other), problem.flow.temperature_rise)
 
     found: Problem = jax.jacfwd(changed)(jnp.zeros(2))
@@ -39,7 +40,8 @@ def pushed(contact: LineContact, problem: Problem) -> Problem:
 def _both(function: Callable[..., Array], given: tuple[Any, ...], along: tuple[Any, ...]) -> Array:
     """Derivatives along two directions, which are the last axis of what they are told as."""
     one = lambda tangents: jax.jvp(function, given, tangents)[1]  # noqa: E731
-    return jax.vmap(one, in_axes=-1, out_axes=-1)(along)
+    each: Callable[..., Array] = jax.vmap(one, in_axes=-1, out_axes=-1)
+    return each(along)
 
 
 def pushed_rest(
@@ -62,7 +64,8 @@ def answer(
 ) -> Float[Array, "rest 2"]:
     """Changes of pressures and level of a solution, by the implicit function theorem, see `pushed_rest`."""
     _, matrix = step(problem, pressure, level, at)
-    return -jnp.linalg.solve(matrix, pushed_rest(problem, push, pressure, level, at))
+    found: Array = jnp.linalg.solve(matrix, -pushed_rest(problem, push, pressure, level, at))
+    return found
 
 
 def stiffness_and_damping(

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.doubts import check, warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid, prolongation
 from pitchpoint.lubrication.ehl.heat import (
@@ -22,7 +22,12 @@ from pitchpoint.lubrication.ehl.heat import (
     turned,
     warmed,
 )
-from pitchpoint.lubrication.ehl.line import LEAST, LineContact, Problem, problem_of
+from pitchpoint.lubrication.ehl.line import (
+    LEAST,
+    LineContact,
+    Problem,
+    problem_of,
+)
 from pitchpoint.lubrication.ehl.newton import (
     ENOUGH,
     State,
@@ -37,9 +42,6 @@ from pitchpoint.lubrication.ehl.response import (
     pushed_rest,
     stiffness_and_damping,
 )
-from pitchpoint.lubrication.ehl.texture import Rough
-from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
-from pitchpoint.lubrication.groups import line_groups
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
@@ -53,14 +55,8 @@ NODES: Final = 129
 PORTION: Final = 64
 """Contacts of a program at once; between portions progress is told, and an interrupt is heard."""
 
-COARSE: Final = 0.03
-"""Error by the grid from which on it is told."""
-
 FEW: Final = 128
 """Contacts up to which a program that compiles quickly is done sooner than one that runs twice as fast."""
-
-WIDE: Final = 0.1
-"""Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
 
 
 class Ended(eqx.Module):
@@ -175,7 +171,7 @@ def solve_lines(
             positive, or nodes that no grid has.
     """
     shape, flat = _flat(contact)
-    _check(flat)
+    check(flat)
     begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
     closes = np.asarray(flat.approach) != 0.0
     # Each on the grid that it would have alone, and back in the order in which they came.
@@ -191,13 +187,13 @@ def solve_lines(
                 progress(done, closes.size)
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
-    warnings = tuple(_warnings(flat, film, ended, size))
+    told = tuple(warnings(flat, film, ended.code == Code.SOLVED, ended.grid, size))
     film, ended = (
         jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), one)
         for one in (film, ended)
     )
     domain = np.moveaxis(domain.reshape((*shape, 2)), -1, 0)
-    return Films(film, ended, nodes, domain, warnings)
+    return Films(film, ended, nodes, domain, told)
 
 
 def _taken(tree: Tree, which: NDArray[np.int_]) -> Tree:
@@ -411,155 +407,8 @@ def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
 
 
 def _on_nodes(values: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
-    """Values at the nodes of a grid from those at the nodes of a finer or coarser one, along the last axis."""
+    """Values at the nodes of a grid from those of a finer or coarser one, along the last axis."""
     given = values.shape[-1]
     if given >= nodes:
         return values[:, :: (given - 1) // (nodes - 1)]
     return np.maximum(values @ prolongation(given, nodes).T, 0.0)
-
-
-# ---- what is wrong with an input, and what is doubtful about a result
-
-
-def _check(contact: LineContact) -> None:
-    """InputError for values that no contact has."""
-    fluid, texture = contact.fluid, contact.texture
-    positive = {
-        "radius": (contact.radius, "a relative radius of curvature", 1.0, "m"),
-        "modulus": (contact.modulus, "a modulus E'", 1e-9, "GPa"),
-        "viscosity": (fluid.viscosity, "a viscosity", 1e3, "mPa s"),
-        "pressure_viscosity": (
-            fluid.pressure_viscosity,
-            "a pressure-viscosity coefficient",
-            1e9,
-            "1/GPa",
-        ),
-        "inlet": (contact.inlet, "a distance at which oil begins", 1e3, "mm"),
-    }
-    for name, value in fluid.shear_parameters.items():
-        positive[name] = (value, f"a shear parameter {name}", 1.0, "in SI units")
-    if texture is not None:
-        positive["rq"] = (texture.rq, "a composite roughness Rq", 1e6, "um")
-    if isinstance(texture, Rough):
-        positive["eta_beta_sigma"] = (texture.eta_beta_sigma, "an eta_beta_sigma", 1.0, "")
-        positive["sigma_over_beta"] = (texture.sigma_over_beta, "a sigma_over_beta", 1.0, "")
-        if np.min(np.asarray(texture.friction)) < 0.0:
-            raise InputError(
-                f"a boundary friction of {np.min(np.asarray(texture.friction)):.4g}: it must not be negative",
-                key="boundary_friction",
-            )
-    if contact.conduction is not None:
-        positive |= _of_conduction(contact.conduction)
-    for key, (value, what, scale, unit) in positive.items():
-        low = np.min(np.asarray(value))
-        if not low > 0.0 and not np.isnan(low):
-            told = f"{low * scale:.4g} {unit}".strip()
-            raise InputError(f"{what} of {told}: it must be positive", key=key)
-
-
-def _of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
-    """What of conduction has to be positive: value, what it is, scale and unit, by its key."""
-    of_oil = given.oil_conductivity, "a conductivity of the oil", 1.0, "W/m/K"
-    found: dict[str, tuple[Any, str, float, str]] = {"oil_conductivity": of_oil}
-    for member, body in enumerate((given.a, given.b)):
-        conducts = body.conductivity, f"a conductivity of member {member}", 1.0, "W/m/K"
-        stores = body.heat_capacity, f"a heat capacity of member {member}", 1e-6, "J/cm3/K"
-        found |= {f"conductivity_{member}": conducts, f"heat_capacity_{member}": stores}
-    return found
-
-
-def _warnings(
-    contact: LineContact, film: LineFilm, ended: Ended, size: float | None
-) -> Iterator[str]:
-    solved = np.asarray(ended.code) == Code.SOLVED
-    if not solved.any():
-        return
-    some: LineContact = jax.tree.map(lambda leaf: np.asarray(leaf)[solved], contact)
-    half_width = np.asarray(film.half_width)[solved]
-    yield from _of_pressure(some, np.asarray(film.hertz_pressure)[solved])
-    yield from _of_half_space(some, half_width, size)
-    yield from _of_inlet(some, half_width)
-    yield from _of_grid(np.asarray(ended.grid)[solved])
-    if some.texture is not None:
-        yield from _of_roughness(np.asarray(some.texture.rq), half_width)
-    if film.heat is not None:
-        peclet = np.stack([film.heat.peclet_a, film.heat.peclet_b])[:, solved]
-        yield from _of_strips(peclet, np.stack([some.speed_a, some.speed_b]), half_width)
-
-
-def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[str]:
-    told = contact.fluid.outside(pressure)
-    if told is not None:
-        yield f"{told}: films and traction there are extrapolated"
-
-
-def _of_half_space(
-    contact: LineContact, half_width: NDArray[np.float64], size: float | None
-) -> Iterator[str]:
-    radius = np.asarray(contact.radius)
-    sizes = {"the relative radius": radius}
-    if size is not None:
-        sizes["the size of a tooth"] = np.full_like(radius, size)
-    for name, length in sizes.items():
-        worst = np.argmax(half_width / length)
-        if half_width[worst] > WIDE * length[worst]:
-            yield (
-                f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
-                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them"
-            )
-
-
-def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[str]:
-    worst = np.argmax(rough / half_width)
-    if rough[worst] > WIDE * half_width[worst]:
-        yield (
-            f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
-            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little"
-        )
-
-
-def _of_strips(
-    peclet: NDArray[np.float64], speed: NDArray[np.float64], half_width: NDArray[np.float64]
-) -> Iterator[str]:
-    member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
-    if peclet[member, worst] < LEAST_PECLET:
-        yield (
-            f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
-            f"{abs(speed[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
-            f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
-            "stands still is taken to take none"
-        )
-
-
-def _of_grid(error: NDArray[np.float64]) -> Iterator[str]:
-    rough = error > COARSE
-    if rough.any():
-        yield (
-            f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
-            f"off by {100.0 * error.max():.2g} %; take more nodes"
-        )
-
-
-def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[str]:
-    given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
-    worst = np.argmin(given / needed)
-    if given[worst] < needed[worst] * (1.0 - 1e-9):
-        yield (
-            f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
-            f"one draws it from {needed[worst]:.0f} on: the contact is starved"
-        )
-
-
-def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
-    """Length of inlet beyond which oil no longer changes the film by more than a hundredth [half-widths].
-
-    3 above a load parameter M = w/(E' R) (2 eta0 u/(E' R))^(-1/2) of 30, 4 above 10, 8 above 5, else 12:
-    contacts with thick films draw oil from further away. Rolling resistance falls off with it much more
-    slowly: it is 10 to 20 % below that of an endless inlet. From films of inlets of 2 to 12 half-widths.
-    """
-    oil = contact.fluid
-    speed = abs(contact.entrainment)
-    given = oil.viscosity, oil.pressure_viscosity, contact.radius, contact.modulus
-    W, U, _ = map(np.asarray, line_groups(contact.line_load, speed, *given))
-    load = W / np.sqrt(np.maximum(2.0 * U, 1e-30))
-    return np.select([load > 30.0, load > 10.0, load > 5.0], [3.0, 4.0, 8.0], 12.0)
