@@ -284,6 +284,20 @@ def test_stiffness_is_that_of_contacts_with_more_load(texture):
     assert (by_load[1:] > -0.13).all() and (by_load[1:] < -0.1).all()
 
 
+def test_stiffness_comes_nearer_to_that_over_a_range_of_loads_with_more_nodes():
+    """A spike passes nodes as the load grows, so that the stiffness of a film on a grid wavers."""
+    part = np.linspace(0.94, 1.06, 9)
+    case = contact(0.5e9)
+    case = dataclasses.replace(case, line_load=case.line_load * part)
+    fine = solve_lines(case, nodes=513).film
+    smooth = -np.polyfit(np.log(part), np.log(fine.mean_film), 1)[0]
+    off = [
+        np.max(np.abs(case.line_load / (film.stiffness * film.mean_film) / smooth - 1.0))
+        for film in (solve_lines(case).film, solve_lines(case, nodes=257).film)
+    ]
+    assert off[1] < 0.05 and off[0] < 0.09
+
+
 def test_damping_is_that_of_contacts_that_approach_faster():
     case = contact([0.3e9, 0.8e9], [0.1, 1.0], approach=np.array([2e-4, 1e-3]))
     film = solve_lines(case, nodes=33).film
@@ -314,17 +328,25 @@ def test_surfaces_that_stand_on_their_asperities_are_stiff_and_not_damped():
     assert film.stiffness > 0.0 and np.isnan(film.damping)
 
 
-def test_the_spike_is_the_second_maximum_of_the_pressure():
-    found = solve_lines(contact([0.4e9, 0.7e9], [1.0, -1.0]), nodes=257).film
-    for k, sense in enumerate((1.0, -1.0)):
-        x, pressure = sense * found.x[k][:: int(sense)], found.pressure[k][:: int(sense)]
+def test_the_spike_is_the_last_maximum_of_the_pressure():
+    found = solve_lines(contact([0.6e9, 0.7e9], [1.0, -1.0]), nodes=257).film
+    for k, sense in enumerate((1, -1)):
+        x, pressure = sense * found.x[k][::sense], found.pressure[k][::sense]
         peaks, _ = find_peaks(pressure, prominence=1e-3 * pressure.max())
-        assert len(peaks) == 2
-        assert abs(sense * found.spike_place[k] - x[peaks[1]]) < x[peaks[1] + 1] - x[peaks[1]]
-        assert 1.0 <= found.spike_pressure[k] / pressure[peaks[1]] < 1.05
-        assert 0.4 < sense * found.spike_place[k] / found.half_width[k] < 1.0
-    soft = solve_lines(of_moes(np.array([20.0]), 1e-3), nodes=257).film
-    assert np.isnan(soft.spike_place).all() and np.isnan(soft.spike_pressure).all()
+        last = peaks[-1]
+        assert len(peaks) > 1
+        assert abs(sense * found.spike_place[k] - x[last]) < x[last + 1] - x[last]
+        assert 1.0 <= found.spike_pressure[k] / pressure[last] < 1.05
+        assert 0.6 < sense * found.spike_place[k] / found.half_width[k] < 0.9
+
+
+def test_a_pressure_with_one_maximum_has_no_spike():
+    """Soft bodies, and a light load that a spike far inside carries alone."""
+    one = solve_lines(of_moes(np.array([20.0]), 1e-3), nodes=257).film
+    other = solve_lines(contact([0.4e9]), nodes=257).film
+    for film in (one, other):
+        assert len(find_peaks(film.pressure[0], prominence=1e-3 * film.pressure.max())[0]) == 1
+        assert np.isnan(film.spike_place).all() and np.isnan(film.spike_pressure).all()
 
 
 def test_friction_and_film_ratio_are_those_of_forces_and_roughness():
@@ -406,7 +428,7 @@ def test_gradients_of_film_and_traction_are_those_of_differences():
     # Surfaces that part: their film is that of a grid as long.
     one, two, three = (compiled(at, -k * 1e-5)[0] for k in (1.0, 2.0, 3.0))
     by_approach = (11.0 * film - 18.0 * one + 9.0 * two - 2.0 * three) / 6e-5
-    np.testing.assert_allclose(damping, stiffness * by_approach, rtol=1e-7)
+    np.testing.assert_allclose(damping, stiffness * by_approach, rtol=1e-6)
 
 
 def test_films_rise_with_the_speed_to_seven_tenths():
@@ -469,7 +491,7 @@ def test_films_on_other_grids_and_running_the_other_way_are_a_start(given, wante
     case = contact([0.62e9, 0.83e9], [1.0, -1.0])
     onward, afresh = solve_lines(case, nodes=wanted, start=first), solve_lines(case, nodes=wanted)
     np.testing.assert_allclose(onward.film.central_film, afresh.film.central_film, rtol=1e-8)
-    assert (onward.ended.iterations < 0.7 * afresh.ended.iterations).all()
+    assert (onward.ended.iterations < 0.8 * afresh.ended.iterations).all()
 
 
 def test_doubtful_contacts_are_told_with_numbers():
@@ -490,7 +512,7 @@ def test_doubtful_contacts_are_told_with_numbers():
 
 
 def test_films_that_draw_oil_from_further_away_than_their_radius_are_told():
-    thick = contact(line_load=2e4, modulus=1e9, speed=20.0, radius=0.02)
+    thick = contact(line_load=2e3, speed=20.0, radius=0.02)
     told = solve_lines(thick).warnings
     assert told[-1].startswith("a flooded film draws oil from ")
     assert told[-1].endswith("its relative radius of 20 mm: give the `inlet` at which oil begins")

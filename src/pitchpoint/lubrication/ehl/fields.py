@@ -53,7 +53,10 @@ class LineFilm(eqx.Module):
         friction: of oil and asperities together over the load, without rolling resistance.
         film_ratio: smallest gap over the composite Rq; infinite between smooth surfaces.
         stiffness: -dw/dh of the load on a metre of contact line by the mean film, whose width grows with the
-            load; speeds, approach and oil are held, and its temperature where it is solved for [N/m2].
+            load; speeds, approach and oil are held, and its temperature where it is solved for. It is that
+            of the film on its grid, and wavers about that on fine ones as a spike passes the nodes, by some
+            8 % on 129 nodes, 4 % on 257. Light loads hardly change a film: there it is large, of either
+            sign [N/m2].
         damping: dw/dV of that load by the speed V at which the surfaces approach, with the mean film held and
             all else as for the stiffness. Not a number where surfaces stand still on their asperities
             [N s/m2].

@@ -389,16 +389,15 @@ def _without_profiles(film: LineFilm) -> LineFilm:
 
 def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
     """Pressures along the grid and films in the middle from which solves begin."""
-    across = np.shape(start.film.pressure)[-1]
+    across, given = np.shape(start.film.pressure)[-1], start.ended.code.size
+    if not across or given != count:
+        raise InputError(
+            f"films of {given} contacts on {across} nodes are no start for {count} contacts on {nodes} nodes"
+        )
     x, pressure, gap = (
-        np.asarray(one).reshape(-1, across)
+        np.asarray(one).reshape(count, across)
         for one in (start.film.x, start.film.pressure, start.film.gap)
     )
-    if not across or len(x) != count:
-        raise InputError(
-            f"films of {start.ended.code.size} contacts on {across} nodes are no start for "
-            f"{count} contacts on {nodes} nodes"
-        )
     middle = np.argmin(np.abs(x), axis=-1)
     # A grid follows the entrainment, and has its long side ahead.
     turned = np.abs(x[:, -1]) > 1.5 * np.abs(x[:, 0])
