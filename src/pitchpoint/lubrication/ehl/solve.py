@@ -19,6 +19,7 @@ from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid, prolo
 from pitchpoint.lubrication.ehl.heat import (
     WARM_ENOUGH,
     defect,
+    settled,
     turned,
     warmed,
 )
@@ -119,31 +120,37 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
     Returns:
         Films, NaN where a contact was not solved. Derivatives are those of the solution (implicit function
         theorem), first ones; every cell stays full of oil, or not, as it is.
-
-    Raises:
-        InputError: a contact with conduction: with temperatures there are no derivatives.
     """
-    if contact.conduction is not None:
-        raise InputError("derivatives of films are known for isothermal ones alone", key="thermal")
     grids = _ladder(nodes, ends)
     shape = jnp.broadcast_shapes(*map(jnp.shape, jax.tree.leaves(contact)))
     contact = jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, shape), contact)
 
     def one(single: LineContact) -> LineFilm:
-        problem = problem_of(single)
-        state = from_coarse(jax.lax.stop_gradient(problem), grids)
-        at = grids[-1]
-        pressure, level, _ = polished(problem, state, at)
+        problem, pressure, level, found = _followed(single, grids)
         push = pushed(single, problem)
-        answers = answer(problem, push, pressure, level, at)
-        response = stiffness_and_damping(single, problem, push, pressure, level, answers, at)
-        film = line_film(single, problem, pressure, level, response, at)
-        found = state.residual < ENOUGH
+        given = problem, push, pressure, level
+        response = stiffness_and_damping(single, *given, answer(*given, grids[-1]), grids[-1])
+        film = line_film(single, problem, pressure, level, response, grids[-1])
         if single.texture is None:
             found = found & ~_torn(film.gap / problem.flow.height, problem)
         return _withheld(film, found)
 
     return one(contact) if contact.line_load.ndim == 0 else jax.lax.map(one, contact)
+
+
+def _followed(contact: LineContact, grids: tuple[Grid, ...]) -> tuple[Problem, Array, Array, Array]:
+    """A contact as warm as it is, its pressure and level with derivatives, and whether they were found."""
+    problem, at = problem_of(contact), grids[-1]
+    frozen, still = jax.lax.stop_gradient((problem, contact))
+    state = from_coarse(frozen, grids)
+    if contact.conduction is None:
+        pressure, level, _ = polished(problem, state, at)
+        return problem, pressure, level, state.residual < ENOUGH
+    warm = turned(still, frozen, state, at)
+    so_warm, pressure, level = settled(contact, problem, warm, at)
+    off = defect(contact, so_warm, pressure, level, at)
+    found = (warm.state.residual < ENOUGH) & (off < WARM_ENOUGH)
+    return so_warm, pressure, level, found
 
 
 def solve_lines(
