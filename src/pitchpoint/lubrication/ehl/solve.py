@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final, TypeVar
 
 import equinox as eqx
@@ -263,7 +264,10 @@ def _portion(
     def one(given: Any) -> tuple[LineFilm, Ended, Array]:
         single, asked, begin = given
         code = _before(single)
-        ways = lambda: _solved(single, begin, grids), lambda: _not_solved(single, code, grids)
+        # Traced once, for its shape and for its numbers.
+        solve = jax.jit(partial(_solved, grids=grids))
+        shape = jax.eval_shape(solve, single, begin)
+        ways = lambda: solve(single, begin), lambda: _not_solved(shape, code)
         ended: tuple[LineFilm, Ended, Array] = jax.lax.cond(asked & (code == Code.SOLVED), *ways)
         return ended
 
@@ -371,10 +375,7 @@ def _as_turned(gap: Array, contact: LineContact) -> Array:
     return jnp.where(contact.entrainment < 0.0, gap[::-1], gap)
 
 
-def _not_solved(
-    contact: LineContact, code: Array, grids: tuple[Grid, ...]
-) -> tuple[LineFilm, Ended, Array]:
-    shape = jax.eval_shape(lambda: _solved(contact, None, grids))
+def _not_solved(shape: tuple[LineFilm, Ended, Array], code: Array) -> tuple[LineFilm, Ended, Array]:
     film, ended, domain = jax.tree.map(
         lambda leaf: jnp.full(leaf.shape, jnp.nan if leaf.dtype.kind == "f" else 0, leaf.dtype),
         shape,
