@@ -120,7 +120,8 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
 
     Returns:
         Films, NaN where a contact was not solved. Derivatives are those of the solution (implicit function
-        theorem), first ones; every cell stays full of oil, or not, as it is.
+        theorem, with heat of pressure and temperature together), first ones, of stiffness and damping too;
+        every cell stays full of oil, or not, as it is.
     """
     grids = _ladder(nodes, ends)
     shape = jnp.broadcast_shapes(*map(jnp.shape, jax.tree.leaves(contact)))
@@ -375,7 +376,7 @@ def _as_turned(gap: Array, contact: LineContact) -> Array:
     return jnp.where(contact.entrainment < 0.0, gap[::-1], gap)
 
 
-def _not_solved(shape: tuple[LineFilm, Ended, Array], code: Array) -> tuple[LineFilm, Ended, Array]:
+def _not_solved(shape: tuple[LineFilm, Ended, Any], code: Array) -> tuple[LineFilm, Ended, Array]:
     film, ended, domain = jax.tree.map(
         lambda leaf: jnp.full(leaf.shape, jnp.nan if leaf.dtype.kind == "f" else 0, leaf.dtype),
         shape,
