@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.surface import Flank, Lanes, Spot, Surface
 
-__all__ = ["Crowning", "EndRelief", "LeadSlope", "Relief"]
+__all__ = ["Crowning", "EndRelief", "LeadSlope", "LogRelief", "Relief"]
 
 _BASE = 1e-9
 """Least arc length, over that of a relief's far end: the root of less has no finite slope."""
@@ -109,6 +109,32 @@ class EndRelief(Surface):
         """Nothing in the middle, the amount at the ends."""
         inside = jnp.abs(spot.across) - (self.width / 2.0 - self.length)
         return self.amount * jnp.maximum(inside / self.length, 0.0) ** self.power
+
+
+class LogRelief(Surface):
+    """Relief that grows as a logarithm over the whole face, little in the middle and steeply at the ends.
+
+    Attributes:
+        amount: A, A ln(1/(1 - (1 - exp(-d/A)) (2 y/b)^2)) is missing along the normal [m].
+        drop: d, at both ends; may be infinite, where the face itself has no point [m].
+        width: b, of the face [m].
+
+    With an infinite drop the profile of Lundberg (1939).
+    """
+
+    amount: Float[Array, ""]
+    drop: Float[Array, ""]
+    width: Float[Array, ""]
+
+    def fitted(self, flank: Flank) -> Self:
+        """The same on a face of another width."""
+        return replace(self, width=flank.width)
+
+    def missing(self, spot: Spot) -> Lanes:
+        """Nothing in the middle, the drop at the ends."""
+        share = -jnp.expm1(-self.drop / self.amount)
+        found: Lanes = -self.amount * jnp.log1p(-share * (2.0 * spot.across / self.width) ** 2)
+        return found
 
 
 class LeadSlope(Surface):
