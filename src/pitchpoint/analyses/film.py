@@ -278,7 +278,7 @@ def _values(
         "film_pressure": lane(film.largest_pressure),
         "asperity_share": lane(film.asperity_share),
         "film_rise": lane(0.0 * film.rolling if film.heat is None else film.heat.largest_film),
-        "film_friction": np.abs(drawn) / load,
+        "film_friction": lane(film.friction),
         "boundary_part": np.abs(lane(film.boundary_force)) / load,
         "rolling_resistance": rolling,
         "film_sliding_loss": drawn * sliding * some["weight_of_line"],

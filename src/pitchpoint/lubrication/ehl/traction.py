@@ -96,9 +96,7 @@ class FilmTraction:
         )
         self.films = solve_lines(contacts, nodes=self.model.nodes, profiles=False)
         _demand(self.films)
-        film = self.films.film
-        friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
-        return friction
+        return np.asarray(self.films.film.friction)
 
     @property
     def warnings(self) -> tuple[str, ...]:
