@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax
-from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation
 from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import ConvergenceError
@@ -83,16 +83,30 @@ _LAST: deque[tuple[tuple[object, ...], InTurns]] = deque(maxlen=KEPT)
 def first_turn(
     design: Design, operation: Operation, models: Models, known: Engagement
 ) -> NDArray[np.float64]:
-    """Coefficients [pair, slice, node] of the films under the forces of a small friction.
+    """Friction of the films under the forces of a small friction.
 
     Arguments as in `in_turns`.
+
+    Returns:
+        Coefficients [pair, slice, node], and the rolling resistance on each surface [N/m] unless the case
+        has a model of its own; along a first axis.
 
     Raises:
         ConvergenceError: a film was not solved.
     """
     begin, known, solver = _begin(design, operation, models, known)
     cycle, _ = solved_cycle(design, operation, begin, solver, engaged=known, most=1)
-    return np.asarray(cycle.state.balance.friction)
+    friction = np.asarray(cycle.state.balance.friction)
+    return friction[None] if begin.held_rolling is None else np.stack([friction, _rolling(cycle)])
+
+
+def _rolling(cycle: Cycle) -> NDArray[np.float64]:
+    """Rolling resistance of each slice on each surface per length [N/m]."""
+    whole, weight = (
+        np.asarray(v) for v in (cycle.state.balance.rolling, cycle.state.contacts.weight)
+    )
+    found: NDArray[np.float64] = np.divide(whole, weight, np.zeros_like(whole), where=whole != 0.0)
+    return found
 
 
 def _begin(
@@ -100,9 +114,11 @@ def _begin(
 ) -> tuple[Models, Engagement, FilmTraction]:
     films = models.law.films
     assert films is not None
-    solver = FilmTraction(films, design.lubricant, operation.temperature)
-    first = array(np.full(known.share.shape, FIRST))
-    return replace(models.without_friction, held=first), replace(known, body=None), solver
+    own = models.rolling.name != "none"
+    solver = FilmTraction(films, design.lubricant, operation.temperature, rolling=not own)
+    first, none = (array(np.full(known.share.shape, one)) for one in (FIRST, 0.0))
+    begin = models.holding(first, None if own else none)
+    return begin, replace(known, body=None), solver
 
 
 def _solved(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:

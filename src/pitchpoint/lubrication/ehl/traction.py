@@ -52,19 +52,22 @@ def ehl_line(
 
 
 class FilmTraction:
-    """Friction coefficients of the solved films of an oil: a solver that a balance takes turns with.
+    """Friction of the solved films of an oil: a solver that a balance takes turns with.
 
     Args:
         model: how films are solved.
         oil: between the flanks.
         temperature: of the oil in the inlet [K].
+        rolling: whether rolling resistance is asked for too.
 
     Attributes:
         films: those of the last turn; None before the first.
     """
 
-    def __init__(self, model: FilmModel, oil: Lubricant, temperature: ArrayLike) -> None:
-        self.model, self.oil, self.temperature = model, oil, temperature
+    def __init__(
+        self, model: FilmModel, oil: Lubricant, temperature: ArrayLike, *, rolling: bool = False
+    ) -> None:
+        self.model, self.oil, self.temperature, self.rolling = model, oil, temperature, rolling
         self.films: Films | None = None
 
     def __call__(
@@ -78,6 +81,8 @@ class FilmTraction:
         roughness_rq: Each,
     ) -> Each:
         """Friction of the oil and of asperities over the load of each contact [contact].
+
+        With rolling resistance on each surface [N/m] it is of shape (2, contact).
 
         Arguments as in `ehl_line`, NumPy arrays [contact].
 
@@ -98,7 +103,10 @@ class FilmTraction:
         _demand(self.films)
         film = self.films.film
         friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
-        return friction
+        if not self.rolling:
+            return friction
+        # Against the sense in which the surfaces run.
+        return np.stack([friction, np.asarray(film.rolling) * np.sign(speed_a + speed_b)])
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -123,8 +131,9 @@ EHL_LINE: Final = FrictionLaw(
     sources=("dowson_higginson_1966", "patir_cheng_1978", "greenwood_tripp_1970"),
     note=(
         "Shear of the oil and friction of asperities from pressure and film of each contact, solved in turns"
-        " with the balance of forces until both agree to 1e-6. Rolling resistance stays with its own law. A"
-        " contact takes about 10 ms a turn: a helical mesh with many slices takes minutes."
+        " with the balance of forces until both agree to 1e-6; so does their rolling resistance, unless a"
+        " case names a model of it. A contact takes about 10 ms a turn: a helical mesh with many slices takes"
+        " minutes."
     ),
     shape="line",
     films=FilmModel(),
