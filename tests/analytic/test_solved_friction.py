@@ -178,6 +178,17 @@ def test_films_are_solved_by_the_choices_of_the_case():
     assert films == FilmModel(nodes=65, boundary_friction=0.08, inlet=2e-3)
 
 
+def test_points_of_a_sweep_have_films_by_their_own_choices():
+    film = {"solver": "line", "nodes": 33}
+    points = [built(film={**film, "boundary_friction": one}) for one in (0.05, 0.1)]
+    points.append(built(film={**film, "inlet": "0.12 mm"}))
+    swept = summaries(points, points[0].models, {}, title="sweep")["mean_loss"].values[0]
+    alone = [summarise([(one.design, one.operation)], one.models[0])["mean_loss"] for one in points]
+    np.testing.assert_array_equal(swept, np.concatenate(alone))
+    assert swept[1] > 1.05 * swept[0]
+    assert swept[2] != pytest.approx(swept[1], rel=1e-3)
+
+
 def test_a_film_that_was_not_solved_gives_no_numbers(monkeypatch):
     def losing(contacts, **asked):
         films = solve_lines(contacts, **asked)

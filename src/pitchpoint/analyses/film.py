@@ -15,7 +15,6 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.caveats import conformal_warning
 from pitchpoint.cases.build import Built, tooth_size
-from pitchpoint.cases.films import film_model
 from pitchpoint.cases.schema import FilmTable
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.in_turns import balance_under
@@ -243,8 +242,8 @@ def _solved(
 
 
 def _model(built: Built) -> FilmModel:
-    solids = [used.record for used in built.solids]
-    return film_model(_asked(built), solids, tooth_size(built.design.mesh))
+    assert built.film_model is not None
+    return built.film_model
 
 
 def _films(built: Built, given: np.ndarray, done: Done) -> Films:

@@ -56,6 +56,7 @@ from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
@@ -162,6 +163,14 @@ class Built:
     def film(self) -> FilmThickness:
         """The film law of the case, with the heat in the inlet."""
         return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case)
+
+    @cached_property
+    def film_model(self) -> FilmModel | None:
+        """How films of the contacts are solved; None where neither a table nor a law asks for them."""
+        if self.case.film is None:
+            return next((law.films for law in self.laws if law.films is not None), None)
+        solids = [used.record for used in self.solids]
+        return film_model(self.case.film, solids, tooth_size(self.design.mesh))
 
     @property
     def asperities(self) -> AsperityLoad | None:
