@@ -84,6 +84,13 @@ VARIABLES: dict[str, Variable] = {
         "K",
         "temperature difference",
     ),
+    "flash_rise": Variable(
+        "flash temperature of the warmer surface, solved",
+        "ΔT_f",
+        "K",
+        "K",
+        "temperature difference",
+    ),
     "film_friction": Variable("friction coefficient of the film, solved", "μ_EHL", "1"),
     "boundary_part": Variable("friction coefficient by asperities that touch, solved", "μ_b", "1"),
     "rolling_resistance": force("rolling resistance of each surface, solved", "F_roll"),
@@ -108,6 +115,13 @@ VARIABLES: dict[str, Variable] = {
     "largest_film_rise": Variable(
         "largest temperature of the films above their inlet",
         "ΔT_m max",
+        "K",
+        "K",
+        "temperature difference",
+    ),
+    "largest_flash_rise": Variable(
+        "largest flash temperature of the surfaces",
+        "ΔT_f max",
         "K",
         "K",
         "temperature difference",

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.doubt import Doubt
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid
 from pitchpoint.lubrication.ehl.heat import (
@@ -91,7 +92,7 @@ class Films:
         ended: how each solve ended.
         nodes: across a contact.
         domain: first and last place in half-widths, shape (2, *b).
-        warnings: what to be wary of, in sentences.
+        warnings: what to be wary of, in sentences, each a `Doubt`.
     """
 
     film: LineFilm
@@ -449,7 +450,8 @@ def _warnings(
 def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[str]:
     told = contact.fluid.outside(pressure)
     if told is not None:
-        yield f"{told}: films and traction there are extrapolated"
+        sentence = f"{told}: films and traction there are extrapolated"
+        yield Doubt(sentence, "pressure", pressure.max())
 
 
 def _of_half_space(
@@ -462,18 +464,22 @@ def _of_half_space(
     for name, length in sizes.items():
         worst = np.argmax(half_width / length)
         if half_width[worst] > WIDE * length[worst]:
-            yield (
+            yield Doubt(
                 f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
-                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them"
+                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them",
+                f"wide against {name}",
+                half_width[worst] / length[worst],
             )
 
 
 def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[str]:
     worst = np.argmax(rough / half_width)
     if rough[worst] > WIDE * half_width[worst]:
-        yield (
+        yield Doubt(
             f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
-            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little"
+            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little",
+            "roughness",
+            rough[worst] / half_width[worst],
         )
 
 
@@ -482,20 +488,24 @@ def _of_strips(
 ) -> Iterator[str]:
     member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
     if peclet[member, worst] < LEAST_PECLET:
-        yield (
+        yield Doubt(
             f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
             f"{abs(speed[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
             f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
-            "stands still is taken to take none"
+            "stands still is taken to take none",
+            "strips",
+            -peclet[member, worst],
         )
 
 
 def _of_grid(error: NDArray[np.float64]) -> Iterator[str]:
     rough = error > COARSE
     if rough.any():
-        yield (
+        yield Doubt(
             f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
-            f"off by {100.0 * error.max():.2g} %; take more nodes"
+            f"off by {100.0 * error.max():.2g} %; take more nodes",
+            "grid",
+            error.max(),
         )
 
 
@@ -503,9 +513,11 @@ def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator
     given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
     worst = np.argmin(given / needed)
     if given[worst] < needed[worst] * (1.0 - 1e-9):
-        yield (
+        yield Doubt(
             f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
-            f"one draws it from {needed[worst]:.0f} on: the contact is starved"
+            f"one draws it from {needed[worst]:.0f} on: the contact is starved",
+            "inlet",
+            needed[worst] / given[worst],
         )
 
 

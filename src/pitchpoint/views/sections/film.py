@@ -54,12 +54,8 @@ _BESIDE = {
 }
 """Figures by the films, and the same by a friction law."""
 
-_ON_SCREEN = (
-    "smallest_film",
-    "smallest_lambda",
-    "largest_film_pressure",
-    "largest_asperity_share",
-)
+_WARMTH = ("largest_film_rise", "largest_flash_rise")
+"""Figures of films that are no isothermal ones."""
 
 _SEEN = 0.01
 """Part of the largest pressure up to which a profile is drawn."""
@@ -72,12 +68,29 @@ def film_answer(outcome: Outcome) -> str:
         return NONE
     told = (
         f"{_told(data, 'smallest_film')} at least, {_told(data, 'smallest_lambda')} of Rq; asperities "
-        f"carry up to {_told(data, 'largest_asperity_share')} of a contact's load"
+        f"carry up to {_told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
     if not np.isfinite(float(data["mean_film_loss"])):
         return f"{told}; loss and efficiency are withheld, some films were not found"
     friction, loss = (_told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
     return f"{told}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def _thermal(data: xr.Dataset) -> str:
+    """Name of the thermal effect of the films."""
+    return str(json.loads(data.attrs["choices"])["thermal"])
+
+
+def _main(data: xr.Dataset) -> tuple[str, ...]:
+    """Names of the figures of the films themselves."""
+    return _FIGURES if _thermal(data) == ISOTHERMAL else (*_FIGURES, *_WARMTH)
+
+
+def _warmed(data: xr.Dataset) -> str:
+    if _thermal(data) == ISOTHERMAL:
+        return ""
+    film, flash = (_told(data, name) for name in _WARMTH)
+    return f"; films are up to {film} warmer than their inlet, surfaces {flash}"
 
 
 def _efficient(data: xr.Dataset) -> str:
@@ -383,15 +396,17 @@ def _status(data: xr.Dataset) -> str:
         f"{data.sizes['phase']} phases of the mesh cycle under the forces of the balance with the first "
         f"friction law: {solve['sentence']}; at most {solve['iterations']} iterations, largest defect "
         f"{solve['residual']:.0e} of Hertz's pressure. {chosen['nodes']} nodes across a contact; {laws}, "
-        f"boundary friction {chosen['boundary_friction']:g}. {_warmth(data, chosen['thermal'])}"
+        f"boundary friction {chosen['boundary_friction']:g}. {_warmth(data)}"
     )
 
 
-def _warmth(data: xr.Dataset, thermal: str) -> str:
+def _warmth(data: xr.Dataset) -> str:
+    thermal = _thermal(data)
     if thermal == ISOTHERMAL:
         return "Isothermal."
-    warmest = _told(data, "largest_film_rise")
-    return f"With heat ({thermal.replace('_', ' ')}): up to {warmest} above the inlet."
+    film, flash = (_told(data, name) for name in _WARMTH)
+    named = thermal.replace("_", " ")
+    return f"With heat ({named}): films up to {film} above their inlet, surfaces up to {flash}."
 
 
 _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
@@ -415,7 +430,7 @@ def _table(outcome: Outcome) -> Table:
     def alone(name: str) -> tuple[str, ...]:
         return (titled(name, data), _told(data, name), *("" for _ in known))
 
-    rows = [alone(name) for name in _FIGURES]
+    rows = [alone(name) for name in _main(data)]
     for own, by_law in _BESIDE.items():
         values = data[by_law].values
         cells = [show.quantity(by_law, float(value), of=data) for value in values]
@@ -438,7 +453,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("film")
     if data is None:
         return
-    row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
+    row = {head(name, data): shown(name, float(data[name]), data) for name in _main(data)}
     yield Printed("Films", [row], _counted(data))
     rows = [{"friction by": "films", **_row(data, [*_BESIDE], ())}]
     rows += [
