@@ -280,8 +280,29 @@ def test_heat_that_isothermal_films_leave_out_is_told(outcome: Outcome, case: st
     film, flash = (float(warm.parts["film"][f"largest_{one}_rise"]) for one in ("film", "flash"))
     assert 10.0 < film < estimated < 1.5 * film
     assert 0.3 * film < flash < 1.1 * film
+    rise, surfaces = (
+        warm.parts["film"][name].values for name in ("profile_rise", "profile_surface_rise_1")
+    )
+    assert np.nanmax(rise) <= film * (1.0 + 1e-12)
+    assert np.nanmax(surfaces) <= flash * (1.0 + 1e-12)
+    assert "Temperatures above the inlet" in render({"default": warm})
+    assert "Temperatures above the inlet" not in render({"default": hard})
     assert "warmer than their inlet" in film_answer(warm)
     assert "warmer than their inlet" not in film_answer(hard)
+
+
+def test_the_thinnest_film_is_named_and_dry_contacts_are_marked(outcome: Outcome) -> None:
+    data, page = outcome.parts["film"], render({"default": outcome})
+    phase, pair, _ = np.unravel_index(np.nanargmin(data["minimum_film"].values), data["load"].shape)
+    number = ("I", "II", "III")[int(pair)]
+    at = f"{float(data['phase'][phase]) % 1.0:.3f}, pair {number}"
+    assert f"The thinnest film is at phase {at}: " in page
+    assert "±b of the dry contact" in page
+    width, place = data["profile_half_width"].values, data["profile_place"].values
+    pressure = np.nan_to_num(data["profile_pressure"].values)
+    high = pressure > 0.7 * pressure.max(axis=-1, keepdims=True)
+    assert high.any()
+    assert np.max(np.abs(place / width[..., None])[high]) < 1.0
 
 
 def warnings_of(outcome: Outcome) -> list[str]:

@@ -62,6 +62,7 @@ SHOWN = 4
 
 _LANES = ("phase", "pair", "slice")
 _OF_PIECE = ("point", "pair", "slice")
+_OF_PROFILE = ("point", "shown", "node")
 _MASKED = ("pressure", "friction", "film_by_law")
 _PROFILES = {
     "profile_place": "x",
@@ -69,6 +70,12 @@ _PROFILES = {
     "profile_pressure": "pressure",
     "profile_asperity_pressure": "asperity_pressure",
 }
+_WARM_PROFILES = {
+    "profile_rise": "film",
+    "profile_surface_rise_1": "surface_a",
+    "profile_surface_rise_2": "surface_b",
+}
+"""Profiles of films that are solved with their heat, which are along the same places."""
 
 
 def _asked(built: Built) -> FilmTable:
@@ -204,7 +211,7 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
         {
             **{name: (_OF_PIECE, one) for name, one in values.items()},
             "film_status": (_OF_PIECE, codes),
-            **{name: (("point", "shown", "node"), one) for name, one in profiles.items()},
+            **{name: (_OF_PROFILE[: one.ndim], one) for name, one in profiles.items()},
         },
         {},
         warnings=list(films.warnings),
@@ -300,12 +307,19 @@ def _kept(
     some: Mapping[str, np.ndarray],
     back: np.ndarray,
 ) -> dict[str, np.ndarray]:
-    """Profiles [phase, shown pair, node] of the slice of each pair that carries most."""
+    """Profiles [phase, shown pair, node] and half-width of the slice of each pair that carries most."""
     pairs = _shown(states)
     highest = np.argmax(some["load"][:, pairs], axis=-1)[..., None]
     which = np.take_along_axis(back[:, pairs], highest, axis=-1)
-    found = {name: np.asarray(getattr(film, own)) for name, own in _PROFILES.items()}
-    return {name: np.where(which < 0, np.nan, one[which[..., 0]]) for name, one in found.items()}
+    found = {name: getattr(film, own) for name, own in _PROFILES.items()}
+    if film.heat is not None:
+        found |= {name: getattr(film.heat, own) for name, own in _WARM_PROFILES.items()}
+    kept = {
+        name: np.where(which < 0, np.nan, np.asarray(one)[which[..., 0]])
+        for name, one in found.items()
+    }
+    width = np.where(which < 0, np.nan, np.asarray(film.half_width)[which])
+    return {**kept, "profile_half_width": width[..., 0]}
 
 
 def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:

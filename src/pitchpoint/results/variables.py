@@ -106,6 +106,24 @@ VARIABLES: dict[str, Variable] = {
     "profile_asperity_pressure": Variable(
         "pressure that asperities carry", "p_a", "Pa", "MPa", "pressure"
     ),
+    "profile_half_width": length("half-width of the dry contact", "b"),
+    "profile_rise": Variable(
+        "mean temperature of the film above its inlet",
+        "ΔT_m",
+        "K",
+        "K",
+        "temperature difference",
+    ),
+    **{
+        f"profile_surface_rise_{body}": Variable(
+            f"temperature of the surface of body {body} above the inlet of the film",
+            f"ΔT_{body}",
+            "K",
+            "K",
+            "temperature difference",
+        )
+        for body in (1, 2)
+    },
     "smallest_film": Variable("smallest film of the mesh cycle", "h_min", "m", "um", "length"),
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
     "largest_film_pressure": Variable(
