@@ -287,7 +287,11 @@ def test_what_takes_a_formula_says_so():
     assert "very many operating points, and 'ehl_line' solves" in LOSS_MAP.lacks(case)
     beside = {"seal": {"between": ["gear 1", "housing"], "seal_torque": "0.1 N m"}}
     assert "very many operating points" in RUNNING.lacks(built(losses=beside))
-    assert "very many operating points" in LOSS_MAP.lacks(built(WAVE, loss_map={"count": 3}))
+    assert "very many operating points" in LOSS_MAP.lacks(built(WAVE))
+    with pytest.raises(
+        InputError, match="loss_map: teeth with gaps share each load in another way"
+    ):
+        built(WAVE, loss_map={"count": 3})
     with pytest.raises(InputError, match="a motion follows from the first friction law of a case"):
         built(dynamics={"damping_ratio": 0.1, "motion": {}})
     with pytest.raises(

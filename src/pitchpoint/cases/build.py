@@ -556,6 +556,7 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         LOAD_SHARING[models.load_sharing].check(mesh)
     except InputError as error:
         raise error.at(key="models.load_sharing") from None
+    _check_map(case, mesh)
     if models.tooth_temperature != "isothermal":
         _check_heat(case, mesh)
     if case.dynamics is not None and mesh.along_action:
@@ -563,6 +564,17 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         _check_motion(case, mesh)
     elif case.dynamics is not None:
         _check_joint(case, case.dynamics)
+
+
+def _check_map(case: Case, mesh: Mesh) -> None:
+    """InputError for a loss map whose friction is that of films between teeth with gaps."""
+    solved = [one.name for one in case.models.friction if FRICTION[one.name].films is not None]
+    if case.loss_map is not None and solved and not mesh.touching:
+        raise InputError(
+            f"teeth with gaps share each load in another way, and '{solved[0]}' solves the films of every "
+            "operating point; leave the table out, or name formulas alone in models.friction",
+            key="loss_map",
+        )
 
 
 def _check_heat(case: Case, mesh: Mesh) -> None:
