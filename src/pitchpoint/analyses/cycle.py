@@ -43,8 +43,8 @@ def _cold(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:
     ]
 
 
-def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
-    runs, names = profiles(built, built.models), built.law_names
+def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+    runs, names = profiles(built, built.models, progress), built.law_names
     demand_motion(*_jammed(runs), [built], names)
     mesh = built.design.mesh
     demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)

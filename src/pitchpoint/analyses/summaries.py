@@ -256,13 +256,15 @@ def _in_groups(
     return result
 
 
-def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
+def profiles(
+    built: Built, under: Sequence[Models], progress: Progress | None = None
+) -> list[dict[str, np.ndarray]]:
     """The mesh cycle under each of some models; where films are solved, at the nodes of all other figures."""
     point, engaged, asperities = (built.design, built.operation), built.engaged, built.asperities
     solved = any(models.law.films is not None for models in (*built.models, *under))
     nodes = NODES if solved else FINE
     return [
-        profile(*point, models, built.film, nodes, engaged=engaged, asperities=asperities)
+        profile(*point, models, built.film, nodes, engaged, asperities, progress)
         for models in under
     ]
 

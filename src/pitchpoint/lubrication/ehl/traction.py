@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.factored import Numbers
+from pitchpoint.lubrication.ehl.doubt import kind_of
+from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -59,16 +62,25 @@ class FilmTraction:
         oil: between the flanks.
         temperature: of the oil in the inlet [K].
         rolling: whether rolling resistance is asked for too.
+        progress: told the number of films that are solved, of all turns.
 
     Attributes:
-        films: those of the last turn; None before the first.
+        films: those of the last turn, from which the next one begins; None before the first.
     """
 
     def __init__(
-        self, model: FilmModel, oil: Lubricant, temperature: ArrayLike, *, rolling: bool = False
+        self,
+        model: FilmModel,
+        oil: Lubricant,
+        temperature: ArrayLike,
+        *,
+        rolling: bool = False,
+        progress: Callable[[int], None] | None = None,
     ) -> None:
         self.model, self.oil, self.temperature, self.rolling = model, oil, temperature, rolling
         self.films: Films | None = None
+        self._progress, self._done = progress or (lambda _: None), 0
+        self._first: Films | None = None
 
     def __call__(
         self,
@@ -99,7 +111,7 @@ class FilmTraction:
             temperature=self.temperature,
             roughness_rq=roughness_rq,
         )
-        self.films = solve_lines(contacts, nodes=self.model.nodes, profiles=False)
+        self.films = self._turn(contacts, line_load.size)
         _demand(self.films)
         film = self.films.film
         friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
@@ -108,10 +120,32 @@ class FilmTraction:
         # Against the sense in which the surfaces run.
         return np.stack([friction, np.asarray(film.rolling) * np.sign(speed_a + speed_b)])
 
+    def _turn(self, contacts: LineContact, count: int) -> Films:
+        """Films of a turn, from those of the turn before where there are as many and all are found so."""
+        before = self.films
+        if before is not None and before.solved.size == count:
+            films = self._films(contacts, before)
+            if films.solved.all():
+                return films
+        self._first = self._films(contacts)
+        return self._first
+
+    def _films(self, contacts: LineContact, start: Films | None = None) -> Films:
+        told = lambda done, _: self._progress(self._done + done)  # noqa: E731
+        films = solve_lines(contacts, nodes=self.model.nodes, start=start, progress=told)
+        self._done += films.solved.size
+        return films
+
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to be wary of about the films of the last turn, in sentences without their stop."""
-        return () if self.films is None else self.films.warnings
+        """What to be wary of about the films of the last turn, in sentences without their stop.
+
+        Films that begin from others say nothing of the grid; what those from coarser grids said stands.
+        """
+        if self.films is None or self._first is None:
+            return ()
+        others = [one for one in self._first.warnings if kind_of(one) == "grid"]
+        return tuple({kind_of(one): one for one in (*others, *self.films.warnings)}.values())
 
 
 def _demand(films: Films) -> None:
