@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from sound import PAIR
 
+from pitchpoint.analyses.films import FILM
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
@@ -104,3 +105,22 @@ def test_what_decides_about_films_is_among_the_inputs():
     warm = film_rows(f'{FILE}\n[film]\nsolver = "line"\nthermal = "mean_film"\n')
     assert warm.keys() - by_law.keys() == {"solver", "phases"}
     assert film_rows(PAIR) == {}
+
+
+@pytest.mark.usefixtures("coarse")
+@pytest.mark.parametrize("named", ["none", "wu_cheng_1991"])
+def test_a_rolling_resistance_that_is_not_of_the_films_is_told(named):
+    settings = {
+        "film.solver": "line",
+        "film.nodes": "33",
+        "film.phases": "3",
+        "models.friction": "ehl_line",
+        "models.rolling_resistance": named,
+    }
+    variant = Variant(tomllib.loads(PAIR), "pair.toml", "default")
+    case = variant.built(settings)
+    data = FILM.joined(case, [FILM.compute(case, one, lambda _: None) for one in FILM.pieces(case)])
+    told = data.attrs["other_rolling"]
+    assert ("takes rolling resistance from" in told) == (named != "none")
+    off = abs(float(data["mean_law_loss"][0]) / float(data["mean_film_loss"]) - 1.0)
+    assert (off < 1e-5) == (named == "none")

@@ -365,6 +365,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         film_titles=[law.title for law in _laws()],
         film_places=[law.place for law in _laws()],
         choices=_choices(built),
+        other_rolling=_other_rolling(built),
         pitch=str(built.way["pitch"]),
     )
     data["path"].attrs.update(built.way)
@@ -558,6 +559,18 @@ def _moving(states: Mapping[str, np.ndarray], found: xr.Dataset) -> dict[str, np
     }
     solved = np.isfinite(every["friction"])
     return {name: values[solved] for name, values in every.items()}
+
+
+def _other_rolling(built: Built) -> str:
+    """Why a law that solves films has another loss than its films; empty where it has not."""
+    solved = [one.law.title for one in built.models if one.law.films is not None]
+    model = built.models[0].rolling
+    if not solved or model.name == "none":
+        return ""
+    return (
+        f"{solved[0]}: the case takes rolling resistance from {model.title}; that of the films, which stands "
+        "beside it here, is their own."
+    )
 
 
 def _choices(built: Built) -> dict[str, Any]:

@@ -425,6 +425,8 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "warning",
         )
     yield _table(outcome)
+    if other := str(data.attrs["other_rolling"]):
+        yield Paragraph(other, "note")
     yield Paragraph(_thinnest(data), "note")
     if _overlap(data):
         yield Paragraph(OVERLAP, "note")
@@ -534,7 +536,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
         {"friction by": law, **_row(data, [*_BESIDE.values()], (k,), [*_BESIDE])}
         for k, law in enumerate(laws(data))
     ]
-    yield Printed("", rows)
+    yield Printed("", rows, str(data.attrs["other_rolling"]))
 
 
 def _row(
