@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.factored import Numbers
-from pitchpoint.lubrication.ehl.doubt import kind_of
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
@@ -65,7 +64,7 @@ class FilmTraction:
         progress: told the number of films that are solved, of all turns.
 
     Attributes:
-        films: those of the last turn, from which the next one begins; None before the first.
+        films: those of the last turn; None before the first.
     """
 
     def __init__(
@@ -80,7 +79,6 @@ class FilmTraction:
         self.model, self.oil, self.temperature, self.rolling = model, oil, temperature, rolling
         self.films: Films | None = None
         self._progress, self._done = progress or (lambda _: None), 0
-        self._first: Films | None = None
 
     def __call__(
         self,
@@ -111,7 +109,7 @@ class FilmTraction:
             temperature=self.temperature,
             roughness_rq=roughness_rq,
         )
-        self.films = self._turn(contacts, line_load.size)
+        self.films = self._turn(contacts)
         _demand(self.films)
         film = self.films.film
         friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
@@ -120,32 +118,16 @@ class FilmTraction:
         # Against the sense in which the surfaces run.
         return np.stack([friction, np.asarray(film.rolling) * np.sign(speed_a + speed_b)])
 
-    def _turn(self, contacts: LineContact, count: int) -> Films:
-        """Films of a turn, from those of the turn before where there are as many and all are found so."""
-        before = self.films
-        if before is not None and before.solved.size == count:
-            films = self._films(contacts, before)
-            if films.solved.all():
-                return films
-        self._first = self._films(contacts)
-        return self._first
-
-    def _films(self, contacts: LineContact, start: Films | None = None) -> Films:
+    def _turn(self, contacts: LineContact) -> Films:
         told = lambda done, _: self._progress(self._done + done)  # noqa: E731
-        films = solve_lines(contacts, nodes=self.model.nodes, start=start, progress=told)
+        films = solve_lines(contacts, nodes=self.model.nodes, profiles=False, progress=told)
         self._done += films.solved.size
         return films
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to be wary of about the films of the last turn, in sentences without their stop.
-
-        Films that begin from others say nothing of the grid; what those from coarser grids said stands.
-        """
-        if self.films is None or self._first is None:
-            return ()
-        others = [one for one in self._first.warnings if kind_of(one) == "grid"]
-        return tuple({kind_of(one): one for one in (*others, *self.films.warnings)}.values())
+        """What to be wary of about the films of the last turn, in sentences without their stop."""
+        return () if self.films is None else self.films.warnings
 
 
 def _demand(films: Films) -> None:
