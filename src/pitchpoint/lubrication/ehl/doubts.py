@@ -19,7 +19,7 @@ from pitchpoint.lubrication.groups import line_groups
 from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS
 from pitchpoint.materials.rheology import SHEAR_STRESS
 
-__all__ = ["check", "flooded_inlet", "warnings"]
+__all__ = ["Doubt", "check", "extent_of", "flooded_inlet", "kind_of", "warnings"]
 
 COARSE: Final = 0.03
 """Error by the grid from which on it is told."""
@@ -38,6 +38,41 @@ SHEARED: Final = 0.1
 
 WIDE: Final = 0.1
 """Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
+
+
+class Doubt(str):
+    """A sentence without its stop, of a kind, and how bad it is.
+
+    Args:
+        sentence: with its numbers.
+        kind: what sentences have in common of which the worst one says enough.
+        extent: larger is worse; comparable within a kind.
+
+    Example:
+        >>> from pitchpoint.lubrication.ehl.doubts import Doubt
+        >>> told = Doubt("the grid is coarse: off by 5 %", "grid", 0.05)
+        >>> print(told, told.kind, told.extent)
+        the grid is coarse: off by 5 % grid 0.05
+    """
+
+    kind: str
+    extent: float
+
+    def __new__(cls, sentence: str, kind: str, extent: float) -> Doubt:
+        """See the class."""
+        found = super().__new__(cls, sentence)
+        found.kind, found.extent = kind, float(extent)
+        return found
+
+
+def kind_of(sentence: str) -> str:
+    """Kind of a sentence; a plain one is its own."""
+    return sentence.kind if isinstance(sentence, Doubt) else sentence
+
+
+def extent_of(sentence: str) -> float:
+    """How bad it is; nothing is known of a plain one."""
+    return sentence.extent if isinstance(sentence, Doubt) else 0.0
 
 
 def check(contact: LineContact) -> None:
@@ -93,7 +128,7 @@ def warnings(
     solved: NDArray[np.bool_],
     grid_error: NDArray[np.float64],
     size: float | None,
-) -> Iterator[str]:
+) -> Iterator[Doubt]:
     """What to be wary of about films.
 
     Args:
@@ -123,34 +158,41 @@ def warnings(
         yield from _of_strips(peclet, np.stack([some.speed_a, some.speed_b]), half_width)
 
 
-def _of_units(contact: LineContact) -> Iterator[str]:
+def _of_units(contact: LineContact) -> Iterator[Doubt]:
     """Values that hint at another unit than the one that they are taken in."""
     radius, modulus, viscosity = (
         np.asarray(one) for one in (contact.radius, contact.modulus, contact.fluid.viscosity)
     )
     if radius.max() > LARGE:
-        yield (
-            f"a relative radius of {radius.max():.4g} m: nearly flat, if it was not meant in millimetres"
+        yield Doubt(
+            f"a relative radius of {radius.max():.4g} m: nearly flat, if it was not meant in millimetres",
+            "radius",
+            radius.max(),
         )
     if modulus.min() < SOFT:
-        yield (
-            f"a modulus E' of {modulus.min():.4g} Pa: softer than rubber, if it was not meant in MPa or GPa"
+        yield Doubt(
+            f"a modulus E' of {modulus.min():.4g} Pa: softer than rubber, if it was not meant in MPa or GPa",
+            "modulus",
+            -modulus.min(),
         )
     if viscosity.max() > STIFF:
-        yield (
-            f"a viscosity of {viscosity.max():.4g} Pa s: no oil flows so slowly, if it was not meant in mPa s"
+        yield Doubt(
+            f"a viscosity of {viscosity.max():.4g} Pa s: no oil is so thick, if it was not meant in mPa s",
+            "viscosity",
+            viscosity.max(),
         )
 
 
-def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[str]:
+def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[Doubt]:
     told = contact.fluid.outside(pressure)
     if told is not None:
-        yield f"{told}: films and traction there are extrapolated"
+        sentence = f"{told}: films and traction there are extrapolated"
+        yield Doubt(sentence, "pressure", pressure.max())
 
 
 def _of_half_space(
     contact: LineContact, half_width: NDArray[np.float64], size: float | None
-) -> Iterator[str]:
+) -> Iterator[Doubt]:
     radius = np.asarray(contact.radius)
     sizes = {"the relative radius": radius}
     if size is not None:
@@ -158,85 +200,101 @@ def _of_half_space(
     for name, length in sizes.items():
         worst = np.argmax(half_width / length)
         if half_width[worst] > WIDE * length[worst]:
-            yield (
+            yield Doubt(
                 f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
-                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them"
+                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them",
+                f"wide against {name}",
+                half_width[worst] / length[worst],
             )
 
 
-def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[str]:
+def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[Doubt]:
     worst = np.argmax(rough / half_width)
     if rough[worst] > WIDE * half_width[worst]:
-        yield (
+        yield Doubt(
             f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
-            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little"
+            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little",
+            "roughness",
+            rough[worst] / half_width[worst],
         )
 
 
 def _of_strips(
     peclet: NDArray[np.float64], speed: NDArray[np.float64], half_width: NDArray[np.float64]
-) -> Iterator[str]:
+) -> Iterator[Doubt]:
     member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
     if peclet[member, worst] < LEAST_PECLET:
-        yield (
+        yield Doubt(
             f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
             f"{abs(speed[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
             f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
-            "stands still is taken to take none"
+            "stands still is taken to take none",
+            "strips",
+            -peclet[member, worst],
         )
 
 
-def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[str]:
+def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
     """Inlets that nothing limits but a radius, over which a gap is no parabola any more."""
     radius, endless = np.asarray(contact.radius), np.asarray(contact.inlet) >= FLOODED
     length = np.sqrt(film.half_width**2 + INLETS * radius * np.maximum(film.central_film, 0.0))
     flooded = np.where(endless, flooded_inlet(contact) * length, 0.0)
     worst = np.argmax(flooded / radius)
     if flooded[worst] > radius[worst]:
-        yield (
+        yield Doubt(
             f"a flooded film draws oil from {1e3 * flooded[worst]:.3g} mm before the contact on, more than "
-            f"its relative radius of {1e3 * radius[worst]:.3g} mm: give the `inlet` at which oil begins"
+            f"its relative radius of {1e3 * radius[worst]:.3g} mm: give the `inlet` at which oil begins",
+            "long inlet",
+            flooded[worst] / radius[worst],
         )
 
 
-def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[str]:
+def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
     """Stress that no oil bears: a Newtonian one has no limit."""
     limited = [f"'{name}'" for name in SHEAR_STRESS if name != USUAL_SHEAR_STRESS]
     drawn, width = np.abs(film.shear_force), 2e6 * film.half_width
     worst = np.argmax(drawn / contact.line_load)
     stress, pressure = drawn[worst] / width[worst], contact.line_load[worst] / width[worst]
     if contact.fluid.shear_law == USUAL_SHEAR_STRESS and stress > SHEARED * pressure:
-        yield (
+        yield Doubt(
             f"a Newtonian oil is sheared by {stress:.3g} MPa in the mean at a mean pressure of "
             f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that limits it is "
-            f"{' or '.join(limited)}"
+            f"{' or '.join(limited)}",
+            "shear",
+            stress / pressure,
         )
 
 
-def _of_thinning(contact: LineContact) -> Iterator[str]:
+def _of_thinning(contact: LineContact) -> Iterator[Doubt]:
     if np.min(np.asarray(contact.fluid.viscosity_slope)) <= 0.0:
-        yield (
+        yield Doubt(
             "the temperature of the film is solved for with an oil that does not thin as it warms: its "
-            "`viscosity_slope` is 0 1/K"
+            "`viscosity_slope` is 0 1/K",
+            "thinning",
+            1.0,
         )
 
 
-def _of_grid(error: NDArray[np.float64]) -> Iterator[str]:
+def _of_grid(error: NDArray[np.float64]) -> Iterator[Doubt]:
     rough = error > COARSE
     if rough.any():
-        yield (
+        yield Doubt(
             f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
-            f"off by {100.0 * error.max():.2g} %; take more nodes"
+            f"off by {100.0 * error.max():.2g} %; take more nodes",
+            "grid",
+            error.max(),
         )
 
 
-def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[str]:
+def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:
     given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
     worst = np.argmin(given / needed)
     if given[worst] < needed[worst] * (1.0 - 1e-9):
-        yield (
+        yield Doubt(
             f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
-            f"one draws it from {needed[worst]:.0f} on: the contact is starved"
+            f"one draws it from {needed[worst]:.0f} on: the contact is starved",
+            "inlet",
+            needed[worst] / given[worst],
         )
 
 

@@ -95,7 +95,7 @@ class Films:
         ended: how each solve ended.
         nodes: across a contact.
         domain: first and last place in half-widths, shape (2, *b).
-        warnings: what to be wary of, in sentences.
+        warnings: what to be wary of, in sentences, each a `Doubt`.
     """
 
     film: LineFilm
