@@ -11,7 +11,14 @@ from pitchpoint._jax import jnp
 from pitchpoint.lubrication.ehl.grid import Grid
 from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
 
-__all__ = ["filled", "pressure_flow", "shear_stress", "work_of_expansion", "work_of_pressure"]
+__all__ = [
+    "filled",
+    "pressure_flow",
+    "shear_stress",
+    "specific_volume",
+    "work_of_expansion",
+    "work_of_pressure",
+]
 
 BROKEN: Final = 1e-9
 """Pressure below which a film is broken, in units of Hertz's pressure."""

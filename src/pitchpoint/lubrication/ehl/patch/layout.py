@@ -71,6 +71,10 @@ class Layout(NamedTuple):
         pressure: largest one of the dry contact, but for edges, and less for thick films; unit of pressures
             [Pa].
         film: guess of it in the middle [m].
+        half_width: of the dry contact along x, in the middle [m].
+        hertz_pressure: largest one of it, but for edges [Pa].
+        radius: relative radius along x that units are made of [m].
+        speed: unit of speed [m/s].
         softer: modulus of the bodies over that of bodies on which a dry contact is half as long as the one with
             a thick film; one of thin films.
     """
@@ -83,6 +87,10 @@ class Layout(NamedTuple):
     length: float
     pressure: float
     film: float
+    half_width: float
+    hertz_pressure: float
+    radius: float
+    speed: float
     softer: float
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
@@ -132,7 +140,9 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     length, reach = half_width * longer, BESIDE * side * wider
     ends = -inlet * length, OUTLET * length
     softer = max(1.0, HALF * longer) ** 2 * max(1.0, HALF * wider)
-    return Layout(*ends, -reach, reach, None, length, pressure / (longer * wider), film, softer)
+    units = length, pressure / (longer * wider), film, half_width, pressure
+    unit = _unit_of_speed(contact, radius, length)
+    return Layout(*ends, -reach, reach, None, *units, radius, unit, softer)
 
 
 def _of_line(contact: PatchContact, cells: int) -> Layout:
@@ -149,7 +159,14 @@ def _of_line(contact: PatchContact, cells: int) -> Layout:
     fine = not reaches or end >= (last - first) / cells * (1.0 - 1e-6)
     cell = None if fine else end
     softer = max(1.0, HALF * longer) ** 2
-    return Layout(*ends, first, last, cell, length, pressure / longer, film, softer)
+    units = length, pressure / longer, film, half_width, pressure
+    unit = _unit_of_speed(contact, radius, length)
+    return Layout(*ends, first, last, cell, *units, radius, unit, softer)
+
+
+def _unit_of_speed(contact: PatchContact, radius: float, length: float) -> float:
+    fast = max(float(np.max(entrainment_of(contact))), SLOWEST)
+    return fast + abs(float(contact.approach)) * radius / length
 
 
 def _longer(contact: PatchContact, radius: float, film: float, half_width: float) -> float:
@@ -287,12 +304,10 @@ def problem_on(
     length, pressure = layout.length, layout.pressure
     bodies = layout.bodies(nodes, cells, finest, contact.ends)
     x, y = (length * np.asarray(one) for one in (bodies.x, bodies.y))
-    radius = float(np.mean(contact.radius))
+    radius, unit = layout.radius, layout.speed
     height, film = length**2 / radius, layout.film
     entrainment = contact.entrainment(array(y))
     across = 0.5 * (contact.across_a + contact.across_b)
-    still = max(float(np.max(entrainment_of(contact))), SLOWEST)
-    unit = still + abs(float(contact.approach)) * radius / length
     fluid: Any = contact.fluid
     flow = Flow(
         fluid,

@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 from jax.scipy.sparse.linalg import gmres
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
@@ -15,7 +15,18 @@ from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, stencil
 from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.programs import fast_program
 
-__all__ = ["ENOUGH", "Linear", "Progress", "State", "iterated", "linear", "mended", "rows"]
+__all__ = [
+    "ENOUGH",
+    "Linear",
+    "Progress",
+    "Rows",
+    "State",
+    "by_rows",
+    "iterated",
+    "linear",
+    "product",
+    "rows",
+]
 
 Progress = Callable[[int, float], None]
 
@@ -84,6 +95,8 @@ class Linear(NamedTuple):
         by_gap: to deflections.
         by_level: to the level of the surfaces, shape (y, inner).
         share: of the load by a pressure of one on a cell of each row, shape (y,).
+        full: cells that are full of oil, shape (y, inner).
+        scale: what turns a defect of their balances into one of pressures, shape (y, inner).
         problem: the contact.
     """
 
@@ -93,6 +106,8 @@ class Linear(NamedTuple):
     by_gap: Stencil
     by_level: Float[Array, "y inner"]
     share: Float[Array, " y"]
+    full: Bool[Array, "y inner"]
+    scale: Float[Array, "y inner"]
     problem: Problem
 
 
@@ -139,6 +154,8 @@ def linear(problem: Problem, pressure: Array, level: Array, rate: Array) -> Line
         to_gap,
         jnp.sum(to_gap.along, axis=0) + jnp.sum(to_gap.across, axis=0),
         areas,
+        full,
+        scale,
         problem,
     )
 
@@ -180,9 +197,7 @@ def rows(at: Linear) -> Rows:
     bodies, inner = at.problem.bodies, at.rest.shape[1]
     lines = at.problem.yielding * bodies.lines()
     reached = jnp.concatenate((lines[:, :1], lines), axis=1)[:, :, 1:-1]
-    matrix = sum(
-        at.by_gap.along[k][:, :, None] * reached[:, k : k + inner] for k in range(ALONG)
-    )
+    matrix = sum(at.by_gap.along[k][:, :, None] * reached[:, k : k + inner] for k in range(ALONG))
     row, column, which = _bands(inner)
     found = jnp.asarray(matrix).at[:, row, column].add(at.by_pressure.along[which, :, row].T)
     inverse = jnp.linalg.inv(found)

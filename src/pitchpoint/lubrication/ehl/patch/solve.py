@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
 from jaxtyping import Array
 from numpy.typing import NDArray
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import pressed
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
-from pitchpoint.lubrication.ehl.patch.newton import State, iterated
+from pitchpoint.lubrication.ehl.patch.newton import Progress, State, iterated
 from pitchpoint.programs import fast_program
 
 THICK: Final = 1.5
@@ -45,7 +44,11 @@ _gap = fast_program(gap_of)
 
 
 def finer(
-    coarse: Problem, state: State, dry: NDArray[np.float64], fine: Problem, fine_dry: NDArray[np.float64]
+    coarse: Problem,
+    state: State,
+    dry: NDArray[np.float64],
+    fine: Problem,
+    fine_dry: NDArray[np.float64],
 ) -> tuple[Any, Any]:
     """Pressure and level on a finer grid: what the film adds to the dry pressure changes slowly."""
     added = np.asarray(state.pressure) - dry
@@ -70,17 +73,30 @@ def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[
     return np.stack([np.interp(fine, coarse, row) for row in one], axis=1)
 
 
-def solve(contact: PatchContact, nodes: int = 129, cells: int = 128, told=None):
-    grids = ladder(nodes, cells)
+def solve(
+    contact: PatchContact, nodes: int, cells: int, told: Progress | None = None
+) -> tuple[Layout, Problem, State, float, int]:
+    """Layout, problem and solution of a contact, the film in its middle on the grid before, and all steps."""
     layout = laid_out(contact, cells)
-    before = None
-    for grid in grids:
+    before: Any = None
+    coarse, steps = 0.0, 0
+    for grid in ladder(nodes, cells):
         problem = problem_on(contact, layout, *grid, cells)
         dry, level = dry_start(problem)
         if before is None:
             state = iterated(problem, array(dry), array(level), told=told)
         else:
-            p, l = finer(*before, problem, dry)
-            state = iterated(problem, array(p), array(l), FINER_TIME, told=told)
+            coarse = float(_middle(*before[:2]))
+            begun = (array(one) for one in finer(*before, problem, dry))
+            state = iterated(problem, *begun, FINER_TIME, told=told)
+        steps += state.steps
         before = problem, state, dry
-    return layout, problem, state
+    return layout, problem, state, coarse, steps
+
+
+def _middle(problem: Problem, state: State) -> float:
+    """Film in the middle [m]."""
+    gap = np.asarray(_gap(problem, state.pressure, array(state.level)))
+    x, y = np.asarray(problem.bodies.x), np.asarray(problem.bodies.y)
+    rows = [np.interp(0.0, x, row) for row in gap]
+    return float(np.interp(0.0, y, rows)) * float(problem.flow.height)

@@ -1,0 +1,196 @@
+"""Pressure and film over a patch, and what follows from them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.patch.balance import work
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
+from pitchpoint.lubrication.ehl.work import filled, shear_stress
+
+__all__ = ["END_DISTANCES", "PatchFilm", "patch_film"]
+
+Field = Float[Arrays, "y x"]
+One = Float[Arrays, ""]
+
+END_DISTANCES: Final = np.array([0.25, 0.5, 1.0, 2.0])
+"""Distances from the ends of a line at which its largest pressures are told, in half-widths."""
+
+
+class PatchFilm(eqx.Module):
+    """Fields over the patch of one contact, and what follows from them; NaN where it was not solved.
+
+    Attributes:
+        x: places along, shape (x,) [m].
+        y: places across, middles of the cells, shape (y,) [m].
+        pressure: that oil and asperities carry together, shape (y, x) [Pa].
+        asperity_pressure: that asperities carry [Pa].
+        gap: between the mean planes; negative where they overlap [m].
+        film: mean gap that is open to the oil [m].
+        deflection: of both bodies together [m].
+        filled: part of the film that oil fills.
+        shear_x: stress of the oil on member 0 along x, half way between the surfaces [Pa].
+        shear_y: along y [Pa].
+        central_film: gap of the mean planes at x = y = 0 [m].
+        minimum_film: smallest gap of a cell [m].
+        minimum_place: its x and y, shape (2,) [m].
+        mean_film: mean gap over the dry contact [m].
+        largest_pressure: of a cell; where a line ends sharply it is a number of the grid [Pa].
+        largest_place: its x and y, shape (2,) [m].
+        near_ends: largest pressure across at `END_DISTANCES` half-widths from the first and the last row,
+            shape (2, 4) [Pa]; NaN of ellipses.
+        asperity_share: part of the load that asperities carry.
+        shear_force: of the oil on member 0, along x and y, shape (2,) [N].
+        boundary_force: friction of asperities on member 0, shape (2,) [N].
+        friction: coefficient, their sum over the load.
+        rolling: resistance to rolling, which the oil in the inlet does to each surface, shape (2,) [N].
+        pumping_power: that the flow under pressure turns into heat [W].
+        stiffness: load that a mean film thinner by one metre carries more, -dF/dh [N/m].
+        damping: load by an approach of the bodies of one metre a second at the same mean film, dF/dV [N s/m].
+        half_width: of the dry contact along x, in the middle [m].
+        hertz_pressure: largest one of the dry contact, but for the ends of lines [Pa].
+        film_ratio: smallest film over composite Rq; infinite for smooth surfaces.
+    """
+
+    x: Float[Arrays, " x"]
+    y: Float[Arrays, " y"]
+    pressure: Field
+    asperity_pressure: Field
+    gap: Field
+    film: Field
+    deflection: Field
+    filled: Field
+    shear_x: Field
+    shear_y: Field
+    central_film: One
+    minimum_film: One
+    minimum_place: Float[Arrays, "2"]
+    mean_film: One
+    largest_pressure: One
+    largest_place: Float[Arrays, "2"]
+    near_ends: Float[Arrays, "2 distance"]
+    asperity_share: One
+    shear_force: Float[Arrays, "2"]
+    boundary_force: Float[Arrays, "2"]
+    friction: One
+    rolling: Float[Arrays, "2"]
+    pumping_power: One
+    stiffness: One
+    damping: One
+    half_width: One
+    hertz_pressure: One
+    film_ratio: One
+
+    @property
+    def traction_a(self) -> Float[Arrays, "2"]:
+        """Force on member 0 along x and y: shear, asperities and rolling resistance [N]."""
+        return self.shear_force + self.boundary_force - self.rolling
+
+    @property
+    def traction_b(self) -> Float[Arrays, "2"]:
+        """Force on member 1 [N]."""
+        return -self.shear_force - self.boundary_force - self.rolling
+
+
+def patch_film(
+    contact: PatchContact,
+    layout: Layout,
+    problem: Problem,
+    pressure: Array,
+    level: Array,
+    held: Array,
+    response: tuple[Array, Array],
+) -> PatchFilm:
+    """Fields of a contact from a solution in its own units, as the grid lies.
+
+    Args:
+        contact: one, entrained along x.
+        layout: of its grid.
+        problem: the same in units of its own.
+        pressure: solution, shape (y, x).
+        level: of the surfaces.
+        held: one on the cells of the dry contact, else zero, shape (y, x).
+        response: stiffness and damping in own units.
+    """
+    flow, bodies, length = problem.flow, problem.bodies, problem.length
+    gap = problem.gap(pressure, level)
+    asperities = flow.asperity_pressure(gap)
+    oil, room = pressure - asperities, flow.room(gap)
+    x, y = jnp.asarray(bodies.x), jnp.asarray(bodies.y)
+    full = jax.vmap(lambda one, other: filled(flow, one, other))(oil, room)
+    sliding = _sliding(contact, y * length)
+    fast = jnp.hypot(*sliding)
+    still = jnp.where(fast == 0.0, 1.0, fast)
+    stress = full * shear_stress(flow, oil, room, fast[:, None])
+    shear = [stress * (one / still)[:, None] for one in sliding]
+    carried = jnp.asarray(bodies.areas) * jnp.sum(asperities, axis=1) / problem.load
+    rubs = flow.texture.boundary_friction * contact.load
+    row, column, pumping = work(problem, oil, gap)
+    rolls = flow.pressure * flow.height * length
+    low, high = jnp.argmin(gap), jnp.argmax(pressure)
+    rough = 0.0 if contact.texture is None else contact.texture.rq
+    sheared = jnp.stack([bodies.load(one) for one in shear]) * length**2
+    rubbed = jnp.stack([jnp.sum(rubs * carried * one / still) for one in sliding])
+    return PatchFilm(
+        x=x * length,
+        y=y * length,
+        pressure=pressure * flow.pressure,
+        asperity_pressure=asperities * flow.pressure,
+        gap=gap * flow.height,
+        film=room * flow.height,
+        deflection=(gap - level - problem.apart) * flow.height,
+        filled=full,
+        shear_x=shear[0],
+        shear_y=shear[1],
+        central_film=_in_the_middle(x, y, gap) * flow.height,
+        minimum_film=jnp.min(gap) * flow.height,
+        minimum_place=_place(x, y, low) * length,
+        mean_film=problem.mean(gap, held) * flow.height,
+        largest_pressure=jnp.max(pressure) * flow.pressure,
+        largest_place=_place(x, y, high) * length,
+        near_ends=_near_ends(contact, layout, y * length, pressure) * flow.pressure,
+        asperity_share=jnp.sum(carried),
+        shear_force=sheared,
+        boundary_force=rubbed,
+        friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
+        rolling=jnp.stack([jnp.sum(row), column]) * rolls,
+        pumping_power=pumping * rolls * problem.speed,
+        stiffness=response[0] * contact.load / flow.height,
+        damping=response[1] * contact.load * length / (flow.height * problem.speed),
+        half_width=jnp.asarray(layout.half_width),
+        hertz_pressure=jnp.asarray(layout.hertz_pressure),
+        film_ratio=jnp.min(gap) * flow.height / rough,
+    )
+
+
+def _sliding(contact: PatchContact, y: Array) -> tuple[Array, Array]:
+    """Speed of member 1 against member 0 along x and y at every row, each of shape (y,) [m/s]."""
+    along = contact.along(contact.speed_b - contact.speed_a, y)
+    return along, jnp.full_like(along, contact.across_b - contact.across_a)
+
+
+def _place(x: Array, y: Array, cell: Array) -> Array:
+    row, node = jnp.unravel_index(cell, (y.shape[0], x.shape[0]))
+    return jnp.stack([x[node], y[row]])
+
+
+def _in_the_middle(x: Array, y: Array, field: Array) -> Array:
+    """Value at x = y = 0, between the cells around."""
+    rows = jax.vmap(lambda row: jnp.interp(0.0, x, row))(field)
+    return jnp.interp(0.0, y, rows)
+
+
+def _near_ends(contact: PatchContact, layout: Layout, y: Array, pressure: Array) -> Array:
+    """Largest pressure across at distances from the first and the last row."""
+    if contact.length is None:
+        return jnp.full((2, END_DISTANCES.size), jnp.nan)
+    ridge, away = jnp.max(pressure, axis=1), END_DISTANCES * layout.half_width
+    ends = layout.first + away, layout.last - away
+    return jnp.stack([jnp.interp(one, y, ridge, left=jnp.nan, right=jnp.nan) for one in ends])

@@ -1,0 +1,327 @@
+"""Films of contacts of finite length, with what became of the solve and what to be wary of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array
+from numpy.typing import NDArray
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
+from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
+from pitchpoint.lubrication.ehl.patch.response import polished, stiffness_and_damping
+from pitchpoint.lubrication.ehl.patch.solve import dry_start, solve
+from pitchpoint.programs import fast_program
+from pitchpoint.status import Code
+
+__all__ = ["CELLS", "NODES", "PatchEnded", "PatchFilms", "film_near", "solve_patch"]
+
+NODES: Final = 129
+"""Usual number of nodes along x: films in the middle come within .5 % of those on finer grids."""
+
+CELLS: Final = 128
+"""Usual number of cells across."""
+
+WIDE: Final = 0.1
+"""Half-width over radius from which on bodies are no half spaces any more."""
+
+COARSE: Final = 0.03
+"""Error by the grid from which on it is told."""
+
+
+@dataclass(frozen=True)
+class PatchEnded:
+    """How a solve ended.
+
+    Attributes:
+        code: of `Code`.
+        reynolds: largest defect of the balance of a cell, in units of the dry contact's pressure.
+        load: defect of the load over it.
+        steps: of Newton's method, on all grids.
+        grid: estimate of the error of the film in the middle that the grid makes, over that film, from the
+            grid before; NaN where there was none.
+    """
+
+    code: Code
+    reynolds: float
+    load: float
+    steps: int
+    grid: float
+
+
+@dataclass(frozen=True)
+class PatchFilms:
+    """Film of one contact with what became of it.
+
+    Attributes:
+        film: fields and what follows from them, NumPy arrays; NaN where the contact was not solved.
+        ended: how the solve ended.
+        layout: where the grid lies, and its units.
+        pressure: solution in those units, for `film_near`, shape (y, x).
+        level: of the surfaces in those units.
+        held: one on the cells of the dry contact, else zero, shape (y, x).
+        turned: how the grid lies.
+        warnings: what to be wary of, in sentences.
+    """
+
+    film: PatchFilm
+    ended: PatchEnded
+    layout: Layout
+    pressure: NDArray[np.float64]
+    level: float
+    held: NDArray[np.float64]
+    turned: Turned
+    warnings: tuple[str, ...]
+
+    @property
+    def solved(self) -> bool:
+        """Whether the contact was solved."""
+        return self.ended.code == Code.SOLVED
+
+
+@dataclass(frozen=True)
+class Turned:
+    """How a grid lies, whose x follows the stronger entrainment.
+
+    Attributes:
+        swapped: whether x of the grid is y of the contact.
+        along, across: whether x, y of the grid run against those of the contact.
+    """
+
+    swapped: bool = False
+    along: bool = False
+    across: bool = False
+
+
+def solve_patch(
+    contact: PatchContact,
+    *,
+    nodes: int = NODES,
+    cells: int = CELLS,
+    progress: Progress | None = None,
+) -> PatchFilms:
+    """Pressure and film over the patch of a contact of finite length, from coarse to fine grids.
+
+    Args:
+        contact: one, from `finite_line` or `elliptic_contact`.
+        nodes: along x, one more than a power of two.
+        cells: across, a power of two.
+        progress: told the number of steps on a grid and the residual, after each of them.
+
+    Raises:
+        InputError: values that no contact has, numbers of nodes or cells that no grid has, a line that is
+            entrained along its length or in two senses.
+    """
+    _check(contact)
+    lies, own = _turned(contact)
+    code = _before(own)
+    layout, problem, state, coarse, steps = solve(own, nodes, cells, progress)
+    if code == Code.SOLVED and not (state.residual < ENOUGH and abs(state.load) < ENOUGH):
+        code = Code.NOT_CONVERGED
+    held = (dry_start(problem)[0] > 0.0) * 1.0
+    given = own, layout, problem, array(state.pressure), array(state.level), array(held)
+    film = jax.tree.map(np.asarray, _film(*given))
+    off = abs(float(film.central_film) / coarse - 1.0) / 3.0 if coarse else np.nan
+    if code != Code.SOLVED:
+        film = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), film)
+    ended = PatchEnded(code, state.residual, state.load, steps, off)
+    solution = np.asarray(state.pressure), float(state.level), held
+    return PatchFilms(
+        _back(film, lies), ended, layout, *solution, lies, tuple(_warnings(contact, film, ended))
+    )
+
+
+def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
+    """Film of a contact as a function that can be differentiated, at the contact that was solved.
+
+    Args:
+        contact: that of the films, or traced in its place.
+        films: solved.
+
+    Returns:
+        The same film, with the derivatives of the solution (implicit function theorem), first ones; every
+        cell stays full of oil, or not, as it is. The grid stays where it is.
+    """
+    swapped = _oriented(contact, films.turned)
+    rows, nodes = films.pressure.shape
+    problem = problem_on(swapped, films.layout, nodes, rows, rows)
+    pressure, level = polished(problem, array(films.pressure), array(films.level))
+    given = swapped, films.layout, problem, pressure, level, array(films.held)
+    blank = jnp.full((), jnp.nan), jnp.full((), jnp.nan)
+    return _back(patch_film(*given, blank), films.turned)
+
+
+def _fields(
+    contact: PatchContact,
+    layout: Layout,
+    problem: Problem,
+    pressure: Array,
+    level: Array,
+    held: Array,
+) -> PatchFilm:
+    response = stiffness_and_damping(problem, pressure, level, held)
+    return patch_film(contact, layout, problem, pressure, level, held, response)
+
+
+_film = fast_program(_fields)
+
+
+# ---- how a contact lies
+
+
+def _turned(contact: PatchContact) -> tuple[Turned, PatchContact]:
+    """The contact with its stronger entrainment along positive x, and how it was turned for that."""
+    along = float(np.mean(np.asarray(contact.speed_a + contact.speed_b)))
+    across = float(contact.across_a + contact.across_b)
+    swapped = abs(across) > abs(along)
+    main, other = (across, along) if swapped else (along, across)
+    lies = Turned(swapped, main < 0.0, other < 0.0)
+    return lies, _oriented(contact, lies)
+
+
+def _oriented(contact: PatchContact, lies: Turned) -> PatchContact:
+    found = _swapped(contact) if lies.swapped else contact
+    along, across = (-1.0 if one else 1.0 for one in (lies.along, lies.across))
+    speeds = lambda one: (one.speed_a, one.speed_b, one.across_a, one.across_b)  # noqa: E731
+    a, b, beside_a, beside_b = speeds(found)
+    turned = along * a, along * b, across * beside_a, across * beside_b
+    oriented: PatchContact = eqx.tree_at(speeds, found, turned)
+    return oriented
+
+
+def _swapped(contact: PatchContact) -> PatchContact:
+    """An ellipse with x and y exchanged."""
+    every = lambda one: (  # noqa: E731
+        one.radius,
+        one.bend,
+        one.speed_a,
+        one.speed_b,
+        one.across_a,
+        one.across_b,
+    )
+    radius, bend, a, b, beside_a, beside_b = every(contact)
+    one = jnp.ones(1)
+    given = one / bend, 1.0 / radius[0], beside_a * one, beside_b * one, a[0], b[0]
+    found: PatchContact = eqx.tree_at(every, contact, given)
+    return found
+
+
+_FIELDS: Final = (
+    "pressure",
+    "asperity_pressure",
+    "gap",
+    "film",
+    "deflection",
+    "filled",
+    "shear_x",
+    "shear_y",
+)
+_VECTORS: Final = ("minimum_place", "largest_place", "shear_force", "boundary_force", "rolling")
+
+
+def _back(film: PatchFilm, lies: Turned) -> PatchFilm:
+    """The film as the contact was given."""
+    rows, nodes = (slice(None, None, -1 if one else None) for one in (lies.across, lies.along))
+    sign = np.array([-1.0 if one else 1.0 for one in (lies.along, lies.across)])
+    fields = {name: getattr(film, name)[rows, nodes] for name in _FIELDS}
+    fields["shear_x"], fields["shear_y"] = sign[0] * fields["shear_x"], sign[1] * fields["shear_y"]
+    fields |= {name: sign * getattr(film, name) for name in _VECTORS}
+    fields |= {"x": sign[0] * film.x[nodes], "y": sign[1] * film.y[rows]}
+    if lies.swapped:
+        fields |= {name: fields[name].T for name in _FIELDS}
+        fields |= {name: fields[name][::-1] for name in _VECTORS}
+        fields |= {"x": fields["y"], "y": fields["x"]}
+        fields |= {"shear_x": fields["shear_y"], "shear_y": fields["shear_x"]}
+    names = tuple(fields)
+    found: PatchFilm = eqx.tree_at(
+        lambda one: tuple(getattr(one, name) for name in names), film, tuple(fields.values())
+    )
+    return found
+
+
+# ---- what is wrong with an input, and what is doubtful about a result
+
+
+def _before(contact: PatchContact) -> Code:
+    """What can be said of a contact before it is solved."""
+    still = not np.any(np.asarray(contact.speed_a + contact.speed_b))
+    if still and contact.texture is None and float(contact.approach) <= 0.0:
+        return Code.NO_FILM
+    return Code.SOLVED
+
+
+def _check(contact: PatchContact) -> None:
+    """InputError for values that no contact has."""
+    positive = {
+        "load": (contact.load, "a load", "N"),
+        "modulus": (contact.modulus, "a modulus E'", "Pa"),
+        "radius": (contact.radius, "a relative radius of curvature", "m"),
+        "viscosity": (contact.fluid.viscosity, "a viscosity", "Pa s"),
+        "pressure_viscosity": (
+            contact.fluid.pressure_viscosity,
+            "a pressure-viscosity coefficient",
+            "1/Pa",
+        ),
+    }
+    if contact.length is None:
+        positive["transverse_radius"] = (1.0 / contact.bend, "a transverse radius", "m")
+    else:
+        positive["length"] = (contact.length, "a length of the contact line", "m")
+    if contact.texture is not None:
+        positive["rq"] = (contact.texture.rq, "a composite roughness Rq", "m")
+    for key, (value, what, unit) in positive.items():
+        low = float(np.min(np.asarray(value)))
+        # Written so that NaN fails.
+        if not 0.0 < low < np.inf:
+            raise InputError(f"{what} of {low:.4g} {unit}: it must be positive", key=key)
+    for leaf in jax.tree.leaves(contact):
+        if not np.all(np.isfinite(np.asarray(leaf))):
+            raise InputError("a value of the contact is not a finite number")
+    _check_senses(contact)
+
+
+def _check_senses(contact: PatchContact) -> None:
+    speeds = np.asarray(contact.speed_a + contact.speed_b)
+    if contact.length is not None and float(contact.across_a + contact.across_b) != 0.0:
+        raise InputError(
+            "a line is entrained across it; along its length it has no solver", key="across"
+        )
+    if np.any(speeds > 0.0) and np.any(speeds < 0.0):
+        raise InputError(
+            "the surfaces draw oil in from one side at some places along the line and from the other at "
+            "others; take these as contacts of their own",
+            key="speed_a",
+        )
+
+
+def _warnings(contact: PatchContact, film: PatchFilm, ended: PatchEnded) -> Iterator[str]:
+    if ended.code != Code.SOLVED:
+        yield f"the film was not found: {ended.code.sentence}"
+        return
+    half_width, radius = float(film.half_width), float(np.min(np.asarray(contact.radius)))
+    told = contact.fluid.outside(film.hertz_pressure)
+    if told is not None:
+        yield f"{told}: films and traction there are extrapolated"
+    if half_width > WIDE * radius:
+        yield (
+            f"the contact is {2e3 * half_width:.3g} mm wide, and the relative radius is {1e3 * radius:.3g} "
+            "mm: the bodies are no half spaces, as the deformation takes them"
+        )
+    if ended.grid > COARSE:
+        yield (
+            f"the grid is coarse for this film, which may be off by {100.0 * ended.grid:.2g} %; take more "
+            "nodes"
+        )
+    if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
+        yield (
+            "the contact line ends sharply: the pressure of the first and the last row is a number of the "
+            "grid; `near_ends` has it at distances from the ends"
+        )

@@ -1,0 +1,287 @@
+"""Films of contacts of finite length: against lines, regressions, conservation laws and each other."""
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import equinox as eqx
+import jax
+import numpy as np
+import pytest
+from scipy.constants import pi
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.contact.dry_contact import dry_contact
+from pitchpoint.contact.end_profiles import crowned
+from pitchpoint.contact.gaps import elliptic_gap
+from pitchpoint.contact.half_space import half_space
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.line import LineContact
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
+from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
+from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.newton import linear, product
+from pitchpoint.lubrication.ehl.patch.response import polished
+from pitchpoint.lubrication.ehl.solve import solve_lines
+from pitchpoint.lubrication.ehl.texture import Rough
+from pitchpoint.lubrication.film_thickness import hamrock_dowson_1977_central
+from pitchpoint.materials.fluid import Fluid
+from pitchpoint.status import Code
+
+MODULUS = 2.26e11
+OIL = Fluid(viscosity=0.04, pressure_viscosity=2.2e-8)
+
+
+def line(
+    pressure: float = 1e9,
+    speed: float = 1.0,
+    radius: float = 0.01,
+    slender: float = 20.0,
+    crown: float = 5e-6,
+    sliding: float = 0.2,
+    **more: Any,
+) -> PatchContact:
+    """A crowned line of so many half-widths, with the pressure that it has without crown."""
+    load = 2.0 * pi * (pressure / MODULUS) ** 2 * MODULUS * radius
+    length = slender * radius * np.sqrt(8.0 * load / (pi * MODULUS * radius))
+    given = {"load": load * length, "length": length, "radius": radius, "modulus": MODULUS}
+    given |= {"speed_a": speed * (1.0 - 0.5 * sliding), "speed_b": speed * (1.0 + 0.5 * sliding)}
+    profile = crowned(width=length, radius=length**2 / (8.0 * crown)) if crown else ()
+    return finite_line(**{"fluid": OIL, "profile": profile, **given, **more})
+
+
+def ball(speed: tuple[float, float] = (2.0, 0.0), radius: float = 0.01, ratio: float = 1.0, **more):
+    along, across = speed
+    given = {"load": 30.0, "radius": radius, "transverse_radius": ratio * radius}
+    given |= {"modulus": MODULUS, "fluid": OIL, "speed_a": 0.95 * along, "speed_b": 1.05 * along}
+    return elliptic_contact(**{**given, "across": (0.95 * across, 1.05 * across), **more})
+
+
+@cache
+def crowned_line() -> PatchFilms:
+    return coarse(line())
+
+
+def coarse(contact: PatchContact) -> PatchFilms:
+    found = solve_patch(contact, nodes=65, cells=64)
+    assert found.solved, found.ended
+    return found
+
+
+def test_the_middle_of_a_long_line_is_an_infinite_line():
+    contact = line(slender=56.5, crown=5e-6, sliding=0.0)
+    found = solve_patch(contact).film
+    row = found.pressure.shape[0] // 2
+    load = float(np.sum(found.pressure[row]) * (found.x[1] - found.x[0]))
+    given = {"line_load": load, "radius": 0.01, "modulus": MODULUS, "fluid": OIL}
+    infinite = solve_lines(LineContact(**given, speed_a=1.0, speed_b=1.0), nodes=257).film
+    assert found.central_film == pytest.approx(float(infinite.central_film), rel=0.01)
+    assert found.gap[row].min() == pytest.approx(float(infinite.minimum_film), rel=0.05)
+    assert found.pressure[row].max() == pytest.approx(float(infinite.largest_pressure), rel=0.03)
+
+
+def test_a_ball_has_the_film_of_hamrock_and_dowson():
+    found = coarse(ball())
+    law = hamrock_dowson_1977_central(
+        load=30.0,
+        entrainment=2.0,
+        viscosity=0.04,
+        pressure_viscosity=2.2e-8,
+        radius=0.01,
+        transverse_radius=0.01,
+        modulus=MODULUS,
+    )
+    assert found.film.central_film == pytest.approx(float(law), rel=0.05)
+
+
+def test_load_and_energy_are_in_balance():
+    contact = line()
+    film = crowned_line().film
+    widths = np.diff(np.asarray(film.x))[0]
+    assert crowned_line().ended.load < 1e-9
+    powers = [2.0 * film.rolling[0] * 1.0, film.pumping_power]
+    assert powers[0] == pytest.approx(powers[1], rel=1e-7)
+    sheared = np.sum(film.shear_x * 0.2) * widths
+    assert np.sign(sheared) == np.sign(film.shear_force[0]) == 1.0
+    assert film.traction_a[0] + film.traction_b[0] == pytest.approx(-2.0 * film.rolling[0])
+    assert film.friction == pytest.approx(
+        (film.shear_force[0] + film.boundary_force[0]) / float(contact.load)
+    )
+
+
+def test_a_film_that_thin_leaves_the_dry_pressure():
+    contact = ball((2e-3, 0.0))
+    film = coarse(contact).film
+    bodies = half_space(np.asarray(film.x), _edges(np.asarray(film.y)))
+    dry = dry_contact(bodies, np.asarray(elliptic_gap(bodies, 0.01, 0.01)), MODULUS, load=30.0)
+    off = np.asarray(film.pressure) - np.asarray(dry.pressure)
+    assert np.max(np.abs(off)) < 0.05 * film.hertz_pressure
+    assert film.largest_pressure == pytest.approx(float(film.hertz_pressure), rel=0.01)
+
+
+def _edges(middles: np.ndarray) -> np.ndarray:
+    half = 0.5 * (middles[1] - middles[0])
+    return np.append(middles - half, middles[-1] + half)
+
+
+def test_symmetric_contacts_have_symmetric_films():
+    film = crowned_line().film
+    assert np.allclose(film.gap, film.gap[::-1], rtol=1e-6, atol=0.0)
+    assert np.allclose(
+        film.pressure, film.pressure[::-1], rtol=0.0, atol=1e-6 * film.hertz_pressure
+    )
+
+
+def test_entrainment_along_the_other_axis_turns_the_film():
+    along, across = (
+        coarse(ball((2.0, 0.0), ratio=3.0)),
+        coarse(ball((0.0, 2.0), radius=0.03, ratio=1.0 / 3.0)),
+    )
+    assert np.allclose(along.film.gap, across.film.gap.T, rtol=1e-9)
+    assert np.allclose(along.film.x, across.film.y)
+    assert along.film.rolling[0] == pytest.approx(across.film.rolling[1])
+    assert along.film.shear_force[0] == pytest.approx(across.film.shear_force[1])
+
+
+def test_reversed_entrainment_mirrors_the_film():
+    ahead, back = coarse(ball((2.0, 0.0))).film, coarse(ball((-2.0, 0.0))).film
+    assert np.allclose(ahead.gap, back.gap[:, ::-1], rtol=1e-9)
+    assert np.allclose(ahead.x, -back.x[::-1])
+    assert ahead.rolling[0] == pytest.approx(-back.rolling[0])
+    assert ahead.shear_force[0] == pytest.approx(-back.shear_force[0])
+
+
+def test_oblique_entrainment_of_a_ball_turns_its_film():
+    straight = coarse(ball((2.0, 0.0))).film
+    speed = 2.0 * np.cos(0.6), 2.0 * np.sin(0.6)
+    oblique = coarse(ball(speed)).film
+    assert oblique.central_film == pytest.approx(float(straight.central_film), rel=0.03)
+    assert np.arctan2(*oblique.shear_force[::-1]) == pytest.approx(0.6, abs=1e-6)
+    assert np.hypot(*oblique.rolling) == pytest.approx(float(straight.rolling[0]), rel=0.1)
+
+
+def test_asperities_carry_more_the_slower_the_surfaces_are():
+    rough = Rough(rq=0.3e-6, modulus=MODULUS)
+    films = [coarse(line(speed=speed, texture=rough)).film for speed in (3.0, 0.3, 0.03)]
+    shares = [float(film.asperity_share) for film in films]
+    assert shares[0] < shares[1] < shares[2]
+    for film in films:
+        rubbed = film.boundary_force[0] / (0.1 * float(line().load))
+        assert rubbed == pytest.approx(float(film.asperity_share), rel=1e-9)
+
+
+def test_derivatives_of_the_balances_are_those_of_differences():
+    contact = line(texture=Rough(rq=0.3e-6, modulus=MODULUS))
+    found = coarse(contact)
+    problem = problem_on(contact, found.layout, 65, 64, 64)
+    random = np.random.default_rng(3)
+    # Where no cell changes between full and empty, and no pressure of the oil between the signs.
+    pressure = array(found.pressure * (1.0 + 0.01 * random.random(found.pressure.shape)))
+    level, change = array(found.level * 1.01), random.standard_normal(63 * 64 + 1) * 1e-3
+    field = np.pad(change[:-1].reshape(64, 63), ((0, 0), (1, 1))) * (found.pressure > 0.05)
+    change[:-1] = field[:, 1:-1].ravel()
+
+    def rest(step: float) -> np.ndarray:
+        at = jax.jit(linear)(
+            problem, pressure + step * field, level + step * change[-1], array(0.0)
+        )
+        return np.append(np.asarray(at.rest), at.load), np.asarray(at.full), np.asarray(at.scale)
+
+    at = jax.jit(linear)(problem, pressure, level, array(0.0))
+    exact = np.asarray(product(at, array(change)))
+    step = 1e-5
+    (more, full, scale), (less, other, scaled) = rest(step), rest(-step)
+    kept = np.append((full == other).ravel(), True)
+    weights = [np.append(np.where(full, one, 1.0).ravel(), 1.0) for one in (scale, scaled)]
+    middle = np.append(np.where(full, np.asarray(at.scale), 1.0).ravel(), 1.0)
+    # The scale is no part of the derivatives.
+    differences = (more * weights[0] - less * weights[1]) / (2.0 * step * middle)
+    assert np.max(np.abs(differences - exact)[kept]) < 1e-5 * np.max(np.abs(exact))
+
+
+@pytest.mark.parametrize("key", ["load", "speed", "viscosity", "crown"])
+def test_derivatives_of_films_are_those_of_differences(key: str):
+    contact = line()
+    found = crowned_line()
+
+    def changed(more: Any) -> PatchContact:
+        factor = 1.0 + more
+        wheres = {
+            "load": lambda one: (one.load,),
+            "speed": lambda one: (one.speed_a, one.speed_b),
+            "viscosity": lambda one: (one.fluid.viscosity,),
+            "crown": lambda one: (one.profile[0].amount,),
+        }
+        where = wheres[key]
+        return eqx.tree_at(where, contact, tuple(factor * one for one in where(contact)))
+
+    def figures(more: Any, films: PatchFilms) -> Any:
+        film = film_near(changed(more), films)
+        return jnp.stack([film.mean_film, film.minimum_film, film.shear_force[0]])
+
+    exact = jax.jit(lambda more: jax.jacfwd(figures)(more, found))(jnp.zeros(()))
+    step = 1e-4
+    ends = [_again(found, changed(sign * step)) for sign in (1.0, -1.0)]
+    differences = (ends[0] - ends[1]) / (2.0 * step)
+    assert np.allclose(exact, differences, rtol=1e-4, atol=0.0)
+
+
+def _again(found: PatchFilms, contact: PatchContact) -> np.ndarray:
+    """Figures of a contact nearby on the same grid, by steps from the solution until they stay."""
+    films = found
+    for _ in range(4):
+        film = jax.jit(lambda c, p, lv: _step(found, c, p, lv))(
+            contact, array(films.pressure), array(films.level)
+        )
+        films = _moved(films, film)
+    last = film_near(contact, films)
+    return np.array([last.mean_film, last.minimum_film, last.shear_force[0]], dtype=float)
+
+
+def _step(found: PatchFilms, contact: PatchContact, pressure: Any, level: Any) -> Any:
+    rows, nodes = found.pressure.shape
+    return polished(problem_on(contact, found.layout, nodes, rows, rows), pressure, level)
+
+
+def _moved(films: PatchFilms, solution: Any) -> PatchFilms:
+    return replace(films, pressure=np.asarray(solution[0]), level=float(solution[1]))
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ({"load": 0.0}, "a load of 0 N"),
+        ({"load": float("nan")}, "a load of nan N"),
+        ({"radius": -0.01}, "a relative radius of curvature of -0.01 m"),
+        ({"length": 0.0}, "a length of the contact line of 0 m"),
+        ({"fluid": Fluid(viscosity=0.0, pressure_viscosity=2e-8)}, "a viscosity of 0 Pa s"),
+        ({"speed_a": [-1.0, 3.0], "places": [-1e-3, 1e-3]}, "draw oil in from one side at some"),
+        ({"speed_a": [1.0, 1.0, 1.0], "places": [-1e-3, 1e-3]}, "speed a has the shape"),
+    ],
+)
+def test_nonsense_is_refused_in_one_sentence(more: dict[str, Any], told: str):
+    with pytest.raises(InputError, match=told):
+        solve_patch(line(**more))
+
+
+def test_grids_that_there_are_not_are_refused():
+    with pytest.raises(InputError, match="100 nodes: their number is a power of two"):
+        solve_patch(line(), nodes=100)
+    with pytest.raises(InputError, match="48 cells"):
+        solve_patch(line(), cells=48)
+
+
+def test_smooth_surfaces_that_stand_still_have_no_film():
+    found = solve_patch(line(speed=0.0), nodes=65, cells=64)
+    assert found.ended.code == Code.NO_FILM
+    assert np.isnan(found.film.central_film)
+    assert "no film" in found.warnings[0]
+
+
+def test_a_line_that_leans_carries_more_at_one_end():
+    leans = line(places=[-1e-3, 1e-3], relief=[0.0, 2e-6], crown=0.0)
+    layout = laid_out(leans, 64)
+    assert layout.first < 0.0 < layout.last
+    film = coarse(leans).film
+    assert film.minimum_place[1] < 0.0
+    assert film.near_ends[0, 1] > 1.2 * film.near_ends[1, 1]
