@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from jax.scipy.sparse.linalg import gmres
 from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
@@ -43,11 +42,8 @@ STEADY: Final = 1e-4
 INEXACT: Final = 1e-2
 """What a linear solve leaves of its right-hand side."""
 
-DIRECTIONS: Final = 12
-"""Directions of a linear solve that are known at once."""
-
-RESTARTS: Final = 4
-"""Times that these are looked for, after which a result is taken as it is."""
+DIRECTIONS: Final = 60
+"""Directions of a linear solve after which its result is taken as it is."""
 
 AGE: Final = 3
 """Steps for which rows that were inverted once do, near a solution."""
@@ -108,6 +104,24 @@ class Rows(NamedTuple):
     inverse: Float[Array, "y inner inner"]
     lifted: Float[Array, "y inner"]
     carried: Float[Array, ""]
+
+
+class _Search(NamedTuple):
+    """Where a linear solve stands.
+
+    Attributes:
+        change: so far.
+        left: of the rest.
+        moves: directions, shape (directions, unknowns).
+        effects: what they do to the balances, orthogonal and of length one.
+        number: of them.
+    """
+
+    change: Float[Array, " unknown"]
+    left: Float[Array, " unknown"]
+    moves: Float[Array, "directions unknown"]
+    effects: Float[Array, "directions unknown"]
+    number: Array
 
 
 def linear(problem: Problem, pressure: Array, level: Array, rate: Array) -> Linear:
@@ -214,16 +228,38 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
         alone: rows inverted, there or nearby.
         rest: of all inner cells, the load at last.
     """
-    found, _ = gmres(
-        lambda change: product(at, change),
-        rest,
-        M=lambda one: by_rows(alone, at.share, one),
-        tol=INEXACT,
-        restart=DIRECTIONS,
-        maxiter=RESTARTS,
-        solve_method="batched",
+    size = rest.shape[0]
+    many = jnp.zeros((DIRECTIONS, size))
+    begin = _Search(jnp.zeros(size), rest, many, many, jnp.zeros((), int))
+    enough = INEXACT * jnp.linalg.norm(rest)
+
+    def unfinished(search: _Search) -> Array:
+        return (search.number < DIRECTIONS) & (jnp.linalg.norm(search.left) > enough)
+
+    def onward(search: _Search) -> _Search:
+        return _searched(at, alone, search)
+
+    found: _Search = jax.lax.while_loop(unfinished, onward, begin)
+    return found.change
+
+
+def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
+    """The best change along one more direction: rows mended alone, less what is known to do nothing new."""
+    move = by_rows(alone, at.share, search.left)
+    effect = product(at, move)
+    for _ in range(2):  # twice is enough for rounding
+        known = search.effects @ effect
+        effect, move = effect - known @ search.effects, move - known @ search.moves
+    size = jnp.linalg.norm(effect)
+    effect, move = effect / size, move / size
+    length = effect @ search.left
+    return _Search(
+        search.change + length * move,
+        search.left - length * effect,
+        search.moves.at[search.number].set(move),
+        search.effects.at[search.number].set(effect),
+        search.number + 1,
     )
-    return found
 
 
 _linear, _rows, _mended = fast_program(linear), fast_program(rows), fast_program(mended)
