@@ -27,11 +27,20 @@ ENOUGH: Final = 1e-6
 LONGEST_STEP: Final = 0.3
 """Largest change of a pressure in a step, in units of the largest dry pressure."""
 
+SHRINKING: Final = 0.2
+"""Least room for oil after a step, over that before."""
+
+HALVINGS: Final = 8
+"""Lengths of a step that are tried, each half of the one before."""
+
+SHORTER: Final = 2.0
+"""Factor by which that time shrinks after a step that was cut more than once."""
+
 MOST: Final = 60
 """Steps after which an attempt is given up."""
 
-FIRST_TIME: Final = 0.5
-"""Time over which the first step lets oil flow, in which surfaces pass half a half-width."""
+FIRST_TIME: Final = 1.0
+"""Time over which the first step lets oil flow, in which surfaces pass a half-width."""
 
 LONGER: Final = 2.5
 """Factor by which that time grows with each full step."""
@@ -262,7 +271,28 @@ def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
     )
 
 
-_linear, _rows, _mended = fast_program(linear), fast_program(rows), fast_program(mended)
+def moved(
+    problem: Problem, pressure: Array, level: Array, change: Array, longest: Array
+) -> tuple[Array, Array, Array]:
+    """Pressure and level after a step, and which part of it was taken: one where nothing had to be cut.
+
+    Every pressure changes by no more than the longest step; where the room for oil would shrink too much the
+    whole step is cut.
+    """
+    inner = jnp.clip(change[:-1], -longest, longest).reshape(pressure.shape[0], -1)
+    step, rise = jnp.pad(inner, ((0, 0), (1, 1))), change[-1]
+    gap = problem.gap(pressure, level)
+    grows = problem.gap(pressure + step, level + rise) - gap
+    least = SHRINKING * problem.flow.room(gap)
+    parts = 0.5 ** jnp.arange(HALVINGS)
+    kept = jax.lax.map(lambda part: jnp.all(problem.flow.room(gap + part * grows) > least), parts)
+    part = jnp.where(jnp.any(kept), parts[jnp.argmax(kept)], parts[-1])
+    whole = jnp.all(jnp.abs(change[:-1]) <= longest)
+    return pressure + part * step, level + part * rise, jnp.where(whole, part, 0.99 * part)
+
+
+_linear, _rows = fast_program(linear), fast_program(rows)
+_mended, _moved = fast_program(mended), fast_program(moved)
 
 
 def iterated(
@@ -271,6 +301,8 @@ def iterated(
     level: Any,
     time: float = FIRST_TIME,
     told: Progress | None = None,
+    longest: float = LONGEST_STEP,
+    most: int = MOST,
 ) -> State:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
 
@@ -280,33 +312,31 @@ def iterated(
         level: of the surfaces.
         time: of the first step; the shorter, the closer each step stays to the film before.
         told: called with the number of steps and the residual after each of them.
+        longest: change of a pressure in a step.
+        most: steps after which an attempt is given up.
     """
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
-    for step in range(MOST + 1):
+    for step in range(most + 1):
         at = _linear(problem, state.pressure, state.level, array(rate))
         residual = float(jnp.max(jnp.abs(at.rest)))
         state = state._replace(residual=residual, load=float(at.load), steps=step)
         if told is not None:
             told(step, residual)
-        if not np.isfinite(residual) or step == MOST or (residual < TOLERANCE and rate == 0.0):
+        if not np.isfinite(residual) or step == most or (residual < TOLERANCE and rate == 0.0):
             break
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at), 0
         age += 1
         rest = np.append(np.ravel(at.rest), float(at.load))
-        change = np.asarray(_mended(at, alone, array(-rest)))
-        short = min(1.0, LONGEST_STEP / float(np.max(np.abs(change[:-1]))))
-        state = _moved(state, short * change)
-        if short == 1.0:
-            rate /= LONGER
-        if rate < STEADY or residual < STEADY:
-            rate = 0.0
+        change = _mended(at, alone, array(-rest))
+        found, level, part = _moved(problem, state.pressure, state.level, change, array(longest))
+        state = state._replace(pressure=found, level=level)
+        rate = _rate(rate, float(part), residual)
     return state
 
 
-def _moved(state: State, change: NDArray[np.float64]) -> State:
-    inner = change[:-1].reshape(state.pressure.shape[0], -1)
-    pressure = state.pressure + array(np.pad(inner, ((0, 0), (1, 1))))
-    level = state.level + array(change[-1])
-    return state._replace(pressure=pressure, level=level)
+def _rate(rate: float, part: float, residual: float) -> float:
+    """One over the time of the next step: longer after whole steps, shorter after those that were cut."""
+    rate = rate / LONGER if part == 1.0 else rate * SHORTER if part < 0.49 else rate
+    return 0.0 if rate < STEADY or residual < STEADY else rate
