@@ -18,7 +18,7 @@ from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, stiffness_and_damping
-from pitchpoint.lubrication.ehl.patch.solve import dry_start, solve
+from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, solve
 from pitchpoint.programs import fast_program
 from pitchpoint.status import Code
 
@@ -126,7 +126,7 @@ def solve_patch(
     layout, problem, state, coarse, steps = solve(own, nodes, cells, progress)
     if code == Code.SOLVED and not (state.residual < ENOUGH and abs(state.load) < ENOUGH):
         code = Code.NOT_CONVERGED
-    held = (dry_start(problem)[0] > 0.0) * 1.0
+    held = (dry_pressure(problem) > 0.0) * 1.0
     given = own, layout, problem, array(state.pressure), array(state.level), array(held)
     film = jax.tree.map(np.asarray, _film(*given))
     off = abs(float(film.central_film) / coarse - 1.0) / 3.0 if coarse else np.nan

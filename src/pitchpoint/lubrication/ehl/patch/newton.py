@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from jax.scipy.sparse.linalg import gmres
 from jaxtyping import Array, Bool, Float
 from numpy.typing import NDArray
 
@@ -39,11 +38,20 @@ ENOUGH: Final = 1e-6
 LONGEST_STEP: Final = 0.3
 """Largest change of a pressure in a step, in units of the largest dry pressure."""
 
+SHRINKING: Final = 0.2
+"""Least room for oil after a step, over that before."""
+
+HALVINGS: Final = 8
+"""Lengths of a step that are tried, each half of the one before."""
+
+SHORTER: Final = 2.0
+"""Factor by which that time shrinks after a step that was cut more than once."""
+
 MOST: Final = 60
 """Steps after which an attempt is given up."""
 
-FIRST_TIME: Final = 0.5
-"""Time over which the first step lets oil flow, in which surfaces pass half a half-width."""
+FIRST_TIME: Final = 1.0
+"""Time over which the first step lets oil flow, in which surfaces pass a half-width."""
 
 LONGER: Final = 2.5
 """Factor by which that time grows with each full step."""
@@ -54,11 +62,8 @@ STEADY: Final = 1e-4
 INEXACT: Final = 1e-2
 """What a linear solve leaves of its right-hand side."""
 
-DIRECTIONS: Final = 12
-"""Directions of a linear solve that are known at once."""
-
-RESTARTS: Final = 4
-"""Times that these are looked for, after which a result is taken as it is."""
+DIRECTIONS: Final = 60
+"""Directions of a linear solve after which its result is taken as it is."""
 
 AGE: Final = 3
 """Steps for which rows that were inverted once do, near a solution."""
@@ -123,6 +128,24 @@ class Rows(NamedTuple):
     inverse: Float[Array, "y inner inner"]
     lifted: Float[Array, "y inner"]
     carried: Float[Array, ""]
+
+
+class _Search(NamedTuple):
+    """Where a linear solve stands.
+
+    Attributes:
+        change: so far.
+        left: of the rest.
+        moves: directions, shape (directions, unknowns).
+        effects: what they do to the balances, orthogonal and of length one.
+        number: of them.
+    """
+
+    change: Float[Array, " unknown"]
+    left: Float[Array, " unknown"]
+    moves: Float[Array, "directions unknown"]
+    effects: Float[Array, "directions unknown"]
+    number: Array
 
 
 def linear(problem: Problem, pressure: Array, level: Array, rate: Array) -> Linear:
@@ -229,19 +252,62 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
         alone: rows inverted, there or nearby.
         rest: of all inner cells, the load at last.
     """
-    found, _ = gmres(
-        lambda change: product(at, change),
-        rest,
-        M=lambda one: by_rows(alone, at.share, one),
-        tol=INEXACT,
-        restart=DIRECTIONS,
-        maxiter=RESTARTS,
-        solve_method="batched",
+    size = rest.shape[0]
+    many = jnp.zeros((DIRECTIONS, size))
+    begin = _Search(jnp.zeros(size), rest, many, many, jnp.zeros((), int))
+    enough = INEXACT * jnp.linalg.norm(rest)
+
+    def unfinished(search: _Search) -> Array:
+        return (search.number < DIRECTIONS) & (jnp.linalg.norm(search.left) > enough)
+
+    def onward(search: _Search) -> _Search:
+        return _searched(at, alone, search)
+
+    found: _Search = jax.lax.while_loop(unfinished, onward, begin)
+    return found.change
+
+
+def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
+    """The best change along one more direction: rows mended alone, less what is known to do nothing new."""
+    move = by_rows(alone, at.share, search.left)
+    effect = product(at, move)
+    for _ in range(2):  # twice is enough for rounding
+        known = search.effects @ effect
+        effect, move = effect - known @ search.effects, move - known @ search.moves
+    size = jnp.linalg.norm(effect)
+    effect, move = effect / size, move / size
+    length = effect @ search.left
+    return _Search(
+        search.change + length * move,
+        search.left - length * effect,
+        search.moves.at[search.number].set(move),
+        search.effects.at[search.number].set(effect),
+        search.number + 1,
     )
-    return found
 
 
-_linear, _rows, _mended = fast_program(linear), fast_program(rows), fast_program(mended)
+def moved(
+    problem: Problem, pressure: Array, level: Array, change: Array, longest: Array
+) -> tuple[Array, Array, Array]:
+    """Pressure and level after a step, and which part of it was taken: one where nothing had to be cut.
+
+    Every pressure changes by no more than the longest step; where the room for oil would shrink too much the
+    whole step is cut.
+    """
+    inner = jnp.clip(change[:-1], -longest, longest).reshape(pressure.shape[0], -1)
+    step, rise = jnp.pad(inner, ((0, 0), (1, 1))), change[-1]
+    gap = problem.gap(pressure, level)
+    grows = problem.gap(pressure + step, level + rise) - gap
+    least = SHRINKING * problem.flow.room(gap)
+    parts = 0.5 ** jnp.arange(HALVINGS)
+    kept = jax.lax.map(lambda part: jnp.all(problem.flow.room(gap + part * grows) > least), parts)
+    part = jnp.where(jnp.any(kept), parts[jnp.argmax(kept)], parts[-1])
+    whole = jnp.all(jnp.abs(change[:-1]) <= longest)
+    return pressure + part * step, level + part * rise, jnp.where(whole, part, 0.99 * part)
+
+
+_linear, _rows = fast_program(linear), fast_program(rows)
+_mended, _moved = fast_program(mended), fast_program(moved)
 
 
 def iterated(
@@ -250,6 +316,8 @@ def iterated(
     level: Any,
     time: float = FIRST_TIME,
     told: Progress | None = None,
+    longest: float = LONGEST_STEP,
+    most: int = MOST,
 ) -> State:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
 
@@ -259,33 +327,31 @@ def iterated(
         level: of the surfaces.
         time: of the first step; the shorter, the closer each step stays to the film before.
         told: called with the number of steps and the residual after each of them.
+        longest: change of a pressure in a step.
+        most: steps after which an attempt is given up.
     """
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
-    for step in range(MOST + 1):
+    for step in range(most + 1):
         at = _linear(problem, state.pressure, state.level, array(rate))
         residual = float(jnp.max(jnp.abs(at.rest)))
         state = state._replace(residual=residual, load=float(at.load), steps=step)
         if told is not None:
             told(step, residual)
-        if not np.isfinite(residual) or step == MOST or (residual < TOLERANCE and rate == 0.0):
+        if not np.isfinite(residual) or step == most or (residual < TOLERANCE and rate == 0.0):
             break
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at), 0
         age += 1
         rest = np.append(np.ravel(at.rest), float(at.load))
-        change = np.asarray(_mended(at, alone, array(-rest)))
-        short = min(1.0, LONGEST_STEP / float(np.max(np.abs(change[:-1]))))
-        state = _moved(state, short * change)
-        if short == 1.0:
-            rate /= LONGER
-        if rate < STEADY or residual < STEADY:
-            rate = 0.0
+        change = _mended(at, alone, array(-rest))
+        found, level, part = _moved(problem, state.pressure, state.level, change, array(longest))
+        state = state._replace(pressure=found, level=level)
+        rate = _rate(rate, float(part), residual)
     return state
 
 
-def _moved(state: State, change: NDArray[np.float64]) -> State:
-    inner = change[:-1].reshape(state.pressure.shape[0], -1)
-    pressure = state.pressure + array(np.pad(inner, ((0, 0), (1, 1))))
-    level = state.level + array(change[-1])
-    return state._replace(pressure=pressure, level=level)
+def _rate(rate: float, part: float, residual: float) -> float:
+    """One over the time of the next step: longer after whole steps, shorter after those that were cut."""
+    rate = rate / LONGER if part == 1.0 else rate * SHORTER if part < 0.49 else rate
+    return 0.0 if rate < STEADY or residual < STEADY else rate

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import pressed
+from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import Progress, State, iterated
 from pitchpoint.programs import fast_program
 
-THICK: Final = 1.5
+THICK: Final = 1.0
 """First guess of the film over the one that a regression gives."""
+
+BED: Final = 0.3
+"""Part of film and Rq by which the layer of a start yields to the unit of pressures."""
 
 FINER_TIME: Final = 2.0
 """Time over which the first step lets oil flow on a grid that starts from a coarser one."""
@@ -25,18 +30,40 @@ _dry = fast_program(pressed)
 
 
 def dry_start(problem: Problem) -> tuple[NDArray[np.float64], Any]:
-    """Dry pressure, and the level at which the mean film under it is as guessed."""
-    modulus = 1.0 / (problem.yielding * problem.softer)
-    dry = _dry(problem.bodies, problem.apart, modulus, problem.load)
+    """Dry pressure of bodies with a soft layer on them, and the level at which the mean film is as guessed.
+
+    The layer yields as film and asperities do, and spreads the pressure: that of a thick film reaches far
+    beyond the contact without one, and that of rough edges is low.
+    """
+    dry = _dry(_bedded(problem), problem.apart, 1.0 / problem.yielding, problem.load)
     pressure = np.array(dry.pressure)
     pressure[:, [0, -1]] = 0.0
     gap = np.asarray(_gap(problem, array(pressure), array(0.0)))
-    held = pressure > 0.0
-    areas = np.asarray(problem.bodies.areas)[:, None] * held
-    return pressure, THICK * float(problem.film) - float(np.sum(gap * areas) / np.sum(areas))
+    weight = np.asarray(problem.bodies.areas)[:, None] * pressure
+    return pressure, THICK * float(problem.film) - float(np.sum(gap * weight) / np.sum(weight))
+
+
+def dry_pressure(problem: Problem) -> NDArray[np.float64]:
+    """Pressure without oil, shape (y, x)."""
+    dry = _dry(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
+    return np.asarray(dry.pressure)
+
+
+def _bedded(problem: Problem) -> HalfSpace:
+    """The bodies with a layer on them that yields in every cell to the pressure there alone."""
+    bodies, flow = problem.bodies, problem.flow
+    film = float(problem.film) + float(flow.texture.rq) / float(flow.height)
+    soft = BED * film / float(problem.yielding)
+    spectrum, rows = np.asarray(bodies.spectrum), np.array(bodies.rows)
+    # The sum over the parts of a symmetric grid is what a cell does to itself.
+    spectrum = spectrum + soft / len(spectrum) * np.eye(spectrum.shape[-1])
+    rows[:, 0] += soft
+    changed = tuple(map(array, (spectrum, np.asarray(bodies.own) + soft, rows)))
+    return eqx.tree_at(lambda one: (one.spectrum, one.own, one.rows), bodies, changed)
 
 
 def gap_of(problem: Problem, pressure: Array, level: Array) -> Array:
+    """Gap of the mean planes, as a program of its own."""
     return problem.gap(pressure, level)
 
 
