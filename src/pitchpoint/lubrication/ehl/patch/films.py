@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
-import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
-from pitchpoint.lubrication.ehl.patch.response import polished, stiffness_and_damping
+from pitchpoint.lubrication.ehl.patch.response import Settled, polished, settled
 from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, solve
 from pitchpoint.programs import fast_program
 from pitchpoint.status import Code
@@ -124,19 +123,20 @@ def solve_patch(
     lies, own = _turned(contact)
     code = _before(own)
     layout, problem, state, coarse, steps = solve(own, nodes, cells, progress)
-    if code == Code.SOLVED and not (state.residual < ENOUGH and abs(state.load) < ENOUGH):
-        code = Code.NOT_CONVERGED
     held = (dry_pressure(problem) > 0.0) * 1.0
-    given = own, layout, problem, array(state.pressure), array(state.level), array(held)
-    film = jax.tree.map(np.asarray, _film(*given))
+    # Plain numbers would be constants of the program, which would be made anew for each contact.
+    lies_at = jax.tree.map(array, layout)
+    given = own, lies_at, problem, array(state.pressure), array(state.level), array(held)
+    film, end = jax.tree.map(np.asarray, _film(*given))
+    if code == Code.SOLVED and not (end.rest < ENOUGH and abs(end.load) < ENOUGH):
+        code = Code.NOT_CONVERGED
     off = abs(float(film.central_film) / coarse - 1.0) / 3.0 if coarse else np.nan
     if code != Code.SOLVED:
         film = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), film)
-    ended = PatchEnded(code, state.residual, state.load, steps, off)
-    solution = np.asarray(state.pressure), float(state.level), held
-    return PatchFilms(
-        _back(film, lies), ended, layout, *solution, lies, tuple(_warnings(contact, film, ended))
-    )
+    ended = PatchEnded(code, float(end.rest), float(abs(end.load)), steps, off)
+    warnings = tuple(_warnings(contact, film, ended))
+    found = _back(film, lies), ended, layout
+    return PatchFilms(*found, np.asarray(end.pressure), float(end.level), held, lies, warnings)
 
 
 def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
@@ -166,9 +166,10 @@ def _fields(
     pressure: Array,
     level: Array,
     held: Array,
-) -> PatchFilm:
-    response = stiffness_and_damping(problem, pressure, level, held)
-    return patch_film(contact, layout, problem, pressure, level, held, response)
+) -> tuple[PatchFilm, Settled]:
+    end = settled(problem, pressure, level, held)
+    response = end.stiffness, end.damping
+    return patch_film(contact, layout, problem, end.pressure, end.level, held, response), end
 
 
 _film = fast_program(_fields)
@@ -190,28 +191,27 @@ def _turned(contact: PatchContact) -> tuple[Turned, PatchContact]:
 def _oriented(contact: PatchContact, lies: Turned) -> PatchContact:
     found = _swapped(contact) if lies.swapped else contact
     along, across = (-1.0 if one else 1.0 for one in (lies.along, lies.across))
-    speeds = lambda one: (one.speed_a, one.speed_b, one.across_a, one.across_b)  # noqa: E731
-    a, b, beside_a, beside_b = speeds(found)
-    turned = along * a, along * b, across * beside_a, across * beside_b
-    oriented: PatchContact = eqx.tree_at(speeds, found, turned)
-    return oriented
+    return replace(
+        found,
+        speed_a=along * found.speed_a,
+        speed_b=along * found.speed_b,
+        across_a=across * found.across_a,
+        across_b=across * found.across_b,
+    )
 
 
 def _swapped(contact: PatchContact) -> PatchContact:
     """An ellipse with x and y exchanged."""
-    every = lambda one: (  # noqa: E731
-        one.radius,
-        one.bend,
-        one.speed_a,
-        one.speed_b,
-        one.across_a,
-        one.across_b,
-    )
-    radius, bend, a, b, beside_a, beside_b = every(contact)
     one = jnp.ones(1)
-    given = one / bend, 1.0 / radius[0], beside_a * one, beside_b * one, a[0], b[0]
-    found: PatchContact = eqx.tree_at(every, contact, given)
-    return found
+    return replace(
+        contact,
+        radius=one / contact.bend,
+        bend=1.0 / contact.radius[0],
+        speed_a=contact.across_a * one,
+        speed_b=contact.across_b * one,
+        across_a=contact.speed_a[0],
+        across_b=contact.speed_b[0],
+    )
 
 
 _FIELDS: Final = (
@@ -240,11 +240,7 @@ def _back(film: PatchFilm, lies: Turned) -> PatchFilm:
         fields |= {name: fields[name][::-1] for name in _VECTORS}
         fields |= {"x": fields["y"], "y": fields["x"]}
         fields |= {"shear_x": fields["shear_y"], "shear_y": fields["shear_x"]}
-    names = tuple(fields)
-    found: PatchFilm = eqx.tree_at(
-        lambda one: tuple(getattr(one, name) for name in names), film, tuple(fields.values())
-    )
-    return found
+    return replace(film, **fields)
 
 
 # ---- what is wrong with an input, and what is doubtful about a result

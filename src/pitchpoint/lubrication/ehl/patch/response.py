@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Callable
+from typing import Final, NamedTuple
 
 from jax.scipy.sparse.linalg import gmres
 from jaxtyping import Array, Float
@@ -12,7 +13,9 @@ from pitchpoint.lubrication.ehl.patch.balance import balance
 from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.lubrication.ehl.patch.newton import Linear, Rows, by_rows, linear, product, rows
 
-__all__ = ["polished", "stiffness_and_damping"]
+__all__ = ["Settled", "polished", "settled"]
+
+Map = Callable[[Array], Array]
 
 LEFT: Final = 1e-12
 """What a linear solve leaves of its right-hand side."""
@@ -54,21 +57,20 @@ def _rest(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
 def answered(at: Linear, alone: Rows, rest: Array) -> Array:
     """Change of inner pressures, the level at last, for changes of all balances; can be differentiated."""
 
-    def there(times: object, one: Array) -> Array:
-        return _solved(lambda v: product(at, v), lambda v: by_rows(alone, at.share, v), one)
-
-    def back(times: object, one: Array) -> Array:
-        mirrored = (
-            jax.linear_transpose(lambda v: product(at, v), one),
-            jax.linear_transpose(lambda v: by_rows(alone, at.share, v), one),
-        )
-        return _solved(*(lambda v, f=f: f(v)[0] for f in mirrored), one)  # type: ignore[misc]
-
-    found: Array = jax.lax.custom_linear_solve(lambda v: product(at, v), rest, there, back)
+    times = lambda change: product(at, change)  # noqa: E731
+    nearly = lambda one: by_rows(alone, at.share, one)  # noqa: E731
+    times_back = jax.linear_transpose(times, rest)
+    nearly_back = jax.linear_transpose(nearly, rest)
+    found: Array = jax.lax.custom_linear_solve(
+        times,
+        rest,
+        lambda _, one: _solved(times, nearly, one),
+        lambda _, one: _solved(lambda v: times_back(v)[0], lambda v: nearly_back(v)[0], one),
+    )
     return found
 
 
-def _solved(times: object, nearly: object, rest: Array) -> Array:
+def _solved(times: Map, nearly: Map, rest: Array) -> Array:
     found: Array
     found, _ = gmres(
         times,
@@ -82,31 +84,56 @@ def _solved(times: object, nearly: object, rest: Array) -> Array:
     return found
 
 
-def stiffness_and_damping(
-    problem: Problem, pressure: Array, level: Array, held: Float[Array, "y x"]
-) -> tuple[Array, Array]:
-    """Load that a thinner mean film carries more, and load by an approach that holds it, in own units.
+class Settled(NamedTuple):
+    """A solution after a last step, and what its film answers, in own units.
+
+    Attributes:
+        pressure: shape (y, x).
+        level: of the surfaces.
+        rest: largest defect of the balance of a cell.
+        load: defect of the load over it.
+        stiffness: -dF/dh over load by film.
+        damping: dF/dV over the same by the unit of `flow.approach`.
+    """
+
+    pressure: Float[Array, "y x"]
+    level: Float[Array, ""]
+    rest: Float[Array, ""]
+    load: Float[Array, ""]
+    stiffness: Float[Array, ""]
+    damping: Float[Array, ""]
+
+
+def settled(problem: Problem, pressure: Array, level: Array, held: Array) -> Settled:
+    """A last step from a solution, and its answers to more load and to an approach.
 
     Args:
         problem: the contact.
         pressure: solution, shape (y, x).
         level: of the surfaces.
-        held: one on the cells over which films are meant, shape (y, x).
-
-    Returns:
-        -dF/dh over load by film, and dF/dV over the same by the unit of `flow.approach`.
+        held: one on the cells over which films are meant, else zero, shape (y, x).
     """
     at = linear(problem, pressure, level, jnp.zeros(()))
     alone = rows(at)
-    more = jnp.zeros(at.rest.size + 1).at[-1].set(1.0)
-    dense = problem.flow.density(
-        pressure - problem.flow.asperity_pressure(problem.gap(pressure, level))
+    change = answered(at, alone, -jnp.append(at.rest.reshape(-1), at.load))
+    inner = change[:-1].reshape(at.rest.shape)
+    pressure, level = pressure.at[:, 1:-1].add(inner), level + change[-1]
+    left = _rest(problem, at, pressure, level)
+    more = jnp.zeros(left.size).at[-1].set(1.0)
+    by_load, by_approach = (
+        _film(problem, held, answered(at, alone, one), at)
+        for one in (more, _closing(problem, at, pressure, level))
     )
-    areas = jnp.asarray(problem.bodies.areas)[:, None]
-    closing = jnp.where(at.full, (dense * areas)[:, 1:-1] / at.scale, 0.0)
-    by_load = _film(problem, held, answered(at, alone, more), at)
-    by_approach = _film(problem, held, answered(at, alone, jnp.append(closing, 0.0)), at)
-    return -1.0 / by_load, -by_approach / by_load
+    largest = jnp.max(jnp.abs(left[:-1]))
+    return Settled(pressure, level, largest, left[-1], -1.0 / by_load, -by_approach / by_load)
+
+
+def _closing(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
+    """Change of all balances, taken away, with an approach of one."""
+    asperities = problem.flow.asperity_pressure(problem.gap(pressure, level))
+    oil = problem.flow.density(pressure - asperities)
+    gained = (oil * jnp.asarray(problem.bodies.areas)[:, None])[:, 1:-1]
+    return jnp.append(jnp.where(at.full, gained / at.scale, 0.0), 0.0)
 
 
 def _film(problem: Problem, held: Array, change: Array, at: Linear) -> Array:
