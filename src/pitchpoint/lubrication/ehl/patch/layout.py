@@ -55,6 +55,9 @@ ROOM: Final = 3.0
 HEAVY: Final = 0.9
 """Part of the rows whose load is below the one that the units are taken from."""
 
+BY_SPEED: Final = 0.7
+"""Power of the speed with which films grow."""
+
 MOST_ROOM: Final = 4
 """Doublings after which a line is said not to fit."""
 
@@ -237,7 +240,7 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
                 key=what,
             )
     grids = [(nodes, cells)]
-    while grids[0][0] > 2 * FEWEST and grids[0][1] >= 2 * FEWEST:
+    while min(grids[0]) > FEWEST:
         grids.insert(0, (grids[0][0] // 2 + 1, grids[0][1] // 2))
     return tuple(grids)
 
@@ -274,6 +277,13 @@ class Problem(eqx.Module):
     def gap(self, pressure: Field, level: Array) -> Array:
         """Gap of the mean planes in every cell, shape (y, x)."""
         return level + self.apart + self.bodies.deflection(pressure, 1.0 / self.yielding)
+
+    def thicker(self, factor: float) -> Problem:
+        """The same contact at a speed at which its film is so many times as thick."""
+        changed = self.flow.resistance * factor ** (1.0 / BY_SPEED), self.film * factor
+        return eqx.tree_at(
+            lambda one: (one.flow.resistance, one.film), self, tuple(map(array, changed))
+        )
 
     def mean(self, field: Field, where: Field) -> Array:
         """Mean of a field over some cells."""
