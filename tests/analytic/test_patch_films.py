@@ -242,12 +242,16 @@ def test_derivatives_of_films_are_those_of_differences():
     step = 1e-4 * np.eye(4)
     ends = [[solved_again(found, sign * one) for one in step] for sign in (1.0, -1.0)]
     differences = (np.array(ends[0]) - np.array(ends[1])).T / 2e-4
-    assert np.allclose(exact, differences, rtol=1e-5, atol=1e-6 * np.abs(differences).max(axis=1)[:, None])
+    assert np.allclose(
+        exact, differences, rtol=1e-5, atol=1e-6 * np.abs(differences).max(axis=1)[:, None]
+    )
 
 
 def test_stiffness_is_that_of_the_mean_film():
     found = crowned_line()
-    by_load = (solved_again(found, 1e-4 * np.eye(4)[0]) - solved_again(found, -1e-4 * np.eye(4)[0]))[0]
+    by_load = (
+        solved_again(found, 1e-4 * np.eye(4)[0]) - solved_again(found, -1e-4 * np.eye(4)[0])
+    )[0]
     assert found.film.stiffness == pytest.approx(-2e-4 * float(line().load) / by_load, rel=1e-5)
 
 

@@ -139,7 +139,6 @@ def stencil(
 
     Cells that no balance knows together are moved together: sixteen directions find all.
     """
-
     found, by, own = jax.linearize(
         lambda pressure, height: balance(problem, pressure, height, rate), oil, gap, has_aux=True
     )

@@ -17,7 +17,7 @@ from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import Settled, polished, settled
-from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, solve
+from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, shown_film, solve
 from pitchpoint.programs import fast_program
 from pitchpoint.status import Code
 
@@ -32,9 +32,6 @@ CELLS: Final = 128
 WIDE: Final = 0.1
 """Half-width over radius from which on bodies are no half spaces any more."""
 
-COARSE: Final = 0.03
-"""Error by the grid from which on it is told."""
-
 
 @dataclass(frozen=True)
 class PatchEnded:
@@ -45,15 +42,12 @@ class PatchEnded:
         reynolds: largest defect of the balance of a cell, in units of the dry contact's pressure.
         load: defect of the load over it.
         steps: of Newton's method, on all grids.
-        grid: estimate of the error of the film in the middle that the grid makes, over that film, from the
-            grid before; NaN where there was none.
     """
 
     code: Code
     reynolds: float
     load: float
     steps: int
-    grid: float
 
 
 @dataclass(frozen=True)
@@ -122,7 +116,7 @@ def solve_patch(
     _check(contact)
     lies, own = _turned(contact)
     code = _before(own)
-    layout, problem, state, coarse, steps = solve(own, nodes, cells, progress)
+    layout, problem, state = solve(own, nodes, cells, progress)
     held = (dry_pressure(problem) > 0.0) * 1.0
     # Plain numbers would be constants of the program, which would be made anew for each contact.
     lies_at = jax.tree.map(array, layout)
@@ -130,11 +124,11 @@ def solve_patch(
     film, end = jax.tree.map(np.asarray, _film(*given))
     if code == Code.SOLVED and not (end.rest < ENOUGH and abs(end.load) < ENOUGH):
         code = Code.NOT_CONVERGED
-    off = abs(float(film.central_film) / coarse - 1.0) / 3.0 if coarse else np.nan
     if code != Code.SOLVED:
         film = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), film)
-    ended = PatchEnded(code, float(end.rest), float(abs(end.load)), steps, off)
-    warnings = tuple(_warnings(contact, film, ended))
+    ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
+    least = shown_film(problem) * float(problem.flow.height)
+    warnings = tuple(_warnings(contact, film, ended, least))
     found = _back(film, lies), ended, layout
     return PatchFilms(*found, np.asarray(end.pressure), float(end.level), held, lies, warnings)
 
@@ -298,7 +292,9 @@ def _check_senses(contact: PatchContact) -> None:
         )
 
 
-def _warnings(contact: PatchContact, film: PatchFilm, ended: PatchEnded) -> Iterator[str]:
+def _warnings(
+    contact: PatchContact, film: PatchFilm, ended: PatchEnded, least: float
+) -> Iterator[str]:
     if ended.code != Code.SOLVED:
         yield f"the film was not found: {ended.code.sentence}"
         return
@@ -311,10 +307,10 @@ def _warnings(contact: PatchContact, film: PatchFilm, ended: PatchEnded) -> Iter
             f"the contact is {2e3 * half_width:.3g} mm wide, and the relative radius is {1e3 * radius:.3g} "
             "mm: the bodies are no half spaces, as the deformation takes them"
         )
-    if ended.grid > COARSE:
+    if 0.0 < film.central_film < least:
         yield (
-            f"the grid is coarse for this film, which may be off by {100.0 * ended.grid:.2g} %; take more "
-            "nodes"
+            f"the grid is coarse for a film of {1e9 * film.central_film:.3g} nm: beside the contact the gap "
+            f"opens by {1e9 * least:.3g} nm within a cell; take more nodes"
         )
     if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
         yield (

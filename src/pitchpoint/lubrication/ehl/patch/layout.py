@@ -24,7 +24,7 @@ from pitchpoint.lubrication.ehl.texture import Smooth
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.programs import fast_program
 
-__all__ = ["FEWEST", "Layout", "Problem", "laid_out", "ladder", "problem_on"]
+__all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on"]
 
 Field = Float[Arrays, "y x"]
 
@@ -55,6 +55,9 @@ ROOM: Final = 3.0
 HEAVY: Final = 0.9
 """Part of the rows whose load is below the one that the units are taken from."""
 
+BY_SPEED: Final = 0.7
+"""Power of the speed with which films grow."""
+
 MOST_ROOM: Final = 4
 """Doublings after which a line is said not to fit."""
 
@@ -75,8 +78,8 @@ class Layout(NamedTuple):
         hertz_pressure: largest one of it, but for edges [Pa].
         radius: relative radius along x that units are made of [m].
         speed: unit of speed [m/s].
-        softer: modulus of the bodies over that of bodies on which a dry contact is half as long as the one with
-            a thick film; one of thin films.
+        softer: modulus over that of bodies on which a dry contact is half as long as one with a thick
+            film; one of thin films.
     """
 
     inlet: float
@@ -204,7 +207,7 @@ def entrainment_of(contact: PatchContact) -> NDArray[np.float64]:
 
 
 def _carrying(contact: PatchContact) -> tuple[float, float, tuple[float, float]]:
-    """Largest half-width and pressure along a dry line, but for its edges, and from where to where it carries."""
+    """Half-width and pressure of a dry line, but for its edges, and from where to where it carries."""
     length, radius = float(contact.length), float(np.mean(contact.radius))  # type: ignore[arg-type]
     given = {"line_load": float(contact.load) / length, "radius": radius}
     half_width = float(line_half_width(**given, modulus=float(contact.modulus)))
@@ -254,7 +257,7 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
                 key=what,
             )
     grids = [(nodes, cells)]
-    while grids[0][0] > 2 * FEWEST and grids[0][1] >= 2 * FEWEST:
+    while min(grids[0]) > FEWEST:
         grids.insert(0, (grids[0][0] // 2 + 1, grids[0][1] // 2))
     return tuple(grids)
 
@@ -291,6 +294,13 @@ class Problem(eqx.Module):
     def gap(self, pressure: Field, level: Array) -> Array:
         """Gap of the mean planes in every cell, shape (y, x)."""
         return level + self.apart + self.bodies.deflection(pressure, 1.0 / self.yielding)
+
+    def thicker(self, factor: float) -> Problem:
+        """The same contact at a speed at which its film is so many times as thick."""
+        changed = self.flow.resistance * factor ** (1.0 / BY_SPEED), self.film * factor
+        return eqx.tree_at(
+            lambda one: (one.flow.resistance, one.film), self, tuple(map(array, changed))
+        )
 
     def mean(self, field: Field, where: Field) -> Array:
         """Mean of a field over some cells."""

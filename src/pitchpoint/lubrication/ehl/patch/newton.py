@@ -35,7 +35,7 @@ TOLERANCE: Final = 1e-8
 ENOUGH: Final = 1e-6
 """Residual of a solution that rounding keeps from coming closer."""
 
-LONGEST_STEP: Final = 0.3
+LONGEST_STEP: Final = 1.0
 """Largest change of a pressure in a step, in units of the largest dry pressure."""
 
 SHRINKING: Final = 0.2
@@ -47,7 +47,7 @@ HALVINGS: Final = 8
 SHORTER: Final = 2.0
 """Factor by which that time shrinks after a step that was cut more than once."""
 
-MOST: Final = 60
+MOST: Final = 40
 """Steps after which an attempt is given up."""
 
 FIRST_TIME: Final = 1.0
@@ -353,5 +353,5 @@ def iterated(
 
 def _rate(rate: float, part: float, residual: float) -> float:
     """One over the time of the next step: longer after whole steps, shorter after those that were cut."""
-    rate = rate / LONGER if part == 1.0 else rate * SHORTER if part < 0.49 else rate
+    rate = rate / LONGER if part == 1.0 else rate if part > 0.98 else rate / part**SHORTER
     return 0.0 if rate < STEADY or residual < STEADY else rate

@@ -56,7 +56,6 @@ def _rest(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
 
 def answered(at: Linear, alone: Rows, rest: Array) -> Array:
     """Change of inner pressures, the level at last, for changes of all balances; can be differentiated."""
-
     times = lambda change: product(at, change)  # noqa: E731
     nearly = lambda one: by_rows(alone, at.share, one)  # noqa: E731
     times_back = jax.linear_transpose(times, rest)

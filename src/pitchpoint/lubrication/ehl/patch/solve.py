@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -14,33 +15,81 @@ from pitchpoint.contact.dry_contact import pressed
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
-from pitchpoint.lubrication.ehl.patch.newton import Progress, State, iterated
+from pitchpoint.lubrication.ehl.patch.newton import (
+    ENOUGH,
+    LONGEST_STEP,
+    Progress,
+    State,
+    iterated,
+)
 from pitchpoint.programs import fast_program
 
-THICK: Final = 1.0
-"""First guess of the film over the one that a regression gives."""
+__all__ = ["Found", "dry_pressure", "dry_start", "finer", "shown_film", "solve"]
+
+FINER_TIME: Final = 2.0
+"""Time over which the first step lets oil flow that starts from another film."""
 
 BED: Final = 0.3
 """Part of film and Rq by which the layer of a start yields to the unit of pressures."""
 
-FINER_TIME: Final = 2.0
-"""Time over which the first step lets oil flow on a grid that starts from a coarser one."""
+SHOWN: Final = 0.8
+"""Least film of a coarse grid, over the gap that opens within a cell beside a contact: its step to the power 1.5."""
+
+STRIDE: Final = 4.0
+"""Film over the one that is looked for from it."""
+
+STRIDES: Final = 3
+"""Times that a stride is made shorter, to its root, before a film is given up."""
+
+
+class Attempt(NamedTuple):
+    """One way to begin.
+
+    Attributes:
+        bed: part of film and Rq by which the layer yields to the unit of pressures.
+        time: of the first step.
+        longest: change of a pressure in a step.
+    """
+
+    bed: float
+    time: float
+    longest: float
+
+
+ATTEMPTS: Final = (
+    Attempt(BED, 1.0, 1.0),
+    Attempt(BED, 1.0, 0.3),
+    Attempt(0.5, 2.0, 0.3),
+)
+
+
+class Found(NamedTuple):
+    """A solution on one grid.
+
+    Attributes:
+        problem: the contact there, at the speed of the solution.
+        dry: pressure of the start, shape (y, x).
+        state: the solution.
+    """
+
+    problem: Problem
+    dry: NDArray[np.float64]
+    state: State
+
 
 _dry = fast_program(pressed)
 
 
-def dry_start(problem: Problem) -> tuple[NDArray[np.float64], Any]:
+def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], Any]:
     """Dry pressure of bodies with a soft layer on them, and the level at which the mean film is as guessed.
 
     The layer yields as film and asperities do, and spreads the pressure: that of a thick film reaches far
     beyond the contact without one, and that of rough edges is low.
     """
-    dry = _dry(_bedded(problem), problem.apart, 1.0 / problem.yielding, problem.load)
+    dry = _dry(_bedded(problem, bed), problem.apart, 1.0 / problem.yielding, problem.load)
     pressure = np.array(dry.pressure)
     pressure[:, [0, -1]] = 0.0
-    gap = np.asarray(_gap(problem, array(pressure), array(0.0)))
-    weight = np.asarray(problem.bodies.areas)[:, None] * pressure
-    return pressure, THICK * float(problem.film) - float(np.sum(gap * weight) / np.sum(weight))
+    return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
 
 
 def dry_pressure(problem: Problem) -> NDArray[np.float64]:
@@ -49,11 +98,11 @@ def dry_pressure(problem: Problem) -> NDArray[np.float64]:
     return np.asarray(dry.pressure)
 
 
-def _bedded(problem: Problem) -> HalfSpace:
+def _bedded(problem: Problem, bed: float) -> HalfSpace:
     """The bodies with a layer on them that yields in every cell to the pressure there alone."""
     bodies, flow = problem.bodies, problem.flow
     film = float(problem.film) + float(flow.texture.rq) / float(flow.height)
-    soft = BED * film / float(problem.yielding)
+    soft = bed * film / float(problem.yielding)
     spectrum, rows = np.asarray(bodies.spectrum), np.array(bodies.rows)
     # The sum over the parts of a symmetric grid is what a cell does to itself.
     spectrum = spectrum + soft / len(spectrum) * np.eye(spectrum.shape[-1])
@@ -62,36 +111,33 @@ def _bedded(problem: Problem) -> HalfSpace:
     return eqx.tree_at(lambda one: (one.spectrum, one.own, one.rows), bodies, changed)
 
 
-def gap_of(problem: Problem, pressure: Array, level: Array) -> Array:
-    """Gap of the mean planes, as a program of its own."""
+def _mean_gap(problem: Problem, dry: NDArray[np.float64], pressure: Any, level: Any) -> float:
+    """Mean gap where a dry contact carries, as much as it carries."""
+    weight = np.asarray(problem.bodies.areas)[:, None] * dry
+    gap = np.asarray(_gap(problem, pressure, array(level)))
+    return float(np.sum(gap * weight) / np.sum(weight))
+
+
+def _gap_of(problem: Problem, pressure: Array, level: Array) -> Array:
     return problem.gap(pressure, level)
 
 
-_gap = fast_program(gap_of)
+_gap = fast_program(_gap_of)
 
 
-def finer(
-    coarse: Problem,
-    state: State,
-    dry: NDArray[np.float64],
-    fine: Problem,
-    fine_dry: NDArray[np.float64],
-) -> tuple[Any, Any]:
+def finer(coarse: Found, fine: Problem, fine_dry: NDArray[np.float64]) -> tuple[Any, Any]:
     """Pressure and level on a finer grid: what the film adds to the dry pressure changes slowly."""
-    added = np.asarray(state.pressure) - dry
-    along = _between(np.asarray(coarse.bodies.x), np.asarray(fine.bodies.x))
-    across = _between(np.asarray(coarse.bodies.y), np.asarray(fine.bodies.y))
-    pressure = np.maximum(fine_dry + across @ added @ along.T, 0.0)
+    before = coarse.problem
+    along = _between(np.asarray(before.bodies.x), np.asarray(fine.bodies.x))
+    across = _between(np.asarray(before.bodies.y), np.asarray(fine.bodies.y))
+    added = across @ (np.asarray(coarse.state.pressure) - coarse.dry) @ along.T
+    pressure = np.maximum(fine_dry + added, 0.0)
     pressure[:, [0, -1]] = 0.0
     areas = np.asarray(fine.bodies.areas)[:, None]
     pressure *= float(fine.load) / np.sum(pressure * areas)
-    held = dry > 0.0
-    before = np.asarray(_gap(coarse, state.pressure, array(state.level)))
-    weight = np.asarray(coarse.bodies.areas)[:, None] * held
-    mean = np.sum(before * weight) / np.sum(weight)
-    found = np.asarray(_gap(fine, array(pressure), array(0.0)))
-    weight = areas * (fine_dry > 0.0)
-    return pressure, mean - np.sum(found * weight) / np.sum(weight)
+    mean = _mean_gap(before, coarse.dry, coarse.state.pressure, coarse.state.level)
+    lies = _mean_gap(fine, fine_dry, array(pressure), 0.0)
+    return pressure, mean * float(fine.film / before.film) - lies
 
 
 def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -100,30 +146,84 @@ def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[
     return np.stack([np.interp(fine, coarse, row) for row in one], axis=1)
 
 
+def shown_film(problem: Problem) -> float:
+    """Film, in own units, below which the grid shows none."""
+    spacing = float(problem.bodies.x[1] - problem.bodies.x[0])
+    return float(SHOWN * spacing**1.5)
+
+
+@dataclass
+class _Solver:
+    """Newton's iterations on the grids of a ladder.
+
+    Attributes:
+        told: called with the number of steps and the residual after each of them.
+        steps: of all iterations so far.
+        last: where the last one ended.
+    """
+
+    told: Progress | None
+    steps: int = 0
+    last: State | None = None
+
+    def on_grid(self, problem: Problem, before: Found | None, *, last: bool) -> Found | None:
+        """Solution on one grid: from one on a coarser grid, else from dry contacts; None where none is found.
+
+        Grids show no film that is much thinner than the gap that opens within a cell: on all but the last one
+        oil flows faster.
+        """
+        shown = max(1.0, shown_film(problem) / float(problem.film))
+        asked = 1.0 if last else shown
+        found = None if before is None else self.thinner(problem, asked, before)
+        if found is None:
+            found = self.from_dry(problem.thicker(shown))
+            if found is not None and asked < shown:
+                found = self.thinner(problem, asked, found)
+        return found
+
+    def thinner(self, problem: Problem, asked: float, found: Found) -> Found | None:
+        """Solution with a film so many times as thick as it is, by films that become thinner and thinner."""
+        stride, left = STRIDE, STRIDES
+        while left:
+            now = float(found.problem.film / problem.film)
+            factor = max(asked, now / stride)
+            trial = problem.thicker(factor)
+            dry, _ = dry_start(trial)
+            state = self.iterated(trial, finer(found, trial, dry), FINER_TIME)
+            if state.residual < ENOUGH:
+                found = Found(trial, dry, state)
+                if factor == asked:
+                    return found
+            else:
+                stride, left = np.sqrt(stride), left - 1 if now > asked else 0
+        return None
+
+    def from_dry(self, problem: Problem) -> Found | None:
+        """Solution from a dry contact, by one attempt or another."""
+        for attempt in ATTEMPTS:
+            dry, level = dry_start(problem, attempt.bed)
+            state = self.iterated(problem, (dry, level), attempt.time, attempt.longest)
+            if state.residual < ENOUGH:
+                return Found(problem, dry, state)
+        return None
+
+    def iterated(
+        self, problem: Problem, start: tuple[Any, Any], time: float, longest: float = LONGEST_STEP
+    ) -> State:
+        state = iterated(problem, *map(array, start), time, self.told, longest)
+        self.steps += state.steps
+        self.last = state._replace(steps=self.steps)
+        return state
+
+
 def solve(
-    contact: PatchContact, nodes: int, cells: int, told: Progress | None = None
-) -> tuple[Layout, Problem, State, float, int]:
-    """Layout, problem and solution of a contact, the film in its middle on the grid before, and all steps."""
-    layout = laid_out(contact, cells)
-    before: Any = None
-    coarse, steps = 0.0, 0
-    for grid in ladder(nodes, cells):
+    contact: PatchContact, nodes: int = 129, cells: int = 128, told: Progress | None = None
+) -> tuple[Layout, Problem, State]:
+    """Layout, problem and solution of a contact on the last grid of its ladder."""
+    layout, grids = laid_out(contact, cells), ladder(nodes, cells)
+    solver, found = _Solver(told), None
+    for grid in grids:
         problem = problem_on(contact, layout, *grid, cells)
-        dry, level = dry_start(problem)
-        if before is None:
-            state = iterated(problem, array(dry), array(level), told=told)
-        else:
-            coarse = float(_middle(*before[:2]))
-            begun = (array(one) for one in finer(*before, problem, dry))
-            state = iterated(problem, *begun, FINER_TIME, told=told)
-        steps += state.steps
-        before = problem, state, dry
-    return layout, problem, state, coarse, steps
-
-
-def _middle(problem: Problem, state: State) -> float:
-    """Film in the middle [m]."""
-    gap = np.asarray(_gap(problem, state.pressure, array(state.level)))
-    x, y = np.asarray(problem.bodies.x), np.asarray(problem.bodies.y)
-    rows = [np.interp(0.0, x, row) for row in gap]
-    return float(np.interp(0.0, y, rows)) * float(problem.flow.height)
+        found = solver.on_grid(problem, found, last=grid == grids[-1])
+    assert solver.last is not None
+    return layout, problem, solver.last
