@@ -1,9 +1,9 @@
-"""Films of 100 random contacts of finite length, smooth to mixed: how many are solved, and why the rest are not.
+"""Films of 100 random contacts of finite length, smooth to mixed: how many are solved, and why others not.
 
     .venv/bin/python tests/long/many_patch_films.py [number [nodes]]
 
-Drawn by a seeded Latin hypercube over the logarithms of Hertz's pressure, mean speed, radius and viscosity, of
-the film of a regression over the roughness, and of length over width or ellipticity. Half of them are lines,
+Drawn by a seeded Latin hypercube over the logarithms of Hertz's pressure, mean speed, radius and viscosity,
+of the film of a regression over the roughness, and of length over width or ellipticity. Half are lines,
 straight and crowned ones, half ellipses. Contacts of which a half space says little (wide against their
 radius) are counted apart. Ends with an error if fewer than 97 of 100 are solved.
 """
@@ -20,10 +20,10 @@ from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.contact.end_profiles import crowned
 from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH
 from pitchpoint.lubrication.ehl.patch.solve import solve
-from pitchpoint.lubrication.ehl.solve import WIDE
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials.fluid import Fluid
@@ -123,8 +123,6 @@ def main(count: int, nodes: int) -> int:
             steps.append(state.steps)
         else:
             print(f"{one.name}: {sentence}", flush=True)
-        if len(sys.argv) > 3:
-            print(one.name, sentence, "%.1f" % seconds[-1], flush=True)
     for name, which in (("half spaces", True), ("wider contacts", False)):
         print(f"{name}: {sum(solved[which])} of {len(solved[which])} solved")
     print(f"steps on the last grid: median {np.median(steps):.0f}, most {max(steps)}")

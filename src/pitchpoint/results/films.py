@@ -10,13 +10,15 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.heat import Temperatures
+from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES
+from pitchpoint.lubrication.ehl.patch.films import PatchFilms
 from pitchpoint.lubrication.ehl.solve import Ended, Films
 from pitchpoint.results.store import dataset, describe
 from pitchpoint.results.variable import Variable, deviation, length, percent
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
-__all__ = ["film_dataset", "films_of_dataset"]
+__all__ = ["film_dataset", "films_of_dataset", "patch_dataset"]
 
 
 def _pressure(long_name: str, symbol: str) -> Variable:
@@ -25,6 +27,10 @@ def _pressure(long_name: str, symbol: str) -> Variable:
 
 def _on_line(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "N/m")
+
+
+def _force(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "N")
 
 
 def _power(long_name: str, symbol: str) -> Variable:
@@ -105,6 +111,35 @@ _NODES: Final = {
 }
 """Names of the fields across the contact."""
 
+_PATCH: Final = {
+    "x": length("place along the contact, with positive surface speeds", "x"),
+    "y": length("place across it, along the contact line", "y"),
+    **{
+        name: _FILM[name]
+        for name in (
+            *("pressure", "asperity_pressure", "gap", "film", "filled", "central_film"),
+            *("minimum_film", "mean_film", "largest_pressure", "asperity_share", "friction"),
+            *("film_ratio", "half_width", "hertz_pressure"),
+        )
+    },
+    "deflection": deviation("deflection of both bodies together", "u"),
+    "shear_x": _pressure("shear stress of the oil on member 0 along x, half way across", "τ_x"),
+    "shear_y": _pressure("shear stress of the oil on member 0 along y, half way across", "τ_y"),
+    "minimum_place": length("place of the smallest film", "x_min, y_min"),
+    "largest_place": length("place of the largest pressure", "x_max, y_max"),
+    "near_ends": _pressure("largest pressure across, near the ends of the line", "p_e"),
+    "shear_force": _force("shear of the oil on member 0", "F_s"),
+    "boundary_force": _force("friction of asperities on member 0", "F_b"),
+    "rolling": _force("rolling resistance of each surface", "F_r"),
+    "stiffness": Variable("stiffness of the film, by the mean film", "k", "N/m"),
+    "damping": Variable("squeeze damping of the film", "c", "N s/m"),
+    "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
+}
+_AREAS: Final = {
+    *("pressure", "asperity_pressure", "gap", "film", "deflection", "filled", "shear_x", "shear_y"),
+}
+_VECTORS: Final = {"minimum_place", "largest_place", "shear_force", "boundary_force", "rolling"}
+
 _OWN: Final = {
     f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()
 }
@@ -143,6 +178,48 @@ def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:
     found = {int(one): Code(int(one)).sentence for one in np.unique(code)}
     data["ended_code"].attrs["sentences"] = json.dumps(found)
     return data.set_coords("x")
+
+
+def patch_dataset(films: PatchFilms) -> xr.Dataset:
+    """Film over the patch of one contact as a dataset.
+
+    Args:
+        films: of `solve_patch`.
+
+    Returns:
+        Dataset on (y, x) with these as coordinates [m], `direction` of forces and places, and `distance` from
+        the ends of a line [half-widths]. Every variable has `units` and `long_name`; the dataset has its
+        status and its warnings, as JSON.
+    """
+    names = [name for name in _PATCH if name not in ("x", "y")]
+    dims = {name: _patch_dims(name) for name in names}
+    data = dataset(
+        {name: (dims[name], np.asarray(getattr(films.film, name))) for name in names},
+        {
+            "x": ("x", np.asarray(films.film.x)),
+            "y": ("y", np.asarray(films.film.y)),
+            "direction": ["x", "y"],
+            "end": ["first", "last"],
+            "distance": ("distance", END_DISTANCES),
+        },
+        title="film over a patch",
+        warnings=list(films.warnings),
+        solve=told_of(
+            np.array([films.ended.code]),
+            np.array([films.ended.reynolds]),
+            np.array([films.ended.steps]),
+        ),
+    )
+    describe(data, _PATCH)
+    return data
+
+
+def _patch_dims(name: str) -> tuple[str, ...]:
+    if name in _AREAS:
+        return "y", "x"
+    if name == "near_ends":
+        return "end", "distance"
+    return ("direction",) if name in _VECTORS else ()
 
 
 def films_of_dataset(data: xr.Dataset) -> Films:

@@ -32,7 +32,7 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
         problem: the contact.
         oil: pressure of the oil, shape (y, x).
         gap: of the mean planes, shape (y, x).
-        rate: one over the time, in units of half-width and speed, in which the oil under a cell can change: it
+        rate: one over the time, in units of length and speed, in which the oil under a cell can change: it
             leaves the balance as it is and ties its changes; zero for a steady film.
 
     Returns:
@@ -148,7 +148,7 @@ def stencil(
     return found, own, by_oil, _sorted(jax.lax.map(lambda one: by(still, one), moved))
 
 
-def _colours(shape: tuple[int, int]) -> Array:
+def _colours(shape: tuple[int, ...]) -> Array:
     """Directions in which cells move together, shape (16, y, x)."""
     rows, nodes = (
         (jnp.arange(number) % reach == jnp.arange(reach)[:, None]) * 1.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from jaxtyping import Array
@@ -117,7 +117,7 @@ def solve_patch(
     lies, own = _turned(contact)
     code = _before(own)
     layout, problem, state = solve(own, nodes, cells, progress)
-    held = (dry_pressure(problem) > 0.0) * 1.0
+    held = np.where(dry_pressure(problem) > 0.0, 1.0, 0.0)
     # Plain numbers would be constants of the program, which would be made anew for each contact.
     lies_at = jax.tree.map(array, layout)
     given = own, lies_at, problem, array(state.pressure), array(state.level), array(held)
@@ -129,8 +129,9 @@ def solve_patch(
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
     least = shown_film(problem) * float(problem.flow.height)
     warnings = tuple(_warnings(contact, film, ended, least))
-    found = _back(film, lies), ended, layout
-    return PatchFilms(*found, np.asarray(end.pressure), float(end.level), held, lies, warnings)
+    pressure: Any = np.asarray(end.pressure)
+    found = _back(film, lies), ended, layout, pressure, float(end.level)
+    return PatchFilms(*found, held, lies, warnings)
 
 
 def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:

@@ -43,9 +43,6 @@ END_CELL: Final = 0.1
 SPREAD: Final = 4.0
 """Square of what a film adds to the length of a contact, over radius and film."""
 
-HALF: Final = 0.5
-"""Length of the dry contact, over that with a thick film, from which a solution is looked for."""
-
 TRIAL: Final = (65, 64)
 """Grid of the dry contact that tells where a line carries."""
 
@@ -78,8 +75,6 @@ class Layout(NamedTuple):
         hertz_pressure: largest one of it, but for edges [Pa].
         radius: relative radius along x that units are made of [m].
         speed: unit of speed [m/s].
-        softer: modulus over that of bodies on which a dry contact is half as long as one with a thick
-            film; one of thin films.
     """
 
     inlet: float
@@ -94,7 +89,6 @@ class Layout(NamedTuple):
     hertz_pressure: float
     radius: float
     speed: float
-    softer: float
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
         """Half spaces on a grid of so many nodes along and cells across, in units of length.
@@ -134,18 +128,19 @@ def laid_out(contact: PatchContact, cells: int) -> Layout:
 
 def _of_ellipse(contact: PatchContact) -> Layout:
     radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
-    given = {"load": contact.load, "radius": radius, "transverse_radius": across}
-    ellipse = hertz_1881(**given, modulus=contact.modulus)
+    given = array(radius), array(across)
+    ellipse = hertz_1881(
+        load=contact.load, radius=given[0], transverse_radius=given[1], modulus=contact.modulus
+    )
     half_width, side = float(ellipse.along), float(ellipse.across)
     pressure = float(ellipse.pressure)
     film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
     length, reach = half_width * longer, BESIDE * side * wider
     ends = -inlet * length, OUTLET * length
-    softer = max(1.0, HALF * longer) ** 2 * max(1.0, HALF * wider)
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, -reach, reach, None, *units, radius, unit, softer)
+    return Layout(*ends, -reach, reach, None, *units, radius, unit)
 
 
 def _of_line(contact: PatchContact, cells: int) -> Layout:
@@ -161,10 +156,9 @@ def _of_line(contact: PatchContact, cells: int) -> Layout:
     end = END_CELL * length
     fine = not reaches or end >= (last - first) / cells * (1.0 - 1e-6)
     cell = None if fine else end
-    softer = max(1.0, HALF * longer) ** 2
     units = length, pressure / longer, film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, first, last, cell, *units, radius, unit, softer)
+    return Layout(*ends, first, last, cell, *units, radius, unit)
 
 
 def _unit_of_speed(contact: PatchContact, radius: float, length: float) -> float:
@@ -186,12 +180,12 @@ def _film_and_inlet(
     speed = max(float(np.max(np.abs(entrainment_of(contact)))), SLOWEST)
     oil, modulus = contact.fluid, float(contact.modulus)
     film = moes_1992(
-        line_load=line_load,
-        entrainment=speed,
+        line_load=array(line_load),
+        entrainment=array(speed),
         viscosity=oil.viscosity,
         pressure_viscosity=oil.pressure_viscosity,
-        radius=radius,
-        modulus=modulus,
+        radius=array(radius),
+        modulus=contact.modulus,
     )
     speeds = 2.0 * float(oil.viscosity) * speed / (modulus * radius)
     load = line_load / (modulus * radius) / np.sqrt(speeds)
@@ -209,8 +203,7 @@ def entrainment_of(contact: PatchContact) -> NDArray[np.float64]:
 def _carrying(contact: PatchContact) -> tuple[float, float, tuple[float, float]]:
     """Half-width and pressure of a dry line, but for its edges, and from where to where it carries."""
     length, radius = float(contact.length), float(np.mean(contact.radius))  # type: ignore[arg-type]
-    given = {"line_load": float(contact.load) / length, "radius": radius}
-    half_width = float(line_half_width(**given, modulus=float(contact.modulus)))
+    half_width, _ = _of_line_load(contact, float(contact.load) / length, radius)
     nodes, cells = TRIAL
     for doubled in range(MOST_ROOM):
         reach = ROOM * 2.0**doubled * half_width
@@ -234,10 +227,15 @@ def _of_dry(
     spacing = float(bodies.x[1] - bodies.x[0])
     # Next to an edge a row carries more, and its pressure is a number of the grid.
     line_load = float(np.quantile(np.sum(dry[held], axis=1), HEAVY)) * spacing
-    given = {"line_load": line_load, "radius": radius, "modulus": float(contact.modulus)}
     edges = np.asarray(bodies.edges)
     ends = float(edges[held[0]]), float(edges[held[-1] + 1])
-    return float(line_half_width(**given)), float(line_pressure(**given)), ends
+    return *_of_line_load(contact, line_load, radius), ends
+
+
+def _of_line_load(contact: PatchContact, line_load: float, radius: float) -> tuple[float, float]:
+    """Half-width [m] and largest pressure [Pa] of an infinite line."""
+    given = {"line_load": array(line_load), "radius": array(radius), "modulus": contact.modulus}
+    return float(line_half_width(**given)), float(line_pressure(**given))
 
 
 _dry = fast_program(pressed)
@@ -274,7 +272,6 @@ class Problem(eqx.Module):
         yielding: deflection by a pressure of one on bodies with E' of one.
         load: over pressure and square of the length.
         film: guess of it, for a start.
-        softer: as in `Layout`.
         speed: unit of speed [m/s].
         length: unit of length [m].
     """
@@ -287,7 +284,6 @@ class Problem(eqx.Module):
     yielding: Float[Arrays, ""]
     load: Float[Arrays, ""]
     film: Float[Arrays, ""]
-    softer: Float[Arrays, ""]
     speed: Float[Arrays, ""]
     length: Float[Arrays, ""]
 
@@ -298,9 +294,10 @@ class Problem(eqx.Module):
     def thicker(self, factor: float) -> Problem:
         """The same contact at a speed at which its film is so many times as thick."""
         changed = self.flow.resistance * factor ** (1.0 / BY_SPEED), self.film * factor
-        return eqx.tree_at(
+        found: Problem = eqx.tree_at(
             lambda one: (one.flow.resistance, one.film), self, tuple(map(array, changed))
         )
+        return found
 
     def mean(self, field: Field, where: Field) -> Array:
         """Mean of a field over some cells."""
@@ -329,7 +326,7 @@ def problem_on(
         contact.approach * radius / (length * unit),
         jnp.zeros(()),
     )
-    return Problem(
+    found: Any = (
         flow,
         jax.tree.map(array, bodies),
         contact.gap(array(x), array(y)) / height,
@@ -338,7 +335,7 @@ def problem_on(
         pressure * length / (height * contact.modulus),
         contact.load / (pressure * length**2),
         array(film / height),
-        array(layout.softer),
         array(unit),
         array(length),
     )
+    return Problem(*found)

@@ -258,7 +258,8 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
     enough = INEXACT * jnp.linalg.norm(rest)
 
     def unfinished(search: _Search) -> Array:
-        return (search.number < DIRECTIONS) & (jnp.linalg.norm(search.left) > enough)
+        more: Array = (search.number < DIRECTIONS) & (jnp.linalg.norm(search.left) > enough)
+        return more
 
     def onward(search: _Search) -> _Search:
         return _searched(at, alone, search)
