@@ -198,6 +198,22 @@ def test_smooth_flanks_have_no_film_ratio(case: str) -> None:
     assert "lubrication regimes" not in render({"default": outcome})
 
 
+def test_assumed_constants_behind_the_load_on_asperities_are_told(case: str) -> None:
+    rough = {"roughness.ra": "1.2 um", "film.phases": 3}
+    outcome = running.run(case, settings=rough)["default"]
+    data = outcome.parts["film"]
+    assert float(data["largest_asperity_share"]) > 0.05
+    part = float(data["mean_boundary_part"] / data["mean_film_friction"])
+    words = f"he load on asperities, and {100.0 * part:.0f} % of the friction, rest on assumed "
+    assert f"t{words}eta_beta_sigma 0.05 and sigma_over_beta 0.01" in film_answer(outcome)
+    assert f"T{words}eta_beta_sigma 0.05 and" in next(SECTION.screen(outcome)).line
+    assert f"T{words}eta_beta_sigma 0.05 and" in render({"default": outcome})
+    one = running.run(case, settings={**rough, "film.eta_beta_sigma": 0.06})["default"]
+    assert "rest on assumed sigma_over_beta 0.01;" in film_answer(one)
+    both = {**rough, "film.eta_beta_sigma": 0.05, "film.sigma_over_beta": 0.01}
+    assert "assumed" not in film_answer(running.run(case, settings=both)["default"])
+
+
 def test_without_load_there_is_no_film(case: str) -> None:
     data = running.run(case, settings={"operation.torque": "0 N m"})["default"].parts["film"]
     assert int(data["loaded_contacts"]) == 0

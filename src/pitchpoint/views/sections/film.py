@@ -27,7 +27,7 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
-from pitchpoint.views.lines import folded, gapped, regimes, titled
+from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section, Table
@@ -74,6 +74,8 @@ def film_answer(outcome: Outcome) -> str:
         f"{_told(data, 'smallest_film')} at least, {_told(data, 'smallest_lambda')} of Rq; asperities "
         f"carry up to {_told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
+    if assumed := str(data.attrs["assumed"]):
+        told = f"{told}; {assumed}"
     if not np.isfinite(float(data["mean_film_loss"])):
         return f"{told}; loss and efficiency are withheld, some films were not found"
     friction, loss = (_told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
@@ -157,7 +159,7 @@ def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
     return Figure(name, title, _pressure_lines(data, first), axes, SPIKE, tuple(keys), NONE)
 
 
-SPIKE = "The largest pressure is that of one node, at the spike where there is one: finer grids have more."
+SPIKE = "A spike is resolved by few nodes: its height changes with the grid."
 
 
 def _warm_profile(name: str, data: xr.Dataset) -> Figure:
@@ -352,7 +354,8 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
     given |= dict(zip(_film_keys(data), by_law, strict=True))
     lines = [(key, _line(data, "minimum_lambda", key, values)) for key, values in given.items()]
     title = "Film over composite Rq, and lubrication regimes"
-    figure = _figure(name, title, "minimum_lambda", lines, axis, MOST)
+    note = f"{MOST} {REGRESSED} What asperities carry stands in the next figure."
+    figure = _figure(name, title, "minimum_lambda", lines, axis, note)
     figure.layout.setdefault("shapes", [])
     figure.layout.setdefault("annotations", [])
     regimes(figure.layout, figure.data)
@@ -425,6 +428,8 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "warning",
         )
     yield _table(outcome)
+    if assumed := _assumed(data):
+        yield Paragraph(assumed, "note")
     if other := str(data.attrs["other_rolling"]):
         yield Paragraph(other, "note")
     yield Paragraph(_thinnest(data), "note")
@@ -554,7 +559,13 @@ def _row(
 def _counted(data: xr.Dataset) -> str:
     found, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
     told = f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
-    return f"{told} {OVERLAP}" if _overlap(data) else told
+    return " ".join(filter(None, (told, _assumed(data), OVERLAP if _overlap(data) else "")))
+
+
+def _assumed(data: xr.Dataset) -> str:
+    """What rests on assumed asperities, as a sentence; empty if nothing does."""
+    told = str(data.attrs["assumed"])
+    return f"{told[0].upper()}{told[1:]}." if told else ""
 
 
 def _overlap(data: xr.Dataset) -> bool:
