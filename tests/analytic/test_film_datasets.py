@@ -107,5 +107,9 @@ def test_saved_films_are_a_start(solved, tmp_path):
 def test_other_datasets_are_no_films(solved):
     with pytest.raises(InputError, match="a dataset without 'x' is none of solved films"):
         films_of_dataset(xr.Dataset({"pressure": 1.0}))
+    with pytest.raises(
+        InputError, match="a start of type Dataset is no films; `films_of_dataset` makes"
+    ):
+        solve_lines(contact([2e5, 3e5]), nodes=33, start=film_dataset(solved["warm"]))
     with pytest.raises(InputError, match="on 0 nodes are no start for 2 contacts on 33 nodes"):
         solve_lines(contact([2e5, 3e5]), nodes=33, start=solved["without profiles"])

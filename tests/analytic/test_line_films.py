@@ -145,10 +145,10 @@ def test_films_of_a_flooded_inlet_are_those_of_an_endless_one(L):
     full = solve_lines(case)
     at, before = (
         solve_lines(dataclasses.replace(case, inlet=part * inlet * case.half_width))
-        for part in (1.0, 0.4)
+        for part in (1.0, 0.5)
     )
     np.testing.assert_allclose(at.film.central_film, full.film.central_film, rtol=5e-3)
-    assert (before.film.central_film < 0.995 * full.film.central_film).all()
+    assert np.mean(before.film.central_film / full.film.central_film) < 0.992
     assert not any("starved" in text for text in at.warnings)
 
 

@@ -79,14 +79,14 @@ VARIABLES: dict[str, Variable] = {
     "asperity_share": percent("part of the load on asperities, solved", "L_a"),
     "film_rise": Variable(
         "largest temperature of the film above its inlet, solved",
-        "ΔT_m",
+        "ΔT_film",
         "K",
         "K",
         "temperature difference",
     ),
     "flash_rise": Variable(
         "flash temperature of the warmer surface, solved",
-        "ΔT_f",
+        "ΔT_flash",
         "K",
         "K",
         "temperature difference",
@@ -109,7 +109,7 @@ VARIABLES: dict[str, Variable] = {
     "profile_half_width": length("half-width of the dry contact", "b"),
     "profile_rise": Variable(
         "mean temperature of the film above its inlet",
-        "ΔT_m",
+        "ΔT_film",
         "K",
         "K",
         "temperature difference",
@@ -132,14 +132,14 @@ VARIABLES: dict[str, Variable] = {
     "largest_asperity_share": percent("largest part of a contact's load on asperities", "L_a max"),
     "largest_film_rise": Variable(
         "largest temperature of the films above their inlet",
-        "ΔT_m max",
+        "ΔT_film max",
         "K",
         "K",
         "temperature difference",
     ),
     "largest_flash_rise": Variable(
         "largest flash temperature of the surfaces",
-        "ΔT_f max",
+        "ΔT_flash max",
         "K",
         "K",
         "temperature difference",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 from jax.typing import ArrayLike
@@ -33,6 +34,10 @@ SMOOTH = "none"
 
 USUAL_SHEAR = "ree_eyring_1955"
 """Shear law of gear contacts unless another is chosen: a Newtonian oil draws far too much there."""
+
+
+COLDEST: Final = -100.0
+"""Temperature [degC] below which no oil flows, and degC may have been given for kelvin."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,8 +154,9 @@ def _check(oil: Lubricant, temperature: ArrayLike, roughness_rq: ArrayLike) -> N
     if not np.all(np.asarray(oil.in_range(warm))):
         low, high = (float(np.min(np.asarray(one))) - 273.15 for one in (oil.T_min, oil.T_max))
         worst = warm.reshape(-1)[np.argmax(np.abs(warm - 0.5 * (oil.T_min + oil.T_max)))] - 273.15
+        kelvin = "; temperatures are in kelvin" if worst < COLDEST else ""
         raise InputError(
-            f"an oil at {worst:.4g} degC, whose values are meant for {low:.4g} to {high:.4g} degC",
+            f"an oil at {worst:.4g} degC, whose values are meant for {low:.4g} to {high:.4g} degC{kelvin}",
             key="temperature",
         )
     rq = np.asarray(roughness_rq)

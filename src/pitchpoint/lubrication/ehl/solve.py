@@ -398,6 +398,11 @@ def _without_profiles(film: LineFilm) -> LineFilm:
 
 def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
     """Pressures along the grid and films in the middle from which solves begin."""
+    if not isinstance(start, Films):
+        raise InputError(
+            f"a start of type {type(start).__name__} is no films; `films_of_dataset` makes some of a dataset "
+            "of `film_dataset`"
+        )
     across, given = np.shape(start.film.pressure)[-1], start.ended.code.size
     if not across or given != count:
         raise InputError(
