@@ -214,6 +214,20 @@ def test_assumed_constants_behind_the_load_on_asperities_are_told(case: str) -> 
     assert "assumed" not in film_answer(running.run(case, settings=both)["default"])
 
 
+def test_a_largest_pressure_below_that_of_hertz_is_explained(case: str, outcome: Outcome) -> None:
+    rough = {"roughness.ra": "3 um", "film.phases": 3, "operation.torque": "20 N m"}
+    one = running.run(case, settings=rough)["default"]
+    data = one.parts["film"]
+    lacks = 1.0 - float(data["largest_film_pressure"]) / float(data["pressure"].max())
+    told = (
+        f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load"
+    )
+    assert lacks > 0.05 and told in next(SECTION.screen(one)).line
+    assert "rough flanks spread the load beyond the dry contact" in render({"default": one})
+    assert float(outcome.parts["film"]["largest_asperity_share"]) > 0.0
+    assert "below Hertz's" not in next(SECTION.screen(outcome)).line
+
+
 def test_without_load_there_is_no_film(case: str) -> None:
     data = running.run(case, settings={"operation.torque": "0 N m"})["default"].parts["film"]
     assert int(data["loaded_contacts"]) == 0

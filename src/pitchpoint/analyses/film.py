@@ -32,7 +32,7 @@ from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.doubts import UNSOLVED, extent_of, kind_of
 from pitchpoint.lubrication.ehl.fields import LineFilm
-from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.programs import program
@@ -50,6 +50,12 @@ TOGETHER = 6
 
 COUNTS = 0.05
 """Part of a contact's load on asperities from which on it is told what that rests on."""
+
+LOWER = 0.05
+"""Part by which the largest pressure is below Hertz's from which on it is told."""
+
+UNEVEN = 0.3
+"""Rq R/b2 from which on rough flanks lower the largest pressure by 5 % or more at low speed."""
 
 LEAST = 1e-6
 """Load per length over the largest one of the cycle below which a contact counts as unloaded."""
@@ -373,6 +379,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         choices=_choices(built),
         other_rolling=_other_rolling(built),
         assumed=_assumed(built, figures),
+        below_hertz=_below_hertz(built, states, figures),
         pitch=str(built.way["pitch"]),
     )
     data["path"].attrs.update(built.way)
@@ -439,6 +446,7 @@ def _figures(
         "mean_film_rolling_loss": rolling,
         "mean_film_loss": sliding + rolling,
         "mean_law_loss": mean(by_law),
+        "mean_law_rolling_loss": mean(states["rolling_loss"]),
         "film_loss": _course(found, loaded, known),
         "law_loss": np.sum(np.where(loaded, by_law, 0.0), axis=(-2, -1)),
         "loaded_contacts": np.sum(loaded),
@@ -589,6 +597,26 @@ def _assumed(built: Built, figures: Mapping[str, np.ndarray]) -> str:
     friction = f", and {part:.0f} % of the friction, rest" if np.isfinite(part) else " rests"
     values = " and ".join(f"{name} {getattr(_model(built), name):g}" for name in names)
     return f"the load on asperities{friction} on assumed {values}"
+
+
+def _below_hertz(
+    built: Built, states: Mapping[str, np.ndarray], figures: Mapping[str, np.ndarray]
+) -> str:
+    """Why rough flanks have a largest pressure below that of the dry contact; empty if they have not."""
+    if _model(built).asperities == SMOOTH or not states["loaded"].any():
+        return ""
+    most = np.argmax(np.where(states["loaded"], states["pressure"], 0.0))
+    pressure, radius = (states[name].reshape(-1)[most] for name in ("pressure", "radius"))
+    # b = 4 p R/E' of a dry line contact.
+    half_width = 4.0 * pressure * radius / float(built.design.modulus)
+    ratio = float(built.design.roughness.composite_rq) * radius / half_width**2
+    lacks = 1.0 - figures["largest_film_pressure"] / pressure
+    if not (lacks > LOWER and ratio > UNEVEN):
+        return ""
+    return (
+        f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load beyond "
+        f"the dry contact, where Rq R/b2 is {ratio:.2g}."
+    )
 
 
 def _choices(built: Built) -> dict[str, Any]:

@@ -151,6 +151,7 @@ VARIABLES: dict[str, Variable] = {
     "mean_film_rolling_loss": power("of it by rolling", "P_r EHL"),
     "mean_film_loss": power("mean loss of the teeth by the films", "P_EHL mean"),
     "mean_law_loss": power("mean loss of the teeth by the friction law", "P_law mean"),
+    "mean_law_rolling_loss": power("of it by rolling", "P_r"),
     "film_efficiency": percent("mean efficiency by the films", "η_EHL"),
     "law_efficiency": percent("mean efficiency by the friction law", "η"),
     "film_deviation": percent("film by regression less that solved, mean over contacts", "Δh/h"),

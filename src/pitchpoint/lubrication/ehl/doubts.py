@@ -286,7 +286,7 @@ def _of_strips(
     member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
     if peclet[member, worst] < LEAST_PECLET:
         yield Doubt(
-            f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
+            f"a surface passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
             f"{abs(speed[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
             f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
             "stands still is taken to take none",

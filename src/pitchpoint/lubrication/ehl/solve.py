@@ -396,7 +396,7 @@ def _without_profiles(film: LineFilm) -> LineFilm:
     return found
 
 
-def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
+def _begin(start: object, count: int, nodes: int) -> tuple[Any, Any]:
     """Pressures along the grid and films in the middle from which solves begin."""
     if not isinstance(start, Films):
         raise InputError(

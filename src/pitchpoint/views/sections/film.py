@@ -44,19 +44,23 @@ _FIGURES = (
 )
 _PARTS = {
     "mean_film_friction": ("mean_boundary_part",),
-    "mean_film_loss": ("mean_film_sliding_loss", "mean_film_rolling_loss"),
+    "mean_film_loss": ("mean_film_sliding_loss",),
 }
 """Figures with the parts that stand under them."""
 
 _BESIDE = {
     "mean_film_friction": "mean_law_friction",
     "mean_film_loss": "mean_law_loss",
+    "mean_film_rolling_loss": "mean_law_rolling_loss",
     "film_efficiency": "law_efficiency",
 }
 """Figures by the films, and the same by a friction law."""
 
 _WARMTH = ("largest_film_rise", "largest_flash_rise")
 """Figures of films that are no isothermal ones."""
+
+_NOTES = ("below_hertz", "other_rolling")
+"""Attributes with sentences under the figures of the films."""
 
 _SEEN = 0.01
 """Part of the largest pressure of the cycle from which on a profile is seen without zooming out."""
@@ -430,8 +434,7 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
     yield _table(outcome)
     if assumed := _assumed(data):
         yield Paragraph(assumed, "note")
-    if other := str(data.attrs["other_rolling"]):
-        yield Paragraph(other, "note")
+    yield from (Paragraph(data.attrs[name], "note") for name in _NOTES if data.attrs[name])
     yield Paragraph(_thinnest(data), "note")
     if _overlap(data):
         yield Paragraph(OVERLAP, "note")
@@ -551,6 +554,7 @@ def _row(
     symbols = {
         "mean_film_friction": "μ mean",
         "mean_film_loss": "P [W]",
+        "mean_film_rolling_loss": "of it rolling [W]",
         "film_efficiency": "η [%]",
     }
     return {symbols[head]: shown(name, float(data[name].values[at]), data) for head, name in pairs}
@@ -559,7 +563,17 @@ def _row(
 def _counted(data: xr.Dataset) -> str:
     found, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
     told = f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
-    return " ".join(filter(None, (told, _assumed(data), OVERLAP if _overlap(data) else "")))
+    return " ".join(
+        filter(
+            None,
+            (
+                told,
+                _assumed(data),
+                str(data.attrs["below_hertz"]),
+                OVERLAP if _overlap(data) else "",
+            ),
+        )
+    )
 
 
 def _assumed(data: xr.Dataset) -> str:
