@@ -22,8 +22,8 @@ from pitchpoint.materials.fluid import Fluid
 from pitchpoint.status import Code
 
 MODULUS = 2.26e11
-OIL = {"viscosity": 0.04, "pressure_viscosity": 2.2e-8}
-EYRING = Fluid(**OIL, shear_law="ree_eyring_1955", shear_parameters={"eyring_stress": 5.0})
+OIL = {"viscosity": 0.04, "pressure_viscosity": 2.2e-8, "shear_law": "newtonian"}
+EYRING = Fluid(viscosity=0.04, pressure_viscosity=2.2e-8, shear_parameters={"eyring_stress": 5.0})
 SIMPLE = {"viscosity_law": "barus_1893", "density_law": "incompressible"}
 
 
@@ -365,16 +365,23 @@ def test_a_pressure_with_one_maximum_has_no_spike():
         assert np.isnan(film.spike_place).all() and np.isnan(film.spike_pressure).all()
 
 
-def test_friction_and_film_ratio_are_those_of_forces_and_roughness():
-    case = contact(
-        0.6e9, np.array([0.1, 1.0]), slide=0.1, texture=Rough(rq=0.3e-6, modulus=MODULUS)
-    )
+def test_friction_is_the_shear_of_a_newtonian_oil_over_its_film():
+    case = contact([0.3e9, 0.6e9], [0.1, 1.0], slide=0.01)
     film = solve_lines(case).film
-    drawn = np.abs(film.shear_force + film.boundary_force)
-    np.testing.assert_allclose(film.friction * case.line_load, drawn, rtol=1e-14)
-    np.testing.assert_allclose(film.film_ratio * 0.3e-6, film.minimum_film, rtol=1e-14)
-    smooth = solve_lines(contact(0.6e9)).film
-    assert smooth.film_ratio == np.inf and smooth.friction == 0.0
+    rate = np.abs(case.speed_b - case.speed_a)[:, None] / film.gap
+    stress = film.filled * np.asarray(case.fluid.viscosity_at(film.pressure)) * rate
+    drawn = np.trapezoid(stress, film.x, axis=-1)
+    np.testing.assert_allclose(film.friction, drawn / case.line_load, rtol=1e-3)
+    assert (film.film_ratio == np.inf).all()
+
+
+def test_oils_by_value_draw_as_oils_bear_unless_a_newtonian_one_is_asked_for():
+    oil = {"viscosity": 0.04, "pressure_viscosity": 2.2e-8}
+    usual = solve_lines(contact(0.9e9, slide=0.2, fluid=Fluid(**oil)))
+    newtonian = solve_lines(contact(0.9e9, slide=0.2))
+    assert usual.film.friction < 0.1 < newtonian.film.friction
+    assert usual.warnings == () and "a Newtonian oil is sheared" in newtonian.warnings[0]
+    np.testing.assert_allclose(usual.film.pressure, newtonian.film.pressure, rtol=1e-10)
 
 
 # ---- derivatives

@@ -16,7 +16,7 @@ from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
 from pitchpoint.lubrication.groups import line_groups
-from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS, Fluid
+from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.rheology import SHEAR_STRESS
 from pitchpoint.status import Code
 
@@ -42,6 +42,9 @@ WEAK: Final = 1e4
 
 THICK: Final = 20e-6
 """Film [m] above which a value may be in another unit: bodies with a radius of 5 m have 4 to 12 um."""
+
+NEWTONIAN: Final = "newtonian"
+"""Name of the shear law without a limit."""
 
 SHEARED: Final = 0.1
 """Shear stress over pressure that oils hardly exceed: their limiting stress is .05 to .1 of it."""
@@ -311,11 +314,11 @@ def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
 
 def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
     """Stress that no oil bears: a Newtonian one has no limit."""
-    limited = [f"'{name}'" for name in SHEAR_STRESS if name != USUAL_SHEAR_STRESS]
+    limited = [f"'{name}'" for name in SHEAR_STRESS if name != NEWTONIAN]
     drawn, width = np.abs(film.shear_force), 2e6 * film.half_width
     worst = np.argmax(drawn / contact.line_load)
     stress, pressure = drawn[worst] / width[worst], contact.line_load[worst] / width[worst]
-    if contact.fluid.shear_law == USUAL_SHEAR_STRESS and stress > SHEARED * pressure:
+    if contact.fluid.shear_law == NEWTONIAN and stress > SHEARED * pressure:
         yield Doubt(
             f"a Newtonian oil is sheared by {stress:.3g} MPa in the mean at a mean pressure of "
             f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that limits it is "

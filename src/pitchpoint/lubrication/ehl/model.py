@@ -22,18 +22,16 @@ from pitchpoint.lubrication.ehl.texture import (
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.fluid import (
     USUAL_DENSITY,
+    USUAL_SHEAR_STRESS,
     USUAL_VISCOSITY,
     Fluid,
 )
 from pitchpoint.materials.lubricants import Lubricant
 
-__all__ = ["SMOOTH", "USUAL_SHEAR", "FilmModel"]
+__all__ = ["SMOOTH", "FilmModel"]
 
 SMOOTH = "none"
 """Name of no asperities: the surfaces count as smooth, whatever their roughness."""
-
-USUAL_SHEAR = "ree_eyring_1955"
-"""Shear law of gear contacts unless another is chosen: a Newtonian oil draws far too much there."""
 
 
 COLDEST: Final = -100.0
@@ -64,7 +62,7 @@ class FilmModel:
     nodes: int = NODES
     viscosity_law: str = USUAL_VISCOSITY
     density_law: str = USUAL_DENSITY
-    shear_law: str = USUAL_SHEAR
+    shear_law: str = USUAL_SHEAR_STRESS
     shear_parameters: Mapping[str, float] = field(default_factory=dict)
     asperities: str = USUAL_ASPERITIES
     eta_beta_sigma: float = ETA_BETA_SIGMA
