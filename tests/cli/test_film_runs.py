@@ -264,9 +264,9 @@ def test_ellipses_have_no_line_solver() -> None:
 def test_a_temperature_in_degrees_is_told_to_be_taken_in_kelvin() -> None:
     given = {"line_load": 1e5, "radius": 0.01, "modulus": 226e9, "speed_a": 2.0, "speed_b": 1.0}
     given |= {"oil": find("pao-vg-100").build(), "roughness_rq": 0.0}
-    with pytest.raises(InputError, match="an oil at -213.1 degC, .*; temperatures are in kelvin"):
+    with pytest.raises(InputError, match=r"an oil at -213\.1 degC, .*; temperatures are in kelvin"):
         FilmModel().contacts(temperature=60.0, **given)
-    with pytest.raises(InputError, match="degC$"):
+    with pytest.raises(InputError, match=r"degC$"):
         FilmModel().contacts(temperature=600.0, **given)
 
 
