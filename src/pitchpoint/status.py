@@ -32,6 +32,7 @@ class Code(IntEnum):
     UNLOADED = 15
     NO_STEADY_HEAT = 16
     FILM_LOST = 17
+    NO_NUMBER = 18
 
     @property
     def sentence(self) -> str:
@@ -65,6 +66,7 @@ _SENTENCES = {
     Code.UNLOADED: "no load presses the bodies together",
     Code.NO_STEADY_HEAT: "surfaces that both stand still in their contact have no steady temperature",
     Code.FILM_LOST: "the film of a contact that carries was not solved",
+    Code.NO_NUMBER: "an input of the contact is not a finite number",
 }
 
 

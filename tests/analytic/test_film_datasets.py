@@ -11,7 +11,7 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import LineContact
-from pitchpoint.lubrication.ehl.solve import solve_lines
+from pitchpoint.lubrication.ehl.solve import _begin, solve_lines
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.fluid import Fluid
 from pitchpoint.results.films import film_dataset, films_of_dataset
@@ -107,5 +107,9 @@ def test_saved_films_are_a_start(solved, tmp_path):
 def test_other_datasets_are_no_films(solved):
     with pytest.raises(InputError, match="a dataset without 'x' is none of solved films"):
         films_of_dataset(xr.Dataset({"pressure": 1.0}))
+    with pytest.raises(
+        InputError, match="a start of type Dataset is no films; `films_of_dataset` mak"
+    ):
+        _begin(film_dataset(solved["warm"]), 2, 33)
     with pytest.raises(InputError, match="on 0 nodes are no start for 2 contacts on 33 nodes"):
         solve_lines(contact([2e5, 3e5]), nodes=33, start=solved["without profiles"])

@@ -271,7 +271,7 @@ def test_a_surface_that_stands_still_takes_no_heat_and_is_told(sliding):
     heat = found.film.heat
     assert abs(heat.power_b[0]) < 1e-3 * heat.power_a[0]
     assert (
-        "member 1 passes a contact 0.354 mm wide at 0 m/s, a Peclet number of 0"
+        "a surface passes a contact 0.354 mm wide at 0 m/s, a Peclet number of 0"
         in found.warnings[0]
     )
     assert sliding[1].warnings == ()

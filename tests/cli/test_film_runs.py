@@ -198,6 +198,36 @@ def test_smooth_flanks_have_no_film_ratio(case: str) -> None:
     assert "lubrication regimes" not in render({"default": outcome})
 
 
+def test_assumed_constants_behind_the_load_on_asperities_are_told(case: str) -> None:
+    rough = {"roughness.ra": "1.2 um", "film.phases": 3}
+    outcome = running.run(case, settings=rough)["default"]
+    data = outcome.parts["film"]
+    assert float(data["largest_asperity_share"]) > 0.05
+    part = float(data["mean_boundary_part"] / data["mean_film_friction"])
+    words = f"he load on asperities, and {100.0 * part:.0f} % of the friction, rest on assumed "
+    assert f"t{words}eta_beta_sigma 0.05 and sigma_over_beta 0.01" in film_answer(outcome)
+    assert f"T{words}eta_beta_sigma 0.05 and" in next(SECTION.screen(outcome)).line
+    assert f"T{words}eta_beta_sigma 0.05 and" in render({"default": outcome})
+    one = running.run(case, settings={**rough, "film.eta_beta_sigma": 0.06})["default"]
+    assert "rest on assumed sigma_over_beta 0.01;" in film_answer(one)
+    both = {**rough, "film.eta_beta_sigma": 0.05, "film.sigma_over_beta": 0.01}
+    assert "assumed" not in film_answer(running.run(case, settings=both)["default"])
+
+
+def test_a_largest_pressure_below_that_of_hertz_is_explained(case: str, outcome: Outcome) -> None:
+    rough = {"roughness.ra": "3 um", "film.phases": 3, "operation.torque": "20 N m"}
+    one = running.run(case, settings=rough)["default"]
+    data = one.parts["film"]
+    lacks = 1.0 - float(data["largest_film_pressure"]) / float(data["pressure"].max())
+    told = (
+        f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load"
+    )
+    assert lacks > 0.05 and told in next(SECTION.screen(one)).line
+    assert "rough flanks spread the load beyond the dry contact" in render({"default": one})
+    assert float(outcome.parts["film"]["largest_asperity_share"]) > 0.0
+    assert "below Hertz's" not in next(SECTION.screen(outcome)).line
+
+
 def test_without_load_there_is_no_film(case: str) -> None:
     data = running.run(case, settings={"operation.torque": "0 N m"})["default"].parts["film"]
     assert int(data["loaded_contacts"]) == 0
@@ -229,6 +259,15 @@ def test_ellipses_have_no_line_solver() -> None:
     with pytest.raises(InputError, match="ellipses have no line solver") as caught:
         load_case(TORUS, settings={"film.solver": "line"})
     assert caught.value.key == "film.solver"
+
+
+def test_a_temperature_in_degrees_is_told_to_be_taken_in_kelvin() -> None:
+    given = {"line_load": 1e5, "radius": 0.01, "modulus": 226e9, "speed_a": 2.0, "speed_b": 1.0}
+    given |= {"oil": find("pao-vg-100").build(), "roughness_rq": 0.0}
+    with pytest.raises(InputError, match=r"an oil at -213\.1 degC, .*; temperatures are in kelvin"):
+        FilmModel().contacts(temperature=60.0, **given)
+    with pytest.raises(InputError, match=r"degC$"):
+        FilmModel().contacts(temperature=600.0, **given)
 
 
 def piece(pressure: float, *told: Doubt) -> xr.Dataset:

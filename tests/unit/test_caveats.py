@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pitchpoint.analyses import caveats
+from pitchpoint.analyses.cycle import _reasons
 from pitchpoint.cases.build import _roughness
 from pitchpoint.cases.failures import fails, worst_first
 from pitchpoint.cases.laws import FRICTION, limits_words
@@ -68,6 +69,14 @@ def test_a_law_out_of_its_range_says_why(law: Any, run: dict[str, Any], words: s
     assert caveats.why_outside(case(), law, cycle()) == []
     (told,) = caveats.why_outside(case(), law, cycle(**run))
     assert words in told
+
+
+def test_doubts_about_films_stand_with_their_table() -> None:
+    run = cycle(**{"outside films": np.array(["the grid is coarse"])})
+    for film, told in ((None, ["the grid is coarse"]), ("line", [])):
+        built = case()
+        built.case.film, built.laws = film, [XU]
+        assert _reasons(built, XU, run) == told
 
 
 def test_flanks_without_roughness_have_a_film_without_limit() -> None:

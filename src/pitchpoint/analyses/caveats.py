@@ -297,7 +297,7 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
         return f"{COLD}."
     return (
         f"{COLD}; its friction would warm it by up to about {warmest:.2g} K, so that friction comes out too "
-        'high; thermal = "mean_film" in [film] takes the heat along.'
+        'high and the film too thick; thermal = "mean_film" in [film] takes the heat along.'
     )
 
 

@@ -23,6 +23,7 @@ from pitchpoint.analyses.caveats import (
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code, locked_or_lost
 from pitchpoint.status import told as told_of
@@ -30,6 +31,15 @@ from pitchpoint.status import told as told_of
 __all__ = [
     "CYCLE",
 ]
+
+
+def _reasons(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> list[str]:
+    """Why a law does not hold; doubts about films of the first law stand with a table of them."""
+    reasons = why_outside(built, law, run)
+    if built.case.film is None or law is not built.laws[0]:
+        return reasons
+    films = set(map(str, run["outside films"]))
+    return [text for text in reasons if text not in films]
 
 
 def _cold(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:
@@ -67,7 +77,7 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
     warnings = [
         text
         for law, run in zip(built.laws, runs, strict=True)
-        for text in told_of_law(law, why_outside(built, law, run))
+        for text in told_of_law(law, _reasons(built, law, run))
     ]
     warnings += _cold(built, runs)
     warnings += film_warning(built.film, runs[0])

@@ -30,9 +30,9 @@ from pitchpoint.efficiency.summary import engaged
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
-from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
+from pitchpoint.lubrication.ehl.doubts import UNSOLVED, extent_of, kind_of
 from pitchpoint.lubrication.ehl.fields import LineFilm
-from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.programs import program
@@ -48,6 +48,15 @@ Done = Callable[[int, int], None]
 TOGETHER = 6
 """Phases of a piece, so that little is lost when a run is stopped."""
 
+COUNTS = 0.05
+"""Part of a contact's load on asperities from which on it is told what that rests on."""
+
+LOWER = 0.05
+"""Part by which the largest pressure is below Hertz's from which on it is told."""
+
+UNEVEN = 0.3
+"""Rq R/b2 from which on rough flanks lower the largest pressure by 5 % or more at low speed."""
+
 LEAST = 1e-6
 """Load per length over the largest one of the cycle below which a contact counts as unloaded."""
 
@@ -60,6 +69,7 @@ SHOWN_ALIKE = 6
 SHOWN = 4
 """Pairs whose profiles are kept: those that carry most."""
 
+_SUMMITS = ("eta_beta_sigma", "sigma_over_beta")
 _LANES = ("phase", "pair", "slice")
 _OF_PIECE = ("point", "pair", "slice")
 _OF_PROFILE = ("point", "shown", "node")
@@ -207,6 +217,8 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
         values["minimum_film"] / rq if rq > 0.0 else values["minimum_film"] * np.inf
     )
     profiles = _kept(films.film, states, some, back)
+    # Contacts that have no film are counted over the whole cycle.
+    told = [text for text in films.warnings if kind_of(text) != UNSOLVED]
     return dataset(
         {
             **{name: (_OF_PIECE, one) for name, one in values.items()},
@@ -214,8 +226,8 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
             **{name: (_OF_PROFILE[: one.ndim], one) for name, one in profiles.items()},
         },
         {},
-        warnings=list(films.warnings),
-        doubts=[[kind_of(text), extent_of(text)] for text in films.warnings],
+        warnings=told,
+        doubts=[[kind_of(text), extent_of(text)] for text in told],
         residual=_largest(films.ended.reynolds, films.solved),
         iterations=int(np.max(films.ended.iterations, initial=0)),
     )
@@ -366,6 +378,8 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         film_places=[law.place for law in _laws()],
         choices=_choices(built),
         other_rolling=_other_rolling(built),
+        assumed=_assumed(built, figures),
+        below_hertz=_below_hertz(built, states, figures),
         pitch=str(built.way["pitch"]),
     )
     data["path"].attrs.update(built.way)
@@ -432,6 +446,7 @@ def _figures(
         "mean_film_rolling_loss": rolling,
         "mean_film_loss": sliding + rolling,
         "mean_law_loss": mean(by_law),
+        "mean_law_rolling_loss": mean(states["rolling_loss"]),
         "film_loss": _course(found, loaded, known),
         "law_loss": np.sum(np.where(loaded, by_law, 0.0), axis=(-2, -1)),
         "loaded_contacts": np.sum(loaded),
@@ -570,6 +585,37 @@ def _other_rolling(built: Built) -> str:
     return (
         f"{solved[0]}: the case takes rolling resistance from {model.title}; that of the films, which stands "
         "beside it here, is their own."
+    )
+
+
+def _assumed(built: Built, figures: Mapping[str, np.ndarray]) -> str:
+    """What of the films rests on assumed asperities; empty where they carry little or were given."""
+    names = [name for name in _SUMMITS if getattr(_asked(built), name) is None]
+    if not names or not figures["largest_asperity_share"] > COUNTS:
+        return ""
+    part = 100.0 * figures["mean_boundary_part"] / figures["mean_film_friction"]
+    friction = f", and {part:.0f} % of the friction, rest" if np.isfinite(part) else " rests"
+    values = " and ".join(f"{name} {getattr(_model(built), name):g}" for name in names)
+    return f"the load on asperities{friction} on assumed {values}"
+
+
+def _below_hertz(
+    built: Built, states: Mapping[str, np.ndarray], figures: Mapping[str, np.ndarray]
+) -> str:
+    """Why rough flanks have a largest pressure below that of the dry contact; empty if they have not."""
+    if _model(built).asperities == SMOOTH or not states["loaded"].any():
+        return ""
+    most = np.argmax(np.where(states["loaded"], states["pressure"], 0.0))
+    pressure, radius = (states[name].reshape(-1)[most] for name in ("pressure", "radius"))
+    # b = 4 p R/E' of a dry line contact.
+    half_width = 4.0 * pressure * radius / float(built.design.modulus)
+    ratio = float(built.design.roughness.composite_rq) * radius / half_width**2
+    lacks = 1.0 - figures["largest_film_pressure"] / pressure
+    if not (lacks > LOWER and ratio > UNEVEN):
+        return ""
+    return (
+        f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load beyond "
+        f"the dry contact, where Rq R/b2 is {ratio:.2g}."
     )
 
 

@@ -723,10 +723,11 @@ class FilmTable(Table):
 
     @model_validator(mode="after")
     def _own(self) -> "FilmTable":
-        from pitchpoint.lubrication.ehl.model import SMOOTH, USUAL_SHEAR
+        from pitchpoint.lubrication.ehl.model import SMOOTH
+        from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS
         from pitchpoint.materials.rheology import SHEAR_STRESS
 
-        law = SHEAR_STRESS[self.shear_law or USUAL_SHEAR]
+        law = SHEAR_STRESS[self.shear_law or USUAL_SHEAR_STRESS]
         for key in self.shear_parameters:
             if key not in law.parameters:
                 has = ", ".join(law.parameters) or "none"

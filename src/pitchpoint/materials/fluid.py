@@ -29,7 +29,8 @@ Each = Float[Numbers, "*#b"]
 
 USUAL_VISCOSITY: Final = "roelands_1966"
 USUAL_DENSITY: Final = "dowson_higginson_1966"
-USUAL_SHEAR_STRESS: Final = "newtonian"
+USUAL_SHEAR_STRESS: Final = "ree_eyring_1955"
+"""Shear law unless another is chosen: a Newtonian oil draws far too much in contacts under pressure."""
 
 
 class Fluid(eqx.Module):

@@ -8,7 +8,17 @@ import xarray as xr
 from pitchpoint.views.figures import Trace
 from pitchpoint.views.show import described
 
-__all__ = ["SHORT", "Points", "folded", "gapped", "regimes", "titled", "values_of"]
+__all__ = [
+    "REGIMES",
+    "REGRESSED",
+    "SHORT",
+    "Points",
+    "folded",
+    "gapped",
+    "regimes",
+    "titled",
+    "values_of",
+]
 
 _EVENT, SHORT = 1e-7, 1e-6
 """Nodes beside an event are closer than the first; a segment shorter than the second is no segment."""
@@ -18,6 +28,11 @@ _REGIMES = (
     (1.0, 3.0, "#fdf5dc", "mixed"),
     (3.0, np.inf, "#e7f2ea", "full film"),
 )
+
+REGRESSED = "The regimes are those of film laws for smooth surfaces."
+
+REGIMES = f"Below 1 boundary, 1 to 3 mixed, above 3 full film. {REGRESSED}"
+"""What the bands of the lubrication regimes mean."""
 
 Points = tuple[np.ndarray, np.ndarray]
 

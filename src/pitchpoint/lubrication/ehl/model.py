@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 from jax.typing import ArrayLike
@@ -21,18 +22,20 @@ from pitchpoint.lubrication.ehl.texture import (
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.fluid import (
     USUAL_DENSITY,
+    USUAL_SHEAR_STRESS,
     USUAL_VISCOSITY,
     Fluid,
 )
 from pitchpoint.materials.lubricants import Lubricant
 
-__all__ = ["SMOOTH", "USUAL_SHEAR", "FilmModel"]
+__all__ = ["SMOOTH", "FilmModel"]
 
 SMOOTH = "none"
 """Name of no asperities: the surfaces count as smooth, whatever their roughness."""
 
-USUAL_SHEAR = "ree_eyring_1955"
-"""Shear law of gear contacts unless another is chosen: a Newtonian oil draws far too much there."""
+
+COLDEST: Final = -100.0
+"""Temperature [degC] below which no oil flows, and degC may have been given for kelvin."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +62,7 @@ class FilmModel:
     nodes: int = NODES
     viscosity_law: str = USUAL_VISCOSITY
     density_law: str = USUAL_DENSITY
-    shear_law: str = USUAL_SHEAR
+    shear_law: str = USUAL_SHEAR_STRESS
     shear_parameters: Mapping[str, float] = field(default_factory=dict)
     asperities: str = USUAL_ASPERITIES
     eta_beta_sigma: float = ETA_BETA_SIGMA
@@ -149,8 +152,9 @@ def _check(oil: Lubricant, temperature: ArrayLike, roughness_rq: ArrayLike) -> N
     if not np.all(np.asarray(oil.in_range(warm))):
         low, high = (float(np.min(np.asarray(one))) - 273.15 for one in (oil.T_min, oil.T_max))
         worst = warm.reshape(-1)[np.argmax(np.abs(warm - 0.5 * (oil.T_min + oil.T_max)))] - 273.15
+        kelvin = "; temperatures are in kelvin" if worst < COLDEST else ""
         raise InputError(
-            f"an oil at {worst:.4g} degC, whose values are meant for {low:.4g} to {high:.4g} degC",
+            f"an oil at {worst:.4g} degC, whose values are meant for {low:.4g} to {high:.4g} degC{kelvin}",
             key="temperature",
         )
     rq = np.asarray(roughness_rq)

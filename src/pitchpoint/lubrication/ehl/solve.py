@@ -196,7 +196,7 @@ def solve_lines(
                 progress(done, closes.size)
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
-    told = tuple(warnings(flat, film, ended.code == Code.SOLVED, ended.grid, size))
+    told = tuple(warnings(flat, film, ended.code, ended.grid, size))
     film, ended = (
         jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), one)
         for one in (film, ended)
@@ -290,7 +290,7 @@ def _before(contact: LineContact) -> Array:
         rests = (contact.speed_a == 0.0) & (contact.speed_b == 0.0)
         code = jnp.where(rests & (code == Code.SOLVED), Code.NO_STEADY_HEAT, code)
     code = jnp.where(contact.line_load <= 0.0, Code.UNLOADED, code)
-    return jnp.where(jnp.all(numbers), code, Code.NOT_FINITE)
+    return jnp.where(jnp.all(numbers), code, Code.NO_NUMBER)
 
 
 def _solved(
@@ -396,8 +396,13 @@ def _without_profiles(film: LineFilm) -> LineFilm:
     return found
 
 
-def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
+def _begin(start: object, count: int, nodes: int) -> tuple[Any, Any]:
     """Pressures along the grid and films in the middle from which solves begin."""
+    if not isinstance(start, Films):
+        raise InputError(
+            f"a start of type {type(start).__name__} is no films; `films_of_dataset` makes some of a dataset "
+            "of `film_dataset`"
+        )
     across, given = np.shape(start.film.pressure)[-1], start.ended.code.size
     if not across or given != count:
         raise InputError(

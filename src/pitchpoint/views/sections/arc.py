@@ -23,7 +23,7 @@ from pitchpoint.views.figures import (
     merged,
     short_axis,
 )
-from pitchpoint.views.lines import regimes, titled, values_of
+from pitchpoint.views.lines import REGIMES, regimes, titled, values_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.section import Block, Page, Paragraph, Section
 from pitchpoint.views.way import at_origin, beside, place_of
@@ -39,7 +39,7 @@ _ARC = {
     "entrainment": "Mean speed of both flanks against their contact; it draws the oil in.",
     "sliding_velocity": "",
     "film_thickness": "",
-    "lambda_ratio": "Below 1 boundary, 1 to 3 mixed, above 3 full film.",
+    "lambda_ratio": REGIMES,
     "friction": "",
     "loss": "Loss of the one tooth that is at this place.",
 }

@@ -27,7 +27,7 @@ from pitchpoint.views.figures import (
     plain,
     short_axis,
 )
-from pitchpoint.views.lines import folded, gapped, regimes, titled
+from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.screen import head, shown
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section, Table
@@ -44,19 +44,23 @@ _FIGURES = (
 )
 _PARTS = {
     "mean_film_friction": ("mean_boundary_part",),
-    "mean_film_loss": ("mean_film_sliding_loss", "mean_film_rolling_loss"),
+    "mean_film_loss": ("mean_film_sliding_loss",),
 }
 """Figures with the parts that stand under them."""
 
 _BESIDE = {
     "mean_film_friction": "mean_law_friction",
     "mean_film_loss": "mean_law_loss",
+    "mean_film_rolling_loss": "mean_law_rolling_loss",
     "film_efficiency": "law_efficiency",
 }
 """Figures by the films, and the same by a friction law."""
 
 _WARMTH = ("largest_film_rise", "largest_flash_rise")
 """Figures of films that are no isothermal ones."""
+
+_NOTES = ("below_hertz", "other_rolling")
+"""Attributes with sentences under the figures of the films."""
 
 _SEEN = 0.01
 """Part of the largest pressure of the cycle from which on a profile is seen without zooming out."""
@@ -74,6 +78,8 @@ def film_answer(outcome: Outcome) -> str:
         f"{_told(data, 'smallest_film')} at least, {_told(data, 'smallest_lambda')} of Rq; asperities "
         f"carry up to {_told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
+    if assumed := str(data.attrs["assumed"]):
+        told = f"{told}; {assumed}"
     if not np.isfinite(float(data["mean_film_loss"])):
         return f"{told}; loss and efficiency are withheld, some films were not found"
     friction, loss = (_told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
@@ -157,7 +163,7 @@ def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
     return Figure(name, title, _pressure_lines(data, first), axes, SPIKE, tuple(keys), NONE)
 
 
-SPIKE = "The largest pressure is that of one node, at the spike where there is one: finer grids have more."
+SPIKE = "A spike is resolved by few nodes: its height changes with the grid."
 
 
 def _warm_profile(name: str, data: xr.Dataset) -> Figure:
@@ -352,7 +358,8 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
     given |= dict(zip(_film_keys(data), by_law, strict=True))
     lines = [(key, _line(data, "minimum_lambda", key, values)) for key, values in given.items()]
     title = "Film over composite Rq, and lubrication regimes"
-    figure = _figure(name, title, "minimum_lambda", lines, axis, MOST)
+    note = f"{MOST} {REGRESSED} What asperities carry stands in the next figure."
+    figure = _figure(name, title, "minimum_lambda", lines, axis, note)
     figure.layout.setdefault("shapes", [])
     figure.layout.setdefault("annotations", [])
     regimes(figure.layout, figure.data)
@@ -425,8 +432,9 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "warning",
         )
     yield _table(outcome)
-    if other := str(data.attrs["other_rolling"]):
-        yield Paragraph(other, "note")
+    if assumed := _assumed(data):
+        yield Paragraph(assumed, "note")
+    yield from (Paragraph(data.attrs[name], "note") for name in _NOTES if data.attrs[name])
     yield Paragraph(_thinnest(data), "note")
     if _overlap(data):
         yield Paragraph(OVERLAP, "note")
@@ -546,6 +554,7 @@ def _row(
     symbols = {
         "mean_film_friction": "μ mean",
         "mean_film_loss": "P [W]",
+        "mean_film_rolling_loss": "of it rolling [W]",
         "film_efficiency": "η [%]",
     }
     return {symbols[head]: shown(name, float(data[name].values[at]), data) for head, name in pairs}
@@ -554,7 +563,23 @@ def _row(
 def _counted(data: xr.Dataset) -> str:
     found, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
     told = f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
-    return f"{told} {OVERLAP}" if _overlap(data) else told
+    return " ".join(
+        filter(
+            None,
+            (
+                told,
+                _assumed(data),
+                str(data.attrs["below_hertz"]),
+                OVERLAP if _overlap(data) else "",
+            ),
+        )
+    )
+
+
+def _assumed(data: xr.Dataset) -> str:
+    """What rests on assumed asperities, as a sentence; empty if nothing does."""
+    told = str(data.attrs["assumed"])
+    return f"{told[0].upper()}{told[1:]}." if told else ""
 
 
 def _overlap(data: xr.Dataset) -> bool:

@@ -22,7 +22,7 @@ from pitchpoint.views.figures import (
     merged,
     short_axis,
 )
-from pitchpoint.views.lines import SHORT, Points, gapped, regimes, titled, values_of
+from pitchpoint.views.lines import REGIMES, SHORT, Points, gapped, regimes, titled, values_of
 from pitchpoint.views.path import PathOfContact, marks, path_of
 from pitchpoint.views.section import Block, Page, Paragraph, Section
 from pitchpoint.views.where_lost import where_lost
@@ -35,7 +35,7 @@ _ALONG = {
     "sliding_velocity": "",
     "pressure": "",
     "film_thickness": "",
-    "lambda_ratio": "Below 1 boundary, 1 to 3 mixed, above 3 full film.",
+    "lambda_ratio": REGIMES,
     "friction": "",
     "loss": "Loss of the one pair that is at this place.",
 }
