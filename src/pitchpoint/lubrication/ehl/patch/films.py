@@ -7,18 +7,17 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
-from jaxtyping import Array
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import Layout, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
-from pitchpoint.lubrication.ehl.patch.response import Settled, polished, settled
+from pitchpoint.lubrication.ehl.patch.response import polished, settled
 from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, shown_film, solve
-from pitchpoint.programs import fast_program
+from pitchpoint.programs import program
 from pitchpoint.status import Code
 
 __all__ = ["CELLS", "NODES", "PatchEnded", "PatchFilms", "film_near", "solve_patch"]
@@ -118,10 +117,11 @@ def solve_patch(
     code = _before(own)
     layout, problem, state = solve(own, nodes, cells, progress)
     held = np.where(dry_pressure(problem) > 0.0, 1.0, 0.0)
+    end = _settled(problem, array(state.pressure), array(state.level), array(held))
     # Plain numbers would be constants of the program, which would be made anew for each contact.
     lies_at = jax.tree.map(array, layout)
-    given = own, lies_at, problem, array(state.pressure), array(state.level), array(held)
-    film, end = jax.tree.map(np.asarray, _film(*given))
+    given = own, lies_at, problem, end.pressure, end.level, array(held)
+    film = jax.tree.map(np.asarray, _film(*given, (end.stiffness, end.damping)))
     if code == Code.SOLVED and not (end.rest < ENOUGH and abs(end.load) < ENOUGH):
         code = Code.NOT_CONVERGED
     if code != Code.SOLVED:
@@ -154,20 +154,8 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     return _back(patch_film(*given, blank), films.turned)
 
 
-def _fields(
-    contact: PatchContact,
-    layout: Layout,
-    problem: Problem,
-    pressure: Array,
-    level: Array,
-    held: Array,
-) -> tuple[PatchFilm, Settled]:
-    end = settled(problem, pressure, level, held)
-    response = end.stiffness, end.damping
-    return patch_film(contact, layout, problem, end.pressure, end.level, held, response), end
-
-
-_film = fast_program(_fields)
+# Both run once for a solution: it is quicker to compile them quickly.
+_settled, _film = program(settled), program(patch_film)
 
 
 # ---- how a contact lies
