@@ -11,7 +11,7 @@ from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.lubrication.ehl.reynolds import at_faces, upwind
 
-__all__ = ["ALONG", "ACROSS", "Stencil", "balance", "stencil"]
+__all__ = ["ACROSS", "ALONG", "Stencil", "balance", "stencil"]
 
 Field = Float[Arrays, "y x"]
 Inner = Float[Array, "y inner"]
@@ -31,7 +31,7 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
         problem: the contact.
         oil: pressure of the oil, shape (y, x).
         gap: of the mean planes, shape (y, x).
-        rate: one over the time, in units of half-width and speed, in which the oil under a cell can change: it
+        rate: one over the time, in units of length and speed, in which the oil under a cell can change: it
             leaves the balance as it is and ties its changes; zero for a steady film.
 
     Returns:
@@ -88,23 +88,22 @@ def stencil(
 
     Cells that no balance knows together are moved together: sixteen directions find all.
     """
-
     found, by, own = jax.linearize(
         lambda pressure, height: balance(problem, pressure, height, rate), oil, gap, has_aux=True
     )
     still = jnp.zeros_like(oil)
-    moved = _colours(oil.shape)
+    moved = _colours(*oil.shape)
     by_oil = _sorted(jax.lax.map(lambda one: by(one, still), moved))
     return found, own, by_oil, _sorted(jax.lax.map(lambda one: by(still, one), moved))
 
 
-def _colours(shape: tuple[int, int]) -> Array:
+def _colours(rows: int, nodes: int) -> Array:
     """Directions in which cells move together, shape (16, y, x)."""
-    rows, nodes = (
+    across, along = (
         (jnp.arange(number) % reach == jnp.arange(reach)[:, None]) * 1.0
-        for number, reach in zip(shape, (ACROSS, ALONG), strict=True)
+        for number, reach in ((rows, ACROSS), (nodes, ALONG))
     )
-    return (rows[:, None, :, None] * nodes[None, :, None, :]).reshape(-1, *shape)
+    return (across[:, None, :, None] * along[None, :, None, :]).reshape(-1, rows, nodes)
 
 
 def _sorted(found: Array) -> Stencil:

@@ -24,7 +24,7 @@ from pitchpoint.lubrication.ehl.texture import Smooth
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.programs import fast_program
 
-__all__ = ["FEWEST", "Layout", "Problem", "laid_out", "ladder", "problem_on"]
+__all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on"]
 
 Field = Float[Arrays, "y x"]
 
@@ -42,9 +42,6 @@ END_CELL: Final = 0.1
 
 SPREAD: Final = 4.0
 """Square of what a film adds to the length of a contact, over radius and film."""
-
-HALF: Final = 0.5
-"""Length of the dry contact, over that with a thick film, from which a solution is looked for."""
 
 TRIAL: Final = (65, 64)
 """Grid of the dry contact that tells where a line carries."""
@@ -71,11 +68,9 @@ class Layout(NamedTuple):
         first, last: its ends across [m].
         end: width of the first and the last cell of a line that ends there [m]; None for uniform cells.
         length: half-width of the contact along x, with what a thick film adds to it; unit of length [m].
-        pressure: largest one of the dry contact, but for edges, and less for thick films; unit of pressures
-            [Pa].
+        pressure: largest one of the dry contact, but for edges, and less for thick films; unit of
+            pressures [Pa].
         film: guess of it in the middle [m].
-        softer: modulus of the bodies over that of bodies on which a dry contact is half as long as the one with
-            a thick film; one of thin films.
     """
 
     inlet: float
@@ -86,7 +81,6 @@ class Layout(NamedTuple):
     length: float
     pressure: float
     film: float
-    softer: float
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
         """Half spaces on a grid of so many nodes along and cells across, in units of length.
@@ -134,8 +128,7 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
     length, reach = half_width * longer, BESIDE * side * wider
     ends = -inlet * length, OUTLET * length
-    softer = max(1.0, HALF * longer) ** 2 * max(1.0, HALF * wider)
-    return Layout(*ends, -reach, reach, None, length, pressure / (longer * wider), film, softer)
+    return Layout(*ends, -reach, reach, None, length, pressure / (longer * wider), film)
 
 
 def _of_line(contact: PatchContact, cells: int) -> Layout:
@@ -151,8 +144,7 @@ def _of_line(contact: PatchContact, cells: int) -> Layout:
     end = END_CELL * length
     fine = not reaches or end >= (last - first) / cells * (1.0 - 1e-6)
     cell = None if fine else end
-    softer = max(1.0, HALF * longer) ** 2
-    return Layout(*ends, first, last, cell, length, pressure / longer, film, softer)
+    return Layout(*ends, first, last, cell, length, pressure / longer, film)
 
 
 def _longer(contact: PatchContact, radius: float, film: float, half_width: float) -> float:
@@ -190,7 +182,7 @@ def entrainment_of(contact: PatchContact) -> NDArray[np.float64]:
 
 
 def _carrying(contact: PatchContact) -> tuple[float, float, tuple[float, float]]:
-    """Largest half-width and pressure along a dry line, but for its edges, and from where to where it carries."""
+    """Largest half-width and pressure along a dry line, but for its edges, and from where on it carries."""
     length, radius = float(contact.length), float(np.mean(contact.radius))  # type: ignore[arg-type]
     given = {"line_load": float(contact.load) / length, "radius": radius}
     half_width = float(line_half_width(**given, modulus=float(contact.modulus)))
@@ -245,6 +237,22 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
     return tuple(grids)
 
 
+class Coated(Smooth):
+    """Smooth surfaces that carry load where a trial lets them touch, so that it finds back.
+
+    A solution in which they carry any is that of a grid too coarse for the film.
+
+    Attributes:
+        stiff: pressure at a gap of zero, which grows in proportion from none at the least gap [Pa].
+    """
+
+    stiff: Float[Arrays, "..."]
+
+    def pressure(self, gap: Float[Arrays, "..."]) -> Float[Arrays, "..."]:
+        """Pressure that surfaces carry which touch [Pa]."""
+        return self.stiff * jnp.maximum(1.0 - gap / self.least, 0.0)
+
+
 class Problem(eqx.Module):
     """One contact on a grid, in units of its own length, pressure and speed.
 
@@ -257,7 +265,6 @@ class Problem(eqx.Module):
         yielding: deflection by a pressure of one on bodies with E' of one.
         load: over pressure and square of the length.
         film: guess of it, for a start.
-        softer: as in `Layout`.
         speed: unit of speed [m/s].
         length: unit of length [m].
     """
@@ -270,7 +277,6 @@ class Problem(eqx.Module):
     yielding: Float[Arrays, ""]
     load: Float[Arrays, ""]
     film: Float[Arrays, ""]
-    softer: Float[Arrays, ""]
     speed: Float[Arrays, ""]
     length: Float[Arrays, ""]
 
@@ -281,9 +287,10 @@ class Problem(eqx.Module):
     def thicker(self, factor: float) -> Problem:
         """The same contact at a speed at which its film is so many times as thick."""
         changed = self.flow.resistance * factor ** (1.0 / BY_SPEED), self.film * factor
-        return eqx.tree_at(
+        found: Problem = eqx.tree_at(
             lambda one: (one.flow.resistance, one.film), self, tuple(map(array, changed))
         )
+        return found
 
     def mean(self, field: Field, where: Field) -> Array:
         """Mean of a field over some cells."""
@@ -306,7 +313,7 @@ def problem_on(
     fluid: Any = contact.fluid
     flow = Flow(
         fluid,
-        contact.texture or Smooth(array(LEAST * film)),
+        contact.texture or Coated(array(LEAST * film), array(pressure)),
         array(pressure),
         array(height),
         12.0 * fluid.viscosity * unit * radius**2 / (length**3 * pressure),
@@ -323,7 +330,6 @@ def problem_on(
         pressure * length / (height * contact.modulus),
         contact.load / (pressure * length**2),
         array(film / height),
-        array(layout.softer),
         array(unit),
         array(length),
     )

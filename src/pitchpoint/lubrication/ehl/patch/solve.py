@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array
 from numpy.typing import NDArray
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import pressed
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
@@ -33,7 +33,7 @@ BED: Final = 0.3
 """Part of film and Rq by which the layer of a start yields to the unit of pressures."""
 
 SHOWN: Final = 0.8
-"""Least film of a coarse grid, over the gap that opens within a cell beside a contact: its step to the power 1.5."""
+"""Least film of a coarse grid over its step to the power 1.5, as the gap opens in a cell beside a contact."""
 
 STRIDE: Final = 4.0
 """Film over the one that is looked for from it."""
@@ -102,7 +102,8 @@ def _bedded(problem: Problem, bed: float) -> HalfSpace:
     spectrum = spectrum + soft / len(spectrum) * np.eye(spectrum.shape[-1])
     rows[:, 0] += soft
     changed = tuple(map(array, (spectrum, np.asarray(bodies.own) + soft, rows)))
-    return eqx.tree_at(lambda one: (one.spectrum, one.own, one.rows), bodies, changed)
+    found: HalfSpace = eqx.tree_at(lambda one: (one.spectrum, one.own, one.rows), bodies, changed)
+    return found
 
 
 def _mean_gap(problem: Problem, dry: NDArray[np.float64], pressure: Any, level: Any) -> float:
@@ -199,7 +200,8 @@ class _Solver:
     def iterated(
         self, problem: Problem, start: tuple[Any, Any], time: float, longest: float = LONGEST_STEP
     ) -> State:
-        state = iterated(problem, *map(array, start), time, self.told, longest)
+        pressure, level = map(array, start)
+        state = iterated(problem, pressure, level, time, self.told, longest)
         self.steps += state.steps
         self.last = state._replace(steps=self.steps)
         return state
