@@ -190,6 +190,15 @@ _KINDS: dict[str, _Kind] = {
             "mW/m/K": "milliwatt/meter/kelvin",
         },
     ),
+    "specific heat": _Kind(
+        "a specific heat",
+        "460 J/kg/K",
+        {
+            "J/kg/K": "joule/kilogram/kelvin",
+            "J/(kg K)": "joule/kilogram/kelvin",
+            "kJ/kg/K": "kilojoule/kilogram/kelvin",
+        },
+    ),
     "pressure-viscosity coefficient": _Kind(
         "a pressure-viscosity coefficient",
         "22 1/GPa",

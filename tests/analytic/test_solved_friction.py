@@ -10,6 +10,7 @@ from sound import PAIR, WAVE
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.cycle import CYCLE
+from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
 from pitchpoint.analyses.running import RUNNING
@@ -23,10 +24,12 @@ from pitchpoint.efficiency.quasi_static import cycle, cycle_of
 from pitchpoint.efficiency.rows import NODES, one_engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.ehl import traction
 from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.traction import EHL_LINE, FilmTraction
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.status import Code
 
@@ -74,10 +77,11 @@ def test_films_and_forces_agree_as_in_a_loop_of_ones_own(spur):
     assert float(found.status.residual) <= 1e-6
     assert 2 <= int(found.status.iterations) <= 6
     carries = np.asarray(own.state.contacts.active)
-    coefficients, models = np.full(carries.shape, 0.05), case.models[0].without_friction
-    program = jax.jit(lambda held: cycle(case.design, case.operation, replace(models, held=held)))
+    coefficients, models = np.full(carries.shape, 0.05), case.models[0]
+    rolling = np.zeros(carries.shape)
+    program = jax.jit(lambda *held: cycle(case.design, case.operation, models.holding(*held)))
     for _ in range(6):
-        at = (found := program(jnp.asarray(coefficients))).state.conditions
+        at = (found := program(*map(jnp.asarray, (coefficients, rolling)))).state.conditions
         films = solve_lines(
             case.models[0].law.films.contacts(
                 line_load=np.asarray(at.line_load)[carries],
@@ -93,7 +97,9 @@ def test_films_and_forces_agree_as_in_a_loop_of_ones_own(spur):
         )
         drawn = np.abs(films.film.shear_force + films.film.boundary_force)
         coefficients[carries] = drawn / np.asarray(at.line_load)[carries]
+        rolling[carries] = films.film.rolling
     assert coefficients.max() > 0.01
+    assert rolling[carries].min() > 1.0
     held = np.asarray(own.state.balance.friction)
     np.testing.assert_allclose(held, coefficients * carries, rtol=3e-6, atol=1e-9)
     lost = 1.0 - float(own.mean_efficiency)
@@ -108,10 +114,36 @@ def test_the_energy_closes(spur):
     power = np.asarray(state.input_power - state.output_power)
     np.testing.assert_allclose(power, lost, rtol=1e-9, atol=1e-9 * float(state.output_power.max()))
     at = state.conditions
-    drawn = np.asarray(
-        state.balance.load * state.balance.friction * jnp.abs(at.speed_a - at.speed_b)
-    )
-    np.testing.assert_allclose(drawn.sum(axis=(0, 1)), lost, rtol=1e-12, atol=1e-12 * lost.max())
+    drawn = state.balance.load * state.balance.friction * jnp.abs(at.speed_a - at.speed_b)
+    rolled = state.balance.rolling * jnp.abs(at.speed_a + at.speed_b)
+    assert 0.02 * np.sum(drawn) < np.sum(rolled) < np.sum(drawn)
+    whole = np.asarray(drawn + rolled).sum(axis=(0, 1))
+    np.testing.assert_allclose(whole, lost, rtol=1e-12, atol=1e-12 * lost.max())
+
+
+def test_rolling_is_that_of_the_films_unless_the_case_has_a_model_of_it(spur):
+    _, _, by_film = spur
+    case = built(models={"rolling_resistance": "wu_cheng_1991"})
+    named = np.asarray(solved(case)[1].state.rolling_loss)
+    at = by_film.state.conditions
+    law = ROLLING_RESISTANCE["wu_cheng_1991"]
+    weight = np.asarray(by_film.state.contacts.weight)
+    expected = 2.0 * np.asarray(evaluate(law, at)) * weight * np.asarray(at.entrainment)
+    carries = np.asarray(by_film.state.contacts.active)
+    np.testing.assert_allclose(named[carries], expected[carries], rtol=1e-4)
+    off = np.abs(np.asarray(by_film.state.rolling_loss)[carries] / named[carries] - 1.0)
+    assert 0.01 < off.max() < 0.15
+
+
+@pytest.mark.parametrize("text", [PAIR, WAVE], ids=["spur", "strain wave"])
+def test_loss_and_efficiency_are_those_of_the_films_over_the_cycle(text):
+    case = built(text, film={"solver": "line", "nodes": 33})
+    parts = [FILM.compute(case, piece, lambda _: None) for piece in FILM.pieces(case)]
+    data = FILM.joined(case, parts)
+    assert data["mean_film_rolling_loss"].item() > 0.02 * data["mean_film_loss"].item()
+    assert data["mean_law_loss"].item() == pytest.approx(data["mean_film_loss"].item(), rel=1e-5)
+    lost = [1.0 - data[name].item() for name in ("law_efficiency", "film_efficiency")]
+    assert lost[0] == pytest.approx(lost[1], rel=1e-5)
 
 
 def coefficients(model, thinner=1.0, sliding=0.5):
@@ -140,10 +172,39 @@ def test_smooth_flanks_in_a_thin_oil_have_hardly_any_friction():
     assert (rough < COARSE.boundary_friction).all()
 
 
+def test_films_of_all_turns_are_counted():
+    one, counted = np.ones(2), []
+    oil = lubricants.find("pao-vg-100").build()
+    law = FilmTraction(COARSE, oil, 353.15, rolling=True, progress=counted.append)
+    for _ in range(2):
+        found = law(
+            line_load=1e5 * one,
+            radius=0.01 * one,
+            modulus=226e9 * one,
+            speed_a=np.array([4.0, -4.0]),
+            speed_b=np.array([3.0, -3.0]),
+            roughness_rq=0.4e-6 * one,
+        )
+    assert counted == [2, 4]
+    np.testing.assert_allclose(found[:, 0], found[:, 1], rtol=1e-9)
+    assert (found > 0.0).all()
+
+
 def test_films_are_solved_by_the_choices_of_the_case():
     chosen = {"solver": "line", "nodes": 65, "boundary_friction": 0.08}
     films = built(film=chosen).models[0].law.films
     assert films == FilmModel(nodes=65, boundary_friction=0.08, inlet=2e-3)
+
+
+def test_points_of_a_sweep_have_films_by_their_own_choices():
+    film = {"solver": "line", "nodes": 33}
+    points = [built(film={**film, "boundary_friction": one}) for one in (0.05, 0.1)]
+    points.append(built(film={**film, "inlet": "0.12 mm"}))
+    swept = summaries(points, points[0].models, {}, title="sweep")["mean_loss"].values[0]
+    alone = [summarise([(one.design, one.operation)], one.models[0])["mean_loss"] for one in points]
+    np.testing.assert_array_equal(swept, np.concatenate(alone))
+    assert swept[1] > 1.05 * swept[0]
+    assert swept[2] != pytest.approx(swept[1], rel=1e-3)
 
 
 def test_a_film_that_was_not_solved_gives_no_numbers(monkeypatch):
@@ -208,12 +269,14 @@ def test_a_map_between_levels_is_the_polynomial_through_them():
     grid = law(*np.meshgrid(*map(np.exp, axes[:2]), axes[2], indexing="ij"))
     films = FilmMap(axes, np.multiply.outer(grid, np.arange(1.0, 7.0).reshape(2, 1, 3)))
     speeds, degrees = np.array([6.0, 11.0]), np.array([310.0, 333.0, 350.0])
-    found = films.at(25.0, speeds, degrees)
+    (found,) = films.at(25.0, speeds, degrees)
     assert found.shape == (2, 1, 2, 3, 3)
     expected = law(25.0, *np.meshgrid(speeds, degrees, indexing="ij"))
     np.testing.assert_allclose(found[1, 0, :, :, 0], 4.0 * expected, rtol=1e-12)
-    ends = films.at(0.0, np.array([1.0, 5.0]), np.array([300.0]))[0, 0, :, 0, 0]
-    np.testing.assert_allclose(ends, law(10.0, 5.0, 300.0), rtol=1e-12)
+    rolling = replace(films, rolling=2.0 * films.friction)
+    (ends, twice) = rolling.at(0.0, np.array([1.0, 5.0]), np.array([300.0]))
+    np.testing.assert_allclose(ends[0, 0, :, 0, 0], law(10.0, 5.0, 300.0), rtol=1e-12)
+    np.testing.assert_allclose(twice, 2.0 * ends, rtol=1e-12)
 
 
 def test_a_loss_map_rests_on_films_at_few_points():
@@ -242,7 +305,11 @@ def test_what_takes_a_formula_says_so():
     assert "very many operating points, and 'ehl_line' solves" in LOSS_MAP.lacks(case)
     beside = {"seal": {"between": ["gear 1", "housing"], "seal_torque": "0.1 N m"}}
     assert "very many operating points" in RUNNING.lacks(built(losses=beside))
-    assert "very many operating points" in LOSS_MAP.lacks(built(WAVE, loss_map={"count": 3}))
+    assert "very many operating points" in LOSS_MAP.lacks(built(WAVE))
+    with pytest.raises(
+        InputError, match="loss_map: teeth with gaps share each load in another way"
+    ):
+        built(WAVE, loss_map={"count": 3})
     with pytest.raises(InputError, match="a motion follows from the first friction law of a case"):
         built(dynamics={"damping_ratio": 0.1, "motion": {}})
     with pytest.raises(

@@ -7,10 +7,10 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import k0
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL, Conduction
-from pitchpoint.lubrication.ehl.heat import WARM_ENOUGH, spread
+from pitchpoint.lubrication.ehl.heat import WARM_ENOUGH, Spread
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import line_films, solve_lines
@@ -125,7 +125,7 @@ def across_by_differences(film, heat, a, b, conductivity, cells=400):
 def test_the_mean_film_is_that_of_heat_made_evenly_across_it():
     film, heat, conductivity = 0.4e-6, 3e9, 0.14
     cold = jnp.zeros((1, 1))
-    found = spread(jnp.array([film]), cold, cold, conductivity)
+    found = Spread(cold, cold, jnp.array([conductivity / film]))
     inside, into_a = across_by_differences(film, heat, 0.0, 0.0, conductivity)
     simpson = (
         inside[0] + inside[-1] + 4.0 * inside[1::2].sum() + 2.0 * inside[2:-1:2].sum()
@@ -138,7 +138,7 @@ def test_the_warmer_surface_takes_less_of_the_heat():
     """One cell: the temperatures of the surfaces and the heat into them agree with each other."""
     film, heat, conductivity = 0.4e-6, 3e9, 0.14
     a, b = jnp.array([[2e-9]]), jnp.array([[5e-8]])
-    found = spread(jnp.array([film]), a, b, conductivity)
+    found = Spread(a, b, jnp.array([conductivity / film]))
     into_a = float(found.to_a[0, 0]) * heat
     at_a, at_b = float(a[0, 0]) * into_a, float(b[0, 0]) * (heat - into_a)
     _, expected = across_by_differences(film, heat, at_a, at_b, conductivity)
@@ -277,9 +277,69 @@ def test_a_surface_that_stands_still_takes_no_heat_and_is_told(sliding):
     assert sliding[1].warnings == ()
 
 
+def test_an_oil_that_does_not_thin_is_told_where_it_is_warm():
+    dull = Fluid(**(OIL | {"viscosity_slope": 0.0}), shear_law="ree_eyring_1955")
+    told = solve_lines(contact(slide=np.array([0.1]), fluid=dull), nodes=65).warnings
+    assert told == (
+        "the temperature of the film is solved for with an oil that does not thin as it warms: its "
+        "`viscosity_slope` is 0 1/K",
+    )
+
+
 def test_profiles_can_be_left_out():
     heat = solve_lines(contact(slide=SLIDES), nodes=65, profiles=False).film.heat
     assert heat.film.shape == (9, 0) and heat.largest_film.shape == (9,)
+
+
+def test_gradients_of_warm_films_are_those_of_differences():
+    """To load, speeds, viscosity, thinning, and what conducts the heat; asperities carry a part."""
+
+    def answers(logarithms):
+        load, speed, slide, viscosity, slope, steel, oil = jnp.exp(logarithms)
+        fluid = Fluid(
+            viscosity=viscosity,
+            pressure_viscosity=2.2e-8,
+            viscosity_slope=slope,
+            shear_law="ree_eyring_1955",
+        )
+        body = Conductor(conductivity=steel, heat_capacity=3.64e6)
+        film = line_films(
+            LineContact(
+                line_load=load,
+                radius=0.01,
+                modulus=MODULUS,
+                speed_a=speed + slide,
+                speed_b=speed - slide,
+                fluid=fluid,
+                texture=Rough(rq=0.3e-6, modulus=MODULUS),
+                conduction=conduction(body, STEEL, oil),
+            ),
+            nodes=33,
+        )
+        forces = film.traction_a, film.friction, film.heat.largest_film, film.heat.power_a
+        return jnp.stack([film.mean_film, film.asperity_share, *forces])
+
+    at = jnp.log(jnp.array([3e5, 3.0, 0.6, 0.04, 0.04, 46.0, 0.14]))
+    compiled = jax.jit(answers)
+    slopes = np.asarray(jax.jit(jax.jacfwd(answers))(at))
+    scale = np.abs(slopes).max(axis=1)
+    for k in range(at.size):
+        e = 1e-3 * np.eye(at.size)[k]
+        one, two = (compiled(at + n * e) - compiled(at - n * e) for n in (1.0, 2.0))
+        difference = np.asarray(8.0 * one - two) / 12e-3
+        np.testing.assert_allclose(slopes[:, k] / scale, difference / scale, atol=1e-6)
+
+
+def test_films_that_can_be_differentiated_are_those_solved(sliding):
+    case, found = sliding
+    film = jax.jit(lambda one: line_films(one, nodes=65))(some(case, slice(2, 5)))
+    np.testing.assert_allclose(film.central_film, found.film.central_film[2:5], rtol=1e-6)
+    np.testing.assert_allclose(film.heat.film, found.film.heat.film[2:5], rtol=1e-5, atol=1e-5)
+
+
+def some(case, which):
+    every = np.shape(case.speed_a)
+    return jax.tree.map(lambda leaf: np.broadcast_to(leaf, every)[which], case)
 
 
 # ---- choices
@@ -322,7 +382,3 @@ def test_bad_input_is_one_sentence():
         solve_lines(contact(conduction=conduction(b=cold)), nodes=33)
     with pytest.raises(InputError, match="a conductivity of the oil of -1 W/m/K"):
         solve_lines(contact(conduction=conduction(oil=-1.0)), nodes=33)
-    with pytest.raises(
-        InputError, match="derivatives of films are known for isothermal ones alone"
-    ):
-        line_films(contact(), nodes=33)

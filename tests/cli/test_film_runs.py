@@ -7,23 +7,28 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from sound import PAIR
 
 from pitchpoint.analyses import film as solved
+from pitchpoint.analyses.film import _of_pieces
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.films import film_model
 from pitchpoint.cases.schema import FilmTable
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import Doubt, extent_of, kind_of
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import solve_lines
+from pitchpoint.materials.lubricants import find
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
 from pitchpoint.views.report import render
 from pitchpoint.views.sections.film import FILM as SECTION
+from pitchpoint.views.sections.film import film_answer
 
 CASE = f"""{PAIR}
 [models]
@@ -224,3 +229,83 @@ def test_ellipses_have_no_line_solver() -> None:
     with pytest.raises(InputError, match="ellipses have no line solver") as caught:
         load_case(TORUS, settings={"film.solver": "line"})
     assert caught.value.key == "film.solver"
+
+
+def piece(pressure: float, *told: Doubt) -> xr.Dataset:
+    doubts = [[kind_of(one), extent_of(one)] for one in told]
+    attributes = {"warnings": json.dumps(told), "doubts": json.dumps(doubts)}
+    return xr.Dataset({"film_pressure": ("point", [pressure] * 3)}, attrs=attributes)
+
+
+def test_of_warnings_of_a_kind_the_worst_one_is_told() -> None:
+    few, many = (Doubt(f"the grid is off by {one} %", "grid", one) for one in (4, 27))
+    short = Doubt("oil begins 1.1 half-widths before", "inlet", 10.0)
+    told = _of_pieces([piece(9e8, few), piece(5e8, many, short), piece(7e8, few)])
+    assert told == [
+        "Films, phases 4 to 6 of 9, and less at others: the grid is off by 27 %.",
+        "Films, phases 4 to 6 of 9: oil begins 1.1 half-widths before.",
+    ]
+
+
+def test_doubts_are_worse_where_films_are() -> None:
+    """Each of several contacts alone, and the worst of them among all."""
+    oil = find("pao-vg-100").build()
+    given = {"radius": 0.01, "modulus": 226e9, "speed_a": 2.0, "speed_b": 1.0, "oil": oil}
+    line_load = np.array([3e4, 3e5, 1e5])
+    model = FilmModel(nodes=33, inlet=3e-4)
+
+    def told(some: np.ndarray) -> dict[str, Doubt]:
+        made = model.contacts(line_load=some, temperature=353.15, roughness_rq=0.0, **given)
+        return {kind_of(one): one for one in solve_lines(made, nodes=33, size=5e-4).warnings}
+
+    each, whole = [told(np.array([one])) for one in line_load], told(line_load)
+    assert {"pressure", "inlet", "wide against the size of a tooth"} <= whole.keys()
+    for kind, one in whole.items():
+        assert one.extent == pytest.approx(
+            max(alone[kind].extent for alone in each if kind in alone)
+        )
+    assert str(whole["inlet"]).startswith("oil begins")
+
+
+def test_heat_that_isothermal_films_leave_out_is_told(outcome: Outcome, case: str) -> None:
+    """The estimate beside the film that is solved with its heat; nothing where it is small."""
+    (mild,) = (text for text in warnings_of(outcome) if "isothermal" in text)
+    assert mild.endswith("as warm as that in its inlet.")
+    harder = {"operation.torque": "250 N m", "operation.speed": "3000 rpm"}
+    hard = running.run(case, settings=harder)["default"]
+    (cold,) = (text for text in warnings_of(hard) if "isothermal" in text)
+    estimated = float(cold.partition("up to about ")[2].partition(" K")[0])
+    warm = running.run(case, settings={**harder, "film.thermal": "mean_film"})["default"]
+    assert not any("isothermal" in text for text in warnings_of(warm))
+    film, flash = (float(warm.parts["film"][f"largest_{one}_rise"]) for one in ("film", "flash"))
+    assert 10.0 < film < estimated < 1.5 * film
+    assert 0.3 * film < flash < 1.1 * film
+    rise, surfaces = (
+        warm.parts["film"][name].values for name in ("profile_rise", "profile_surface_rise_1")
+    )
+    assert np.nanmax(rise) <= film * (1.0 + 1e-12)
+    assert np.nanmax(surfaces) <= flash * (1.0 + 1e-12)
+    assert "Temperatures above the inlet" in render({"default": warm})
+    assert "Temperatures above the inlet" not in render({"default": hard})
+    assert "warmer than their inlet" in film_answer(warm)
+    assert "warmer than their inlet" not in film_answer(hard)
+
+
+def test_the_thinnest_film_is_named_and_dry_contacts_are_marked(
+    outcome: Outcome, case: str
+) -> None:
+    data, page = outcome.parts["film"], render({"default": outcome})
+    phase, pair, _ = np.unravel_index(np.nanargmin(data["minimum_film"].values), data["load"].shape)
+    number = ("I", "II", "III")[int(pair)]
+    at = f"{float(data['phase'][phase]) % 1.0:.3f}, pair {number}"
+    assert f"The thinnest film is at phase {at}: " in page
+    assert "±b of the dry contact" in page
+    modulus, shown = float(load_case(case).design.modulus), data["shown_pair"].values
+    hertz, radius = (data[name].values[:, shown, 0] for name in ("pressure", "radius"))
+    expected = np.where(np.isfinite(hertz), 4.0 * hertz * radius / modulus, np.nan)
+    assert np.isfinite(expected).any()
+    np.testing.assert_allclose(data["profile_half_width"].values, expected, rtol=1e-9)
+
+
+def warnings_of(outcome: Outcome) -> list[str]:
+    return json.loads(outcome.parts["film"].attrs["warnings"])

@@ -147,10 +147,14 @@ def test_the_table_of_commands_is_whole() -> None:
         assert set(re.findall(r"(--?[a-z]+)", words)) <= known
 
 
-def test_films_without_any_gear(capsys: pytest.CaptureFixture[str]) -> None:
+def test_films_without_any_gear(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
     (block,) = (text for kind, text in BLOCKS if kind == "python" and "solve_lines" in text)
     exec(compile(block, "README.md", "exec"), {})
     assert capsys.readouterr().out.splitlines()[-1].startswith("True ")
+    assert (tmp_path / "films.nc").is_file()
 
 
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

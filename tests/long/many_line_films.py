@@ -13,8 +13,9 @@ from collections import Counter
 import numpy as np
 from scipy.stats import qmc
 
+from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.line import LineContact
-from pitchpoint.lubrication.ehl.solve import WIDE, solve_lines
+from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials.fluid import Fluid

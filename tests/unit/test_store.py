@@ -34,7 +34,11 @@ def every_kind() -> xr.Dataset:
             "no_texts": (("none",), np.array([], str)),
             "square": (("pair", "slice"), np.eye(2)),
         },
-        {"law": ["xu_2007", "η"], "torque": [10.0, 50.0]},
+        {
+            "law": ["xu_2007", "η"],
+            "torque": [10.0, 50.0],
+            "place": (("pair", "slice"), np.array([[0.0, 1.0], [2.0, np.nan]])),
+        },
         title="",
         warnings=["ä" * 70_000],
         turns=3,

@@ -16,6 +16,7 @@ from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited
 from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.film_thickness import FilmThickness
+from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.status import Code
@@ -23,6 +24,7 @@ from pitchpoint.status import Code
 __all__ = [
     "asperity_warning",
     "beyond_face",
+    "cold_warning",
     "conformal_warning",
     "demand_convergence",
     "demand_films",
@@ -281,6 +283,52 @@ def _proportions(points: Sequence[Built]) -> list[str]:
 def film_warning(film: FilmThickness, run: Mapping[str, np.ndarray]) -> list[str]:
     """Conditions that leave the range of the film law, which answers there too."""
     return told_of_law(film, [f"{one}; its film is an extrapolation" for one in _leaves(film, run)])
+
+
+def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
+    """That films are isothermal, and how warm they would become where that is much.
+
+    Args:
+        built: with materials and oil.
+        run: pressure, radius, entrainment, sliding velocity, film thickness and friction of contacts.
+    """
+    warmest = np.nanmax(_rise(built, run), initial=0.0)
+    if warmest < WARM:
+        return f"{COLD}."
+    return (
+        f"{COLD}; its friction would warm it by up to about {warmest:.2g} K, so that friction comes out too "
+        'high; thermal = "mean_film" in [film] takes the heat along.'
+    )
+
+
+COLD = "The films are isothermal: the oil in a contact is as warm as that in its inlet"
+
+WARM = 10.0
+"""Rise of temperature from which on it is told that isothermal films leave it out [K]."""
+
+
+def _rise(built: Built, run: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Estimate of the rise of films above their inlet [K], zero where what conducts heat is not known.
+
+    Flash temperature of both surfaces by the heat of friction, evenly over the dry contact, and the mean over
+    the film above it, q h/(12 k).
+    """
+    try:
+        a, b = (Conductor.of(used.record) for used in built.solids)
+    except InputError:
+        return np.zeros(1)
+    entrainment, sliding = (np.abs(run[name]) for name in ("entrainment", "sliding_velocity"))
+    heat = np.pi / 4.0 * run["pressure"] * run["friction"] * sliding
+    # Half-width 4 p R/E' of a dry line contact.
+    half_width = 4.0 * run["pressure"] * run["radius"] / float(built.design.modulus)
+    speeds = entrainment + 0.5 * sliding, np.abs(entrainment - 0.5 * sliding)
+    flash = shared_flash(
+        heat=heat, half_width=half_width, speed_a=speeds[0], speed_b=speeds[1], bodies=(a, b)
+    )
+    within = np.maximum(run["film_thickness"], 0.0) / (
+        12.0 * float(built.design.lubricant.conductivity)
+    )
+    return np.where(heat > 0.0, np.asarray(flash) + heat * within, 0.0)
 
 
 def asperity_warning(law: AsperityLoad | None, run: Mapping[str, np.ndarray]) -> list[str]:

@@ -9,6 +9,7 @@ from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.caveats import (
     asperity_warning,
     beyond_face,
+    cold_warning,
     conformal_warning,
     demand_convergence,
     demand_motion,
@@ -21,6 +22,7 @@ from pitchpoint.analyses.caveats import (
 )
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code, locked_or_lost
 from pitchpoint.status import told as told_of
@@ -30,8 +32,19 @@ __all__ = [
 ]
 
 
-def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
-    runs, names = profiles(built, built.models), built.law_names
+def _cold(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:
+    """What isothermal films of a friction law leave out; a table of films says it of its own."""
+    if built.case.film is not None:
+        return []
+    return [
+        cold_warning(built, run)
+        for law, run in zip(built.laws, runs, strict=True)
+        if law.films is not None and law.films.thermal == ISOTHERMAL
+    ]
+
+
+def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+    runs, names = profiles(built, built.models, progress), built.law_names
     demand_motion(*_jammed(runs), [built], names)
     mesh = built.design.mesh
     demand_convergence(np.stack([run["residual"] for run in runs]), [built], names)
@@ -56,6 +69,7 @@ def _cycle(built: Built, _: Piece, __: Progress) -> xr.Dataset:
         for law, run in zip(built.laws, runs, strict=True)
         for text in told_of_law(law, why_outside(built, law, run))
     ]
+    warnings += _cold(built, runs)
     warnings += film_warning(built.film, runs[0])
     warnings += asperity_warning(built.asperities, runs[0])
     warnings += conformal_warning(mesh, runs[0])

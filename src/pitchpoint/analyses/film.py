@@ -1,7 +1,6 @@
 """Films of the contacts of a mesh solved over its cycle, beside film laws and friction laws."""
 
 import json
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -13,9 +12,8 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.analyses.caveats import conformal_warning
+from pitchpoint.analyses.caveats import cold_warning, conformal_warning
 from pitchpoint.cases.build import Built, tooth_size
-from pitchpoint.cases.films import film_model
 from pitchpoint.cases.schema import FilmTable
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.in_turns import balance_under
@@ -32,6 +30,7 @@ from pitchpoint.efficiency.summary import engaged
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
+from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
@@ -61,10 +60,9 @@ SHOWN_ALIKE = 6
 SHOWN = 4
 """Pairs whose profiles are kept: those that carry most."""
 
-COLD = "The films are isothermal: the oil in a contact is as warm as that in its inlet."
-
 _LANES = ("phase", "pair", "slice")
 _OF_PIECE = ("point", "pair", "slice")
+_OF_PROFILE = ("point", "shown", "node")
 _MASKED = ("pressure", "friction", "film_by_law")
 _PROFILES = {
     "profile_place": "x",
@@ -72,6 +70,12 @@ _PROFILES = {
     "profile_pressure": "pressure",
     "profile_asperity_pressure": "asperity_pressure",
 }
+_WARM_PROFILES = {
+    "profile_rise": "film",
+    "profile_surface_rise_1": "surface_a",
+    "profile_surface_rise_2": "surface_b",
+}
+"""Profiles of films that are solved with their heat, which are along the same places."""
 
 
 def _asked(built: Built) -> FilmTable:
@@ -207,10 +211,11 @@ def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
         {
             **{name: (_OF_PIECE, one) for name, one in values.items()},
             "film_status": (_OF_PIECE, codes),
-            **{name: (("point", "shown", "node"), one) for name, one in profiles.items()},
+            **{name: (_OF_PROFILE[: one.ndim], one) for name, one in profiles.items()},
         },
         {},
         warnings=list(films.warnings),
+        doubts=[[kind_of(text), extent_of(text)] for text in films.warnings],
         residual=_largest(films.ended.reynolds, films.solved),
         iterations=int(np.max(films.ended.iterations, initial=0)),
     )
@@ -243,8 +248,8 @@ def _solved(
 
 
 def _model(built: Built) -> FilmModel:
-    solids = [used.record for used in built.solids]
-    return film_model(_asked(built), solids, tooth_size(built.design.mesh))
+    assert built.film_model is not None
+    return built.film_model
 
 
 def _films(built: Built, given: np.ndarray, done: Done) -> Films:
@@ -278,12 +283,22 @@ def _values(
         "film_pressure": lane(film.largest_pressure),
         "asperity_share": lane(film.asperity_share),
         "film_rise": lane(0.0 * film.rolling if film.heat is None else film.heat.largest_film),
-        "film_friction": np.abs(drawn) / load,
+        "film_friction": lane(film.friction),
+        "flash_rise": lane(_flash(film)),
         "boundary_part": np.abs(lane(film.boundary_force)) / load,
         "rolling_resistance": rolling,
         "film_sliding_loss": drawn * sliding * some["weight_of_line"],
         "film_rolling_loss": rolling * (some["speed_a"] + some["speed_b"]),
     }
+
+
+def _flash(film: LineFilm) -> np.ndarray:
+    """Flash temperature of the warmer surface [K]; none of isothermal films."""
+    heat = film.heat
+    if heat is None:
+        return 0.0 * np.asarray(film.rolling)
+    warmer: np.ndarray = np.maximum(np.asarray(heat.largest_a), np.asarray(heat.largest_b))
+    return warmer
 
 
 def _kept(
@@ -292,12 +307,19 @@ def _kept(
     some: Mapping[str, np.ndarray],
     back: np.ndarray,
 ) -> dict[str, np.ndarray]:
-    """Profiles [phase, shown pair, node] of the slice of each pair that carries most."""
+    """Profiles [phase, shown pair, node] and half-width of the slice of each pair that carries most."""
     pairs = _shown(states)
     highest = np.argmax(some["load"][:, pairs], axis=-1)[..., None]
     which = np.take_along_axis(back[:, pairs], highest, axis=-1)
-    found = {name: np.asarray(getattr(film, own)) for name, own in _PROFILES.items()}
-    return {name: np.where(which < 0, np.nan, one[which[..., 0]]) for name, one in found.items()}
+    found = {name: getattr(film, own) for name, own in _PROFILES.items()}
+    if film.heat is not None:
+        found |= {name: getattr(film.heat, own) for name, own in _WARM_PROFILES.items()}
+    kept = {
+        name: np.where(which < 0, np.nan, np.asarray(one)[which[..., 0]])
+        for name, one in found.items()
+    }
+    width = np.where(which < 0, np.nan, np.asarray(film.half_width)[which])
+    return {**kept, "profile_half_width": width[..., 0]}
 
 
 def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -338,11 +360,12 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         },
         title="films",
         travels=built.travels,
-        warnings=[*_lost(codes[loaded]), *_of_pieces(parts), *_about(built, states)],
+        warnings=[*_lost(codes[loaded]), *_of_pieces(parts), *_about(built, states, found)],
         solve=told_of(told, _residuals(parts, told), _iterations(parts)),
         film_titles=[law.title for law in _laws()],
         film_places=[law.place for law in _laws()],
         choices=_choices(built),
+        other_rolling=_other_rolling(built),
         pitch=str(built.way["pitch"]),
     )
     data["path"].attrs.update(built.way)
@@ -425,6 +448,7 @@ def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "largest_film_pressure": "film_pressure",
         "largest_asperity_share": "asperity_share",
         "largest_film_rise": "film_rise",
+        "largest_flash_rise": "flash_rise",
     }
 
     def end(name: str, reduce: Any) -> Any:
@@ -494,26 +518,59 @@ def _lost(codes: np.ndarray) -> Iterator[str]:
 
 
 def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
-    """Warnings of all pieces, of a kind that of the one with the highest pressure, and where it is."""
+    """Warnings of all pieces: of a kind the worst one, and where it is."""
     ends = np.cumsum([0, *(part.sizes["point"] for part in parts)])
-    highest = [np.nanmax(part["film_pressure"].values, initial=0.0) for part in parts]
-    kinds: dict[str, list[str]] = {}
-    for k in np.argsort(highest)[::-1]:
+    kinds: dict[str, list[tuple[float, str, str]]] = {}
+    for k, part in enumerate(parts):
         where = f"phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}"
-        for text in json.loads(parts[k].attrs["warnings"]):
-            kind = re.sub(r"[\d.]+(e[+-]?\d+)?", "", text)
-            kinds.setdefault(kind, []).append(f"{where}: {text}")
-    return [
-        f"Films, {told[0].replace(':', ' and at others:', 1) if len(told) > 1 else told[0]}."
-        for told in kinds.values()
-    ]
+        told = zip(*(json.loads(part.attrs[name]) for name in ("doubts", "warnings")), strict=True)
+        for (kind, extent), text in told:
+            kinds.setdefault(kind, []).append((extent, where, text))
+    return [_worst(told) for told in kinds.values()]
 
 
-def _about(built: Built, states: Mapping[str, np.ndarray]) -> list[str]:
+def _worst(told: Sequence[tuple[float, str, str]]) -> str:
+    """The worst one of warnings of one kind, of extent, place and words."""
+    _, where, text = max(told, key=lambda one: one[0])
+    others = ", and less at others" if len(told) > 1 else ""
+    return f"Films, {where}{others}: {text}."
+
+
+def _about(built: Built, states: Mapping[str, np.ndarray], found: xr.Dataset) -> list[str]:
     """What the films leave out."""
     run = {"load": np.where(states["loaded"], states["load"], 0.0), "radius": states["radius"]}
-    cold = [COLD] if _model(built).thermal == ISOTHERMAL else []
+    cold = [cold_warning(built, _moving(states, found))] if _is_cold(built) else []
     return [*cold, *(f"Films: {text}" for text in conformal_warning(built.design.mesh, run))]
+
+
+def _is_cold(built: Built) -> bool:
+    return _model(built).thermal == ISOTHERMAL
+
+
+def _moving(states: Mapping[str, np.ndarray], found: xr.Dataset) -> dict[str, np.ndarray]:
+    """Contacts that carry, as a mesh cycle tells them, with what the films say."""
+    every = {
+        "pressure": states["pressure"],
+        "radius": states["radius"],
+        "entrainment": 0.5 * (states["speed_a"] + states["speed_b"]),
+        "sliding_velocity": states["speed_a"] - states["speed_b"],
+        "friction": found["film_friction"].values,
+        "film_thickness": found["central_film"].values,
+    }
+    solved = np.isfinite(every["friction"])
+    return {name: values[solved] for name, values in every.items()}
+
+
+def _other_rolling(built: Built) -> str:
+    """Why a law that solves films has another loss than its films; empty where it has not."""
+    solved = [one.law.title for one in built.models if one.law.films is not None]
+    model = built.models[0].rolling
+    if not solved or model.name == "none":
+        return ""
+    return (
+        f"{solved[0]}: the case takes rolling resistance from {model.title}; that of the films, which stands "
+        "beside it here, is their own."
+    )
 
 
 def _choices(built: Built) -> dict[str, Any]:

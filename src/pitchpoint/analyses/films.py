@@ -18,6 +18,8 @@ _MAIN = (
     "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
+    "largest_film_rise",
+    "largest_flash_rise",
     "mean_film_friction",
     "mean_boundary_part",
     "mean_film_loss",

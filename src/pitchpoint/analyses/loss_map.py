@@ -24,10 +24,12 @@ from pitchpoint.efficiency.quasi_static import (
     Operation,
     cycle,
     cycle_nodes,
+    cycle_of,
 )
 from pitchpoint.efficiency.rows import NODES, one_engagement
 from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.errors import ConvergenceError
+from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.sharing import LoadSharing
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.programs import fast_program, program
@@ -165,9 +167,8 @@ def _of_films(
         return nothing, nothing, np.zeros(nothing.shape, bool)
     parts = []
     for speed in speeds:
-        held = replace(
-            models.without_friction, held=array(films.at(torque, np.array([speed]), degrees))
-        )
+        there = films.at(torque, np.array([speed]), degrees)
+        held = models.holding(*map(array, there))
         found = _figures(built.design, load, array(speed[None]), array(degrees), held, known)
         parts.append(jax.device_get(found))
     loss, efficiency, locked = (np.concatenate(each) for each in zip(*parts, strict=True))
@@ -206,17 +207,20 @@ def _off(built: Built, models: Models, films: FilmMap, point: tuple[float, float
     solved = in_turns(design, operation, models, known)
     if solved.lost:
         raise ConvergenceError(solved.lost)
-    there = films.at(load, np.array([speed]), np.array([degree]))[:, :, 0, 0]
-    loss = [
-        _loss(design, operation, replace(models.without_friction, held=array(held)), known)
-        for held in (there, np.asarray(solved.balance.friction))
-    ]
-    return abs(float(loss[0] / loss[1]) - 1.0)
+    there = films.at(load, np.array([speed]), np.array([degree]))
+    held = models.holding(*(array(one[:, :, 0, 0]) for one in there))
+    loss = _loss(design, operation, held, known)
+    return abs(float(loss / _loss_of(design, operation, known, solved.balance)) - 1.0)
 
 
 @program
 def _loss(design: Design, operation: Operation, models: Models, known: Engagement) -> Array:
     return cycle(design, operation, models, engaged=known).mean_loss
+
+
+@program
+def _loss_of(design: Design, operation: Operation, known: Engagement, found: Balance) -> Array:
+    return cycle_of(design, operation, known, found).mean_loss
 
 
 def _of_drive(

@@ -35,7 +35,16 @@ PIECE = 256
 PREFIX = "study_"
 """Names of parts that are studies begin with it."""
 
-SWEPT = ("gears", "stages", "materials", "lubricant", "roughness", "operation", "formulas")
+SWEPT = (
+    "gears",
+    "stages",
+    "materials",
+    "lubricant",
+    "roughness",
+    "operation",
+    "film",
+    "formulas",
+)
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""
 
 
@@ -134,6 +143,7 @@ def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:
     where = where if where.startswith("--") else f"{where}.sweep"
     values, kind = sweep_values(study.sweep, where, variant.name, variant.document().tree)
     _demand_one(variant, study.sweep, where)
+    _demand_films(subject.built, variant, key, where)
     told = {
         "sweep_key": key,
         "axis_kind": kind.kind if kind else "",
@@ -181,6 +191,17 @@ def _demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
         raise InputError(
             f"{sweep.key} has different values for gear 1 and gear 2, {shown(value)}, and one number would "
             f"set both; sweep {sweep.key}.1 or {sweep.key}.2",
+            file=variant.name,
+            key=where,
+        )
+
+
+def _demand_films(built: Ready, variant: Variant, key: str, where: str) -> None:
+    """InputError if choices of films are swept of a case whose figures come from formulas."""
+    if key.startswith("film.") and all(law.films is None for law in built.laws):
+        raise InputError(
+            f"{key} decides about the friction of solved films, and no law of the case is that of them; "
+            'name "ehl_line" in models.friction',
             file=variant.name,
             key=where,
         )

@@ -215,6 +215,8 @@ def _grouped(
     points: Sequence[Ready], models: Models | Acting, progress: Progress
 ) -> dict[str, np.ndarray]:
     """Summaries in order, points of equal static structure computed together."""
+    if models.law.films is not None:
+        return _by_films(_meshes(points), models.law.name, progress)
 
     def of(group: Sequence[Ready]) -> dict[str, np.ndarray]:
         each: list[Any] = [(point.design, point.operation) for point in group]
@@ -223,6 +225,16 @@ def _grouped(
         return summarise(each, models, progress)
 
     return _in_groups(points, of)
+
+
+def _by_films(points: Sequence[Built], law: str, progress: Progress) -> dict[str, np.ndarray]:
+    """Summaries of points whose films are solved, each by the choices of its own case."""
+    runs = []
+    for done, point in enumerate(points, 1):
+        (models,) = (one for one in point.models if one.law.name == law)
+        runs.append(summarise([(point.design, point.operation)], models))
+        progress(done)
+    return {name: np.concatenate([run[name] for run in runs]) for name in runs[0]}
 
 
 def _in_groups(
@@ -244,13 +256,15 @@ def _in_groups(
     return result
 
 
-def profiles(built: Built, under: Sequence[Models]) -> list[dict[str, np.ndarray]]:
+def profiles(
+    built: Built, under: Sequence[Models], progress: Progress | None = None
+) -> list[dict[str, np.ndarray]]:
     """The mesh cycle under each of some models; where films are solved, at the nodes of all other figures."""
     point, engaged, asperities = (built.design, built.operation), built.engaged, built.asperities
     solved = any(models.law.films is not None for models in (*built.models, *under))
     nodes = NODES if solved else FINE
     return [
-        profile(*point, models, built.film, nodes, engaged=engaged, asperities=asperities)
+        profile(*point, models, built.film, nodes, engaged, asperities, progress)
         for models in under
     ]
 

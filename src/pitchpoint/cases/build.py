@@ -56,6 +56,7 @@ from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
@@ -162,6 +163,14 @@ class Built:
     def film(self) -> FilmThickness:
         """The film law of the case, with the heat in the inlet."""
         return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case)
+
+    @cached_property
+    def film_model(self) -> FilmModel | None:
+        """How films of the contacts are solved; None where neither a table nor a law asks for them."""
+        if self.case.film is None:
+            return next((law.films for law in self.laws if law.films is not None), None)
+        solids = [used.record for used in self.solids]
+        return film_model(self.case.film, solids, tooth_size(self.design.mesh))
 
     @property
     def asperities(self) -> AsperityLoad | None:
@@ -547,6 +556,7 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         LOAD_SHARING[models.load_sharing].check(mesh)
     except InputError as error:
         raise error.at(key="models.load_sharing") from None
+    _check_map(case, mesh)
     if models.tooth_temperature != "isothermal":
         _check_heat(case, mesh)
     if case.dynamics is not None and mesh.along_action:
@@ -554,6 +564,17 @@ def _check_models(case: Case, mesh: Mesh) -> None:
         _check_motion(case, mesh)
     elif case.dynamics is not None:
         _check_joint(case, case.dynamics)
+
+
+def _check_map(case: Case, mesh: Mesh) -> None:
+    """InputError for a loss map whose friction is that of films between teeth with gaps."""
+    solved = [one.name for one in case.models.friction if FRICTION[one.name].films is not None]
+    if case.loss_map is not None and solved and not mesh.touching:
+        raise InputError(
+            f"teeth with gaps share each load in another way, and '{solved[0]}' solves the films of every "
+            "operating point; leave the table out, or name formulas alone in models.friction",
+            key="loss_map",
+        )
 
 
 def _check_heat(case: Case, mesh: Mesh) -> None:

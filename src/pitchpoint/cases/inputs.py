@@ -9,10 +9,12 @@ from pydantic import BaseModel
 from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
+from pitchpoint.cases.films import CHOICE_NOTES, film_choices
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.gears.family import Followed
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = ["DIMENSIONS", "OIL", "SOLIDS", "STUDIES", "resolved"]
@@ -55,6 +57,7 @@ _DIMENSIONS = (
 
 _SOLID = {"young": "pressure", "poisson": "dimensionless", "density": "density"}
 _FLANK = {"hardness": "pressure"}
+_CONDUCTS = {"conductivity": "thermal conductivity", "specific_heat": "specific heat"}
 
 _OIL = {
     "nu_0": "kinematic viscosity",
@@ -104,8 +107,26 @@ def _given(built: Ready, document: Document) -> Iterator[Row]:
 
 
 def _of_mesh(built: Built, document: Document) -> Iterator[Row]:
+    following = {"gears": built.following, "film": _of_films(built)}
     for table in _TABLES:
-        yield from _rows(built.case, document, table, built.following)
+        yield from _rows(built.case, document, table, following.get(table))
+    if built.case.film is None:
+        for key, one in following["film"].items():
+            yield _row("film", key, one.value, _kind(f"film.{key}", one.value), _mark(one))
+
+
+def _of_films(built: Built) -> dict[str, Followed]:
+    """Choices by which films are solved, as they are where the case leaves them open."""
+    if built.film_model is None:
+        return {}
+    every = film_choices(built.film_model)
+    return {
+        key: Followed(value, "default", CHOICE_NOTES.get(key, "")) for key, value in every.items()
+    }
+
+
+def _mark(found: Followed) -> Provenance:
+    return Provenance(found.status, note=found.note)
 
 
 def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
@@ -113,7 +134,7 @@ def _of_drive(built: BuiltDrive, document: Document) -> Iterator[Row]:
     for number, one, inside in zip(built.numbers, built.stages, built.documents, strict=True):
         own = document.tree[STAGES][str(number)]
         for table in ("gears", *(key for key in _OF_STAGE if key in own)):
-            for row in _rows(one.case, inside, table, one.following):
+            for row in _rows(one.case, inside, table, one.following if table == "gears" else None):
                 yield _in_stage(row, number, given=_holds(own, table, row["key"]))
         for key in ("driver", "place", "turn"):
             if key in own:
@@ -215,9 +236,9 @@ def _rows(
     table: str,
     following: Mapping[str, Any] | None = None,
 ) -> Iterator[Row]:
-    """Rows of a table of the case file; `following` are values that the gears leave open."""
+    """Rows of a table of the case file; `following` are values of what it leaves open."""
     asked = dict(leaves({table: document.tree[table]})) if table in document.tree else {}
-    derived = (following or {}) if table == "gears" else {}
+    derived = following or {}
     usual = marks_of(document.tree.get(table)) if table == "losses" else {}
     for key, left in _leaves(getattr(case, table)):
         found = _followed(derived.get(key))
@@ -228,8 +249,7 @@ def _rows(
             mark = document.provenance.get(path, Provenance())
             yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
         else:
-            followed = Provenance(found.status, note=found.note)
-            mark = usual.get(key, followed if left is None else Provenance("default"))
+            mark = usual.get(key, _mark(found) if left is None else Provenance("default"))
             yield _row(table, key, value, _kind(path, _plain(value)), mark)
     for path, value in asked.items():
         key = path[len(table) + 1 :]
@@ -239,7 +259,7 @@ def _rows(
 
 
 def _followed(found: Any) -> Followed:
-    """A value that the gears leave open, with how it was come by."""
+    """A value that a table leaves open, with how it was come by."""
     return found if isinstance(found, Followed) else Followed(found, "derived", "")
 
 
@@ -281,7 +301,9 @@ def _in_si(key: str, value: Any) -> Any:
 
 
 def _kind(key: str, value: Any) -> str | dict[str, str]:
-    """Kind of the numbers at a key; by key of the tables where it holds a list of them."""
+    """Kind of the numbers at a key; by key of the tables where it holds a list of them; none of a text."""
+    if isinstance(value, str):
+        return ""
     tables = [one for one in value if isinstance(one, dict)] if isinstance(value, list) else []
     if tables:
         inner = {name: quantity_at(f"{key}.{name}") for one in tables for name in one}
@@ -324,8 +346,11 @@ def _inertia(built: Built) -> Iterator[Row]:
 def _of_solid(built: Built, gear: int) -> Iterator[Row]:
     """Values of a material at the temperature at which they are used."""
     used = built.solids[gear - 1]
-    for name, kind in (_SOLID | (_FLANK if built.asperities else {})).items():
+    warm = built.film_model is not None and built.film_model.thermal != ISOTHERMAL
+    asked = _SOLID | (_FLANK if built.asperities else {}) | (_CONDUCTS if warm else {})
+    for name, kind in asked.items():
         datum = used.record.data()[name]
         note = (used.told if name == "young" else "") or datum.note
         mark = Provenance(datum.status, datum.source, note)
-        yield _row(SOLIDS, f"gear_{gear}.{name}", getattr(used.solid, name), kind, mark)
+        value = datum.value if name in _CONDUCTS else getattr(used.solid, name)
+        yield _row(SOLIDS, f"gear_{gear}.{name}", value, kind, mark)

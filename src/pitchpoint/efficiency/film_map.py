@@ -33,24 +33,31 @@ class FilmMap:
     Attributes:
         axes: logarithms of load and speed, and temperature [K], at which films were solved.
         friction: coefficients there [load, speed, temperature, pair, slice, node].
+        rolling: rolling resistance on each surface there [N/m]; None where the case has a model of its own.
     """
 
     axes: tuple[Values, Values, Values]
     friction: Float[np.ndarray, "load speed temperature pair slice node"]
+    rolling: Float[np.ndarray, "load speed temperature pair slice node"] | None = None
 
-    def at(self, load: float, speeds: Values, degrees: Values) -> Values:
-        """Coefficients [pair, slice, speed, temperature, node] between the points, or at the nearest end.
+    def at(self, load: float, speeds: Values, degrees: Values) -> tuple[Values, ...]:
+        """Friction [pair, slice, speed, temperature, node] between the points, or at the nearest end.
 
         Args:
             load: that the driven coordinate carries [N m or N].
             speeds: of the driver [rad/s].
             degrees: temperatures of the oil [K].
+
+        Returns:
+            Coefficients, and rolling resistances [N/m] where they are known.
         """
+        every = self.friction, self.rolling
+        return tuple(self._between(one, load, speeds, degrees) for one in every if one is not None)
+
+    def _between(self, values: Values, load: float, speeds: Values, degrees: Values) -> Values:
         places = _log(np.array([load])), _log(speeds), degrees
         weights = map(_weights, self.axes, places)
-        found = reduce(
-            lambda values, one: np.tensordot(values, one, (0, 0)), weights, self.friction
-        )
+        found = reduce(lambda some, one: np.tensordot(some, one, (0, 0)), weights, values)
         # Each product has moved an axis to the end: pair, slice, node, load, speed, temperature.
         held: Values = np.maximum(np.moveaxis(found[:, :, :, 0], 2, -1), 0.0)
         return held
@@ -100,7 +107,9 @@ def film_map(
         found.append(first_turn(design, point, models, known(float(np.exp(load)))))
     shape = tuple(one.size for one in axes)
     first, second, third = axes
-    return FilmMap((first, second, third), np.stack(found).reshape(*shape, *found[0].shape))
+    each = np.stack(found, axis=1)
+    whole = each.reshape(each.shape[0], *shape, *each.shape[2:])
+    return FilmMap((first, second, third), *whole)
 
 
 def _log(values: Values) -> Values:

@@ -1,13 +1,14 @@
 """Balances of mesh cycles whose friction comes from solved films, and what became of their turns."""
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax
-from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation
 from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import ConvergenceError
@@ -41,7 +42,13 @@ class InTurns:
     warnings: tuple[str, ...]
 
 
-def in_turns(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:
+def in_turns(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    known: Engagement,
+    progress: Callable[[int], None] | None = None,
+) -> InTurns:
     """Balance at the nodes of a cycle under a friction law that solves films.
 
     Args:
@@ -49,18 +56,23 @@ def in_turns(design: Design, operation: Operation, models: Models, known: Engage
         operation: one operating point.
         models: laws; the one that acts has `films`.
         known: contacts and shares with their nodes.
+        progress: told the number of films that are solved, of all turns.
     """
     asked = design, operation, models, known.nodes
     for before, found in _LAST:
         if all(one is other for one, other in zip(asked, before, strict=True)):
             return found
-    found = _solved(design, operation, models, known)
+    found = _solved(design, operation, models, known, progress)
     _LAST.append((asked, found))
     return found
 
 
 def balance_under(
-    design: Design, operation: Operation, known: Engagement, models: Models
+    design: Design,
+    operation: Operation,
+    known: Engagement,
+    models: Models,
+    progress: Callable[[int], None] | None = None,
 ) -> tuple[Balance, tuple[str, ...]]:
     """Forces at the nodes, and what to be wary of about films that were solved for them.
 
@@ -71,7 +83,7 @@ def balance_under(
     """
     if models.law.films is None:
         return balance_in_rows(design, operation, known, models), ()
-    found = in_turns(design, operation, models, known)
+    found = in_turns(design, operation, models, known, progress)
     if found.lost:
         raise ConvergenceError(f"{models.law.title}: {found.lost}")
     return found.balance, found.warnings
@@ -83,30 +95,57 @@ _LAST: deque[tuple[tuple[object, ...], InTurns]] = deque(maxlen=KEPT)
 def first_turn(
     design: Design, operation: Operation, models: Models, known: Engagement
 ) -> NDArray[np.float64]:
-    """Coefficients [pair, slice, node] of the films under the forces of a small friction.
+    """Friction of the films under the forces of a small friction.
 
     Arguments as in `in_turns`.
+
+    Returns:
+        Coefficients [pair, slice, node], and the rolling resistance on each surface [N/m] unless the case
+        has a model of its own; along a first axis.
 
     Raises:
         ConvergenceError: a film was not solved.
     """
     begin, known, solver = _begin(design, operation, models, known)
     cycle, _ = solved_cycle(design, operation, begin, solver, engaged=known, most=1)
-    return np.asarray(cycle.state.balance.friction)
+    friction = np.asarray(cycle.state.balance.friction)
+    return friction[None] if begin.held_rolling is None else np.stack([friction, _rolling(cycle)])
+
+
+def _rolling(cycle: Cycle) -> NDArray[np.float64]:
+    """Rolling resistance of each slice on each surface per length [N/m]."""
+    whole, weight = (
+        np.asarray(v) for v in (cycle.state.balance.rolling, cycle.state.contacts.weight)
+    )
+    found: NDArray[np.float64] = np.divide(whole, weight, np.zeros_like(whole), where=whole != 0.0)
+    return found
 
 
 def _begin(
-    design: Design, operation: Operation, models: Models, known: Engagement
+    design: Design,
+    operation: Operation,
+    models: Models,
+    known: Engagement,
+    progress: Callable[[int], None] | None = None,
 ) -> tuple[Models, Engagement, FilmTraction]:
     films = models.law.films
     assert films is not None
-    solver = FilmTraction(films, design.lubricant, operation.temperature)
-    first = array(np.full(known.share.shape, FIRST))
-    return replace(models.without_friction, held=first), replace(known, body=None), solver
+    own = models.rolling.name != "none"
+    given = films, design.lubricant, operation.temperature
+    solver = FilmTraction(*given, rolling=not own, progress=progress)
+    first, none = (array(np.full(known.share.shape, one)) for one in (FIRST, 0.0))
+    begin = models.holding(first, None if own else none)
+    return begin, replace(known, body=None), solver
 
 
-def _solved(design: Design, operation: Operation, models: Models, known: Engagement) -> InTurns:
-    begin, known, solver = _begin(design, operation, models, known)
+def _solved(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    known: Engagement,
+    progress: Callable[[int], None] | None,
+) -> InTurns:
+    begin, known, solver = _begin(design, operation, models, known, progress)
     try:
         cycle, status = solved_cycle(design, operation, begin, solver, engaged=known)
     except ConvergenceError as error:

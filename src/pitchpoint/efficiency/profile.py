@@ -1,6 +1,6 @@
 """Everything along one mesh cycle, for figures and tables: torques, and the state of every contact."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -39,6 +39,7 @@ def profile(
     nodes: int = FINE,
     engaged: Engagement | None = None,
     asperities: AsperityLoad | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> dict[str, np.ndarray]:
     """State over one period at one operating point.
 
@@ -50,6 +51,7 @@ def profile(
         nodes: in each segment between events.
         engaged: contacts and shares, where they are known already.
         asperities: law of the part of the load that asperities carry, where it is asked for.
+        progress: told the number of films that are solved, where the law solves them.
 
     Returns:
         Quantities by name, [node] for the mesh and [node, pair, slice] for each contact; zero where
@@ -63,7 +65,7 @@ def profile(
     """
     chosen: list[Limited] = [models.law, film, *([asperities] if asperities else [])]
     known = engaged or one_engagement(design, operation.load, models.without_friction, nodes)
-    found, warnings = balance_under(design, operation, known, models)
+    found, warnings = balance_under(design, operation, known, models, progress)
     limited = _limiting(chosen, film)
     told, ranged = jax.device_get(
         _profile(design, operation, replace(known, body=None), found, film, asperities, limited)

@@ -157,6 +157,8 @@ class Models(eqx.Module):
         compliance: terms of the model by which teeth yield, where the sharing asks for it.
         held: friction coefficient of each slice that was found elsewhere and takes the place of the law;
             other values need no other program.
+        held_rolling: rolling resistance on each surface of each slice, found likewise, in the place of
+            `rolling` and in its unit.
     """
 
     friction: tuple[FrictionLaw, ...] = eqx.field(static=True)
@@ -168,6 +170,7 @@ class Models(eqx.Module):
         default_factory=lambda: TOOTH_COMPLIANCE["beam_foundation_weber"].terms
     )
     held: Lanes | None = None
+    held_rolling: Lanes | None = None
 
     @property
     def law(self) -> FrictionLaw:
@@ -182,7 +185,18 @@ class Models(eqx.Module):
     @property
     def without_friction(self) -> "Models":
         """The same without friction laws, for what does not ask for them: its programs serve every law."""
-        return replace(self, friction=(), choice=array(0), parameters={}, held=None)
+        laws = replace(self, friction=(), choice=array(0), parameters={})
+        return replace(laws, held=None, held_rolling=None)
+
+    def holding(self, friction: Lanes, rolling: Lanes | None = None) -> "Models":
+        """The same with friction that was found elsewhere in the place of laws.
+
+        Args:
+            friction: coefficient of each slice.
+            rolling: resistance on each surface of each slice [N/m of a line, N of an ellipse]; by default
+                that of the law.
+        """
+        return replace(self.without_friction, held=friction, held_rolling=rolling)
 
     def coefficient(self, conditions: Conditions) -> Lanes:
         """Friction coefficient at every contact by the law that acts."""
@@ -486,10 +500,6 @@ def _in_balance(given: _Given, models: Models) -> dict[str, Any]:
     def friction(load: Lanes) -> Lanes:
         return models.coefficient(replace(unloaded, load=load))
 
-    def rolling(load: Lanes) -> Lanes:
-        at = replace(unloaded, load=load)
-        return evaluate(models.rolling, at) * contacts.weight
-
     return {
         "contacts": contacts,
         "share": share,
@@ -497,9 +507,19 @@ def _in_balance(given: _Given, models: Models) -> dict[str, Any]:
         "loaded": loaded,
         "load": operation.load,
         "friction": friction,
-        "rolling": None if models.rolling.name == "none" else rolling,
+        "rolling": _rolling(models, unloaded),
         "drag": _drag(design, operation, contacts, unloaded.kinematic_viscosity),
     }
+
+
+def _rolling(models: Models, unloaded: Conditions) -> Callable[[Lanes], Lanes] | None:
+    """Rolling resistance of each slice [N] under any load; None without any."""
+    weight, held = unloaded.contacts.weight, models.held_rolling
+    if held is not None:
+        return lambda load: jnp.broadcast_to(held * weight, load.shape)
+    if models.rolling.name == "none":
+        return None
+    return lambda load: evaluate(models.rolling, replace(unloaded, load=load)) * weight
 
 
 def _drag(

@@ -1,7 +1,6 @@
 """A mesh cycle whose friction comes from a solver: a loop around coefficients that are held."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,11 @@ TOLERANCE = 1e-6
 """Change of the coefficients between two turns, over the largest of them, at which they are found."""
 
 Solver = Callable[..., np.ndarray]
-"""Friction coefficients of contacts from conditions at them by name, all of them [contact]."""
+"""Friction coefficients of contacts from conditions at them by name, all of them [contact].
+
+Where rolling resistance is asked for it follows, on each surface [N/m of a line, N of an ellipse]; both are
+then of shape (2, contact).
+"""
 
 
 def solved_cycle(
@@ -42,12 +45,14 @@ def solved_cycle(
     Args:
         design: mesh, materials, oil, surfaces.
         operation: one operating point.
-        models: laws; the friction law among them gives the first coefficients.
+        models: laws; the friction law among them gives the first coefficients. With `held_rolling`, the
+            first rolling resistance, the solver is asked for that too.
         solver: plain Python, however slow. Its arguments are conditions by name, see
             `lubrication.conditions.UNITS`, as NumPy arrays over the contacts that carry [contact]; its
-            result are their coefficients [contact].
+            result is what `Solver` says.
         engaged: contacts and shares, where they are known already.
-        tolerance: largest change of a coefficient between two turns, over the largest coefficient.
+        tolerance: largest change of a coefficient between two turns, over the largest coefficient; so of
+            rolling resistances.
         most: turns.
 
     Returns:
@@ -64,11 +69,11 @@ def solved_cycle(
     wanted, _ = arguments(solver)
     demand_shape(solver, design.mesh.shape)
     found, at = _turn(design, operation, models, engaged, tuple(wanted))
-    held, change, turns = np.asarray(found.state.balance.friction), np.inf, 0
+    held, change, turns = _first(found, models), np.inf, 0
     balanced = int(at.pop("code"))
     while balanced == Code.SOLVED and tolerance < change and turns < most:
         held, before = _asked(solver, at, held), held
-        given = replace(models.without_friction, held=array(held))
+        given = models.holding(*map(array, held))
         found, at = _turn(design, operation, given, engaged, tuple(wanted))
         balanced, change, turns = int(at.pop("code")), _change(held, before), turns + 1
     if balanced == Code.SOLVED and change > tolerance:
@@ -76,25 +81,43 @@ def solved_cycle(
     return found, Status(array(balanced), array(change), array(turns))
 
 
+def _first(found: Cycle, models: Models) -> np.ndarray:
+    """Coefficients, and rolling resistances where they are asked for, before the first turn [what, ...]."""
+    coefficients = np.asarray(found.state.balance.friction)
+    if models.held_rolling is None:
+        return coefficients[None]
+    return np.stack([coefficients, np.broadcast_to(models.held_rolling, coefficients.shape)])
+
+
 def _change(held: np.ndarray, before: np.ndarray) -> float:
-    """Largest change of a coefficient over the largest of them; zero where none is left."""
-    largest, changed = np.max(held), np.max(np.abs(held - before))
-    return float(changed / largest if largest > 0.0 else changed)
+    """Largest change of coefficients or of rolling over the largest of each; zero where none is left."""
+    largest, changed = (
+        np.max(np.abs(one).reshape(len(held), -1), axis=-1) for one in (held, held - before)
+    )
+    return float(np.max(changed / np.where(largest > 0.0, largest, 1.0)))
 
 
 def _asked(solver: Solver, at: dict[str, np.ndarray], before: np.ndarray) -> np.ndarray:
-    """Coefficients at the contacts that carry; elsewhere as before."""
+    """Coefficients and rolling resistances at the contacts that carry; elsewhere as before."""
     carries = at.pop("carries")
     values = {name: np.broadcast_to(value, carries.shape)[carries] for name, value in at.items()}
     answer = np.asarray(solver(**values), dtype=float)
-    if answer.shape not in ((), (int(carries.sum()),)) or not np.all(answer >= 0.0):
+    _demand(solver, answer, len(before), int(carries.sum()))
+    held = before.copy()
+    held[:, carries] = answer
+    return held
+
+
+def _demand(solver: Solver, answer: np.ndarray, asked: int, contacts: int) -> None:
+    """InputError unless an answer is one coefficient of each contact, with so many things asked for."""
+    shapes = ((), (contacts,)) if asked == 1 else ((asked, contacts),)
+    fits = answer.shape in shapes and np.all(np.isfinite(answer))
+    if not fits or np.any(np.atleast_2d(answer)[0] < 0.0):
+        rolling = ", and its rolling resistance" if asked > 1 else ""
         raise InputError(
             f"the friction solver {getattr(solver, '__name__', 'given')} must return one coefficient for "
-            f"each of {int(carries.sum())} contacts, finite and not negative"
+            f"each of {contacts} contacts, finite and not negative{rolling}"
         )
-    held = before.copy()
-    held[carries] = answer
-    return held
 
 
 def _turn(

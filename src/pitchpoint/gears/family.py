@@ -21,13 +21,13 @@ class Followed:
 
     Attributes:
         value: in SI.
-        status: "derived" from the others, or "assumed".
+        status: "derived" from the others, "assumed", or "default".
         note: the rule.
         varies: how it changes with the speed ratio of gears of one size, in words; empty if it does not.
     """
 
     value: Any
-    status: Literal["derived", "assumed"]
+    status: Literal["derived", "assumed", "default"]
     note: str
     varies: str = ""
 

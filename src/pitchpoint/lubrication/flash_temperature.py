@@ -14,7 +14,7 @@ from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.solids import SolidRecord
 
-__all__ = ["LEAST_PECLET", "Conductor", "moving_strip", "peclet_number"]
+__all__ = ["LEAST_PECLET", "Conductor", "moving_strip", "peclet_number", "shared_flash"]
 
 Each = Float[Numbers, "*#b"]
 
@@ -89,6 +89,42 @@ def peclet_number(*, speed: Each, half_width: Each, body: Conductor) -> Each:
         3.96
     """
     return jnp.abs(speed) * half_width * body.heat_capacity / (2.0 * body.conductivity)
+
+
+def shared_flash(
+    *,
+    heat: Each,
+    half_width: Each,
+    speed_a: Each,
+    speed_b: Each,
+    bodies: tuple[Conductor, Conductor],
+) -> Float[Array, "*#b"]:
+    """Largest rise of two surfaces that share the heat of a uniform strip so as to be equally warm [K].
+
+    2 q (2 b/pi)^(1/2)/(e_a |u_a|^(1/2) + e_b |u_b|^(1/2)), at the end of the strip, with effusivities e.
+
+    Args:
+        heat: q, made per area of the strip [W/m2].
+        half_width: b, of the strip [m].
+        speed_a, speed_b: u, of the surfaces across the strip, one of them not zero [m/s].
+        bodies: behind the surfaces.
+
+    Source: Jaeger (1942), limit of large Peclet numbers; Johnson, Contact Mechanics (1985), section 12.3.
+
+    Example:
+        >>> from pitchpoint.lubrication.flash_temperature import Conductor
+        >>> steel = Conductor(conductivity=46.0, heat_capacity=3.64e6)
+        >>> rise = shared_flash(
+        ...     heat=1e8, half_width=2e-4, speed_a=5.0, speed_b=3.0, bodies=(steel, steel)
+        ... )
+        >>> round(float(rise), 1)
+        44.0
+    """
+    carried = [
+        body.effusivity * jnp.sqrt(jnp.abs(speed))
+        for body, speed in zip(bodies, (speed_a, speed_b), strict=True)
+    ]
+    return 2.0 * heat * jnp.sqrt(2.0 * half_width / jnp.pi) / (carried[0] + carried[1])
 
 
 def moving_strip(

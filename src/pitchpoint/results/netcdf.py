@@ -17,8 +17,9 @@ _TEXT = h5py.string_dtype()
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 _NUMBER = "_Netcdf4Dimid"  # of a dimension, on its scale
 _NUMBERS = "_Netcdf4Coordinates"  # of the dimensions of a variable
+_COORDINATES = "coordinates"  # names of those of a variable that are no dimensions
 _SCALE = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"}
-_HIDDEN = _SCALE | {_NUMBER, _NUMBERS, "_NCProperties", "_FillValue", "dtype"}
+_HIDDEN = _SCALE | {_NUMBER, _NUMBERS, "_NCProperties", "_FillValue", "dtype", _COORDINATES}
 
 
 def encode(data: xr.Dataset) -> bytes:
@@ -34,10 +35,20 @@ def encode(data: xr.Dataset) -> bytes:
         scales = [_scale(file, data, str(name), number) for number, name in enumerate(data.sizes)]
         for name, variable in data.variables.items():
             if name not in data.sizes:
-                _attach(_variable(file, str(name), variable), variable, list(data.sizes), scales)
+                made = _variable(file, str(name), variable)
+                _attach(made, variable, list(data.sizes), scales)
+                if name in data.data_vars:
+                    _describe(made, _beside(data, variable))
         _describe(file, data.attrs)
         file.flush()
         return bytes(file.id.get_file_image())
+
+
+def _beside(data: xr.Dataset, variable: xr.Variable) -> dict[str, str]:
+    """Coordinates along dimensions of a variable that are no dimensions themselves, by name."""
+    others = {name: one for name, one in data.coords.items() if name not in data.sizes}
+    names = sorted(str(name) for name, one in others.items() if set(one.dims) <= set(variable.dims))
+    return {_COORDINATES: " ".join(names)} if names else {}
 
 
 def decode(image: bytes) -> xr.Dataset:
@@ -48,7 +59,8 @@ def decode(image: bytes) -> xr.Dataset:
         order = [*(name for name in items if name not in scales), *scales]  # as xarray has them
         kept = {name: items[name] for name in order if not _bare(items[name])}
         variables = {name: _read(name, item, scales) for name, item in kept.items()}
-        return xr.Dataset(variables, attrs=_described(file))
+        beside = {one for item in kept.values() for one in item.attrs.get(_COORDINATES, "").split()}
+        return xr.Dataset(variables, attrs=_described(file)).set_coords(beside)
 
 
 def _scale(file: h5py.File, data: xr.Dataset, name: str, number: int) -> h5py.Dataset:

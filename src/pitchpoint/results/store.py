@@ -18,12 +18,13 @@ import xarray as xr
 
 from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
-from pitchpoint.results.variable import End
+from pitchpoint.results.variable import End, Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.status import DIRECT
 
 __all__ = [
     "dataset",
+    "describe",
     "fingerprint",
     "load",
     "make_folder",
@@ -65,16 +66,20 @@ def dataset(
         {name: (dims, np.asarray(values)) for name, (dims, values) in variables.items()},
         coords=dict(coordinates),
     )
-    for name in data.variables:
-        described = VARIABLES.get(str(name))
-        if described is not None:
-            own = described.where(travels)
-            data[name].attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
+    describe(data, {name: one.where(travels) for name, one in VARIABLES.items()})
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
         version=version("pitchpoint"),
     )
     return data
+
+
+def describe(data: xr.Dataset, variables: Mapping[str, Variable]) -> None:
+    """Write unit, long name and symbol to those variables of a dataset that are described."""
+    for name in data.variables:
+        own = variables.get(str(name))
+        if own is not None:
+            data[name].attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
 
 
 def fingerprint(*parts: Any) -> str:

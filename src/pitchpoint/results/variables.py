@@ -84,6 +84,13 @@ VARIABLES: dict[str, Variable] = {
         "K",
         "temperature difference",
     ),
+    "flash_rise": Variable(
+        "flash temperature of the warmer surface, solved",
+        "ΔT_f",
+        "K",
+        "K",
+        "temperature difference",
+    ),
     "film_friction": Variable("friction coefficient of the film, solved", "μ_EHL", "1"),
     "boundary_part": Variable("friction coefficient by asperities that touch, solved", "μ_b", "1"),
     "rolling_resistance": force("rolling resistance of each surface, solved", "F_roll"),
@@ -99,6 +106,24 @@ VARIABLES: dict[str, Variable] = {
     "profile_asperity_pressure": Variable(
         "pressure that asperities carry", "p_a", "Pa", "MPa", "pressure"
     ),
+    "profile_half_width": length("half-width of the dry contact", "b"),
+    "profile_rise": Variable(
+        "mean temperature of the film above its inlet",
+        "ΔT_m",
+        "K",
+        "K",
+        "temperature difference",
+    ),
+    **{
+        f"profile_surface_rise_{body}": Variable(
+            f"temperature of the surface of body {body} above the inlet of the film",
+            f"ΔT_{body}",
+            "K",
+            "K",
+            "temperature difference",
+        )
+        for body in (1, 2)
+    },
     "smallest_film": Variable("smallest film of the mesh cycle", "h_min", "m", "um", "length"),
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
     "largest_film_pressure": Variable(
@@ -108,6 +133,13 @@ VARIABLES: dict[str, Variable] = {
     "largest_film_rise": Variable(
         "largest temperature of the films above their inlet",
         "ΔT_m max",
+        "K",
+        "K",
+        "temperature difference",
+    ),
+    "largest_flash_rise": Variable(
+        "largest flash temperature of the surfaces",
+        "ΔT_f max",
         "K",
         "K",
         "temperature difference",

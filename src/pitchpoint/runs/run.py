@@ -21,7 +21,6 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, variants
 from pitchpoint.cases.failures import worst_first
-from pitchpoint.cases.films import film_model
 from pitchpoint.cases.library import as_text, find, names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
@@ -606,8 +605,8 @@ def _of_mesh(built: Built) -> dict[str, Any]:
         found["tooth compliance"] = TOOTH_COMPLIANCE[case.models.tooth_compliance]
     if case.dynamics is not None and built.design.mesh.along_action:
         found["tooth contact"] = CONTACT_LAWS[case.models.tooth_contact]
-    if case.film is not None:
-        found |= _of_films(film_model(case.film, [used.record for used in built.solids], None))
+    if built.film_model is not None:
+        found |= _of_films(built.film_model)
     found |= _bearings(case.losses)
     if case.models.tooth_temperature != "isothermal":
         found["tooth temperature"] = TOOTH_TEMPERATURE[case.models.tooth_temperature]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
@@ -13,6 +15,9 @@ from pitchpoint.lubrication.ehl.line import LineContact, Problem
 from pitchpoint.lubrication.ehl.work import filled, shear_stress, work_of_pressure
 
 __all__ = ["LineFilm", "line_film"]
+
+STANDS_OUT: Final = 1e-3
+"""Part of the largest pressure by which a spike is higher than the valley before it."""
 
 Nodes = Float[Arrays, "*b node"]
 Each = Float[Arrays, "*b"]
@@ -36,10 +41,25 @@ class LineFilm(eqx.Module):
         minimum_place: its place [m].
         mean_film: mean gap over the width of the dry contact [m].
         largest_pressure: [Pa].
+        spike_pressure: second, local maximum of the pressure, ahead of the end of the film where the oil
+            thickens; that of a parabola through three nodes, so that it rises with their number. Not a number
+            where the pressure has one maximum alone, or where the second one stands out by less than a
+            thousandth of the largest pressure [Pa].
+        spike_place: its place [m].
         asperity_share: part of the load that asperities carry.
         rolling: resistance to rolling, which the oil in the inlet does to each surface [N/m].
         shear_force: shear of the oil on member 0, along positive speeds; minus that on member 1 [N/m].
         boundary_force: friction of asperities on member 0, in the same way [N/m].
+        friction: of oil and asperities together over the load, without rolling resistance.
+        film_ratio: smallest gap over the composite Rq; infinite between smooth surfaces.
+        stiffness: -dw/dh of the load on a metre of contact line by the mean film, whose width grows with the
+            load; speeds, approach and oil are held, and its temperature where it is solved for. It is that
+            of the film on its grid, and wavers about that on fine ones as a spike passes the nodes, by some
+            8 % on 129 nodes, 4 % on 257. Light loads hardly change a film: there it is large, of either
+            sign [N/m2].
+        damping: dw/dV of that load by the speed V at which the surfaces approach, with the mean film held and
+            all else as for the stiffness. Not a number where surfaces stand still on their asperities
+            [N s/m2].
         pumping_power: that the flow under pressure turns into heat [W/m].
         half_width: of the dry contact [m].
         hertz_pressure: largest one of the dry contact [Pa].
@@ -58,10 +78,16 @@ class LineFilm(eqx.Module):
     minimum_place: Each
     mean_film: Each
     largest_pressure: Each
+    spike_pressure: Each
+    spike_place: Each
     asperity_share: Each
     rolling: Each
     shear_force: Each
     boundary_force: Each
+    friction: Each
+    film_ratio: Each
+    stiffness: Each
+    damping: Each
     pumping_power: Each
     half_width: Each
     hertz_pressure: Each
@@ -79,7 +105,12 @@ class LineFilm(eqx.Module):
 
 
 def line_film(
-    contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
+    contact: LineContact,
+    problem: Problem,
+    pressure: Array,
+    level: Array,
+    response: tuple[Array, Array],
+    at: Grid,
 ) -> LineFilm:
     """Fields of one contact from a solution in its own units.
 
@@ -88,6 +119,7 @@ def line_film(
         problem: the same in units of its own.
         pressure: of the nodes, shape (node,).
         level: of the surfaces.
+        response: stiffness and damping of the film [N/m2] and [N s/m2].
         at: the grid.
     """
     flow, length = problem.flow, contact.half_width / problem.yielding
@@ -100,6 +132,9 @@ def line_film(
     stress = full * shear_stress(flow, oil, room, sliding)
     carried = jnp.sum(at.widths * asperities) / problem.load
     place, least = _minimum(at.x, gap, jnp.abs(at.x) < 1.5 / problem.yielding)
+    spike_place, spike = _spike(at.x, pressure)
+    sheared = jnp.sum(stress * at.widths) * length
+    rubbed = flow.texture.boundary_friction * carried * contact.line_load * jnp.sign(sliding)
     rolling, pumping = work_of_pressure(flow, oil, gap, at)
     film = LineFilm(
         x=at.x * length,
@@ -112,15 +147,18 @@ def line_film(
         central_film=gap[at.middle] * flow.height,
         minimum_film=least * flow.height,
         minimum_place=place * length,
-        mean_film=_mean(at, gap, problem.yielding) * flow.height,
+        mean_film=problem.mean_film(pressure, level, at) * flow.height,
         largest_pressure=jnp.max(pressure) * flow.pressure,
+        spike_pressure=spike * flow.pressure,
+        spike_place=spike_place * length,
         asperity_share=carried,
         rolling=rolling * flow.pressure * flow.height,
-        shear_force=jnp.sum(stress * at.widths) * length,
-        boundary_force=flow.texture.boundary_friction
-        * carried
-        * contact.line_load
-        * jnp.sign(sliding),
+        shear_force=sheared,
+        boundary_force=rubbed,
+        friction=jnp.abs(sheared + rubbed) / contact.line_load,
+        film_ratio=least * flow.height / (0.0 if contact.texture is None else contact.texture.rq),
+        stiffness=response[0],
+        damping=response[1],
         pumping_power=pumping * flow.pressure * flow.height * problem.speed,
         half_width=contact.half_width,
         hertz_pressure=flow.pressure,
@@ -130,25 +168,32 @@ def line_film(
 
 
 def _minimum(x: Arrays, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
-    """Place and value of the lowest point of the parabola through the lowest node and its neighbours."""
-    low = jnp.clip(jnp.argmin(jnp.where(where, film, jnp.inf)), 1, x.shape[0] - 2)
-    near = low + jnp.arange(-1, 2)
-    (x0, x1, x2), (h0, h1, h2) = jnp.asarray(x)[near], film[near]
+    """Place and value of the lowest point about the lowest node."""
+    return _lowest(x, film, jnp.argmin(jnp.where(where, film, jnp.inf)))
+
+
+def _spike(x: Arrays, pressure: Array) -> tuple[Array, Array]:
+    """Place and value of the last maximum of the pressure behind the middle with a valley ahead of it."""
+    before, here, after = pressure[:-2], pressure[1:-1], pressure[2:]
+    inner = jnp.arange(1, x.shape[0] - 1)
+    peak = jnp.max(jnp.where((here > before) & (here >= after) & (x[1:-1] > 0.0), inner, 0))
+    valley = jnp.max(jnp.where((here < before) & (here < after) & (inner < peak), inner, 0))
+    stands_out = pressure[peak] - pressure[valley] > STANDS_OUT * jnp.max(pressure)
+    place, lowest = _lowest(x, -pressure, peak)
+    found = (valley > 0) & stands_out
+    return jnp.where(found, place, jnp.nan), jnp.where(found, -lowest, jnp.nan)
+
+
+def _lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
+    """Place and value of the lowest point of the parabola through a lowest node and its neighbours."""
+    near = jnp.clip(node, 1, x.shape[0] - 2) + jnp.arange(-1, 2)
+    (x0, x1, x2), (h0, h1, h2) = jnp.asarray(x)[near], values[near]
     first, second = (h1 - h0) / (x1 - x0), (h2 - h1) / (x2 - x1)
     bend = (second - first) / (x2 - x0)
     level = jnp.where(bend > 0.0, bend, 1.0)
     at = jnp.clip(0.5 * (x0 + x1 - first / level), x0, x2)
     value = h0 + (at - x0) * (first + bend * (at - x1))
     return jnp.where(bend > 0.0, at, x1), jnp.where(bend > 0.0, value, h1)
-
-
-def _mean(at: Grid, film: Array, half_width: Array) -> Array:
-    """Mean over the dry contact: of the lines between the nodes."""
-    low, high = (jnp.clip(x, -half_width, half_width) for x in (at.x[:-1], at.x[1:]))
-    middle = 0.5 * (low + high)
-    share = (middle - at.x[:-1]) / at.spacing
-    lines = film[:-1] + share * jnp.diff(film)
-    return jnp.sum(lines * (high - low)) / (2.0 * half_width)
 
 
 def _turned(film: LineFilm, turned: Array) -> LineFilm:
@@ -158,6 +203,8 @@ def _turned(film: LineFilm, turned: Array) -> LineFilm:
     )
     sign = jnp.where(turned, -1.0, 1.0)
     found: LineFilm = eqx.tree_at(
-        lambda one: (one.x, one.minimum_place, one.rolling), mirrored, replace_fn=lambda v: sign * v
+        lambda one: (one.x, one.minimum_place, one.spike_place, one.rolling),
+        mirrored,
+        replace_fn=lambda v: sign * v,
     )
     return found

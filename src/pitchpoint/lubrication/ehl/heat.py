@@ -12,7 +12,7 @@ from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.grid import Grid
 from pitchpoint.lubrication.ehl.line import SLOWEST, LineContact, Problem
-from pitchpoint.lubrication.ehl.newton import ENOUGH, State, iterated
+from pitchpoint.lubrication.ehl.newton import ENOUGH, State, iterated, residual
 from pitchpoint.lubrication.ehl.work import filled, pressure_flow, shear_stress, work_of_expansion
 from pitchpoint.lubrication.flash_temperature import Conductor, moving_strip, peclet_number
 
@@ -22,7 +22,7 @@ __all__ = [
     "Temperatures",
     "Warm",
     "defect",
-    "spread",
+    "settled",
     "temperatures",
     "turned",
     "warmed",
@@ -93,44 +93,47 @@ class Temperatures(eqx.Module):
 class Spread(NamedTuple):
     """How temperatures follow from heat per area at every node of a contact.
 
+    Across the film k T'' = -q/h with the temperatures of the surfaces at its ends, so that half of q and
+    k (Tb - Ta)/h go into a, and the mean is that of the surfaces and q h/(12 k).
+
     Attributes:
         strip_a: rise of surface a by heat per area into it, shape (node, node) [K m2/W].
         strip_b: of surface b.
-        to_a: heat into surface a by heat that is made, shape (node, node) [1]; the rest goes into b.
-        within: rise of the mean film above that of the surfaces by heat in the film, shape (node,) [K m2/W].
+        across: heat from surface b to a by their difference k/h, shape (node,) [W/m2/K].
     """
 
     strip_a: Float[Array, "node node"]
     strip_b: Float[Array, "node node"]
-    to_a: Float[Array, "node node"]
-    within: Float[Array, " node"]
+    across: Float[Array, " node"]
+
+    @property
+    def within(self) -> Array:
+        """Rise of the mean film above that of the surfaces by heat in the film, shape (node,) [K m2/W]."""
+        return 1.0 / (12.0 * self.across)
+
+    @property
+    def to_a(self) -> Array:
+        """Heat into surface a by heat that is made, shape (node, node) [1]; the rest goes into b."""
+        return self.into_a(jnp.eye(self.across.shape[0]))
 
     @property
     def mean(self) -> Array:
         """Mean rise of both surfaces by heat that is made, shape (node, node) [K m2/W]."""
-        to_b = jnp.eye(self.within.shape[0]) - self.to_a
-        return 0.5 * (self.strip_a @ self.to_a + self.strip_b @ to_b)
+        return self.of_surfaces(jnp.eye(self.across.shape[0]))
 
+    def into_a(self, heat: Array) -> Array:
+        """Heat into surface a by some that is made, shape (node, ...) [W/m2]."""
+        # Tb - Ta = (Sb - Sa) q/2 - (Sa + Sb) across (Tb - Ta)
+        mixed = jnp.eye(self.across.shape[0]) + (self.strip_a + self.strip_b) * self.across
+        apart = jnp.linalg.solve(mixed, 0.5 * (self.strip_b - self.strip_a) @ heat)
+        found: Array = 0.5 * heat + (self.across * apart.T).T
+        return found
 
-def spread(film: Array, strip_a: Array, strip_b: Array, oil_conductivity: Array | float) -> Spread:
-    """Spread of heat through a film between two surfaces.
-
-    Across the film k T'' = -q/h with the temperatures of the surfaces at its ends, so that half of q and
-    k (Tb - Ta)/h go into a, and the mean is that of the surfaces and q h/(12 k).
-
-    Args:
-        film: h, shape (node,) [m].
-        strip_a: rise of surface a by heat per area into it, shape (node, node) [K m2/W].
-        strip_b: of surface b.
-        oil_conductivity: k [W/m/K].
-    """
-    across = oil_conductivity / film
-    none = jnp.eye(film.shape[0])
-    # Tb - Ta = (Sb - Sa) q/2 - (Sa + Sb) across (Tb - Ta)
-    apart = jnp.linalg.solve(none + (strip_a + strip_b) * across, 0.5 * (strip_b - strip_a))
-    return Spread(
-        strip_a, strip_b, 0.5 * none + across[:, None] * apart, film / (12.0 * oil_conductivity)
-    )
+    def of_surfaces(self, heat: Array) -> Array:
+        """Mean rise of both surfaces by some heat that is made, shape (node, ...) [K]."""
+        into_a = self.into_a(heat)
+        found: Array = 0.5 * (self.strip_a @ into_a + self.strip_b @ (heat - into_a))
+        return found
 
 
 def _strip(body: Conductor, speed: Array, length: Array, at: Grid) -> Array:
@@ -173,7 +176,7 @@ def _found(
     length = contact.half_width / problem.yielding
     speed_a, speed_b = _forward(contact)
     strips = _strip(given.a, speed_a, length, at), _strip(given.b, speed_b, length, at)
-    through = spread(room * flow.height, *strips, given.oil_conductivity)
+    through = Spread(*strips, given.oil_conductivity / (room * flow.height))
     return _Found(pressure - asperities, gap, room, asperities, length, through)
 
 
@@ -310,6 +313,39 @@ def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Wa
     return found
 
 
+def settled(
+    contact: LineContact, problem: Problem, warm: Warm, at: Grid
+) -> tuple[Problem, Array, Array]:
+    """Contact as warm as it is, pressure and level, with their derivatives to all that it is made of.
+
+    A last step of pressure, level and temperature together carries them (implicit function theorem), with the
+    cells that are full and those that are not as they are.
+
+    Args:
+        contact: one, with conduction.
+        problem: the same in units of its own, as warm as its inlet.
+        warm: at which the turns ended.
+        at: the grid.
+    """
+    nodes = at.x.shape[0]
+
+    def parts(found: Array) -> tuple[Problem, Array, Array]:
+        inner, level, rise = found[: nodes - 2], found[nodes - 2], found[nodes - 1 :]
+        return warmed(problem, rise), jnp.pad(inner, 1), level
+
+    def left(contact: LineContact, problem: Problem, found: Array) -> Array:
+        _, pressure, level = parts(found)
+        so_warm = warmed(problem, found[nodes - 1 :])
+        rise, by_heat, *_ = _balance(contact, so_warm, pressure, level, at)
+        return jnp.append(residual(so_warm, pressure, level, at), rise - by_heat)
+
+    state = warm.state
+    found = jnp.concatenate((state.pressure[1:-1], state.level[None], warm.rise))
+    *frozen, found = jax.lax.stop_gradient((contact, problem, found))
+    matrix = jax.jacfwd(left, 2)(*frozen, found)
+    return parts(found - jnp.linalg.solve(matrix, left(contact, problem, found)))
+
+
 def defect(
     contact: LineContact, problem: Problem, pressure: Array, level: Array, at: Grid
 ) -> Array:
@@ -325,7 +361,7 @@ def _balance(
     found = _found(contact, problem, pressure, level, at)
     moved, _ = pressure_flow(problem.flow, found.oil, found.gap, at)
     film, rubbed = _made(contact, problem, found, moved, at)
-    by_heat = found.spread.mean @ (film + rubbed) + found.spread.within * film
+    by_heat = found.spread.of_surfaces(film + rubbed) + found.spread.within * film
     return problem.flow.temperature_rise, by_heat, film + rubbed, found
 
 
@@ -336,7 +372,7 @@ def temperatures(
     if contact.conduction is None:
         return None
     rise, _, heat, found = _balance(contact, problem, pressure, level, at)
-    into_a = found.spread.to_a @ heat
+    into_a = found.spread.into_a(heat)
     into_b = heat - into_a
     surface_a, surface_b = found.spread.strip_a @ into_a, found.spread.strip_b @ into_b
     cells, half_width = at.widths * found.length, contact.half_width

@@ -129,6 +129,15 @@ class Problem(eqx.Module):
         found: Array = self.flow.room(self.gap(pressure, level, at))[at.middle]
         return found
 
+    def mean_film(self, pressure: Array, level: Array, at: Grid) -> Array:
+        """Mean gap of the mean planes over the dry contact, of the lines between the nodes."""
+        film, half_width = self.gap(pressure, level, at), self.yielding
+        low, high = (jnp.clip(x, -half_width, half_width) for x in (at.x[:-1], at.x[1:]))
+        middle = 0.5 * (low + high)
+        share = (middle - at.x[:-1]) / at.spacing
+        lines = film[:-1] + share * jnp.diff(film)
+        return jnp.sum(lines * (high - low)) / (2.0 * half_width)
+
     def carrying(self, pressure: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
         """Pressure of a shape that carries the load, and the level for a gap in the middle."""
         carries = pressure * self.load / (at.widths @ pressure)

@@ -205,13 +205,28 @@ def from_coarse(problem: Problem, grids: Sequence[Grid]) -> State:
     return state._replace(total=total)
 
 
-def polished(problem: Problem, state: State, at: Grid) -> tuple[Array, Array]:
+def polished(
+    problem: Problem, state: State, at: Grid, pushed: Array | None = None
+) -> tuple[Array, Array, Array]:
     """Pressure and level of a solution, with their derivatives to all that the problem is made of.
 
     A last step from the solution carries them (implicit function theorem), with the cells that are full and
     those that are not as they are.
+
+    Args:
+        problem: the contact.
+        state: at which its iteration ended.
+        at: the grid.
+        pushed: changes of the residual, shape (node - 1, any).
+
+    Returns:
+        Pressure, level, and what pressures and level answer to what is pushed, shape (node - 1, any).
     """
     frozen, pressure, level = jax.lax.stop_gradient((problem, state.pressure, state.level))
     _, matrix = step(frozen, pressure, level, at)
-    change = jnp.linalg.solve(matrix, -residual(problem, pressure, level, at))
-    return pressure.at[1:-1].add(change[:-1]), level + change[-1]
+    rest = residual(problem, pressure, level, at)
+    also = jnp.zeros((rest.shape[0], 0)) if pushed is None else pushed
+    # One factorisation: it is what a step takes most of its time for.
+    change = jnp.linalg.solve(matrix, -jnp.column_stack((rest, also)))
+    moved = change[:, 0]
+    return pressure.at[1:-1].add(moved[:-1]), level + moved[-1], change[:, 1:]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final, TypeVar
 
 import equinox as eqx
@@ -13,16 +14,22 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.doubts import check, warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
-from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid
+from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid, prolongation
 from pitchpoint.lubrication.ehl.heat import (
     WARM_ENOUGH,
     defect,
+    settled,
     turned,
     warmed,
 )
-from pitchpoint.lubrication.ehl.line import LEAST, LineContact, Problem, problem_of
+from pitchpoint.lubrication.ehl.line import (
+    LEAST,
+    LineContact,
+    Problem,
+    problem_of,
+)
 from pitchpoint.lubrication.ehl.newton import (
     ENOUGH,
     State,
@@ -31,9 +38,12 @@ from pitchpoint.lubrication.ehl.newton import (
     polished,
     residual,
 )
-from pitchpoint.lubrication.ehl.texture import Rough
-from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
-from pitchpoint.lubrication.groups import line_groups
+from pitchpoint.lubrication.ehl.response import (
+    answer,
+    pushed,
+    pushed_rest,
+    stiffness_and_damping,
+)
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
@@ -47,14 +57,8 @@ NODES: Final = 129
 PORTION: Final = 64
 """Contacts of a program at once; between portions progress is told, and an interrupt is heard."""
 
-COARSE: Final = 0.03
-"""Error by the grid from which on it is told."""
-
 FEW: Final = 128
 """Contacts up to which a program that compiles quickly is done sooner than one that runs twice as fast."""
-
-WIDE: Final = 0.1
-"""Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
 
 
 class Ended(eqx.Module):
@@ -91,7 +95,7 @@ class Films:
         ended: how each solve ended.
         nodes: across a contact.
         domain: first and last place in half-widths, shape (2, *b).
-        warnings: what to be wary of, in sentences.
+        warnings: what to be wary of, in sentences, each a `Doubt`.
     """
 
     film: LineFilm
@@ -116,27 +120,39 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
 
     Returns:
         Films, NaN where a contact was not solved. Derivatives are those of the solution (implicit function
-        theorem), first ones; every cell stays full of oil, or not, as it is.
-
-    Raises:
-        InputError: a contact with conduction: with temperatures there are no derivatives.
+        theorem, with heat of pressure and temperature together), first ones, of stiffness and damping too;
+        every cell stays full of oil, or not, as it is.
     """
-    if contact.conduction is not None:
-        raise InputError("derivatives of films are known for isothermal ones alone", key="thermal")
     grids = _ladder(nodes, ends)
     shape = jnp.broadcast_shapes(*map(jnp.shape, jax.tree.leaves(contact)))
     contact = jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, shape), contact)
 
     def one(single: LineContact) -> LineFilm:
-        problem = problem_of(single)
-        state = from_coarse(jax.lax.stop_gradient(problem), grids)
-        film = line_film(single, problem, *polished(problem, state, grids[-1]), grids[-1])
-        found = state.residual < ENOUGH
+        problem, pressure, level, found = _followed(single, grids)
+        push = pushed(single, problem)
+        given = problem, push, pressure, level
+        response = stiffness_and_damping(single, *given, answer(*given, grids[-1]), grids[-1])
+        film = line_film(single, problem, pressure, level, response, grids[-1])
         if single.texture is None:
             found = found & ~_torn(film.gap / problem.flow.height, problem)
         return _withheld(film, found)
 
     return one(contact) if contact.line_load.ndim == 0 else jax.lax.map(one, contact)
+
+
+def _followed(contact: LineContact, grids: tuple[Grid, ...]) -> tuple[Problem, Array, Array, Array]:
+    """A contact as warm as it is, its pressure and level with derivatives, and whether they were found."""
+    problem, at = problem_of(contact), grids[-1]
+    frozen, still = jax.lax.stop_gradient((problem, contact))
+    state = from_coarse(frozen, grids)
+    if contact.conduction is None:
+        pressure, level, _ = polished(problem, state, at)
+        return problem, pressure, level, state.residual < ENOUGH
+    warm = turned(still, frozen, state, at)
+    so_warm, pressure, level = settled(contact, problem, warm, at)
+    off = defect(contact, so_warm, pressure, level, at)
+    found = (warm.state.residual < ENOUGH) & (off < WARM_ENOUGH)
+    return so_warm, pressure, level, found
 
 
 def solve_lines(
@@ -154,7 +170,8 @@ def solve_lines(
         contact: its arrays broadcast against each other to `*b`.
         nodes: across a contact: 33, 65, 129, 257, ...
         profiles: whether fields are kept; without them the memory stays small for any number of contacts.
-        start: films of as many contacts on as many nodes, with profiles, from whose pressures solves begin.
+        start: films of as many contacts, with profiles on any grid, from whose pressures solves begin, such
+            as those of a saved dataset.
         size: of the teeth, such as the module [m]; contacts that are wide against it are told.
         progress: called with the number of contacts that are done and that of all.
 
@@ -163,7 +180,7 @@ def solve_lines(
             positive, or nodes that no grid has.
     """
     shape, flat = _flat(contact)
-    _check(flat)
+    check(flat)
     begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
     closes = np.asarray(flat.approach) != 0.0
     # Each on the grid that it would have alone, and back in the order in which they came.
@@ -179,13 +196,13 @@ def solve_lines(
                 progress(done, closes.size)
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
-    warnings = tuple(_warnings(flat, film, ended, size))
+    told = tuple(warnings(flat, film, ended.code == Code.SOLVED, ended.grid, size))
     film, ended = (
         jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), one)
         for one in (film, ended)
     )
     domain = np.moveaxis(domain.reshape((*shape, 2)), -1, 0)
-    return Films(film, ended, nodes, domain, warnings)
+    return Films(film, ended, nodes, domain, told)
 
 
 def _taken(tree: Tree, which: NDArray[np.int_]) -> Tree:
@@ -248,7 +265,10 @@ def _portion(
     def one(given: Any) -> tuple[LineFilm, Ended, Array]:
         single, asked, begin = given
         code = _before(single)
-        ways = lambda: _solved(single, begin, grids), lambda: _not_solved(single, code, grids)
+        # Traced once, for its shape and for its numbers.
+        solve = jax.jit(partial(_solved, grids=grids))
+        shape = jax.eval_shape(solve, single, begin)
+        ways = lambda: solve(single, begin), lambda: _not_solved(shape, code)
         ended: tuple[LineFilm, Ended, Array] = jax.lax.cond(asked & (code == Code.SOLVED), *ways)
         return ended
 
@@ -278,8 +298,11 @@ def _solved(
 ) -> tuple[LineFilm, Ended, Array]:
     at = grids[-1]
     problem, state, turns = _iterated(contact, begin, grids)
-    pressure, level = polished(problem, state, at)
-    film = line_film(contact, problem, pressure, level, at)
+    push = pushed(contact, problem)
+    others = pushed_rest(problem, push, state.pressure, state.level, at)
+    pressure, level, answers = polished(problem, state, at, others)
+    response = stiffness_and_damping(contact, problem, push, pressure, level, answers, at)
+    film = line_film(contact, problem, pressure, level, response, at)
     rest = residual(problem, pressure, level, at)
     gap = problem.gap(pressure, level, at)
     converged = (state.residual < ENOUGH) & (jnp.max(jnp.abs(rest)) < ENOUGH)
@@ -313,8 +336,7 @@ def _iterated(
     if begin is None:
         state = from_coarse(problem, grids)
     else:
-        shape, gap = begin
-        state = iterated(problem, *problem.carrying(shape, gap / problem.flow.height, at), at)
+        state = _onward(problem, begin[0], begin[1] / problem.flow.height, grids)
     if contact.conduction is None:
         return problem, state, None
     warm = turned(contact, problem, state, at)
@@ -324,6 +346,19 @@ def _iterated(
     # The grid makes as large a part of the warm film its error as of the isothermal one.
     found = warm.state._replace(total=warm.total, coarse=state.coarse * hot / cold)
     return warmed(problem, warm.rise), found, warm.turns
+
+
+def _onward(problem: Problem, shape: Array, gap: Array, grids: tuple[Grid, ...]) -> State:
+    """Solution from a pressure that is near it; the one on the grid before tells the error by the grid."""
+    at = grids[-1]
+    state = iterated(problem, *problem.carrying(shape, gap, at), at)
+    if len(grids) == 1:
+        return state
+    before = grids[-2]
+    fewer_nodes = state.pressure[:: (at.x.shape[0] - 1) // (before.x.shape[0] - 1)]
+    coarse = iterated(problem, *problem.carrying(fewer_nodes, gap, before), before)
+    film = problem.film_in_the_middle(coarse.pressure, coarse.level, before)
+    return state._replace(coarse=film, total=state.total + coarse.total)
 
 
 def _gain(grids: tuple[Grid, ...]) -> float:
@@ -341,10 +376,7 @@ def _as_turned(gap: Array, contact: LineContact) -> Array:
     return jnp.where(contact.entrainment < 0.0, gap[::-1], gap)
 
 
-def _not_solved(
-    contact: LineContact, code: Array, grids: tuple[Grid, ...]
-) -> tuple[LineFilm, Ended, Array]:
-    shape = jax.eval_shape(lambda: _solved(contact, None, grids))
+def _not_solved(shape: tuple[LineFilm, Ended, Any], code: Array) -> tuple[LineFilm, Ended, Array]:
     film, ended, domain = jax.tree.map(
         lambda leaf: jnp.full(leaf.shape, jnp.nan if leaf.dtype.kind == "f" else 0, leaf.dtype),
         shape,
@@ -365,160 +397,26 @@ def _without_profiles(film: LineFilm) -> LineFilm:
 
 
 def _begin(start: Films, count: int, nodes: int) -> tuple[Any, Any]:
-    """Pressures and films in the middle from which solves begin."""
-    pressure = np.asarray(start.film.pressure).reshape(-1, start.film.pressure.shape[-1])
-    if pressure.shape != (count, nodes):
+    """Pressures along the grid and films in the middle from which solves begin."""
+    across, given = np.shape(start.film.pressure)[-1], start.ended.code.size
+    if not across or given != count:
         raise InputError(
-            f"films of {pressure.shape[0]} contacts on {pressure.shape[1]} nodes are no start for "
-            f"{count} contacts on {nodes} nodes"
+            f"films of {given} contacts on {across} nodes are no start for {count} contacts on {nodes} nodes"
         )
-    gap = np.asarray(start.film.gap).reshape(count, nodes)
-    middle = np.argmin(np.abs(np.asarray(start.film.x).reshape(count, nodes)), axis=-1)
-    return pressure, gap[np.arange(count), middle]
+    x, pressure, gap = (
+        np.asarray(one).reshape(count, across)
+        for one in (start.film.x, start.film.pressure, start.film.gap)
+    )
+    middle = np.argmin(np.abs(x), axis=-1)
+    # A grid follows the entrainment, and has its long side ahead.
+    turned = np.abs(x[:, -1]) > 1.5 * np.abs(x[:, 0])
+    along = np.where(turned[:, None], pressure[:, ::-1], pressure)
+    return _on_nodes(along, nodes), gap[np.arange(count), middle]
 
 
-# ---- what is wrong with an input, and what is doubtful about a result
-
-
-def _check(contact: LineContact) -> None:
-    """InputError for values that no contact has."""
-    fluid, texture = contact.fluid, contact.texture
-    positive = {
-        "radius": (contact.radius, "a relative radius of curvature", 1.0, "m"),
-        "modulus": (contact.modulus, "a modulus E'", 1e-9, "GPa"),
-        "viscosity": (fluid.viscosity, "a viscosity", 1e3, "mPa s"),
-        "pressure_viscosity": (
-            fluid.pressure_viscosity,
-            "a pressure-viscosity coefficient",
-            1e9,
-            "1/GPa",
-        ),
-        "inlet": (contact.inlet, "a distance at which oil begins", 1e3, "mm"),
-    }
-    for name, value in fluid.shear_parameters.items():
-        positive[name] = (value, f"a shear parameter {name}", 1.0, "in SI units")
-    if texture is not None:
-        positive["rq"] = (texture.rq, "a composite roughness Rq", 1e6, "um")
-    if isinstance(texture, Rough):
-        positive["eta_beta_sigma"] = (texture.eta_beta_sigma, "an eta_beta_sigma", 1.0, "")
-        positive["sigma_over_beta"] = (texture.sigma_over_beta, "a sigma_over_beta", 1.0, "")
-        if np.min(np.asarray(texture.friction)) < 0.0:
-            raise InputError(
-                f"a boundary friction of {np.min(np.asarray(texture.friction)):.4g}: it must not be negative",
-                key="boundary_friction",
-            )
-    if contact.conduction is not None:
-        positive |= _of_conduction(contact.conduction)
-    for key, (value, what, scale, unit) in positive.items():
-        low = np.min(np.asarray(value))
-        if not low > 0.0 and not np.isnan(low):
-            told = f"{low * scale:.4g} {unit}".strip()
-            raise InputError(f"{what} of {told}: it must be positive", key=key)
-
-
-def _of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
-    """What of conduction has to be positive: value, what it is, scale and unit, by its key."""
-    of_oil = given.oil_conductivity, "a conductivity of the oil", 1.0, "W/m/K"
-    found: dict[str, tuple[Any, str, float, str]] = {"oil_conductivity": of_oil}
-    for member, body in enumerate((given.a, given.b)):
-        conducts = body.conductivity, f"a conductivity of member {member}", 1.0, "W/m/K"
-        stores = body.heat_capacity, f"a heat capacity of member {member}", 1e-6, "J/cm3/K"
-        found |= {f"conductivity_{member}": conducts, f"heat_capacity_{member}": stores}
-    return found
-
-
-def _warnings(
-    contact: LineContact, film: LineFilm, ended: Ended, size: float | None
-) -> Iterator[str]:
-    solved = np.asarray(ended.code) == Code.SOLVED
-    if not solved.any():
-        return
-    some: LineContact = jax.tree.map(lambda leaf: np.asarray(leaf)[solved], contact)
-    half_width = np.asarray(film.half_width)[solved]
-    yield from _of_pressure(some, np.asarray(film.hertz_pressure)[solved])
-    yield from _of_half_space(some, half_width, size)
-    yield from _of_inlet(some, half_width)
-    yield from _of_grid(np.asarray(ended.grid)[solved])
-    if some.texture is not None:
-        yield from _of_roughness(np.asarray(some.texture.rq), half_width)
-    if film.heat is not None:
-        peclet = np.stack([film.heat.peclet_a, film.heat.peclet_b])[:, solved]
-        yield from _of_strips(peclet, np.stack([some.speed_a, some.speed_b]), half_width)
-
-
-def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[str]:
-    told = contact.fluid.outside(pressure)
-    if told is not None:
-        yield f"{told}: films and traction there are extrapolated"
-
-
-def _of_half_space(
-    contact: LineContact, half_width: NDArray[np.float64], size: float | None
-) -> Iterator[str]:
-    radius = np.asarray(contact.radius)
-    sizes = {"the relative radius": radius}
-    if size is not None:
-        sizes["the size of a tooth"] = np.full_like(radius, size)
-    for name, length in sizes.items():
-        worst = np.argmax(half_width / length)
-        if half_width[worst] > WIDE * length[worst]:
-            yield (
-                f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
-                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them"
-            )
-
-
-def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[str]:
-    worst = np.argmax(rough / half_width)
-    if rough[worst] > WIDE * half_width[worst]:
-        yield (
-            f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
-            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little"
-        )
-
-
-def _of_strips(
-    peclet: NDArray[np.float64], speed: NDArray[np.float64], half_width: NDArray[np.float64]
-) -> Iterator[str]:
-    member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
-    if peclet[member, worst] < LEAST_PECLET:
-        yield (
-            f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
-            f"{abs(speed[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
-            f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
-            "stands still is taken to take none"
-        )
-
-
-def _of_grid(error: NDArray[np.float64]) -> Iterator[str]:
-    rough = error > COARSE
-    if rough.any():
-        yield (
-            f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
-            f"off by {100.0 * error.max():.2g} %; take more nodes"
-        )
-
-
-def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[str]:
-    given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
-    worst = np.argmin(given / needed)
-    if given[worst] < needed[worst] * (1.0 - 1e-9):
-        yield (
-            f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
-            f"one draws it from {needed[worst]:.0f} on: the contact is starved"
-        )
-
-
-def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
-    """Length of inlet beyond which oil no longer changes the film by more than a hundredth [half-widths].
-
-    3 above a load parameter M = w/(E' R) (2 eta0 u/(E' R))^(-1/2) of 30, 4 above 10, 8 above 5, else 12:
-    contacts with thick films draw oil from further away. Rolling resistance falls off with it much more
-    slowly: it is 10 to 20 % below that of an endless inlet. From films of inlets of 2 to 12 half-widths.
-    """
-    oil = contact.fluid
-    speed = abs(contact.entrainment)
-    given = oil.viscosity, oil.pressure_viscosity, contact.radius, contact.modulus
-    W, U, _ = map(np.asarray, line_groups(contact.line_load, speed, *given))
-    load = W / np.sqrt(np.maximum(2.0 * U, 1e-30))
-    return np.select([load > 30.0, load > 10.0, load > 5.0], [3.0, 4.0, 8.0], 12.0)
+def _on_nodes(values: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
+    """Values at the nodes of a grid from those of a finer or coarser one, along the last axis."""
+    given = values.shape[-1]
+    if given >= nodes:
+        return values[:, :: (given - 1) // (nodes - 1)]
+    return np.maximum(values @ prolongation(given, nodes).T, 0.0)

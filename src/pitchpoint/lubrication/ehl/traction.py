@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.factored import Numbers
+from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -52,20 +54,31 @@ def ehl_line(
 
 
 class FilmTraction:
-    """Friction coefficients of the solved films of an oil: a solver that a balance takes turns with.
+    """Friction of the solved films of an oil: a solver that a balance takes turns with.
 
     Args:
         model: how films are solved.
         oil: between the flanks.
         temperature: of the oil in the inlet [K].
+        rolling: whether rolling resistance is asked for too.
+        progress: told the number of films that are solved, of all turns.
 
     Attributes:
         films: those of the last turn; None before the first.
     """
 
-    def __init__(self, model: FilmModel, oil: Lubricant, temperature: ArrayLike) -> None:
-        self.model, self.oil, self.temperature = model, oil, temperature
+    def __init__(
+        self,
+        model: FilmModel,
+        oil: Lubricant,
+        temperature: ArrayLike,
+        *,
+        rolling: bool = False,
+        progress: Callable[[int], None] | None = None,
+    ) -> None:
+        self.model, self.oil, self.temperature, self.rolling = model, oil, temperature, rolling
         self.films: Films | None = None
+        self._progress, self._done = progress or (lambda _: None), 0
 
     def __call__(
         self,
@@ -78,6 +91,8 @@ class FilmTraction:
         roughness_rq: Each,
     ) -> Each:
         """Friction of the oil and of asperities over the load of each contact [contact].
+
+        With rolling resistance on each surface [N/m] it is of shape (2, contact).
 
         Arguments as in `ehl_line`, NumPy arrays [contact].
 
@@ -94,11 +109,20 @@ class FilmTraction:
             temperature=self.temperature,
             roughness_rq=roughness_rq,
         )
-        self.films = solve_lines(contacts, nodes=self.model.nodes, profiles=False)
+        self.films = self._turn(contacts)
         _demand(self.films)
         film = self.films.film
-        friction: Each = np.abs(np.asarray(film.shear_force + film.boundary_force)) / line_load
-        return friction
+        friction: Each = np.asarray(film.friction)
+        if not self.rolling:
+            return friction
+        # Against the sense in which the surfaces run.
+        return np.stack([friction, np.asarray(film.rolling) * np.sign(speed_a + speed_b)])
+
+    def _turn(self, contacts: LineContact) -> Films:
+        told = lambda done, _: self._progress(self._done + done)  # noqa: E731
+        films = solve_lines(contacts, nodes=self.model.nodes, profiles=False, progress=told)
+        self._done += films.solved.size
+        return films
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -123,8 +147,9 @@ EHL_LINE: Final = FrictionLaw(
     sources=("dowson_higginson_1966", "patir_cheng_1978", "greenwood_tripp_1970"),
     note=(
         "Shear of the oil and friction of asperities from pressure and film of each contact, solved in turns"
-        " with the balance of forces until both agree to 1e-6. Rolling resistance stays with its own law. A"
-        " contact takes about 10 ms a turn: a helical mesh with many slices takes minutes."
+        " with the balance of forces until both agree to 1e-6; so does their rolling resistance, unless a"
+        " case names a model of it. A contact takes about 10 ms a turn: a helical mesh with many slices takes"
+        " minutes."
     ),
     shape="line",
     films=FilmModel(),

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Sequence
+from itertools import cycle
 
 import numpy as np
 import xarray as xr
@@ -54,15 +55,14 @@ _BESIDE = {
 }
 """Figures by the films, and the same by a friction law."""
 
-_ON_SCREEN = (
-    "smallest_film",
-    "smallest_lambda",
-    "largest_film_pressure",
-    "largest_asperity_share",
-)
+_WARMTH = ("largest_film_rise", "largest_flash_rise")
+"""Figures of films that are no isothermal ones."""
 
 _SEEN = 0.01
-"""Part of the largest pressure up to which a profile is drawn."""
+"""Part of the largest pressure of the cycle from which on a profile is seen without zooming out."""
+
+_CENTRAL = ("longdash", "dashdot", "dot")
+"""Dashes of film laws for the middle, in turns: laws that agree lie upon each other."""
 
 
 def film_answer(outcome: Outcome) -> str:
@@ -72,12 +72,29 @@ def film_answer(outcome: Outcome) -> str:
         return NONE
     told = (
         f"{_told(data, 'smallest_film')} at least, {_told(data, 'smallest_lambda')} of Rq; asperities "
-        f"carry up to {_told(data, 'largest_asperity_share')} of a contact's load"
+        f"carry up to {_told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
     if not np.isfinite(float(data["mean_film_loss"])):
         return f"{told}; loss and efficiency are withheld, some films were not found"
     friction, loss = (_told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
     return f"{told}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def _thermal(data: xr.Dataset) -> str:
+    """Name of the thermal effect of the films."""
+    return str(json.loads(data.attrs["choices"])["thermal"])
+
+
+def _main(data: xr.Dataset) -> tuple[str, ...]:
+    """Names of the figures of the films themselves."""
+    return _FIGURES if _thermal(data) == ISOTHERMAL else (*_FIGURES, *_WARMTH)
+
+
+def _warmed(data: xr.Dataset) -> str:
+    if _thermal(data) == ISOTHERMAL:
+        return ""
+    film, flash = (_told(data, name) for name in _WARMTH)
+    return f"; films are up to {film} warmer than their inlet, surfaces {flash}"
 
 
 def _efficient(data: xr.Dataset) -> str:
@@ -96,6 +113,8 @@ def _told(data: xr.Dataset, name: str) -> str:
 def profiles_panel(name: str, data: xr.Dataset) -> Panel:
     """Film and pressure across the contacts that carry most, with the phase to slide."""
     figures = [_film_profile(f"{name}_film", data), _pressure_profile(f"{name}_pressure", data)]
+    if "profile_rise" in data:
+        figures.append(_warm_profile(f"{name}_rise", data))
     choices = [_choice(data, figures, int(phase)) for phase in _in_order(data)]
     return Panel("", figures, choices=choices, menu="Phase", slides=True)
 
@@ -106,8 +125,9 @@ def _in_order(data: xr.Dataset) -> np.ndarray:
 
 
 def _choice(data: xr.Dataset, figures: Sequence[Figure], phase: int) -> Choice:
-    film, pressure = figures
-    changes = {film.name: _film_lines(data, phase), pressure.name: _pressure_lines(data, phase)}
+    lines = _film_lines, _pressure_lines, _warm_lines
+    each = zip(figures, lines, strict=False)
+    changes = {figure.name: own(data, phase) for figure, own in each}
     label = f"{float(data['phase'][phase]) % 1.0:.3f}"
     return Choice(label, {key: [_points(lines), {}] for key, lines in changes.items()})
 
@@ -121,26 +141,57 @@ def _film_profile(name: str, data: xr.Dataset) -> Figure:
     film = np.take_along_axis(data["profile_film"].values, middle, axis=-1)
     ends = 1.1 * np.nanmin(film, initial=0.0), 2.5 * np.nanmax(film, initial=0.0)
     axes = _across(data, "profile_film", *ends)
-    title = titled("profile_film", data)
-    return Figure(
-        name, title, _film_lines(data, int(_in_order(data)[0])), axes, "", tuple(_keys(data)), NONE
-    )
+    title, first = titled("profile_film", data), int(_in_order(data)[0])
+    lines = _film_lines(data, first)
+    return Figure(name, title, lines, axes, "", (*_keys(data), DRY), NONE)
+
+
+DRY = Key("±b of the dry contact", GREY)
 
 
 def _pressure_profile(name: str, data: xr.Dataset) -> Figure:
     top = 1.08 * np.nanmax(data["profile_pressure"].values, initial=0.0)
     axes = _across(data, "profile_pressure", 0.0, top)
-    keys = [*_keys(data), Key("of it on asperities", GREY, "dot")]
-    title = titled("profile_pressure", data)
-    return Figure(
-        name, title, _pressure_lines(data, int(_in_order(data)[0])), axes, "", tuple(keys), NONE
-    )
+    keys = [*_keys(data), Key("of it on asperities", GREY, "dot"), DRY]
+    title, first = titled("profile_pressure", data), int(_in_order(data)[0])
+    return Figure(name, title, _pressure_lines(data, first), axes, SPIKE, tuple(keys), NONE)
+
+
+SPIKE = "The largest pressure is that of one node, at the spike where there is one: finer grids have more."
+
+
+def _warm_profile(name: str, data: xr.Dataset) -> Figure:
+    """Temperatures of film and surfaces across the contacts."""
+    top = 1.08 * np.nanmax(data["profile_rise"].values, initial=0.0)
+    axes = _across(data, "profile_rise", 0.0, top)
+    keys = [
+        *_keys(data),
+        Key("surface of body 1", GREY, "dot"),
+        Key("surface of body 2", GREY, "dash"),
+    ]
+    title, first = "Temperatures above the inlet", int(_in_order(data)[0])
+    return Figure(name, title, _warm_lines(data, first), axes, "", tuple(keys), NONE)
+
+
+def _warm_lines(data: xr.Dataset, phase: int) -> list[Trace]:
+    """Mean temperature of every film, and those of its surfaces."""
+    each = {
+        "profile_rise": "solid",
+        "profile_surface_rise_1": "dot",
+        "profile_surface_rise_2": "dash",
+    }
+    return [
+        _profile(data, name, phase, k, Key(key.label, key.colour, dash))
+        for name, dash in each.items()
+        for k, key in enumerate(_keys(data))
+    ]
 
 
 def _across(data: xr.Dataset, name: str, low: float, top: float) -> dict[str, object]:
     """Layout with axes that stay as they are while the phase slides."""
     wide = display("profile_place", data["profile_place"].values)[_pressed(data)]
-    ends = [1.5 * np.min(wide, initial=-1e-6), 1.5 * np.max(wide, initial=1e-6)]
+    ends = np.array([np.min(wide, initial=-1e-6), np.max(wide, initial=1e-6)])
+    ends += 0.05 * np.ptp(ends) * np.array([-1.0, 1.0])
     high = float(display(name, top)) if top > 0.0 else 1.0
     return layout(
         f"x [{show.unit_of('profile_place')}]",
@@ -164,7 +215,11 @@ def _keys(data: xr.Dataset) -> list[Key]:
 
 
 def _film_lines(data: xr.Dataset, phase: int) -> list[Trace]:
-    return [_profile(data, "profile_film", phase, k, key) for k, key in enumerate(_keys(data))]
+    lines = [_profile(data, "profile_film", phase, k, key) for k, key in enumerate(_keys(data))]
+    film = data["profile_film"].values
+    middle = np.argmin(np.abs(data["profile_place"].values), axis=-1)[..., None]
+    top = 0.3 * np.nanmax(np.take_along_axis(film, middle, axis=-1), initial=0.0)
+    return [*lines, *_marks(data, "profile_film", phase, float(top))]
 
 
 def _pressure_lines(data: xr.Dataset, phase: int) -> list[Trace]:
@@ -173,7 +228,19 @@ def _pressure_lines(data: xr.Dataset, phase: int) -> list[Trace]:
     whole = [_profile(data, "profile_pressure", phase, k, key) for k, key in keys]
     dotted = [(k, Key(key.label, key.colour, "dot")) for k, key in keys]
     some = [_profile(data, "profile_asperity_pressure", phase, k, key) for k, key in dotted]
-    return [*whole, *some]
+    top = 0.15 * float(np.nanmax(data["profile_pressure"].values, initial=0.0))
+    return [*whole, *some, *_marks(data, "profile_pressure", phase, top)]
+
+
+def _marks(data: xr.Dataset, name: str, phase: int, top: float) -> list[Trace]:
+    """Ends of the dry contact of every pair."""
+    y = display(name, np.array([0.0, top, np.nan, 0.0, top]))
+    found = []
+    for width, key in zip(data["profile_half_width"].values[phase], _keys(data), strict=True):
+        x = display("profile_place", np.array([-width, -width, np.nan, width, width]))
+        mark = Key(f"±b of {key.label}", key.colour)
+        found.append(plain(mark, x, y, show.unit_of(name)))
+    return found
 
 
 def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: Key) -> Trace:
@@ -253,14 +320,15 @@ def _films(name: str, data: xr.Dataset, axis: str) -> Figure:
         (key, _line(data, "film_by_law", key, values))
         for key, values in zip(_film_keys(data), by_law, strict=True)
     ]
-    note = f"{MOST} Regressions of the film in the middle are dashed; all are those of smooth surfaces."
+    note = f"{MOST} Regressions of the film in the middle are broken lines; all are those of smooth surfaces."
     return _figure(name, "Film over the mesh cycle", "minimum_film", lines, axis, note)
 
 
 def _film_keys(data: xr.Dataset) -> list[Key]:
-    """Film laws, dashed where they give the film in the middle."""
+    """Film laws, in broken lines where they give the film in the middle."""
     titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
-    dashes = ["dash" if place == "central" else "solid" for place in places]
+    broken = cycle(_CENTRAL)
+    dashes = [next(broken) if place == "central" else "solid" for place in places]
     each = enumerate(zip(titles, dashes, strict=True))
     return [Key(title, PALETTE[k % len(PALETTE)], dash) for k, (title, dash) in each]
 
@@ -357,6 +425,9 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
             "warning",
         )
     yield _table(outcome)
+    if other := str(data.attrs["other_rolling"]):
+        yield Paragraph(other, "note")
+    yield Paragraph(_thinnest(data), "note")
     if _overlap(data):
         yield Paragraph(OVERLAP, "note")
     yield Heading("Across the contacts")
@@ -383,16 +454,36 @@ def _status(data: xr.Dataset) -> str:
         f"{data.sizes['phase']} phases of the mesh cycle under the forces of the balance with the first "
         f"friction law: {solve['sentence']}; at most {solve['iterations']} iterations, largest defect "
         f"{solve['residual']:.0e} of Hertz's pressure. {chosen['nodes']} nodes across a contact; {laws}, "
-        f"boundary friction {chosen['boundary_friction']:g}. {_warmth(data, chosen['thermal'])}"
+        f"boundary friction {chosen['boundary_friction']:g}. {_warmth(data)}"
     )
 
 
-def _warmth(data: xr.Dataset, thermal: str) -> str:
+def _warmth(data: xr.Dataset) -> str:
+    thermal = _thermal(data)
     if thermal == ISOTHERMAL:
         return "Isothermal."
-    warmest = _told(data, "largest_film_rise")
-    return f"With heat ({thermal.replace('_', ' ')}): up to {warmest} above the inlet."
+    film, flash = (_told(data, name) for name in _WARMTH)
+    named = thermal.replace("_", " ")
+    return f"With heat ({named}): films up to {film} above their inlet, surfaces up to {flash}."
 
+
+def _thinnest(data: xr.Dataset) -> str:
+    """Where the film is thinnest, in words."""
+    film = data["minimum_film"].values
+    if np.isnan(film).all():
+        return NONE
+    phase, pair, part = np.unravel_index(np.nanargmin(film), film.shape)
+    at = f"phase {float(data['phase'][phase]) % 1.0:.3f}, {pair_key(int(pair)).label}"
+    many = film.shape[-1]
+    part_of = f", slice {part + 1} of {many}, counted along the face" if many > 1 else ""
+    there = {name: data[name].values[phase, pair, part] for name in _THERE}
+    least, rough, pressed = (show.quantity(name, float(v), of=data) for name, v in there.items())
+    return (
+        f"The thinnest film is at {at}{part_of}: {least}, {rough} of Rq, under {pressed} at most."
+    )
+
+
+_THERE = ("minimum_film", "minimum_lambda", "film_pressure")
 
 _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
 
@@ -415,7 +506,7 @@ def _table(outcome: Outcome) -> Table:
     def alone(name: str) -> tuple[str, ...]:
         return (titled(name, data), _told(data, name), *("" for _ in known))
 
-    rows = [alone(name) for name in _FIGURES]
+    rows = [alone(name) for name in _main(data)]
     for own, by_law in _BESIDE.items():
         values = data[by_law].values
         cells = [show.quantity(by_law, float(value), of=data) for value in values]
@@ -438,14 +529,14 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("film")
     if data is None:
         return
-    row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
+    row = {head(name, data): shown(name, float(data[name]), data) for name in _main(data)}
     yield Printed("Films", [row], _counted(data))
     rows = [{"friction by": "films", **_row(data, [*_BESIDE], ())}]
     rows += [
         {"friction by": law, **_row(data, [*_BESIDE.values()], (k,), [*_BESIDE])}
         for k, law in enumerate(laws(data))
     ]
-    yield Printed("", rows)
+    yield Printed("", rows, str(data.attrs["other_rolling"]))
 
 
 def _row(

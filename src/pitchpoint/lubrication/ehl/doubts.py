@@ -1,0 +1,313 @@
+"""What is wrong with an input of line contacts, and what is doubtful about a result, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pitchpoint._jax import jax
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.fields import LineFilm
+from pitchpoint.lubrication.ehl.line import FLOODED, INLETS, LineContact
+from pitchpoint.lubrication.ehl.texture import Rough
+from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
+from pitchpoint.lubrication.groups import line_groups
+from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS
+from pitchpoint.materials.rheology import SHEAR_STRESS
+
+__all__ = ["Doubt", "check", "extent_of", "flooded_inlet", "kind_of", "warnings"]
+
+COARSE: Final = 0.03
+"""Error by the grid from which on it is told."""
+
+LARGE: Final = 100.0
+"""Relative radius [m] above which millimetres may have been meant."""
+
+SOFT: Final = 1e6
+"""Modulus E' [Pa] below which MPa or GPa may have been meant."""
+
+STIFF: Final = 1e3
+"""Viscosity [Pa s] above which mPa s may have been meant."""
+
+SHEARED: Final = 0.1
+"""Shear stress over pressure that oils hardly exceed: their limiting stress is .05 to .1 of it."""
+
+WIDE: Final = 0.1
+"""Half-width over radius, or over the size of a tooth, from which on bodies are no half spaces any more."""
+
+
+class Doubt(str):
+    """A sentence without its stop, of a kind, and how bad it is.
+
+    Args:
+        sentence: with its numbers.
+        kind: what sentences have in common of which the worst one says enough.
+        extent: larger is worse; comparable within a kind.
+
+    Example:
+        >>> from pitchpoint.lubrication.ehl.doubts import Doubt
+        >>> told = Doubt("the grid is coarse: off by 5 %", "grid", 0.05)
+        >>> print(told, told.kind, told.extent)
+        the grid is coarse: off by 5 % grid 0.05
+    """
+
+    kind: str
+    extent: float
+
+    def __new__(cls, sentence: str, kind: str, extent: float) -> Doubt:
+        """See the class."""
+        found = super().__new__(cls, sentence)
+        found.kind, found.extent = kind, float(extent)
+        return found
+
+
+def kind_of(sentence: str) -> str:
+    """Kind of a sentence; a plain one is its own."""
+    return sentence.kind if isinstance(sentence, Doubt) else sentence
+
+
+def extent_of(sentence: str) -> float:
+    """How bad it is; nothing is known of a plain one."""
+    return sentence.extent if isinstance(sentence, Doubt) else 0.0
+
+
+def check(contact: LineContact) -> None:
+    """InputError for values that no contact has."""
+    fluid, texture = contact.fluid, contact.texture
+    positive = {
+        "radius": (contact.radius, "a relative radius of curvature", 1.0, "m"),
+        "modulus": (contact.modulus, "a modulus E'", 1e-9, "GPa"),
+        "viscosity": (fluid.viscosity, "a viscosity", 1e3, "mPa s"),
+        "pressure_viscosity": (
+            fluid.pressure_viscosity,
+            "a pressure-viscosity coefficient",
+            1e9,
+            "1/GPa",
+        ),
+        "inlet": (contact.inlet, "a distance at which oil begins", 1e3, "mm"),
+    }
+    for name, value in fluid.shear_parameters.items():
+        positive[name] = (value, f"a shear parameter {name}", 1.0, "in SI units")
+    if texture is not None:
+        positive["rq"] = (texture.rq, "a composite roughness Rq", 1e6, "um")
+    if isinstance(texture, Rough):
+        positive["eta_beta_sigma"] = (texture.eta_beta_sigma, "an eta_beta_sigma", 1.0, "")
+        positive["sigma_over_beta"] = (texture.sigma_over_beta, "a sigma_over_beta", 1.0, "")
+        if np.min(np.asarray(texture.friction)) < 0.0:
+            raise InputError(
+                f"a boundary friction of {np.min(np.asarray(texture.friction)):.4g}: it must not be negative",
+                key="boundary_friction",
+            )
+    if contact.conduction is not None:
+        positive |= _of_conduction(contact.conduction)
+    for key, (value, what, scale, unit) in positive.items():
+        low = np.min(np.asarray(value))
+        if not low > 0.0 and not np.isnan(low):
+            told = f"{low * scale:.4g} {unit}".strip()
+            raise InputError(f"{what} of {told}: it must be positive", key=key)
+
+
+def _of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
+    """What of conduction has to be positive: value, what it is, scale and unit, by its key."""
+    of_oil = given.oil_conductivity, "a conductivity of the oil", 1.0, "W/m/K"
+    found: dict[str, tuple[Any, str, float, str]] = {"oil_conductivity": of_oil}
+    for member, body in enumerate((given.a, given.b)):
+        conducts = body.conductivity, f"a conductivity of member {member}", 1.0, "W/m/K"
+        stores = body.heat_capacity, f"a heat capacity of member {member}", 1e-6, "J/cm3/K"
+        found |= {f"conductivity_{member}": conducts, f"heat_capacity_{member}": stores}
+    return found
+
+
+def warnings(
+    contact: LineContact,
+    film: LineFilm,
+    solved: NDArray[np.bool_],
+    grid_error: NDArray[np.float64],
+    size: float | None,
+) -> Iterator[Doubt]:
+    """What to be wary of about films.
+
+    Args:
+        contact: contacts `b`.
+        film: theirs.
+        solved: whether each was, shape (b,).
+        grid_error: estimate of each, shape (b,).
+        size: of the teeth, such as the module [m].
+    """
+    yield from _of_units(contact)
+    if not solved.any():
+        return
+    each = lambda leaf: leaf[solved]  # noqa: E731
+    some, found = jax.tree.map(each, contact), jax.tree.map(each, film)
+    half_width = np.asarray(found.half_width)
+    yield from _of_pressure(some, np.asarray(found.hertz_pressure))
+    yield from _of_half_space(some, half_width, size)
+    yield from _of_inlet(some, half_width)
+    yield from _of_long_inlet(some, found)
+    yield from _of_grid(grid_error[solved])
+    yield from _of_shear(some, found)
+    if some.texture is not None:
+        yield from _of_roughness(np.asarray(some.texture.rq), half_width)
+    if found.heat is not None:
+        yield from _of_thinning(some)
+        peclet = np.stack([found.heat.peclet_a, found.heat.peclet_b])
+        yield from _of_strips(peclet, np.stack([some.speed_a, some.speed_b]), half_width)
+
+
+def _of_units(contact: LineContact) -> Iterator[Doubt]:
+    """Values that hint at another unit than the one that they are taken in."""
+    radius, modulus, viscosity = (
+        np.asarray(one) for one in (contact.radius, contact.modulus, contact.fluid.viscosity)
+    )
+    if radius.max() > LARGE:
+        yield Doubt(
+            f"a relative radius of {radius.max():.4g} m: nearly flat, if it was not meant in millimetres",
+            "radius",
+            radius.max(),
+        )
+    if modulus.min() < SOFT:
+        yield Doubt(
+            f"a modulus E' of {modulus.min():.4g} Pa: softer than rubber, if it was not meant in MPa or GPa",
+            "modulus",
+            -modulus.min(),
+        )
+    if viscosity.max() > STIFF:
+        yield Doubt(
+            f"a viscosity of {viscosity.max():.4g} Pa s: no oil is so thick, if it was not meant in mPa s",
+            "viscosity",
+            viscosity.max(),
+        )
+
+
+def _of_pressure(contact: LineContact, pressure: NDArray[np.float64]) -> Iterator[Doubt]:
+    told = contact.fluid.outside(pressure)
+    if told is not None:
+        sentence = f"{told}: films and traction there are extrapolated"
+        yield Doubt(sentence, "pressure", pressure.max())
+
+
+def _of_half_space(
+    contact: LineContact, half_width: NDArray[np.float64], size: float | None
+) -> Iterator[Doubt]:
+    radius = np.asarray(contact.radius)
+    sizes = {"the relative radius": radius}
+    if size is not None:
+        sizes["the size of a tooth"] = np.full_like(radius, size)
+    for name, length in sizes.items():
+        worst = np.argmax(half_width / length)
+        if half_width[worst] > WIDE * length[worst]:
+            yield Doubt(
+                f"the contact is {2e3 * half_width[worst]:.3g} mm wide, and {name} is "
+                f"{1e3 * length[worst]:.3g} mm: the bodies are no half spaces, as the deformation takes them",
+                f"wide against {name}",
+                half_width[worst] / length[worst],
+            )
+
+
+def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -> Iterator[Doubt]:
+    worst = np.argmax(rough / half_width)
+    if rough[worst] > WIDE * half_width[worst]:
+        yield Doubt(
+            f"a roughness Rq of {1e6 * rough[worst]:.3g} um is large against a contact that is "
+            f"{2e6 * half_width[worst]:.3g} um wide: few asperities carry it, and their mean says little",
+            "roughness",
+            rough[worst] / half_width[worst],
+        )
+
+
+def _of_strips(
+    peclet: NDArray[np.float64], speed: NDArray[np.float64], half_width: NDArray[np.float64]
+) -> Iterator[Doubt]:
+    member, worst = np.unravel_index(np.argmin(peclet), peclet.shape)
+    if peclet[member, worst] < LEAST_PECLET:
+        yield Doubt(
+            f"member {member} passes a contact {2e3 * half_width[worst]:.3g} mm wide at "
+            f"{abs(speed[member, worst]):.3g} m/s, a Peclet number of {peclet[member, worst]:.3g}: below "
+            f"{LEAST_PECLET:g} heat spreads along the surface too, which comes out too warm, and one that "
+            "stands still is taken to take none",
+            "strips",
+            -peclet[member, worst],
+        )
+
+
+def _of_long_inlet(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
+    """Inlets that nothing limits but a radius, over which a gap is no parabola any more."""
+    radius, endless = np.asarray(contact.radius), np.asarray(contact.inlet) >= FLOODED
+    length = np.sqrt(film.half_width**2 + INLETS * radius * np.maximum(film.central_film, 0.0))
+    flooded = np.where(endless, flooded_inlet(contact) * length, 0.0)
+    worst = np.argmax(flooded / radius)
+    if flooded[worst] > radius[worst]:
+        yield Doubt(
+            f"a flooded film draws oil from {1e3 * flooded[worst]:.3g} mm before the contact on, more than "
+            f"its relative radius of {1e3 * radius[worst]:.3g} mm: give the `inlet` at which oil begins",
+            "long inlet",
+            flooded[worst] / radius[worst],
+        )
+
+
+def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
+    """Stress that no oil bears: a Newtonian one has no limit."""
+    limited = [f"'{name}'" for name in SHEAR_STRESS if name != USUAL_SHEAR_STRESS]
+    drawn, width = np.abs(film.shear_force), 2e6 * film.half_width
+    worst = np.argmax(drawn / contact.line_load)
+    stress, pressure = drawn[worst] / width[worst], contact.line_load[worst] / width[worst]
+    if contact.fluid.shear_law == USUAL_SHEAR_STRESS and stress > SHEARED * pressure:
+        yield Doubt(
+            f"a Newtonian oil is sheared by {stress:.3g} MPa in the mean at a mean pressure of "
+            f"{pressure:.3g} MPa, more than oils bear: a `shear_law` that limits it is "
+            f"{' or '.join(limited)}",
+            "shear",
+            stress / pressure,
+        )
+
+
+def _of_thinning(contact: LineContact) -> Iterator[Doubt]:
+    if np.min(np.asarray(contact.fluid.viscosity_slope)) <= 0.0:
+        yield Doubt(
+            "the temperature of the film is solved for with an oil that does not thin as it warms: its "
+            "`viscosity_slope` is 0 1/K",
+            "thinning",
+            1.0,
+        )
+
+
+def _of_grid(error: NDArray[np.float64]) -> Iterator[Doubt]:
+    rough = error > COARSE
+    if rough.any():
+        yield Doubt(
+            f"the grid is coarse for the thin films of {rough.sum()} of {rough.size} contacts: they may be "
+            f"off by {100.0 * error.max():.2g} %; take more nodes",
+            "grid",
+            error.max(),
+        )
+
+
+def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator[Doubt]:
+    given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
+    worst = np.argmin(given / needed)
+    if given[worst] < needed[worst] * (1.0 - 1e-9):
+        yield Doubt(
+            f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
+            f"one draws it from {needed[worst]:.0f} on: the contact is starved",
+            "inlet",
+            needed[worst] / given[worst],
+        )
+
+
+def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:
+    """Length of inlet beyond which oil no longer changes the film by more than a hundredth [half-widths].
+
+    3 above a load parameter M = w/(E' R) (2 eta0 u/(E' R))^(-1/2) of 30, 4 above 10, 8 above 5, else 12:
+    contacts with thick films draw oil from further away. Rolling resistance falls off with it much more
+    slowly: it is 10 to 20 % below that of an endless inlet. From films of inlets of 2 to 12 half-widths.
+    """
+    oil = contact.fluid
+    speed = abs(contact.entrainment)
+    given = oil.viscosity, oil.pressure_viscosity, contact.radius, contact.modulus
+    W, U, _ = map(np.asarray, line_groups(contact.line_load, speed, *given))
+    load = W / np.sqrt(np.maximum(2.0 * U, 1e-30))
+    return np.select([load > 30.0, load > 10.0, load > 5.0], [3.0, 4.0, 8.0], 12.0)

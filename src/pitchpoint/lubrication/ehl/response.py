@@ -1,0 +1,99 @@
+"""How the film of a line contact gives way to more load, and to an approach of its surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.heat import warmed
+from pitchpoint.lubrication.ehl.line import LineContact, Problem, problem_of
+from pitchpoint.lubrication.ehl.newton import residual, step
+
+__all__ = ["answer", "pushed", "pushed_rest", "stiffness_and_damping"]
+
+
+def pushed(contact: LineContact, problem: Problem) -> Problem:
+    """Changes of a problem with the load of its contact, as a part of it, and with the approach [s/m].
+
+    They are the last axis of every number. The film stays as warm as it is.
+
+    Args:
+        contact: one.
+        problem: the same in units of its own.
+    """
+
+    def changed(more: Array) -> Problem:
+        load, approach = contact.line_load * (1.0 + more[0]), contact.approach + more[1]
+        given: Any = load, approach
+        other = eqx.tree_at(lambda one: (one.line_load, one.approach), contact, given)
+        return warmed(problem_of(other), problem.flow.temperature_rise)
+
+    found: Problem = jax.jacfwd(changed)(jnp.zeros(2))
+    return found
+
+
+def _both(function: Callable[..., Array], given: tuple[Any, ...], along: tuple[Any, ...]) -> Array:
+    """Derivatives along two directions, which are the last axis of what they are told as."""
+    one = lambda tangents: jax.jvp(function, given, tangents)[1]  # noqa: E731
+    each: Callable[..., Array] = jax.vmap(one, in_axes=-1, out_axes=-1)
+    return each(along)
+
+
+def pushed_rest(
+    problem: Problem, push: Problem, pressure: Array, level: Array, at: Grid
+) -> Float[Array, "rest 2"]:
+    """Changes of what is left of all balances at a pressure.
+
+    Args:
+        problem: the contact.
+        push: its changes.
+        pressure: of the nodes, shape (node,).
+        level: of the surfaces.
+        at: the grid.
+    """
+    return _both(lambda one: residual(one, pressure, level, at), (problem,), (push,))
+
+
+def answer(
+    problem: Problem, push: Problem, pressure: Array, level: Array, at: Grid
+) -> Float[Array, "rest 2"]:
+    """Changes of pressures and level of a solution, by the implicit function theorem, see `pushed_rest`."""
+    _, matrix = step(problem, pressure, level, at)
+    found: Array = jnp.linalg.solve(matrix, -pushed_rest(problem, push, pressure, level, at))
+    return found
+
+
+def stiffness_and_damping(
+    contact: LineContact,
+    problem: Problem,
+    push: Problem,
+    pressure: Array,
+    level: Array,
+    answers: Array,
+    at: Grid,
+) -> tuple[Float[Array, ""], Float[Array, ""]]:
+    """Load that a thinner mean film carries more, and load by an approach that holds it.
+
+    Args:
+        contact: one.
+        problem: the same in units of its own.
+        push: its changes.
+        pressure: of the nodes, shape (node,).
+        level: of the surfaces.
+        answers: their changes, see `answer`.
+        at: the grid.
+
+    Returns:
+        -dw/dh [N/m2] and dw/dV [N s/m2]; the latter is not a number where surfaces stand still on each other.
+    """
+    film = lambda one, *state: one.mean_film(*state, at) * one.flow.height  # noqa: E731
+    moved = jnp.pad(answers[:-1], ((1, 1), (0, 0)))
+    by_load, by_approach = _both(film, (problem, pressure, level), (push, moved, answers[-1]))
+    stiffness = -contact.line_load / by_load
+    still = (contact.entrainment == 0.0) & (contact.approach == 0.0)
+    return stiffness, jnp.where(still, jnp.nan, stiffness * by_approach)

@@ -1,0 +1,190 @@
+"""Solved films as labelled datasets, and back from them as a start for the next ones."""
+
+import json
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.fields import LineFilm
+from pitchpoint.lubrication.ehl.heat import Temperatures
+from pitchpoint.lubrication.ehl.solve import Ended, Films
+from pitchpoint.results.store import dataset, describe
+from pitchpoint.results.variable import Variable, deviation, length, percent
+from pitchpoint.status import Code
+from pitchpoint.status import told as told_of
+
+__all__ = ["film_dataset", "films_of_dataset"]
+
+
+def _pressure(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "Pa", "MPa", "pressure")
+
+
+def _on_line(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "N/m")
+
+
+def _power(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "W/m")
+
+
+def _rise(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "K")
+
+
+def _flux(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "W/m2")
+
+
+def _number(long_name: str, symbol: str = "") -> Variable:
+    return Variable(long_name, symbol, "1")
+
+
+_FILM: Final = {
+    "x": length("place across the contact, along positive surface speeds", "x"),
+    "pressure": _pressure("pressure that oil and asperities carry together", "p"),
+    "asperity_pressure": _pressure("pressure that asperities carry", "p_a"),
+    "gap": deviation("gap of the mean planes", "h"),
+    "film": deviation("mean gap that is open to the oil", "h_T"),
+    "filled": percent("part of that gap that oil fills", "θ"),
+    "shear_stress": _pressure("shear stress of the oil on member 0, half way across", "τ"),
+    "central_film": deviation("film in the middle of the contact", "h_c"),
+    "minimum_film": deviation("smallest film", "h_min"),
+    "minimum_place": length("place of the smallest film", "x_min"),
+    "mean_film": deviation("mean film over the width of the dry contact", "h_m"),
+    "largest_pressure": _pressure("largest pressure", "p_max"),
+    "spike_pressure": _pressure("height of the pressure spike", "p_s"),
+    "spike_place": length("place of the pressure spike", "x_s"),
+    "asperity_share": percent("part of the load on asperities", "L_a"),
+    "rolling": _on_line("rolling resistance of each surface", "F_r/l"),
+    "shear_force": _on_line("shear of the oil on member 0", "F_s/l"),
+    "boundary_force": _on_line("friction of asperities on member 0", "F_b/l"),
+    "friction": _number("friction coefficient of oil and asperities", "μ"),
+    "film_ratio": _number("smallest film over composite Rq", "Λ"),
+    "stiffness": Variable("stiffness of the film, by the mean film, for a length", "k/l", "N/m2"),
+    "damping": Variable("squeeze damping of the film, for a length", "c/l", "N s/m2"),
+    "pumping_power": _power("heat of the flow under pressure", "P_p/l"),
+    "half_width": length("half-width of the dry contact", "b"),
+    "hertz_pressure": _pressure("largest pressure of the dry contact", "p_H"),
+}
+_HEAT: Final = {
+    "film": _rise("mean temperature of the film above the inlet", "ΔT"),
+    "surface_a": _rise("temperature of surface 0 above the inlet", "ΔT_0"),
+    "surface_b": _rise("temperature of surface 1 above the inlet", "ΔT_1"),
+    "flux_a": _flux("heat into surface 0", "q_0"),
+    "flux_b": _flux("heat into surface 1", "q_1"),
+    "heat": _flux("heat that film and asperities make", "q"),
+    "largest_film": _rise("largest mean temperature of the film above the inlet", "ΔT max"),
+    "largest_a": _rise("flash temperature of member 0", "ΔT_0 max"),
+    "largest_b": _rise("flash temperature of member 1", "ΔT_1 max"),
+    "power_a": _power("heat into member 0", "P_0/l"),
+    "power_b": _power("heat into member 1", "P_1/l"),
+    "expansion_power": _power("work of the oil as it expands", "P_e/l"),
+    "peclet_a": _number("Peclet number of member 0", "Pe_0"),
+    "peclet_b": _number("Peclet number of member 1", "Pe_1"),
+}
+_ENDED: Final = {
+    "code": _number("status of the film"),
+    "reynolds": _number("defect of the balance of a cell, over Hertz's pressure"),
+    "load": _number("defect of the load over it"),
+    "gap": _number("defect of the gap over the smallest one"),
+    "iterations": _number("iterations of Newton's method"),
+    "grid": _number("estimated error of the film by the grid"),
+    "temperature": _number("defect of the temperature over the largest rise"),
+    "turns": _number("turns between pressure and temperature"),
+}
+_PARTS: Final = {"": _FILM, "heat_": _HEAT, "ended_": _ENDED}
+"""Variables of the film, of its heat and of how its solve ended, by the beginning of their names."""
+
+_NODES: Final = {
+    *("x", "pressure", "asperity_pressure", "gap", "film", "filled", "shear_stress"),
+    *("heat_film", "heat_surface_a", "heat_surface_b", "heat_flux_a", "heat_flux_b", "heat_heat"),
+}
+"""Names of the fields across the contact."""
+
+_OWN: Final = {
+    f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()
+}
+_OWN["domain"] = _number("first and last place, over the half-width", "x/b")
+
+
+def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:
+    """Films as a dataset: a variable for each field of the film, `heat_` and `ended_` before others' names.
+
+    Args:
+        films: with or without profiles.
+        dims: names of the axes of the contacts; "contact" unless given, or "contact_1", "contact_2", ... of
+            more than one.
+
+    Returns:
+        Dataset on (contact, node) with the coordinate `x` [m]. Every variable has `units` and `long_name`;
+        the status has its sentences and the dataset its warnings, as JSON.
+
+    Raises:
+        InputError: more or fewer names than axes.
+    """
+    axes = _axes(np.ndim(films.ended.code), dims)
+    values = {
+        name: ((*axes, "node") if name in _NODES else axes, one) for name, one in _values(films)
+    }
+    code = np.asarray(films.ended.code)
+    data = dataset(
+        {**values, "domain": (("end", *axes), films.domain)},
+        {},
+        title="films",
+        nodes=films.nodes,
+        warnings=list(films.warnings),
+        solve=told_of(code, np.asarray(films.ended.reynolds), np.asarray(films.ended.iterations)),
+    )
+    describe(data, _OWN)
+    found = {int(one): Code(int(one)).sentence for one in np.unique(code)}
+    data["ended_code"].attrs["sentences"] = json.dumps(found)
+    return data.set_coords("x")
+
+
+def films_of_dataset(data: xr.Dataset) -> Films:
+    """Films that a dataset was made of, such as one that was saved: a start for `solve_lines`.
+
+    Args:
+        data: of `film_dataset`.
+
+    Raises:
+        InputError: it lacks a variable of films.
+    """
+    lacks = [name for name in (*_FILM, "ended_code", "domain") if name not in data.variables]
+    if lacks:
+        raise InputError(f"a dataset without '{lacks[0]}' is none of solved films")
+    heat = Temperatures(**_part(data, "heat_")) if "heat_film" in data else None
+    ended: dict[str, Any] = {"temperature": None, "turns": None} | _part(data, "ended_")
+    return Films(
+        film=LineFilm(**_part(data, ""), heat=heat),
+        ended=Ended(**ended),
+        nodes=int(data.attrs["nodes"]),
+        domain=data["domain"].values,
+        warnings=tuple(json.loads(data.attrs["warnings"])),
+    )
+
+
+def _axes(count: int, dims: Sequence[str] | None) -> tuple[str, ...]:
+    usual = ["contact"] if count == 1 else [f"contact_{k + 1}" for k in range(count)]
+    axes = tuple(usual if dims is None else dims)
+    if len(axes) != count:
+        raise InputError(f"{len(axes)} names for the {count} axes of the contacts", key="dims")
+    return axes
+
+
+def _values(films: Films) -> Iterator[tuple[str, Any]]:
+    """Names and arrays of all that films have."""
+    for start, part in (("", films.film), ("heat_", films.film.heat), ("ended_", films.ended)):
+        for name in _PARTS[start]:
+            value = getattr(part, name, None)
+            if value is not None:
+                yield f"{start}{name}", value
+
+
+def _part(data: xr.Dataset, start: str) -> dict[str, Any]:
+    names = (name for name in _PARTS[start] if f"{start}{name}" in data)
+    return {name: data[f"{start}{name}"].values for name in names}
