@@ -30,7 +30,7 @@ from pitchpoint.status import Code
 
 MODULUS = 2.26e11
 ENDS = np.array([-1e-3, 1e-3])
-OIL = Fluid(viscosity=0.04, pressure_viscosity=2.2e-8)
+OIL = Fluid(viscosity=0.04, pressure_viscosity=2.2e-8, shear_law="newtonian")
 
 
 def line(

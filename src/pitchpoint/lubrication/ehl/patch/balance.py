@@ -143,18 +143,18 @@ def stencil(
         lambda pressure, height: balance(problem, pressure, height, rate), oil, gap, has_aux=True
     )
     still = jnp.zeros_like(oil)
-    moved = _colours(oil.shape)
+    moved = _colours(*oil.shape)
     by_oil = _sorted(jax.lax.map(lambda one: by(one, still), moved))
     return found, own, by_oil, _sorted(jax.lax.map(lambda one: by(still, one), moved))
 
 
-def _colours(shape: tuple[int, ...]) -> Array:
+def _colours(rows: int, nodes: int) -> Array:
     """Directions in which cells move together, shape (16, y, x)."""
-    rows, nodes = (
+    across, along = (
         (jnp.arange(number) % reach == jnp.arange(reach)[:, None]) * 1.0
-        for number, reach in zip(shape, (ACROSS, ALONG), strict=True)
+        for number, reach in ((rows, ACROSS), (nodes, ALONG))
     )
-    return (rows[:, None, :, None] * nodes[None, :, None, :]).reshape(-1, *shape)
+    return (across[:, None, :, None] * along[None, :, None, :]).reshape(-1, rows, nodes)
 
 
 def _sorted(found: Array) -> Stencil:

@@ -124,6 +124,9 @@ def solve_patch(
     film = jax.tree.map(np.asarray, _film(*given, (end.stiffness, end.damping)))
     if code == Code.SOLVED and not (end.rest < ENOUGH and abs(end.load) < ENOUGH):
         code = Code.NOT_CONVERGED
+    # Smooth surfaces touch on a grid that is too coarse for their film.
+    if code == Code.SOLVED and contact.texture is None and np.any(film.asperity_pressure > 0.0):
+        code = Code.UNRESOLVED
     if code != Code.SOLVED:
         film = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), film)
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)

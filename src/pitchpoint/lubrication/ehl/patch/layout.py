@@ -68,8 +68,8 @@ class Layout(NamedTuple):
         first, last: its ends across [m].
         end: width of the first and the last cell of a line that ends there [m]; None for uniform cells.
         length: half-width of the contact along x, with what a thick film adds to it; unit of length [m].
-        pressure: largest one of the dry contact, but for edges, and less for thick films; unit of pressures
-            [Pa].
+        pressure: largest one of the dry contact, but for edges, and less for thick films; unit of
+            pressures [Pa].
         film: guess of it in the middle [m].
         half_width: of the dry contact along x, in the middle [m].
         hertz_pressure: largest one of it, but for edges [Pa].
@@ -260,6 +260,22 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
     return tuple(grids)
 
 
+class Coated(Smooth):
+    """Smooth surfaces that carry load where a trial lets them touch, so that it finds back.
+
+    A solution in which they carry any is that of a grid too coarse for the film.
+
+    Attributes:
+        stiff: pressure at a gap of zero, which grows in proportion from none at the least gap [Pa].
+    """
+
+    stiff: Float[Arrays, "..."]
+
+    def pressure(self, gap: Float[Arrays, "..."]) -> Float[Arrays, "..."]:
+        """Pressure that surfaces carry which touch [Pa]."""
+        return self.stiff * jnp.maximum(1.0 - gap / self.least, 0.0)
+
+
 class Problem(eqx.Module):
     """One contact on a grid, in units of its own length, pressure and speed.
 
@@ -318,7 +334,7 @@ def problem_on(
     fluid: Any = contact.fluid
     flow = Flow(
         fluid,
-        contact.texture or Smooth(array(LEAST * film)),
+        contact.texture or Coated(array(LEAST * film), array(pressure)),
         array(pressure),
         array(height),
         12.0 * fluid.viscosity * unit * radius**2 / (length**3 * pressure),

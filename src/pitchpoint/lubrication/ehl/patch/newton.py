@@ -264,8 +264,8 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
     def onward(search: _Search) -> _Search:
         return _searched(at, alone, search)
 
-    found: _Search = jax.lax.while_loop(unfinished, onward, begin)
-    return found.change
+    change: Array = jax.lax.while_loop(unfinished, onward, begin).change
+    return change
 
 
 def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:

@@ -33,7 +33,7 @@ BED: Final = 0.3
 """Part of film and Rq by which the layer of a start yields to the unit of pressures."""
 
 SHOWN: Final = 0.8
-"""Least film of a grid over the gap that opens within a cell beside a contact, its step to the power 1.5."""
+"""Least film of a coarse grid over its step to the power 1.5, as the gap opens in a cell beside a contact."""
 
 STRIDE: Final = 4.0
 """Film over the one that is looked for from it."""

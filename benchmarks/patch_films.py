@@ -1,0 +1,116 @@
+"""Films of contacts of finite length: processor seconds on 129 x 128 and 257 x 256, and memory.
+
+    .venv/bin/python benchmarks/patch_films.py
+
+Programs are compiled before the clock starts. The dry contact and all coarser grids count.
+"""
+
+import os
+import resource
+import sys
+import time
+from collections.abc import Callable, Iterator
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
+
+import numpy as np
+
+from pitchpoint.contact.end_profiles import crowned, log_relieved
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
+from pitchpoint.lubrication.ehl.patch.newton import State
+from pitchpoint.lubrication.ehl.patch.solve import solve
+from pitchpoint.materials.fluid import Fluid
+
+MODULUS, OIL = 2.26e11, Fluid(viscosity=0.04, pressure_viscosity=2.2e-8)
+LONG = 56.5
+"""Length of the lines over their half-width."""
+
+FINE, FINER = (129, 128), (257, 256)
+
+
+def line(
+    pressure: float, speed: float, radius: float = 0.01, crown: float = 0.0, drop: float = 0.0
+) -> PatchContact:
+    """A roller on a plane, of a Hertz pressure [Pa], mean speed [m/s], radius [m] and relief of its ends [m].
+
+    The relief is a crown or, as a drop, a logarithm.
+    """
+    line_load = 2.0 * np.pi * (pressure / MODULUS) ** 2 * MODULUS * radius
+    length = LONG * np.sqrt(8.0 * line_load * radius / (np.pi * MODULUS))
+    profile = crowned(width=length, radius=length**2 / (8.0 * crown)) if crown else ()
+    if drop:
+        profile = log_relieved(width=length, line_load=line_load, modulus=MODULUS, drop=drop)
+    return finite_line(
+        load=line_load * length,
+        length=length,
+        radius=radius,
+        modulus=MODULUS,
+        speed_a=speed,
+        speed_b=speed,
+        fluid=OIL,
+        profile=profile,
+    )
+
+
+def ball() -> PatchContact:
+    """A ball of 19.05 mm on a plane."""
+    return elliptic_contact(
+        load=800.0,
+        radius=0.01905,
+        transverse_radius=0.01905,
+        modulus=2.28e11,
+        speed_a=4.0,
+        speed_b=4.0,
+        fluid=Fluid(viscosity=0.096, pressure_viscosity=2.2e-8),
+    )
+
+
+CASES: dict[str, Callable[[], PatchContact]] = {
+    "crown 5 um, 1.5 GPa, 1 m/s": lambda: line(1.5e9, 1.0, crown=5e-6),
+    "crown 5 um, 1 GPa, 1 m/s": lambda: line(1e9, 1.0, crown=5e-6),
+    "crown 5 um, 1 GPa, 0.1 m/s": lambda: line(1e9, 0.1, crown=5e-6),
+    "straight, 1.5 GPa, 1 m/s": lambda: line(1.5e9, 1.0),
+    "straight, 1 GPa, 1 m/s": lambda: line(1e9, 1.0),
+    "logarithm of 8 um, 1 GPa, 1 m/s": lambda: line(1e9, 1.0, drop=8e-6),
+    "crown 2 um, R 100 mm, 0.3 GPa, 0.3 m/s": lambda: line(3e8, 0.3, 0.1, 2e-6),
+    "crown 2 um, R 100 mm, 0.3 GPa, 0.03 m/s": lambda: line(3e8, 0.03, 0.1, 2e-6),
+    "ball, 1.73 GPa, 4 m/s": ball,
+}
+
+
+def timed(contact: PatchContact, grid: tuple[int, int]) -> tuple[float, State]:
+    """Processor seconds of a solve, compiled before, and its solution."""
+    solve(contact, *grid)
+    begun = time.process_time()
+    _, _, state = solve(contact, *grid)
+    return time.process_time() - begun, state
+
+
+def rows() -> Iterator[tuple[str, float]]:
+    """Cases with their seconds, told as they come."""
+    for name, made in CASES.items():
+        seconds, state = timed(made(), FINE)
+        print(
+            f"{name}: {seconds:.2f} s, {state.steps} steps, residual {state.residual:.0e}",
+            flush=True,
+        )
+        yield name, seconds
+
+
+def main() -> int:
+    """Print the figures."""
+    seconds = dict(rows())
+    print(f"median: {np.median(list(seconds.values())):.2f} s")
+    first = next(iter(CASES))
+    finer, state = timed(CASES[first](), FINER)
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    print(
+        f"{first} on 257 x 256: {finer:.1f} s, {finer / seconds[first]:.1f} times, "
+        f"{state.steps} steps, residual {state.residual:.0e}, {memory:.1f} GB"
+    )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
