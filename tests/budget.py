@@ -11,12 +11,12 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-PROGRAMS = 8500
+PROGRAMS = 9500
 """Programs of the whole suite that JAX is asked for, found in the cache on disk or not."""
 
 PROGRAMS_OF_A_FILE = 480
 
-SECONDS = 3000.0
+SECONDS = 3400.0
 """Processor time of the whole suite with an empty cache [s]; a quiet machine needs a third."""
 
 SECONDS_OF_A_FILE = 250.0

@@ -136,11 +136,20 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     pressure = float(ellipse.pressure)
     film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
-    length, reach = half_width * longer, BESIDE * side * wider
+    length, reach = half_width * longer, side * wider
     ends = -inlet * length, OUTLET * length
+    # Oil that comes in obliquely needs an inlet beside the contact too.
+    before = max(BESIDE, inlet * _oblique(contact)) * reach
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, -reach, reach, None, *units, radius, unit)
+    return Layout(*ends, -before, BESIDE * reach, None, *units, radius, unit)
+
+
+def _oblique(contact: PatchContact) -> float:
+    """Part of the entrainment that runs across."""
+    whole = float(np.max(entrainment_of(contact)))
+    across = 0.5 * float(contact.across_a + contact.across_b)
+    return abs(across) / whole if whole > 0.0 else 0.0
 
 
 def _of_line(contact: PatchContact, cells: int) -> Layout:
