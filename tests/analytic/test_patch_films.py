@@ -103,12 +103,21 @@ def test_load_and_energy_are_in_balance():
     assert crowned_line().ended.load < 1e-9
     powers = [2.0 * film.rolling[0] * 1.0, film.pumping_power]
     assert powers[0] == pytest.approx(powers[1], rel=1e-8)
-    sheared = np.sum(film.shear_x * 0.2) * widths
-    assert np.sign(sheared) == np.sign(film.shear_force[0]) == 1.0
-    assert film.traction_a[0] + film.traction_b[0] == pytest.approx(-2.0 * film.rolling[0])
-    assert film.friction == pytest.approx(
-        (film.shear_force[0] + film.boundary_force[0]) / float(contact.load)
+    assert film.shear_force[0] > 0.0
+    sheared = np.sum(film.shear_x * _widths(film)[:, None]) * widths
+    assert film.shear_force[0] == pytest.approx(sheared, rel=1e-6)
+    assert np.sum(film.pressure * _widths(film)[:, None]) * widths == pytest.approx(
+        float(contact.load), rel=1e-6
     )
+
+
+def _widths(film: PatchFilm) -> np.ndarray:
+    """Widths of the rows, from their middles and the end of the line."""
+    edge, widths = -0.5 * float(line().length), []
+    for middle in np.asarray(film.y):
+        widths.append(2.0 * (middle - edge))
+        edge += widths[-1]
+    return np.array(widths)
 
 
 def test_thinner_and_thinner_films_end_in_the_dry_contact():
@@ -235,8 +244,7 @@ def solved_again(found: PatchFilms, by: np.ndarray) -> np.ndarray:
     solution = array(found.pressure), array(found.level)
     for _ in range(4):
         solution = POLISHED(problem, *solution)
-    blank = array(0.0), array(0.0)
-    film = FILM(contact, jax.tree.map(array, found.layout), problem, *solution, found.held, blank)
+    film = FILM(contact, jax.tree.map(array, found.layout), problem, *solution, found.held)
     return np.asarray(figures(film))
 
 
@@ -254,14 +262,6 @@ def test_derivatives_of_films_are_those_of_differences():
     )
 
 
-def test_stiffness_is_that_of_the_mean_film():
-    found = crowned_line()
-    by_load = (
-        solved_again(found, 1e-4 * np.eye(4)[0]) - solved_again(found, -1e-4 * np.eye(4)[0])
-    )[0]
-    assert found.film.stiffness == pytest.approx(-2e-4 * float(line().load) / by_load, rel=1e-5)
-
-
 @pytest.mark.parametrize(
     ("more", "told"),
     [
@@ -272,6 +272,8 @@ def test_stiffness_is_that_of_the_mean_film():
         ({"fluid": Fluid(viscosity=0.0, pressure_viscosity=2e-8)}, "a viscosity of 0 Pa s"),
         ({"speed_a": np.array([-5.0, 3.0]), "places": ENDS}, "draw oil in from one side at some"),
         ({"speed_a": np.ones(3), "places": ENDS}, "speed a has the shape"),
+        ({"relief": np.zeros(2), "places": ENDS[::-1]}, "places along the line have to rise"),
+        ({"texture": Rough(rq=1e-7, modulus=MODULUS, pattern=3.0)}, "a pattern of roughness of 3"),
     ],
 )
 def test_nonsense_is_refused_in_one_sentence(more: dict[str, Any], told: str):
@@ -293,10 +295,46 @@ def test_smooth_surfaces_that_stand_still_have_no_film():
     assert "no film" in found.warnings[0]
 
 
-def test_a_line_that_leans_carries_more_at_one_end():
+def test_a_line_that_leans_is_the_mirror_of_one_that_leans_the_other_way():
     leans = line(places=ENDS, relief=np.array([0.0, 2e-6]), crown=0.0)
-    layout = laid_out(leans, 64)
-    assert layout.first < 0.0 < layout.last
-    film = coarse(leans).film
-    assert film.minimum_place[1] < 0.0
-    assert film.near_ends[0, 1] > 1.2 * film.near_ends[1, 1]
+    other = line(places=ENDS, relief=np.array([2e-6, 0.0]), crown=0.0)
+    layout, mirrored = laid_out(leans, 64), laid_out(other, 64)
+    assert layout.first == pytest.approx(-mirrored.last)
+    one, two = (coarse(each).film for each in (leans, other))
+    assert np.allclose(one.pressure, two.pressure[::-1], atol=1e-6 * one.hertz_pressure)
+    assert one.near_ends[0, 1] == pytest.approx(two.near_ends[1, 1], rel=1e-6)
+
+
+@pytest.mark.parametrize("turn", [(1, -1), (-1, 1), (-1, -1)])
+@pytest.mark.parametrize("swapped", [False, True])
+def test_turned_ellipses_have_turned_films(turn: tuple[int, int], swapped: bool):
+    given = {"speed_a": 1.0, "speed_b": 1.4, "across": (0.5, 0.3)}
+    film = solve_patch(ball(ratio=2.0, **given), nodes=33, cells=32).film
+    along, across = ((turn[0] * 1.0, turn[0] * 1.4), (turn[1] * 0.5, turn[1] * 0.3))
+    if swapped:
+        along, across = across, along
+    axes = {"radius": 0.02, "ratio": 0.5} if swapped else {"ratio": 2.0}
+    speeds = {"speed_a": along[0], "speed_b": along[1], "across": across}
+    other = solve_patch(ball(**axes, **speeds), nodes=33, cells=32).film
+    order = [1, 0] if swapped else [0, 1]
+    back = lambda field: (field.T if swapped else field)[:: turn[1], :: turn[0]]  # noqa: E731
+    assert np.allclose(back(other.gap), film.gap, rtol=1e-9)
+    shears = np.stack([other.shear_x, other.shear_y])[order]
+    assert np.allclose(turn[0] * back(shears[0]), film.shear_x, atol=1e-6 * 1e6)
+    assert np.allclose(turn[1] * back(shears[1]), film.shear_y, atol=1e-6 * 1e6)
+    for name in ("minimum_place", "shear_force", "rolling"):
+        turned = np.asarray(getattr(other, name))[order] * turn
+        assert np.allclose(turned, getattr(film, name), rtol=1e-6), name
+
+
+def test_free_ends_take_pressure_from_the_ends():
+    flush = [coarse(line(crown=0.0, ends=ends)).film for ends in ("half_space", "mirrored")]
+    assert np.all(flush[1].near_ends[:, 0] < 0.8 * flush[0].near_ends[:, 0])
+
+
+def test_a_middle_that_does_not_touch_has_no_film():
+    lifted = line(places=ENDS, relief=np.array([0.0, 40e-6]), crown=0.0, slender=40.0, speed=3.0)
+    lifted = eqx.tree_at(lambda one: one.load, lifted, 0.05 * lifted.load)
+    film = coarse(lifted).film
+    assert film.y[-1] < 0.0
+    assert np.isnan(film.central_film)

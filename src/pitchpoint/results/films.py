@@ -131,8 +131,6 @@ _PATCH: Final = {
     "shear_force": _force("shear of the oil on member 0", "F_s"),
     "boundary_force": _force("friction of asperities on member 0", "F_b"),
     "rolling": _force("rolling resistance of each surface", "F_r"),
-    "stiffness": Variable("stiffness of the film, by the mean film", "k", "N/m"),
-    "damping": Variable("squeeze damping of the film", "c", "N s/m"),
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
 }
 _AREAS: Final = {

@@ -38,23 +38,21 @@ class PatchFilm(eqx.Module):
         filled: part of the film that oil fills.
         shear_x: stress of the oil on member 0 along x, half way between the surfaces [Pa].
         shear_y: along y [Pa].
-        central_film: gap of the mean planes at x = y = 0 [m].
+        central_film: gap of the mean planes at x = y = 0 [m]; NaN where nothing touches near y = 0.
         minimum_film: smallest gap of a cell [m].
         minimum_place: its x and y, shape (2,) [m].
-        mean_film: mean gap over the dry contact [m].
+        mean_film: mean gap, weighed by the dry pressure [m].
         largest_pressure: of a cell; where a line ends sharply it is a number of the grid [Pa].
         largest_place: its x and y, shape (2,) [m].
-        near_ends: largest pressure across at `END_DISTANCES` half-widths from the first and the last row,
-            shape (2, 4) [Pa]; NaN of ellipses.
+        near_ends: largest pressure across at `END_DISTANCES` half-widths from the ends of the line, shape
+            (2, 4) [Pa]; NaN of ellipses, and where the grid ends before, as nothing touches there.
         asperity_share: part of the load that asperities carry.
         shear_force: of the oil on member 0, along x and y, shape (2,) [N].
         boundary_force: friction of asperities on member 0, shape (2,) [N].
         friction: coefficient, their sum over the load.
         rolling: resistance to rolling, which the oil in the inlet does to each surface, shape (2,) [N].
         pumping_power: that the flow under pressure turns into heat [W].
-        stiffness: load that a mean film thinner by one metre carries more, -dF/dh [N/m].
-        damping: load by an approach of the bodies of one metre a second at the same mean film, dF/dV [N s/m].
-        half_width: of the dry contact along x, in the middle [m].
+        half_width: of the dry contact along x, of the rows that carry most [m].
         hertz_pressure: largest one of the dry contact, but for the ends of lines [Pa].
         film_ratio: smallest film over composite Rq; infinite for smooth surfaces.
     """
@@ -82,8 +80,6 @@ class PatchFilm(eqx.Module):
     friction: One
     rolling: Float[Arrays, "2"]
     pumping_power: One
-    stiffness: One
-    damping: One
     half_width: One
     hertz_pressure: One
     film_ratio: One
@@ -106,7 +102,6 @@ def patch_film(
     pressure: Array,
     level: Array,
     held: Array,
-    response: tuple[Array, Array],
 ) -> PatchFilm:
     """Fields of a contact from a solution in its own units, as the grid lies.
 
@@ -116,8 +111,7 @@ def patch_film(
         problem: the same in units of its own.
         pressure: solution, shape (y, x).
         level: of the surfaces.
-        held: one on the cells of the dry contact, else zero, shape (y, x).
-        response: stiffness and damping in own units.
+        held: dry pressure, which films are weighed by, shape (y, x).
     """
     flow, bodies, length = problem.flow, problem.bodies, problem.length
     gap = problem.gap(pressure, level)
@@ -162,8 +156,6 @@ def patch_film(
         friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
         rolling=jnp.stack([jnp.sum(row), column]) * rolls,
         pumping_power=pumping * rolls * problem.speed,
-        stiffness=response[0] * contact.load / flow.height,
-        damping=response[1] * contact.load * length / (flow.height * problem.speed),
         half_width=jnp.asarray(layout.half_width),
         hertz_pressure=jnp.asarray(layout.hertz_pressure),
         film_ratio=jnp.min(gap) * flow.height / rough,
@@ -184,13 +176,13 @@ def _place(x: Array, y: Array, cell: Array) -> Array:
 def _in_the_middle(x: Array, y: Array, field: Array) -> Array:
     """Value at x = y = 0, between the cells around."""
     rows = jax.vmap(lambda row: jnp.interp(0.0, x, row))(field)
-    return jnp.interp(0.0, y, rows)
+    return jnp.interp(0.0, y, rows, left=jnp.nan, right=jnp.nan)
 
 
 def _near_ends(contact: PatchContact, layout: Layout, y: Array, pressure: Array) -> Array:
-    """Largest pressure across at distances from the first and the last row."""
+    """Largest pressure across at distances from both ends of the line."""
     if contact.length is None:
         return jnp.full((2, END_DISTANCES.size), jnp.nan)
     ridge, away = jnp.max(pressure, axis=1), END_DISTANCES * layout.half_width
-    ends = layout.first + away, layout.last - away
+    ends = away - 0.5 * contact.length, 0.5 * contact.length - away
     return jnp.stack([jnp.interp(one, y, ridge, left=jnp.nan, right=jnp.nan) for one in ends])

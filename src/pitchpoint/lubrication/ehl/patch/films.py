@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.layout import Layout, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
 from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, shown_film, solve
+from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
@@ -27,9 +29,6 @@ NODES: Final = 129
 
 CELLS: Final = 128
 """Usual number of cells across."""
-
-WIDE: Final = 0.1
-"""Half-width over radius from which on bodies are no half spaces any more."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ class PatchFilms:
         layout: where the grid lies, and its units.
         pressure: solution in those units, for `film_near`, shape (y, x).
         level: of the surfaces in those units.
-        held: one on the cells of the dry contact, else zero, shape (y, x).
+        held: dry pressure in those units, which films are weighed by, shape (y, x).
         turned: how the grid lies.
         warnings: what to be wary of, in sentences.
     """
@@ -116,13 +115,14 @@ def solve_patch(
     lies, own = _turned(contact)
     code = _before(own)
     layout, problem, state = solve(own, nodes, cells, progress)
-    held = np.where(dry_pressure(problem) > 0.0, 1.0, 0.0)
-    end = _settled(problem, array(state.pressure), array(state.level), array(held))
+    held = dry_pressure(problem)
+    end = _settled(problem, array(state.pressure), array(state.level))
     # Plain numbers would be constants of the program, which would be made anew for each contact.
     lies_at = jax.tree.map(array, layout)
     given = own, lies_at, problem, end.pressure, end.level, array(held)
-    film = jax.tree.map(np.asarray, _film(*given, (end.stiffness, end.damping)))
-    if code == Code.SOLVED and not (end.rest < ENOUGH and abs(end.load) < ENOUGH):
+    film = jax.tree.map(np.asarray, _film(*given))
+    balanced = end.rest < ENOUGH and abs(end.load) < ENOUGH and np.all(np.isfinite(held))
+    if code == Code.SOLVED and not balanced:
         code = Code.NOT_CONVERGED
     # Smooth surfaces touch on a grid that is too coarse for their film.
     if code == Code.SOLVED and contact.texture is None and np.any(film.asperity_pressure > 0.0):
@@ -131,7 +131,7 @@ def solve_patch(
         film = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), film)
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
     least = shown_film(problem) * float(problem.flow.height)
-    warnings = tuple(_warnings(contact, film, ended, least))
+    warnings = tuple(_warnings(contact, layout, film, ended, least))
     pressure: Any = np.asarray(end.pressure)
     found = _back(film, lies), ended, layout, pressure, float(end.level)
     return PatchFilms(*found, held, lies, warnings)
@@ -146,15 +146,20 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
 
     Returns:
         The same film, with the derivatives of the solution (implicit function theorem), first ones; every
-        cell stays full of oil, or not, as it is. The grid stays where it is.
+        cell stays full of oil, or not, as it is. The grid stays where it is, and what belongs to it: there
+        are no derivatives by the length of a line, nor of `half_width` and `hertz_pressure`.
+
+    Raises:
+        InputError: the films were not solved.
     """
+    if not films.solved:
+        raise InputError("films that were not solved have no derivatives", key="films")
     swapped = _oriented(contact, films.turned)
     rows, nodes = films.pressure.shape
     problem = problem_on(swapped, films.layout, nodes, rows, rows)
     pressure, level = polished(problem, array(films.pressure), array(films.level))
     given = swapped, films.layout, problem, pressure, level, array(films.held)
-    blank = jnp.full((), jnp.nan), jnp.full((), jnp.nan)
-    return _back(patch_film(*given, blank), films.turned)
+    return _back(patch_film(*given), films.turned)
 
 
 # Both run once for a solution: it is quicker to compile them quickly.
@@ -242,6 +247,7 @@ def _before(contact: PatchContact) -> Code:
 
 def _check(contact: PatchContact) -> None:
     """InputError for values that no contact has."""
+    _check_shapes(contact)
     positive = {
         "load": (contact.load, "a load", "N"),
         "modulus": (contact.modulus, "a modulus E'", "Pa"),
@@ -263,11 +269,34 @@ def _check(contact: PatchContact) -> None:
         low = float(np.min(np.asarray(value)))
         # Written so that NaN fails.
         if not 0.0 < low < np.inf:
-            raise InputError(f"{what} of {low:.4g} {unit}: it must be positive", key=key)
+            raise InputError(f"{what} of {low:.4g} {unit}: it must be positive and finite", key=key)
     for leaf in jax.tree.leaves(contact):
         if not np.all(np.isfinite(np.asarray(leaf))):
             raise InputError("a value of the contact is not a finite number")
     _check_senses(contact)
+
+
+def _check_shapes(contact: PatchContact) -> None:
+    """InputError for arrays where one number belongs, and for places that do not rise."""
+    single = {"load": contact.load, "modulus": contact.modulus, "approach": contact.approach}
+    if contact.length is not None:
+        single["length"] = contact.length
+    for key, value in single.items():
+        if np.ndim(value):
+            raise InputError(
+                f"one contact has one {key}, not an array of shape {np.shape(value)}", key=key
+            )
+    if contact.length is None and np.shape(contact.radius) != (1,):
+        raise InputError("an ellipse has one radius along x, not an array", key="radius")
+    places = np.asarray(contact.places)
+    if places.ndim != 1 or not np.all(np.diff(places) > 0.0):
+        raise InputError("places along the line have to rise", key="places")
+    if isinstance(contact.texture, Rough) and contact.texture.pattern != 1.0:
+        raise InputError(
+            f"a pattern of roughness of {contact.texture.pattern:.4g}: over a patch oil flows both ways, and "
+            "only the pattern 1 is the same for both",
+            key="pattern",
+        )
 
 
 def _check_senses(contact: PatchContact) -> None:
@@ -285,23 +314,23 @@ def _check_senses(contact: PatchContact) -> None:
 
 
 def _warnings(
-    contact: PatchContact, film: PatchFilm, ended: PatchEnded, least: float
+    contact: PatchContact, layout: Layout, film: PatchFilm, ended: PatchEnded, least: float
 ) -> Iterator[str]:
-    if ended.code != Code.SOLVED:
-        yield f"the film was not found: {ended.code.sentence}"
-        return
-    half_width, radius = float(film.half_width), float(np.min(np.asarray(contact.radius)))
-    told = contact.fluid.outside(film.hertz_pressure)
-    if told is not None:
-        yield f"{told}: films and traction there are extrapolated"
+    half_width, radius = layout.half_width, float(np.min(np.asarray(contact.radius)))
     if half_width > WIDE * radius:
         yield (
             f"the contact is {2e3 * half_width:.3g} mm wide, and the relative radius is {1e3 * radius:.3g} "
             "mm: the bodies are no half spaces, as the deformation takes them"
         )
-    if 0.0 < film.central_film < least:
+    if ended.code != Code.SOLVED:
+        yield f"the film was not found: {ended.code.sentence}"
+        return
+    told = contact.fluid.outside(film.hertz_pressure)
+    if told is not None:
+        yield f"{told}: films and traction there are extrapolated"
+    if 0.0 < film.mean_film < least:
         yield (
-            f"the grid is coarse for a film of {1e9 * film.central_film:.3g} nm: beside the contact the gap "
+            f"the grid is coarse for a film of {1e9 * film.mean_film:.3g} nm: beside the contact the gap "
             f"opens by {1e9 * least:.3g} nm within a cell; take more nodes"
         )
     if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:

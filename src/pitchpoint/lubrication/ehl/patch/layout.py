@@ -23,6 +23,7 @@ from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.programs import fast_program
+from pitchpoint.status import Code
 
 __all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on"]
 
@@ -47,7 +48,7 @@ TRIAL: Final = (65, 64)
 """Grid of the dry contact that tells where a line carries."""
 
 ROOM: Final = 3.0
-"""Half-widths of the mean load on both sides of that grid; doubled while they do not do."""
+"""Half-widths of the mean load on both sides of that grid, at first."""
 
 HEAVY: Final = 0.9
 """Part of the rows whose load is below the one that the units are taken from."""
@@ -55,8 +56,11 @@ HEAVY: Final = 0.9
 BY_SPEED: Final = 0.7
 """Power of the speed with which films grow."""
 
-MOST_ROOM: Final = 4
-"""Doublings after which a line is said not to fit."""
+MOST_TRIALS: Final = 10
+"""Grids on which it is looked for."""
+
+FEWEST_ROWS: Final = 16
+"""Rows that have to carry on the last of them."""
 
 
 class Layout(NamedTuple):
@@ -71,7 +75,7 @@ class Layout(NamedTuple):
         pressure: largest one of the dry contact, but for edges, and less for thick films; unit of
             pressures [Pa].
         film: guess of it in the middle [m].
-        half_width: of the dry contact along x, in the middle [m].
+        half_width: of the dry contact along x, of the rows that carry most [m].
         hertz_pressure: largest one of it, but for edges [Pa].
         radius: relative radius along x that units are made of [m].
         speed: unit of speed [m/s].
@@ -160,7 +164,10 @@ def _of_line(contact: PatchContact, cells: int) -> Layout:
     length = half_width * longer
     ends = -inlet * length, OUTLET * length
     beyond = (BESIDE - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
-    first, last = max(low - beyond, -0.5 * face), min(high + beyond, 0.5 * face)
+    if contact.ends == "half_space":
+        first, last = max(low - beyond, -0.5 * face), min(high + beyond, 0.5 * face)
+    else:  # free faces are where the bodies end, whatever touches
+        first, last = -0.5 * face, 0.5 * face
     reaches = first == -0.5 * face or last == 0.5 * face
     end = END_CELL * length
     fine = not reaches or end >= (last - first) / cells * (1.0 - 1e-6)
@@ -214,19 +221,40 @@ def _carrying(contact: PatchContact) -> tuple[float, float, tuple[float, float]]
     length, radius = float(contact.length), float(np.mean(contact.radius))  # type: ignore[arg-type]
     half_width, _ = _of_line_load(contact, float(contact.load) / length, radius)
     nodes, cells = TRIAL
-    for doubled in range(MOST_ROOM):
-        reach = ROOM * 2.0**doubled * half_width
-        bodies = half_space(
-            np.linspace(-reach, reach, nodes), np.linspace(-0.5 * length, 0.5 * length, cells + 1)
-        )
-        gap = contact.gap(array(np.asarray(bodies.x)), array(np.asarray(bodies.y)))
-        dry = np.asarray(_dry(bodies, gap, contact.modulus, contact.load).pressure)
-        if not np.any(dry[:, [0, -1]] > 0.0):
+    reach, first, last = ROOM * half_width, -0.5 * length, 0.5 * length
+    for _ in range(MOST_TRIALS):
+        x, edges = np.linspace(-reach, reach, nodes), np.linspace(first, last, cells + 1)
+        bodies = half_space(x, edges)
+        dry = _trial(contact, bodies)
+        held = np.flatnonzero(np.any(dry > 0.0, axis=1))
+        if np.any(dry[:, [0, -1]] > 0.0):
+            reach *= 2.0
+        elif held.size < FEWEST_ROWS and (held[0] > 0 or held[-1] < cells - 1):
+            first, last = edges[max(held[0] - 2, 0)], edges[min(held[-1] + 3, cells)]
+        else:
             return _of_dry(contact, bodies, dry, radius)
     raise InputError(
-        f"no contact line of {1e3 * length:.4g} mm carries {float(contact.load):.4g} N: look at its relief",
+        f"no grid shows where a line of {1e3 * length:.4g} mm carries {float(contact.load):.4g} N: look at "
+        "its relief and its radius",
         key="relief",
     )
+
+
+def _trial(contact: PatchContact, bodies: HalfSpace) -> NDArray[np.float64]:
+    """Dry pressure on a grid."""
+    gap = contact.gap(array(np.asarray(bodies.x)), array(np.asarray(bodies.y)))
+    if not np.all(np.isfinite(np.asarray(gap))):
+        raise InputError(
+            "the gap of the line is not a finite number everywhere: a profile may be narrower than the line",
+            key="profile",
+        )
+    dry = _dry(bodies, gap, contact.modulus, contact.load)
+    if int(dry.status.code) != Code.SOLVED:
+        raise InputError(
+            f"the dry contact of the line was not found with {float(contact.load):.4g} N: look at its relief",
+            key="relief",
+        )
+    return np.asarray(dry.pressure)
 
 
 def _of_dry(
@@ -257,7 +285,8 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
         InputError: numbers that no grid has.
     """
     for what, number, even in (("nodes", nodes, nodes - 1), ("cells", cells, cells)):
-        if number != int(number) or even < FEWEST - 1 or even & (even - 1):
+        whole = isinstance(number, int | np.integer)
+        if not whole or even < FEWEST - 1 or even & (even - 1):
             raise InputError(
                 f"{number} {what}: their number is a power of two from {FEWEST - 1} on"
                 + (" and one more" if what == "nodes" else ""),

@@ -84,59 +84,32 @@ def _solved(times: Map, nearly: Map, rest: Array) -> Array:
 
 
 class Settled(NamedTuple):
-    """A solution after a last step, and what its film answers, in own units.
+    """A solution after a last step, in own units.
 
     Attributes:
         pressure: shape (y, x).
         level: of the surfaces.
         rest: largest defect of the balance of a cell.
         load: defect of the load over it.
-        stiffness: -dF/dh over load by film.
-        damping: dF/dV over the same by the unit of `flow.approach`.
     """
 
     pressure: Float[Array, "y x"]
     level: Float[Array, ""]
     rest: Float[Array, ""]
     load: Float[Array, ""]
-    stiffness: Float[Array, ""]
-    damping: Float[Array, ""]
 
 
-def settled(problem: Problem, pressure: Array, level: Array, held: Array) -> Settled:
-    """A last step from a solution, and its answers to more load and to an approach.
+def settled(problem: Problem, pressure: Array, level: Array) -> Settled:
+    """A last step from a solution, whose linear solve leaves nothing.
 
     Args:
         problem: the contact.
         pressure: solution, shape (y, x).
         level: of the surfaces.
-        held: one on the cells over which films are meant, else zero, shape (y, x).
     """
     at = linear(problem, pressure, level, jnp.zeros(()))
-    alone = rows(at)
-    change = answered(at, alone, -jnp.append(at.rest.reshape(-1), at.load))
+    change = answered(at, rows(at), -jnp.append(at.rest.reshape(-1), at.load))
     inner = change[:-1].reshape(at.rest.shape)
     pressure, level = pressure.at[:, 1:-1].add(inner), level + change[-1]
-    left = _rest(problem, at, pressure, level)
-    more = jnp.zeros(left.size).at[-1].set(1.0)
-    by_load, by_approach = (
-        _film(problem, held, answered(at, alone, one), at)
-        for one in (more, _closing(problem, at, pressure, level))
-    )
-    largest = jnp.max(jnp.abs(left[:-1]))
-    return Settled(pressure, level, largest, left[-1], -1.0 / by_load, -by_approach / by_load)
-
-
-def _closing(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
-    """Change of all balances, taken away, with an approach of one."""
-    asperities = problem.flow.asperity_pressure(problem.gap(pressure, level))
-    oil = problem.flow.density(pressure - asperities)
-    gained = (oil * jnp.asarray(problem.bodies.areas)[:, None])[:, 1:-1]
-    return jnp.append(jnp.where(at.full, gained / at.scale, 0.0), 0.0)
-
-
-def _film(problem: Problem, held: Array, change: Array, at: Linear) -> Array:
-    """Change of the mean film with pressures and level."""
-    pressure = jnp.pad(change[:-1].reshape(at.rest.shape), ((0, 0), (1, 1)))
-    sinks = problem.bodies.deflection(pressure, 1.0 / problem.yielding) + change[-1]
-    return problem.mean(sinks, held)
+    end = linear(problem, pressure, level, jnp.zeros(()))
+    return Settled(pressure, level, jnp.max(jnp.abs(end.rest)), end.load)
