@@ -68,7 +68,7 @@ def tree(name: str) -> dict[str, Any]:
 
 def test_every_block_is_known() -> None:
     assert {kind for kind, _ in BLOCKS} == {"sh", "toml", "python"}
-    assert sum(kind == "python" for kind, _ in BLOCKS) == 3
+    assert sum(kind == "python" for kind, _ in BLOCKS) == 4
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
 
@@ -155,6 +155,14 @@ def test_films_without_any_gear(
     exec(compile(block, "README.md", "exec"), {})
     assert capsys.readouterr().out.splitlines()[-1].startswith("True ")
     assert (tmp_path / "films.nc").is_file()
+
+
+def test_contacts_of_finite_length(capsys: pytest.CaptureFixture[str]) -> None:
+    (block,) = (text for kind, text in BLOCKS if kind == "python" and "solve_patch" in text)
+    exec(compile(block, "README.md", "exec"), {})
+    told = capsys.readouterr().out
+    assert "Code.SOLVED" in told
+    assert "not found" not in told
 
 
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
