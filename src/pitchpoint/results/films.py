@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.heat import Temperatures
-from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES
+from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, FIELDS, VECTORS
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms
 from pitchpoint.lubrication.ehl.solve import Ended, Films
 from pitchpoint.results.store import dataset, describe
@@ -133,11 +133,6 @@ _PATCH: Final = {
     "rolling": _force("rolling resistance of each surface", "F_r"),
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
 }
-_AREAS: Final = {
-    *("pressure", "asperity_pressure", "gap", "film", "deflection", "filled", "shear_x", "shear_y"),
-}
-_VECTORS: Final = {"minimum_place", "largest_place", "shear_force", "boundary_force", "rolling"}
-
 _OWN: Final = {
     f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()
 }
@@ -213,11 +208,11 @@ def patch_dataset(films: PatchFilms) -> xr.Dataset:
 
 
 def _patch_dims(name: str) -> tuple[str, ...]:
-    if name in _AREAS:
+    if name in FIELDS:
         return "y", "x"
     if name == "near_ends":
         return "end", "distance"
-    return ("direction",) if name in _VECTORS else ()
+    return ("direction",) if name in VECTORS else ()
 
 
 def films_of_dataset(data: xr.Dataset) -> Films:

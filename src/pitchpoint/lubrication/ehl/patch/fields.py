@@ -15,13 +15,29 @@ from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
 from pitchpoint.lubrication.ehl.work import filled, shear_stress
 
-__all__ = ["END_DISTANCES", "PatchFilm", "patch_film"]
+__all__ = ["END_DISTANCES", "FIELDS", "VECTORS", "PatchFilm", "patch_film"]
 
 Field = Float[Arrays, "y x"]
 One = Float[Arrays, ""]
 
 END_DISTANCES: Final = np.array([0.25, 0.5, 1.0, 2.0])
 """Distances from the ends of a line at which its largest pressures are told, in half-widths."""
+
+
+FIELDS: Final = (
+    "pressure",
+    "asperity_pressure",
+    "gap",
+    "film",
+    "deflection",
+    "filled",
+    "shear_x",
+    "shear_y",
+)
+"""Names of what has a value in every cell, shape (y, x)."""
+
+VECTORS: Final = ("minimum_place", "largest_place", "shear_force", "boundary_force", "rolling")
+"""Names of what has a value along x and one along y, shape (2,)."""
 
 
 class PatchFilm(eqx.Module):

@@ -13,7 +13,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
+from pitchpoint.lubrication.ehl.patch.fields import FIELDS, VECTORS, PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.layout import Layout, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
@@ -205,30 +205,17 @@ def _swapped(contact: PatchContact) -> PatchContact:
     )
 
 
-_FIELDS: Final = (
-    "pressure",
-    "asperity_pressure",
-    "gap",
-    "film",
-    "deflection",
-    "filled",
-    "shear_x",
-    "shear_y",
-)
-_VECTORS: Final = ("minimum_place", "largest_place", "shear_force", "boundary_force", "rolling")
-
-
 def _back(film: PatchFilm, lies: Turned) -> PatchFilm:
     """The film as the contact was given."""
     rows, nodes = (slice(None, None, -1 if one else None) for one in (lies.across, lies.along))
     sign = np.array([-1.0 if one else 1.0 for one in (lies.along, lies.across)])
-    fields = {name: getattr(film, name)[rows, nodes] for name in _FIELDS}
+    fields = {name: getattr(film, name)[rows, nodes] for name in FIELDS}
     fields["shear_x"], fields["shear_y"] = sign[0] * fields["shear_x"], sign[1] * fields["shear_y"]
-    fields |= {name: sign * getattr(film, name) for name in _VECTORS}
+    fields |= {name: sign * getattr(film, name) for name in VECTORS}
     fields |= {"x": sign[0] * film.x[nodes], "y": sign[1] * film.y[rows]}
     if lies.swapped:
-        fields |= {name: fields[name].T for name in _FIELDS}
-        fields |= {name: fields[name][::-1] for name in _VECTORS}
+        fields |= {name: fields[name].T for name in FIELDS}
+        fields |= {name: fields[name][::-1] for name in VECTORS}
         fields |= {"x": fields["y"], "y": fields["x"]}
         fields |= {"shear_x": fields["shear_y"], "shear_y": fields["shear_x"]}
     return replace(film, **fields)

@@ -25,7 +25,7 @@ from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.programs import fast_program
 from pitchpoint.status import Code
 
-__all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on"]
+__all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on", "without_oil"]
 
 Field = Float[Arrays, "y x"]
 
@@ -248,7 +248,7 @@ def _trial(contact: PatchContact, bodies: HalfSpace) -> NDArray[np.float64]:
             "the gap of the line is not a finite number everywhere: a profile may be narrower than the line",
             key="profile",
         )
-    dry = _dry(bodies, gap, contact.modulus, contact.load)
+    dry = without_oil(bodies, gap, contact.modulus, contact.load)
     if int(dry.status.code) != Code.SOLVED:
         raise InputError(
             f"the dry contact of the line was not found with {float(contact.load):.4g} N: look at its relief",
@@ -275,7 +275,8 @@ def _of_line_load(contact: PatchContact, line_load: float, radius: float) -> tup
     return float(line_half_width(**given)), float(line_pressure(**given))
 
 
-_dry = fast_program(pressed)
+without_oil = fast_program(pressed)
+"""Dry contact of a given load: of trials, starts and weights, one program a grid."""
 
 
 def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:

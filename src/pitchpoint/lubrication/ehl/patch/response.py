@@ -107,9 +107,6 @@ def settled(problem: Problem, pressure: Array, level: Array) -> Settled:
         pressure: solution, shape (y, x).
         level: of the surfaces.
     """
-    at = linear(problem, pressure, level, jnp.zeros(()))
-    change = answered(at, rows(at), -jnp.append(at.rest.reshape(-1), at.load))
-    inner = change[:-1].reshape(at.rest.shape)
-    pressure, level = pressure.at[:, 1:-1].add(inner), level + change[-1]
+    pressure, level = polished(problem, pressure, level)
     end = linear(problem, pressure, level, jnp.zeros(()))
     return Settled(pressure, level, jnp.max(jnp.abs(end.rest)), end.load)

@@ -11,10 +11,16 @@ from jaxtyping import Array
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array
-from pitchpoint.contact.dry_contact import pressed
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import (
+    Layout,
+    Problem,
+    ladder,
+    laid_out,
+    problem_on,
+    without_oil,
+)
 from pitchpoint.lubrication.ehl.patch.newton import (
     ENOUGH,
     LONGEST_STEP,
@@ -77,16 +83,13 @@ class Found(NamedTuple):
     state: State
 
 
-_dry = fast_program(pressed)
-
-
 def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], Any]:
     """Dry pressure of bodies with a soft layer on them, and the level at which the mean film is as guessed.
 
     The layer yields as film and asperities do, and spreads the pressure: that of a thick film reaches far
     beyond the contact without one, and that of rough edges is low.
     """
-    dry = _dry(_bedded(problem, bed), problem.apart, 1.0 / problem.yielding, problem.load)
+    dry = without_oil(_bedded(problem, bed), problem.apart, 1.0 / problem.yielding, problem.load)
     pressure = np.array(dry.pressure)
     pressure[:, [0, -1]] = 0.0
     return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
@@ -94,7 +97,7 @@ def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], 
 
 def dry_pressure(problem: Problem) -> NDArray[np.float64]:
     """Pressure without oil, shape (y, x)."""
-    dry = _dry(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
+    dry = without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
     return np.asarray(dry.pressure)
 
 
