@@ -34,7 +34,7 @@ class ZoneFilms(Table):
         nodes: of the grid along the motion; across the face there is one cell less.
     """
 
-    form: Literal["films"]
+    form: Literal["films"] = "films"
     load: Annotated[float, FORCE]
     radius: tuple[Annotated[float, RADIUS], Annotated[float, RADIUS]]
     entrainment: tuple[Annotated[float, SPEED], Annotated[float, SPEED]]
