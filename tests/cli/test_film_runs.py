@@ -11,7 +11,8 @@ import xarray as xr
 from sound import PAIR
 
 from pitchpoint.analyses import film as solved
-from pitchpoint.analyses.film import _of_pieces
+from pitchpoint.analyses.film_contacts import states as states_of
+from pitchpoint.analyses.film_cycle import _of_pieces
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.films import film_model
@@ -86,7 +87,7 @@ def test_a_film_carries_the_load_of_the_balance(outcome: Outcome) -> None:
 
 def test_the_film_of_one_contact_is_that_of_the_solver_alone(outcome: Outcome, case: str) -> None:
     data, built = outcome.parts["film"], load_case(case)
-    states = solved._states(built)
+    states = states_of(built)
     at = np.unravel_index(np.argmax(states["line_load"]), states["line_load"].shape)
     contacts = FilmModel(nodes=33).contacts(
         **{
