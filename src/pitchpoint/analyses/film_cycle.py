@@ -168,6 +168,7 @@ def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "largest_film_rise": "film_rise",
         "largest_flash_rise": "flash_rise",
     }
+    high = {name: own for name, own in high.items() if own in found}
 
     def end(name: str, reduce: Any) -> Any:
         some = found[name][~np.isnan(found[name])]
@@ -302,8 +303,9 @@ def _assumed(built: Built, figures: Mapping[str, np.ndarray]) -> str:
 
 def _below_hertz(built: Built, states: States, figures: Mapping[str, np.ndarray]) -> str:
     """Why rough flanks have a largest pressure below that of the dry contact; empty if they have not."""
-    if film_model_of(built).asperities == SMOOTH or not states["loaded"].any():
-        return ""
+    smooth = film_model_of(built).asperities == SMOOTH
+    if smooth or asked(built).over_patch or not states["loaded"].any():
+        return ""  # pressures of patches stand beside those of their own dry contacts
     most = np.argmax(np.where(states["loaded"], states["pressure"], 0.0))
     pressure, radius = (states[name].reshape(-1)[most] for name in ("pressure", "radius"))
     # b = 4 p R/E' of a dry line contact.

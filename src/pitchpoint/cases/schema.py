@@ -774,7 +774,9 @@ class FilmTable(Table):
         given = self.profile_parameters
         if self.end_profile is None:
             for name in given:
-                raise InputError("was given without end_profile, to which it belongs", key=f"end_{name}")
+                raise InputError(
+                    "was given without end_profile, to which it belongs", key=f"end_{name}"
+                )
             return self
         needed, known = END_PROFILES[self.end_profile].parameters
         for name in given:
@@ -809,7 +811,7 @@ _OF_SHEAR = ("eyring_stress", "limiting_coefficient", "limiting_stress")
 _OF_ROUGH = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
 _OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
 
-_NO_ENDS = "lines of this solver have no ends; take solver = \"finite_line\", or leave it out"
+_NO_ENDS = 'lines of this solver have no ends; take solver = "finite_line", or leave it out'
 _NO_INLET = "over a patch oil begins where it floods the contact; leave it out"
 _ELLIPSE = "an ellipse ends by itself; leave it out"
 _NOT_OF: Mapping[str, Mapping[str, str]] = {
@@ -832,7 +834,7 @@ def _check_patch(table: FilmTable) -> None:
         told = f"{table.nodes:g} nodes along a patch; allowed are 33, 65, 129 and {MOST_NODES}"
         raise InputError(told, key="nodes")
     if table.thermal not in (None, "isothermal"):
-        told = "films over a patch are isothermal; leave it out, or take solver = \"line\""
+        told = 'films over a patch are isothermal; leave it out, or take solver = "line"'
         raise InputError(told, key="thermal")
     if table.pattern not in (None, 1.0):
         told = "over a patch oil flows both ways, and only the pattern 1 is the same for both"
