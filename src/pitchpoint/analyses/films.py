@@ -29,6 +29,7 @@ _MAIN = (
 )
 _FINITE_MAIN = tuple(name for name in _MAIN if name not in _WARM)
 _BY_LINES = ("mean_line_friction", "mean_line_loss")
+_OF_FINITE = ("smallest_central_film", "largest_end_pressure")
 _BY_LAW = (
     "mean_law_friction",
     "mean_law_loss",
@@ -98,7 +99,7 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 
 def _finite_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("finite_film")
-    beside = [name for name in _BY_LINES if data is not None and name in data]
+    beside = [name for name in (*_BY_LINES, *_OF_FINITE) if data is not None and name in data]
     return {"finite_film": _figures_of(data, (*_FINITE_MAIN, *beside))}
 
 

@@ -12,12 +12,13 @@ from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.film import OF_LINES, films_of_lines, over_rough, values_of_lines
 from pitchpoint.analyses.film_contacts import alike, asked, states
 from pitchpoint.analyses.film_cycle import whole
-from pitchpoint.analyses.whole_contacts import Wholes, one_contact, wholes
+from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
-from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
+from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -91,21 +92,24 @@ def finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
             **_kept(built, films, lanes, values, load),
         },
         {},
-        warnings=[text for text in _told(films)],
-        doubts=[[text, 0.0] for text in _told(films)],
+        warnings=_told(films),
+        doubts=[[kind_of(text), extent_of(text)] for text in _told(films)],
         residual=max((one.ended.reynolds for one in found), default=0.0),
         iterations=max((one.steps for one in ended), default=0),
     )
 
 
 def _told(films: Sequence[PatchFilms | Refused]) -> list[str]:
-    """Warnings of contacts that were solved, and why others were refused, each once."""
+    """Warnings of contacts that were solved, and why others were refused, each once.
+
+    What the last row of a line is has its place beside the pressures near the ends.
+    """
     texts: dict[str, None] = {}
     for one in films:
         if isinstance(one, Refused):
             texts[f"a contact was not taken: {one.why}"] = None
         elif one.solved:
-            texts |= dict.fromkeys(one.warnings)
+            texts |= dict.fromkeys(text for text in one.warnings if kind_of(text) != ENDS)
     return [*texts]
 
 
@@ -220,12 +224,11 @@ def _as_lines(built: Built, given: Wholes, taken: slice) -> dict[str, np.ndarray
         sums = np.sum(np.where(loaded, values, 0.0), axis=-1)
         return np.where(np.any(loaded, axis=-1), sums, np.nan)
 
-    most = np.argmax(np.where(loaded, load, -1.0), axis=-1)[..., None]
     loss = parts["film_sliding_loss"] + parts["film_rolling_loss"]
     drawn = np.abs(total(signs * parts["film_friction"] * load))
     least = np.min(np.where(loaded, parts["minimum_film"], np.inf), axis=-1)
     return {
-        "line_central_film": np.take_along_axis(parts["central_film"], most, axis=-1)[..., 0],
+        "line_central_film": in_the_middle(given.middles[taken], parts["central_film"]),
         "line_minimum_film": np.where(np.isinf(least), np.nan, least),
         "line_friction": drawn / total(load),
         "line_loss": total(loss),
@@ -332,7 +335,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     lanes = [part.drop_vars(names) for part in parts]
     values = {
         name: np.concatenate([part[name].values for part in parts])
-        for name in ("minimum_film", *_BY_LINES)
+        for name in (*_FOR_FIGURES, *_BY_LINES)
         if name in parts[0]
     }
     fields = _fields(built, parts, values)
@@ -340,6 +343,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         **fields,
         **_coarse(built, fields["kept_at"][1]),
         **_line_figures(given.states, values),
+        **_finite_figures(values),
         "line_length": (_LANES, given.states["weight_of_line"]),
         "direction": (("direction",), np.array(["x", "y"])),
         "end": (("end",), np.array(["first", "last"])),
@@ -359,11 +363,57 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         grid=json.dumps([nodes, cells]),
         ends=table.ends or "",
         end_profile=table.end_profile or "",
+        sharp=_sharp(given.states, values),
     )
     return data.set_coords(["direction", "end", "distance", "kept"])
 
 
 _BY_LINES = ("line_friction", "line_loss")
+_FOR_FIGURES = (
+    "minimum_film",
+    "central_film",
+    "near_ends",
+    "film_pressure",
+    "largest_place",
+    "dry_half_width",
+)
+
+NEAR = 1
+"""Number of the distance from an end whose pressure is shown first: half a half-width."""
+
+SHARP = 0.25
+"""Half-widths from an end within which a largest pressure is that of the end."""
+
+
+def _finite_figures(
+    values: Mapping[str, np.ndarray],
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Smallest film in the middle of a contact, and largest pressure near an end of a line."""
+    near, central = values["near_ends"][..., NEAR], values["central_film"]
+    found = {"smallest_central_film": ((), np.min(central[np.isfinite(central)], initial=np.inf))}
+    if np.isfinite(near).any():
+        found["largest_end_pressure"] = ((), np.nanmax(near))
+    return {
+        name: (dims, np.where(np.isinf(one), np.nan, one)) for name, (dims, one) in found.items()
+    }
+
+
+def _sharp(states: Mapping[str, np.ndarray], values: Mapping[str, np.ndarray]) -> str:
+    """What the largest pressure is where lines end sharply, in words; empty where none does."""
+    pressure = np.where(
+        np.isfinite(values["near_ends"][..., 0, 0]), values["film_pressure"], np.nan
+    )
+    if np.isnan(pressure).all():
+        return ""
+    at = np.unravel_index(np.nanargmax(pressure), pressure.shape)
+    end = 0.5 * states["weight_of_line"][at] - np.abs(values["largest_place"][at][1])
+    if end > SHARP * values["dry_half_width"][at]:
+        return ""
+    return (
+        f"The lines end sharply: the largest pressure, {1e-6 * pressure[at]:.0f} MPa, is that of the last "
+        "row and a number of the grid, and so is the smallest film where it lies there. Compare those at a "
+        "distance from the end, or give the flanks an end relief or end_profile."
+    )
 
 
 def _line_figures(

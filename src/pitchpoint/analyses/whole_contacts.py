@@ -20,7 +20,7 @@ from pitchpoint.loading.tooth_compliance import Terms, bending
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.programs import program
 
-__all__ = ["Wholes", "one_contact", "wholes"]
+__all__ = ["Wholes", "in_the_middle", "one_contact", "wholes"]
 
 PLACES = np.linspace(0.0, 1.0, 65)
 """Places along a contact line at which it is described, in parts of its length."""
@@ -29,7 +29,7 @@ SPAN = 1e-6
 """Part by which contact lines that span a face may differ in length."""
 
 _SUMS = ("load", "sliding_loss", "rolling_loss", "load_by_law")
-_PICKED = ("pressure", "radius", "path", "film_by_law", "speed_a", "speed_b")
+_PICKED = ("pressure", "radius", "path", "speed_a", "speed_b")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +41,7 @@ class Wholes:
         numbers: what tells one contact from another, [..., number].
         scale: of these numbers.
         joined: whether the slices of a pair are parts of one line.
+        middles: of the parts of each line, over its length, [phase, pair, line, part].
         profile: surfaces missing at the ends of every line.
     """
 
@@ -48,6 +49,7 @@ class Wholes:
     numbers: np.ndarray
     scale: np.ndarray
     joined: bool
+    middles: np.ndarray
     profile: tuple[Surface, ...]
 
     def grouped(self, values: np.ndarray) -> np.ndarray:
@@ -76,17 +78,18 @@ def wholes(built: Built) -> Wholes:
         for name, values in {**given, **shapes}.items()
         if values.ndim > 2
     }
-    found = _summed(given, parts)
+    middles = _middles(parts)
+    found = _summed(given, parts, middles)
     if built.design.mesh.shape == "ellipse":
         numbers = np.stack([found["load"], *(parts[name][..., 0] for name in _OF_ELLIPSE)], axis=-1)
         scale = _scale(numbers, [1] * numbers.shape[-1])
-        return Wholes(found, numbers, scale, joined, ())
-    courses = _courses(built, parts)
+        return Wholes(found, numbers, scale, joined, middles, ())
+    courses = _courses(built, parts, middles)
     numbers = np.concatenate(
         [found["load"][..., None], found["weight_of_line"][..., None], *courses], axis=-1
     )
     scale = _scale(numbers, [1, 1, *(len(PLACES) for _ in courses)])
-    return Wholes(found, numbers, scale, joined, _profile(built, found))
+    return Wholes(found, numbers, scale, joined, middles, _profile(built, found))
 
 
 _OF_ELLIPSE = ("radius", "transverse_radius", "speed_a", "speed_b")
@@ -99,8 +102,34 @@ def _scale(numbers: np.ndarray, sizes: list[int]) -> np.ndarray:
     return np.repeat(largest, sizes)
 
 
-def _summed(given: dict[str, np.ndarray], parts: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Values of whole contacts: sums over their slices, or those of the slice with the highest load."""
+def _middles(parts: dict[str, np.ndarray]) -> np.ndarray:
+    weight = np.where(parts["active"], parts["weight_of_line"], 0.0)
+    whole = np.sum(weight, axis=-1, keepdims=True)
+    found: np.ndarray = (np.cumsum(weight, axis=-1) - 0.5 * weight) / np.where(
+        whole > 0.0, whole, 1.0
+    )
+    return found
+
+
+def in_the_middle(middles: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Values [..., phase, pair, line, part] in the middle of each line.
+
+    Args:
+        middles: of the parts of each line, over its length.
+        parts: values.
+    """
+    several = parts.reshape(-1, *middles.shape)
+    found = np.asarray(_placed(array(middles), array(several)))[..., len(PLACES) // 2]
+    return found.reshape(parts.shape[:-1])
+
+
+def _summed(
+    given: dict[str, np.ndarray], parts: dict[str, np.ndarray], middles: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Values of whole contacts: sums over their slices, or those of the slice with the highest load.
+
+    Film laws stand for the middle of a line.
+    """
     active = parts["active"]
     most = np.argmax(parts["line_load"], axis=-1)[..., None]
 
@@ -119,6 +148,7 @@ def _summed(given: dict[str, np.ndarray], parts: dict[str, np.ndarray]) -> dict[
         "loaded": np.any(parts["loaded"], axis=-1),
         "weight_of_line": length,
         "line_load": found["load"] / np.where(length > 0.0, length, 1.0),
+        "film_by_law": in_the_middle(middles, parts["film_by_law"]),
         "friction": np.where(found["load_by_law"] > 0.0, rubbed / carried, np.nan),
     }
 
@@ -181,11 +211,8 @@ def _profile(built: Built, found: dict[str, np.ndarray]) -> tuple[Surface, ...]:
 # ---- along the lines
 
 
-def _courses(built: Built, parts: dict[str, np.ndarray]) -> list[np.ndarray]:
+def _courses(built: Built, parts: dict[str, np.ndarray], middles: np.ndarray) -> list[np.ndarray]:
     """Radius, speeds and relief of every line at its places, [phase, pair, line, place]."""
-    weight = np.where(parts["active"], parts["weight_of_line"], 0.0)
-    whole = np.sum(weight, axis=-1, keepdims=True)
-    middles = (np.cumsum(weight, axis=-1) - 0.5 * weight) / np.where(whole > 0.0, whole, 1.0)
     own = parts["gap"] + parts["bends"] * parts["line_load"]
     names = ("radius", "speed_a", "speed_b")
     values = np.stack([*(parts[name] for name in names), own])

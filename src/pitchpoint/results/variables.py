@@ -157,6 +157,10 @@ VARIABLES: dict[str, Variable] = {
         for body in (1, 2)
     },
     "smallest_film": Variable("smallest film of the mesh cycle", "h_min", "m", "um", "length"),
+    "smallest_central_film": deviation("smallest film in the middle of a contact", "h_c min"),
+    "largest_end_pressure": _pressure(
+        "largest pressure half a half-width from an end of a line", "p_0.5b"
+    ),
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
     "largest_film_pressure": Variable(
         "largest pressure of the films", "p_max", "Pa", "MPa", "pressure"
