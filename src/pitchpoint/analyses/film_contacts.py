@@ -154,7 +154,8 @@ def _of_load(at: Conditions, contacts: Contacts) -> dict[str, Array]:
     """What a contact carries and how its surfaces move; nothing where a pair is not in contact."""
     values = {
         "load": at.load,
-        "line_load": at.line_load,
+        # An ellipse has no length.
+        "line_load": at.line_load if contacts.shape == "line" else at.load,
         "pressure": at.pressure,
         "speed_a": at.speed_a,
         "speed_b": at.speed_b,

@@ -192,9 +192,11 @@ def _deviations(
 ) -> dict[str, np.ndarray]:
     """Films by law over those solved at the same place less one: mean, and where it is largest.
 
-    Where mean planes overlap there is no film to compare with.
+    Laws of lines know no ends: their smallest film is that of a row in the middle. Where mean planes
+    overlap there is no film to compare with.
     """
-    solved = {"minimum": found["minimum_film"], "central": found["central_film"]}
+    least = "row_film" if "row_film" in found else "minimum_film"
+    solved = {"minimum": found[least], "central": found["central_film"]}
     apart = {place: known & (film > 0.0) for place, film in solved.items()}
     each = [
         law_film[apart[law.place]] / solved[law.place][apart[law.place]] - 1.0

@@ -149,7 +149,8 @@ def _values(
     built: Built, films: Sequence[PatchFilms | Refused], lanes: np.ndarray, load: np.ndarray
 ) -> dict[str, np.ndarray]:
     """What follows from the films, for every lane; not a number where there is none."""
-    each = [_of_film(one.film) if isinstance(one, PatchFilms) else {} for one in films]
+    line = built.design.mesh.shape == "line"
+    each = [_of_film(one.film, line) if isinstance(one, PatchFilms) else {} for one in films]
     codes = [int(_code(one)) for one in films]
     defects = [one.ended.reynolds if isinstance(one, PatchFilms) else np.nan for one in films]
 
@@ -163,6 +164,7 @@ def _values(
     found = {
         name: lane([one.get(name, np.nan) for one in each], shape)
         for name, shape in _SHAPES.items()
+        if line or name not in _ROWS
     }
     status = np.array([*codes, int(Code.UNLOADED)])[lanes]
     held = np.where(lanes < 0, np.nan, load)
@@ -197,15 +199,27 @@ _SHAPES: dict[str, tuple[int, ...]] = {
     "minimum_place": (2,),
     "largest_place": (2,),
     "near_ends": (2, END_DISTANCES.size),
+    "row_film": (),
 }
+_ROWS = ("row_film",)
+"""Values that lines alone have."""
 
 
-def _of_film(film: PatchFilm) -> dict[str, Any]:
+def _of_film(film: PatchFilm, line: bool) -> dict[str, Any]:
     found = {name: np.asarray(getattr(film, own)) for name, own in _NAMES.items()}
     return found | {
         "boundary_force": np.hypot(*film.boundary_force),
         "rolling_resistance": np.hypot(*film.rolling),
+        **({"row_film": _of_middle_row(film)} if line else {}),
     }
+
+
+def _of_middle_row(film: PatchFilm) -> float:
+    """Smallest film of the row of cells in the middle of a line [m]; none where the grid ends before."""
+    y = np.asarray(film.y)
+    row = int(np.argmin(np.abs(y)))
+    there = y[0] <= 0.0 <= y[-1]
+    return float(np.min(np.asarray(film.gap)[row])) if there else np.nan
 
 
 def _as_lines(built: Built, given: Wholes, taken: slice) -> dict[str, np.ndarray]:

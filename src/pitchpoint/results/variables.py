@@ -83,6 +83,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     "asperity_share": percent("part of the load on asperities, solved", "L_a"),
     "mean_film": deviation("mean film of the contact, weighed by its dry pressure", "h_m"),
+    "row_film": deviation("smallest film of the row in the middle of a line", "h_row"),
     "minimum_place": length("place of the smallest film, along and across", "x, y"),
     "largest_place": length("place of the largest pressure, along and across", "x, y"),
     "near_ends": _pressure("largest pressure at a distance from the end of the line", "p_e"),

@@ -90,7 +90,7 @@ def answered(data: xr.Dataset) -> str:
     if int(data["solved_contacts"]) == 0:
         return NONE
     words = (
-        f"{told(data, 'smallest_film')} at least, {told(data, 'smallest_lambda')} of Rq; asperities "
+        f"{_least(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; asperities "
         f"carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
     )
     if rests := str(data.attrs["assumed"]):
@@ -99,6 +99,22 @@ def answered(data: xr.Dataset) -> str:
         return f"{words}; loss and efficiency are withheld, some films were not found"
     friction, loss = (told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
     return f"{words}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def _least(data: xr.Dataset) -> str:
+    """Thinnest films, in words."""
+    least = told(data, "smallest_film")
+    if "smallest_central_film" not in data:
+        return f"{least} at least"
+    middle = told(data, "smallest_central_film")
+    return f"{middle} at least in the middle of a contact, {least} anywhere"
+
+
+def _near_ends(data: xr.Dataset) -> str:
+    """Largest pressure near the ends of lines, in words."""
+    if "largest_end_pressure" not in data:
+        return ""
+    return f"; pressure up to {told(data, 'largest_end_pressure')} half a half-width from an end"
 
 
 def _thermal(data: xr.Dataset) -> str:
@@ -189,7 +205,8 @@ def course_figure(
     return Figure(name, title, [trace for _, trace in lines], look, note, keys, NONE)
 
 
-_ENDLESS = {
+_OF_LINES_ALONE = {
+    "row_film": Key("solved, smallest of the middle row", INK, "dot"),
     "line_minimum_film": Key("line without ends, smallest", GREY),
     "line_central_film": Key("line without ends, in the middle", GREY, "dash"),
 }
@@ -205,7 +222,7 @@ def _films(name: str, data: xr.Dataset, axis: str) -> Figure:
     ]
     lines += [
         (key, course(data, one, key, of_most(data, data[one].values)))
-        for one, key in _ENDLESS.items()
+        for one, key in _OF_LINES_ALONE.items()
         if one in data
     ]
     by_law = of_most(data, data["film_by_law"].values)

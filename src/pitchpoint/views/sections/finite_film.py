@@ -50,6 +50,9 @@ _THIN = 2.0
 _WIDE = 1.8
 """Half-widths up to which a map shows a contact."""
 
+_EDGE = 0.05
+"""Part of the largest dry pressure at which its edge is drawn."""
+
 _MOST_CELLS = 130
 """Cells either way that a map in a page shows at most."""
 
@@ -88,7 +91,7 @@ def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) ->
     values = data[variable].values[kept]
     rows, columns = _thinned(y.size), _thinned(x.size)
     unit, unit_of = show.unit_of(variable), show.unit_of("kept_x")
-    pressed = variable == "field_pressure"
+    pressed, dry = variable == "field_pressure", data["field_dry_pressure"].values[kept]
     low = 0.0 if pressed else min(float(np.nanmin(values)), 0.0)
     high = float(np.nanmax(values)) if pressed else _THIN * _middle_film(data, kept)
     heat = {
@@ -108,8 +111,8 @@ def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) ->
         "type": "contour",
         "x": heat["x"],
         "y": heat["y"],
-        "z": rounded((data["field_dry_pressure"].values[kept][np.ix_(rows, columns)] > 0.0) * 1.0),
-        "contours": {"start": 0.5, "end": 0.5, "size": 1.0, "coloring": "none"},
+        "z": rounded(dry[np.ix_(rows, columns)] / np.max(dry), 3),
+        "contours": {"start": _EDGE, "end": _EDGE, "size": 1.0, "coloring": "none"},
         "line": {"color": INK, "width": 1.2, "dash": "dot"},
         "showscale": False,
         "hoverinfo": "skip",
@@ -142,11 +145,22 @@ def _rows(data: xr.Dataset, kept: int) -> Iterator[tuple[Key, int]]:
     wide = 0.5 * np.ptp(x[np.any(data["field_dry_pressure"].values[kept] > 0.0, axis=0)])
     ends = y[held[0]] + 0.5 * wide, y[held[-1]] - 0.5 * wide
     middle = 0.5 * (y[held[0]] + y[held[-1]])
-    unit = show.unit_of("kept_y")
-    for colour, place in zip((INK, *PALETTE), (middle, *ends), strict=False):
+    places = (middle, ends[1]) if _symmetric(data, kept) else (middle, *ends)
+    for colour, place in zip((INK, *PALETTE), places, strict=False):
         row = int(np.argmin(np.abs(y - place)))
-        told = show.number(float(display("kept_y", y[row])), 3)
-        yield Key(f"y = {told} {unit}", colour), row
+        yield Key(_at_row(data, kept, row), colour), row
+
+
+def _symmetric(data: xr.Dataset, kept: int) -> bool:
+    """True if both ends are alike."""
+    pressure = data["field_pressure"].values[kept]
+    return bool(np.allclose(pressure, pressure[::-1], rtol=0.0, atol=1e-4 * np.max(pressure)))
+
+
+def _at_row(data: xr.Dataset, kept: int, row: int) -> str:
+    place = show.number(float(display("kept_y", data["kept_y"].values[kept, row])), 3)
+    unit = show.unit_of("kept_y")
+    return f"y = {place} {unit}"
 
 
 def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> Figure:
@@ -267,20 +281,27 @@ def _or_nothing(name: str, value: float) -> str:
 
 
 def _grid_table(data: xr.Dataset) -> Table:
-    """Values of the kept contacts here and on a grid of half as many nodes either way."""
-    names = {
-        "central_film": "coarse_central_film",
-        "minimum_film": "coarse_minimum_film",
-        "film_friction": "coarse_friction",
-    }
+    """Values of the contact that carries most, on its grid, on one of half as many cells, and as a line."""
+    at = tuple(data["kept_at"].values[0])
+    lines = ["line without ends"] * ("line_central_film" in data)
+
+    def value(name: str) -> str:
+        return _or_nothing(name, float(data[name].values[at])) if name in data else ""
+
     rows = []
-    for k, at in enumerate(map(tuple, data["kept_at"].values)):
-        for name, coarse in names.items():
-            here, there = float(data[name].values[at]), float(data[coarse].values[k])
-            off = f"{100.0 * (there / here - 1.0):+.1f} %" if np.isfinite(there) else ""
-            told = f"{titled(name)}, contact that {_WHICH[k]}"
-            rows.append((told, _or_nothing(name, here), _or_nothing(coarse, there), off))
-    return Table(["", "this grid", "half as many cells either way", "apart"], rows, compact=True)
+    for name, endless in _ON_GRIDS.items():
+        coarse = float(data[f"coarse_{_COARSE.get(name, name)}"].values[0])
+        beside = [value(endless) for _ in lines]
+        rows.append((titled(name), value(name), _or_nothing(name, coarse), *beside))
+    return Table(["", "this grid", "half as many cells either way", *lines], rows, compact=True)
+
+
+_ON_GRIDS = {
+    "central_film": "line_central_film",
+    "minimum_film": "",
+    "film_friction": "line_friction",
+}
+_COARSE = {"film_friction": "friction"}
 
 
 _WHICH = ("carries most", "has the thinnest film")
@@ -328,7 +349,7 @@ def _of_kept(position: int, data: xr.Dataset) -> Iterator[Block]:
             continue
         yield Heading(f"The contact that {_WHICH[k]}")
         yield Paragraph(
-            f"{place_of(data, phase, pair, part).capitalize()}, {_loaded(data, places[k])}. Oil enters from "
+            f"At {place_of(data, phase, pair, part)}: {_loaded(data, places[k])}. Oil enters from "
             "the left where the surfaces run to the right.",
             "note",
         )
