@@ -109,23 +109,26 @@ OF_LINES = (*_GIVEN, "loaded", "load", "weight_of_line")
 def films_of_lines(
     built: Built, some: Mapping[str, np.ndarray], done: Done
 ) -> tuple[Films, np.ndarray, np.ndarray]:
-    """Films of the contacts that differ, codes [phase, pair, slice], and which film belongs to each lane."""
-    loaded = some["loaded"]
-    every = np.stack([some[name][loaded] for name in _GIVEN], axis=-1)
+    """Films of the contacts that differ, codes [phase, pair, slice], and which film belongs to each lane.
+
+    Each may have an inlet of its own.
+    """
+    loaded, names = some["loaded"], [name for name in (*_GIVEN, "inlet") if name in some]
+    every = np.stack([some[name][loaded] for name in names], axis=-1)
     if not every.size:
-        every = np.array([[0.0, 1.0, 0.0, 0.0]])
+        every = np.array([[0.0, 1.0, 0.0, 0.0, 1.0][: len(names)]])
     where, inverse = alike(every, np.max(np.abs(every), axis=0))
-    films = _films(built, every[where], done)
+    films = _films(built, dict(zip(names, every[where].T, strict=True)), done)
     back = np.full(loaded.shape, -1)
     back[loaded] = inverse[: loaded.sum()]
     codes = np.where(back < 0, int(Code.UNLOADED), np.asarray(films.ended.code)[back])
     return films, codes, back
 
 
-def _films(built: Built, given: np.ndarray, done: Done) -> Films:
+def _films(built: Built, given: Mapping[str, np.ndarray], done: Done) -> Films:
     model, design = film_model_of(built), built.design
     contacts = model.contacts(
-        **dict(zip(_GIVEN, given.T, strict=True)),
+        **given,
         modulus=float(design.modulus),
         oil=design.lubricant,
         temperature=float(built.operation.temperature),

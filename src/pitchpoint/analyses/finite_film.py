@@ -13,10 +13,11 @@ from pitchpoint.analyses.film import OF_LINES, films_of_lines, over_rough, value
 from pitchpoint.analyses.film_contacts import alike, asked, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
-from pitchpoint.cases.build import Built
+from pitchpoint.cases.build import Built, tooth_size
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
+from pitchpoint.lubrication.ehl.doubts import Doubt, extent_of, kind_of
+from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
@@ -83,17 +84,19 @@ def finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     lanes = np.full(loaded.shape, -1)
     lanes[loaded] = back
     values = _values(built, films, lanes, load)
+    lines = _as_lines(built, given, taken, values["film_inlet"])
     ended = [one.ended for one in films if isinstance(one, PatchFilms)]
     found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
+    told = [*_told(films), *_starved(built, values["film_inlet"])]
     return dataset(
         {
             **{name: ((*_OF_PIECE, *_MORE.get(name, ())), one) for name, one in values.items()},
-            **{name: (_OF_PIECE, one) for name, one in _as_lines(built, given, taken).items()},
+            **{name: (_OF_PIECE, one) for name, one in lines.items()},
             **_kept(built, films, lanes, values, load),
         },
         {},
-        warnings=_told(films),
-        doubts=[[kind_of(text), extent_of(text)] for text in _told(films)],
+        warnings=told,
+        doubts=[[kind_of(text), extent_of(text)] for text in told],
         residual=max((one.ended.reynolds for one in found), default=0.0),
         iterations=max((one.steps for one in ended), default=0),
     )
@@ -111,6 +114,19 @@ def _told(films: Sequence[PatchFilms | Refused]) -> list[str]:
         elif one.solved:
             texts |= dict.fromkeys(text for text in one.warnings if kind_of(text) != ENDS)
     return [*texts]
+
+
+def _starved(built: Built, inlet: np.ndarray) -> Iterator[Doubt]:
+    """Oil that is drawn from further away than flanks reach."""
+    size, farthest = tooth_size(built.design.mesh), np.nanmax(inlet, initial=0.0)
+    if size is not None and farthest > size:
+        yield Doubt(
+            f"a film draws its oil from {1e3 * farthest:.3g} mm before a contact on, and flanks are about "
+            f"{1e3 * size:.3g} mm high: it comes out too thick, and rolling resistance too large; "
+            'solver = "line" has an inlet',
+            "inlet",
+            farthest / size,
+        )
 
 
 def _solved(
@@ -150,7 +166,7 @@ def _values(
 ) -> dict[str, np.ndarray]:
     """What follows from the films, for every lane; not a number where there is none."""
     line = built.design.mesh.shape == "line"
-    each = [_of_film(one.film, line) if isinstance(one, PatchFilms) else {} for one in films]
+    each = [_of_film(one, line) if isinstance(one, PatchFilms) else {} for one in films]
     codes = [int(_code(one)) for one in films]
     defects = [one.ended.reynolds if isinstance(one, PatchFilms) else np.nan for one in films]
 
@@ -195,7 +211,7 @@ _NAMES = {
 """Values of contacts, and what they are of a film over a patch."""
 
 _SHAPES: dict[str, tuple[int, ...]] = {
-    **dict.fromkeys([*_NAMES, "boundary_force", "rolling_resistance"], ()),
+    **dict.fromkeys([*_NAMES, "boundary_force", "rolling_resistance", "film_inlet"], ()),
     "minimum_place": (2,),
     "largest_place": (2,),
     "near_ends": (2, END_DISTANCES.size),
@@ -205,11 +221,13 @@ _ROWS = ("row_film",)
 """Values that lines alone have."""
 
 
-def _of_film(film: PatchFilm, line: bool) -> dict[str, Any]:
+def _of_film(films: PatchFilms, line: bool) -> dict[str, Any]:
+    film = films.film
     found = {name: np.asarray(getattr(film, own)) for name, own in _NAMES.items()}
     return found | {
         "boundary_force": np.hypot(*film.boundary_force),
         "rolling_resistance": np.hypot(*film.rolling),
+        "film_inlet": -films.layout.inlet,
         **({"row_film": _of_middle_row(film)} if line else {}),
     }
 
@@ -222,12 +240,17 @@ def _of_middle_row(film: PatchFilm) -> float:
     return float(np.min(np.asarray(film.gap)[row])) if there else np.nan
 
 
-def _as_lines(built: Built, given: Wholes, taken: slice) -> dict[str, np.ndarray]:
-    """The same contacts by the solver of lines without ends; nothing of ellipses."""
+def _as_lines(
+    built: Built, given: Wholes, taken: slice, inlet: np.ndarray
+) -> dict[str, np.ndarray]:
+    """The same contacts, with the same inlets, by the solver of lines without ends; nothing of ellipses."""
     if built.design.mesh.shape != "line":
         return {}
     slices = states(built)
     some = {name: slices[name][taken] for name in OF_LINES}
+    begins = np.broadcast_to(inlet[..., None], given.grouped(some["load"]).shape)
+    flooded = np.where(np.isnan(begins), FLOODED, begins)
+    some["inlet"] = flooded.reshape(some["load"].shape)
     films, _, back = films_of_lines(built, some, _silent)
     every = values_of_lines(films.film, some, back)
     parts = {name: given.grouped(every[name]) for name in _OF_LINE}

@@ -90,6 +90,7 @@ VARIABLES: dict[str, Variable] = {
     "distance": Variable("distance from the end of the line, in half-widths", "s/b", "1"),
     "dry_pressure": _pressure("largest pressure of the dry contact, but for its ends", "p_H"),
     "dry_half_width": length("half-width of the dry contact", "b"),
+    "film_inlet": length("distance before the contact at which its oil begins", "x_in"),
     "film_defect": Variable("defect of the film, over the pressure of the dry contact", "", "1"),
     "line_central_film": deviation("film in the middle of a line without ends", "h_c"),
     "line_minimum_film": deviation("smallest film of a line without ends", "h_min"),

@@ -84,6 +84,7 @@ class FilmModel:
         oil: Lubricant,
         temperature: ArrayLike,
         roughness_rq: ArrayLike,
+        inlet: ArrayLike | None = None,
     ) -> LineContact:
         """Contacts `*b` to solve, of arrays that broadcast against each other.
 
@@ -96,6 +97,8 @@ class FilmModel:
             oil: between them.
             temperature: of the oil in the inlet [K].
             roughness_rq: composite Rq [m]; zero for smooth surfaces.
+            inlet: distance from the middle of a contact at which oil begins [m]; that of the model by
+                default.
 
         Raises:
             InputError: there is no thermal effect of this name, or it lacks what `members` tells.
@@ -108,7 +111,7 @@ class FilmModel:
             speed_b=speed_b,
             fluid=self.fluid(oil, temperature),
             texture=self.texture(roughness_rq, modulus),
-            inlet=self.inlet,
+            inlet=self.inlet if inlet is None else inlet,
             conduction=self._conduction(oil),
         )
 
