@@ -71,6 +71,7 @@ from pitchpoint.status import Code, Status
 __all__ = [
     "ALONE",
     "BEARING_FREE",
+    "FILM_SOLVERS",
     "TEETH_ALONE",
     "Built",
     "build",
@@ -510,7 +511,7 @@ FILM_SOLVERS: Mapping[Shape, tuple[str, ...]] = {
 }
 """Solvers of films for contacts of a shape, by their names in `[film]`."""
 
-WHY_NOT: Mapping[Shape, str] = {
+_WHY_NOT: Mapping[Shape, str] = {
     "line": "lines have no elliptic solver",
     "ellipse": "ellipses have no line solver",
 }
@@ -534,7 +535,7 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
         demand_shape(own, mesh.shape)
     if case.film is not None and case.film.solver not in FILM_SOLVERS[mesh.shape]:
         raise InputError(
-            f"these gears touch {TOUCH[mesh.shape]}, and {WHY_NOT[mesh.shape]}; take "
+            f"these gears touch {TOUCH[mesh.shape]}, and {_WHY_NOT[mesh.shape]}; take "
             f"{' or '.join(FILM_SOLVERS[mesh.shape])}, or leave the table out",
             key="film.solver",
         )
