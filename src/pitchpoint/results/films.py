@@ -134,6 +134,9 @@ _PATCH: Final = {
     "rolling": _force("rolling resistance of each surface", "F_r"),
     "sliding_power": Variable("heat by sliding", "P_s", "W"),
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
+    "separation": deviation("by which the bodies are further apart than without oil", "h_s"),
+    "stiffness": Variable("stiffness of the film, in series with the dry contact", "k", "N/m"),
+    "damping": Variable("squeeze damping of the film", "c", "N s/m"),
 }
 _OWN: Final = {
     f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()

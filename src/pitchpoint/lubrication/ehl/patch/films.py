@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.subsurface import Stresses, below_row
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.fields import FIELDS, VECTORS, PatchFilm, patch_film
+from pitchpoint.lubrication.ehl.patch.fields import FIELDS, VECTORS, PatchFilm, Response, patch_film
 from pitchpoint.lubrication.ehl.patch.layout import Layout, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
-from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, shown_film, solve
+from pitchpoint.lubrication.ehl.patch.solve import dry_bodies, shown_film, solve
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -62,6 +63,7 @@ class PatchFilms:
         pressure: solution in those units, for `film_near`, shape (y, x).
         level: of the surfaces in those units.
         held: dry pressure in those units, which films are weighed by, shape (y, x).
+        response: of the bodies, in those units.
         turned: how the grid lies.
         warnings: what to be wary of, in sentences.
     """
@@ -72,6 +74,7 @@ class PatchFilms:
     pressure: NDArray[np.float64]
     level: float
     held: NDArray[np.float64]
+    response: Response
     turned: Turned
     warnings: tuple[str, ...]
 
@@ -79,6 +82,24 @@ class PatchFilms:
     def solved(self) -> bool:
         """Whether the contact was solved."""
         return self.ended.code == Code.SOLVED
+
+    def stresses(self, depth: NDArray[np.float64], poisson: float) -> Stresses:
+        """Stresses by the pressure below the most loaded section along the entrainment.
+
+        Args:
+            depth: below the surface, positive; meaningful from about a cell on, shape (depth,) [m].
+            poisson: Poisson's ratio of the solid.
+
+        Raises:
+            InputError: films that were not solved, depths that are not positive, another Poisson's ratio.
+        """
+        if not self.solved:
+            raise InputError("films that were not solved have no stresses", key="films")
+        (rows, nodes), layout = self.pressure.shape, self.layout
+        bodies = layout.bodies(nodes, rows, rows, "half_space")
+        own = below_row(bodies, self.pressure, np.asarray(depth) / layout.length, poisson)
+        found: Stresses = jax.tree.map(lambda one: one * layout.pressure, own)
+        return replace(found, depth=array(depth))
 
 
 @dataclass(frozen=True)
@@ -118,11 +139,12 @@ def solve_patch(
     lies, own = _turned(contact)
     code = _before(own)
     layout, problem, state = solve(own, nodes, cells, progress)
-    held = dry_pressure(problem)
+    held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
+    response = Response(array(approach), array(by_load), end.by_load, end.by_approach)
     # Plain numbers would be constants of the program, which would be made anew for each contact.
     lies_at = jax.tree.map(array, layout)
-    given = own, lies_at, problem, end.pressure, end.level, array(held)
+    given = own, lies_at, problem, end.pressure, end.level, array(held), response
     film = jax.tree.map(np.asarray, _film(*given))
     balanced = end.rest < ENOUGH and abs(end.load) < ENOUGH and np.all(np.isfinite(held))
     if code == Code.SOLVED and not balanced:
@@ -137,7 +159,7 @@ def solve_patch(
     warnings = tuple(_warnings(contact, layout, film, ended, least))
     pressure: Any = np.asarray(end.pressure)
     found = _back(film, lies), ended, layout, pressure, float(end.level)
-    return PatchFilms(*found, held, lies, warnings)
+    return PatchFilms(*found, held, response, lies, warnings)
 
 
 def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
@@ -150,7 +172,8 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     Returns:
         The same film, with the derivatives of the solution (implicit function theorem), first ones; every
         cell stays full of oil, or not, as it is. The grid stays where it is, and what belongs to it: there
-        are no derivatives by the length of a line, nor of `half_width` and `hertz_pressure`.
+        are no derivatives by the length of a line, nor of `half_width`, `hertz_pressure`, `separation`,
+        `stiffness` and `damping`.
 
     Raises:
         InputError: the films were not solved.
@@ -161,7 +184,7 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     rows, nodes = films.pressure.shape
     problem = problem_on(swapped, films.layout, nodes, rows, rows)
     pressure, level = polished(problem, array(films.pressure), array(films.level))
-    given = swapped, films.layout, problem, pressure, level, array(films.held)
+    given = swapped, films.layout, problem, pressure, level, array(films.held), films.response
     return _back(patch_film(*given), films.turned)
 
 
