@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.film_contacts import asked, by_pairs, film_model_of, known, states
+from pitchpoint.analyses.film_contacts import LEAST, asked, by_pairs, film_model_of, known, states
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import USUAL_ENDS, end_surfaces
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, missing
@@ -145,7 +145,8 @@ def _summed(
     rubbed = np.sum(parts["friction"] * parts["load_by_law"], axis=-1)
     return found | {
         "active": np.any(active, axis=-1),
-        "loaded": np.any(parts["loaded"], axis=-1),
+        # Lines that just come or go have next to no length, whatever they carry for it.
+        "loaded": np.any(parts["loaded"], axis=-1) & (found["load"] > LEAST * found["load"].max()),
         "weight_of_line": length,
         "line_load": found["load"] / np.where(length > 0.0, length, 1.0),
         "film_by_law": in_the_middle(middles, parts["film_by_law"]),

@@ -47,6 +47,9 @@ __all__ = ["FINITE_FILM"]
 _THIN = 2.0
 """Film over that in the middle up to which a map has colours."""
 
+_STEEP = 1.5
+"""Pressure over the largest one in the middle up to which a map has colours."""
+
 _WIDE = 1.8
 """Half-widths up to which a map shows a contact."""
 
@@ -93,7 +96,7 @@ def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) ->
     unit, unit_of = show.unit_of(variable), show.unit_of("kept_x")
     pressed, dry = variable == "field_pressure", data["field_dry_pressure"].values[kept]
     low = 0.0 if pressed else min(float(np.nanmin(values)), 0.0)
-    high = float(np.nanmax(values)) if pressed else _THIN * _middle_film(data, kept)
+    high = _highest(values) if pressed else _THIN * _middle_film(data, kept)
     heat = {
         "type": "heatmap",
         "x": rounded(display("kept_x", x[columns])),
@@ -125,9 +128,19 @@ def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) ->
         f"y [{unit_of}]",
         xaxis={"range": [float(display("kept_x", end)) for end in (-wide, wide)]},
     )
+    spiked = pressed and high < float(np.nanmax(values))
     note = "" if pressed else f"Colours end at {_THIN:g} times the film in the middle."
+    note = (
+        f"Colours end at {_STEEP:g} times the largest pressure in the middle." if spiked else note
+    )
     keys = (Key("edge of the dry contact", INK, "dot"),)
     return Figure(name, titled(variable), [heat, outline], look, note, keys, NONE)
+
+
+def _highest(pressure: np.ndarray) -> float:
+    """Pressure at which colours end: ends of lines would take all of them."""
+    middle = float(np.max(pressure[pressure.shape[0] // 2]))
+    return min(float(np.max(pressure)), _STEEP * middle)
 
 
 def _thinned(size: int) -> np.ndarray:
