@@ -90,51 +90,73 @@ def _middle_film(data: xr.Dataset, kept: int) -> float:
 
 
 def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) -> Figure:
-    x, y = _places(data, kept)
-    values = data[variable].values[kept]
-    rows, columns = _thinned(y.size), _thinned(x.size)
-    unit, unit_of = show.unit_of(variable), show.unit_of("kept_x")
-    pressed, dry = variable == "field_pressure", data["field_dry_pressure"].values[kept]
+    """A variable over the patch, with the edge of the dry contact."""
+    values, pressed = data[variable].values[kept], variable == "field_pressure"
     low = 0.0 if pressed else min(float(np.nanmin(values)), 0.0)
     high = _highest(values) if pressed else _THIN * _middle_film(data, kept)
+    shown = float(display(variable, low)), float(display(variable, max(high, low + 1e-12)))
     heat = {
+        **_heat(data, kept, variable),
+        "zmin": shown[0],
+        "zmax": shown[1],
+        "colorscale": colours,
+        "reversescale": pressed,
+    }
+    unit = show.unit_of("kept_x")
+    look = layout(f"x [{unit}]", f"y [{unit}]", xaxis={"range": _reach(data, kept)})
+    note = "" if pressed else f"Colours end at {_THIN:g} times the film in the middle."
+    if pressed and high < float(np.nanmax(values)):
+        note = f"Colours end at {_STEEP:g} times the largest pressure in the middle."
+    keys = (Key("edge of the dry contact", INK, "dot"),)
+    traces = [heat, _outline(data, kept, heat)]
+    return Figure(name, titled(variable), traces, look, note, keys, NONE)
+
+
+def _heat(data: xr.Dataset, kept: int, variable: str) -> Trace:
+    """Cells of a map, thinned where there are more than a page can show."""
+    (x, y), (rows, columns) = _places(data, kept), _cells(data, kept)
+    unit, along = show.unit_of(variable), show.unit_of("kept_x")
+    return {
         "type": "heatmap",
         "x": rounded(display("kept_x", x[columns])),
         "y": rounded(display("kept_y", y[rows])),
-        "z": rounded(display(variable, values[np.ix_(rows, columns)]), 4),
-        "zmin": float(display(variable, low)),
-        "zmax": float(display(variable, max(high, low + 1e-12))),
-        "colorscale": colours,
-        "reversescale": pressed,
+        "z": rounded(display(variable, data[variable].values[kept][np.ix_(rows, columns)]), 4),
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": f"%{{z:.4~g}} {unit}<br>x %{{x:.3~g}} {unit_of}, y %{{y:.3~g}} {unit_of}"
+        "hovertemplate": f"%{{z:.4~g}} {unit}<br>x %{{x:.3~g}} {along}, y %{{y:.3~g}} {along}"
         "<extra></extra>",
     }
-    outline = {
+
+
+def _outline(data: xr.Dataset, kept: int, heat: Trace) -> Trace:
+    """Edge of the dry contact."""
+    dry = _dry(data, kept)[np.ix_(*_cells(data, kept))]
+    return {
         "type": "contour",
         "x": heat["x"],
         "y": heat["y"],
-        "z": rounded(dry[np.ix_(rows, columns)] / np.max(dry), 3),
+        "z": rounded(dry / np.max(dry), 3),
         "contours": {"start": _EDGE, "end": _EDGE, "size": 1.0, "coloring": "none"},
         "line": {"color": INK, "width": 1.2, "dash": "dot"},
         "showscale": False,
         "hoverinfo": "skip",
     }
-    wide = _WIDE * float(
-        np.max(np.abs(x[np.any(data["field_dry_pressure"].values[kept] > 0, axis=0)]))
-    )
-    look = layout(
-        f"x [{unit_of}]",
-        f"y [{unit_of}]",
-        xaxis={"range": [float(display("kept_x", end)) for end in (-wide, wide)]},
-    )
-    spiked = pressed and high < float(np.nanmax(values))
-    note = "" if pressed else f"Colours end at {_THIN:g} times the film in the middle."
-    note = (
-        f"Colours end at {_STEEP:g} times the largest pressure in the middle." if spiked else note
-    )
-    keys = (Key("edge of the dry contact", INK, "dot"),)
-    return Figure(name, titled(variable), [heat, outline], look, note, keys, NONE)
+
+
+def _dry(data: xr.Dataset, kept: int) -> np.ndarray:
+    found: np.ndarray = data["field_dry_pressure"].values[kept]
+    return found
+
+
+def _reach(data: xr.Dataset, kept: int) -> list[float]:
+    """Ends of an axis along the contact that shows it with what is beside it."""
+    x, _ = _places(data, kept)
+    wide = _WIDE * float(np.max(np.abs(x[np.any(_dry(data, kept) > 0.0, axis=0)])))
+    return [float(display("kept_x", end)) for end in (-wide, wide)]
+
+
+def _cells(data: xr.Dataset, kept: int) -> tuple[np.ndarray, np.ndarray]:
+    rows, columns = (_thinned(size) for size in _dry(data, kept).shape)
+    return rows, columns
 
 
 def _highest(pressure: np.ndarray) -> float:
@@ -152,10 +174,10 @@ def _thinned(size: int) -> np.ndarray:
 
 def _rows(data: xr.Dataset, kept: int) -> Iterator[tuple[Key, int]]:
     """Rows of cuts along x: in the middle, near both ends, half a half-width away from them."""
-    _, y = _places(data, kept)
-    held = np.flatnonzero(np.any(data["field_dry_pressure"].values[kept] > 0.0, axis=1))
-    x = data["kept_x"].values[kept]
-    wide = 0.5 * np.ptp(x[np.any(data["field_dry_pressure"].values[kept] > 0.0, axis=0)])
+    x, y = _places(data, kept)
+    carries = _dry(data, kept) > 0.0
+    held = np.flatnonzero(np.any(carries, axis=1))
+    wide = 0.5 * np.ptp(x[np.any(carries, axis=0)])
     ends = y[held[0]] + 0.5 * wide, y[held[-1]] - 0.5 * wide
     middle = 0.5 * (y[held[0]] + y[held[-1]])
     places = (middle, ends[1]) if _symmetric(data, kept) else (middle, *ends)
@@ -179,23 +201,17 @@ def _at_row(data: xr.Dataset, kept: int, row: int) -> str:
 def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> Figure:
     """Values along x, in the middle and near both ends."""
     x, _ = _places(data, kept)
-    values = data[variable].values[kept]
-    held = np.any(data["field_dry_pressure"].values[kept] > 0.0, axis=0)
-    wide = _WIDE * float(np.max(np.abs(x[held])))
-    rows = [*_rows(data, kept)]
+    values, rows = data[variable].values[kept], [*_rows(data, kept)]
     lines = [_line(key, "kept_x", x, variable, values[row]) for key, row in rows]
-    reach = {"range": [float(display("kept_x", end)) for end in (-wide, wide)]}
-    more = {}
+    more = {"xaxis": {"range": _reach(data, kept)}}
     if variable == "field_film":
-        low = min(float(np.nanmin(values[:, held])), 0.0)
-        top = 2.0 * _THIN * _middle_film(data, kept)
-        more = {"yaxis": {"range": [float(display(variable, end)) for end in (1.1 * low, top)]}}
-    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis(variable), xaxis=reach, **more)
+        low = min(float(np.nanmin(values)), 0.0)
+        ends = 1.1 * low, 2.0 * _THIN * _middle_film(data, kept)
+        more["yaxis"] = {"range": [float(display(variable, end)) for end in ends]}
+    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis(variable), **more)
     what = "Pressure" if variable == "field_pressure" else "Film"
-    keys = tuple(key for key, _ in rows)
-    return Figure(
-        name, f"{what} along the contact, in the middle and near its ends", lines, look, "", keys
-    )
+    title = f"{what} along the contact, in the middle and near its ends"
+    return Figure(name, title, lines, look, "", tuple(key for key, _ in rows), NONE)
 
 
 def _line(key: Key, along: str, places: np.ndarray, variable: str, values: np.ndarray) -> Trace:
@@ -225,7 +241,7 @@ def _valley(name: str, data: xr.Dataset, kept: int) -> Figure:
     """Smallest film of every row, and film in its middle."""
     x, y = _places(data, kept)
     film = data["field_film"].values[kept]
-    held = np.any(data["field_dry_pressure"].values[kept] > 0.0, axis=1)
+    held = np.any(_dry(data, kept) > 0.0, axis=1)
     middle = film[:, int(np.argmin(np.abs(x)))]
     keys = Key("in the middle, x = 0", INK, "dash"), Key("smallest of the row", INK)
     values = np.where(held, middle, np.nan), np.where(held, np.min(film, axis=1), np.nan)
