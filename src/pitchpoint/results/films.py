@@ -122,6 +122,7 @@ _PATCH: Final = {
             *("film_ratio", "half_width", "hertz_pressure"),
         )
     },
+    "dry_pressure": _pressure("pressure without oil", "p_d"),
     "deflection": deviation("deflection of both bodies together", "u"),
     "shear_x": _pressure("shear stress of the oil on member 0 along x, half way across", "τ_x"),
     "shear_y": _pressure("shear stress of the oil on member 0 along y, half way across", "τ_y"),
@@ -131,6 +132,7 @@ _PATCH: Final = {
     "shear_force": _force("shear of the oil on member 0", "F_s"),
     "boundary_force": _force("friction of asperities on member 0", "F_b"),
     "rolling": _force("rolling resistance of each surface", "F_r"),
+    "sliding_power": Variable("heat by sliding", "P_s", "W"),
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
     "separation": deviation("by which the bodies are further apart than without oil", "h_s"),
     "stiffness": Variable("stiffness of the film, in series with the dry contact", "k", "N/m"),

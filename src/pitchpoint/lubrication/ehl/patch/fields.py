@@ -27,6 +27,7 @@ END_DISTANCES: Final = np.array([0.25, 0.5, 1.0, 2.0])
 FIELDS: Final = (
     "pressure",
     "asperity_pressure",
+    "dry_pressure",
     "gap",
     "film",
     "deflection",
@@ -64,6 +65,7 @@ class PatchFilm(eqx.Module):
         y: places across, middles of the cells, shape (y,) [m].
         pressure: that oil and asperities carry together, shape (y, x) [Pa].
         asperity_pressure: that asperities carry [Pa].
+        dry_pressure: of the contact without oil, which films are weighed by [Pa].
         gap: between the mean planes; negative where they overlap [m].
         film: mean gap that is open to the oil [m].
         deflection: of both bodies together [m].
@@ -83,6 +85,7 @@ class PatchFilm(eqx.Module):
         boundary_force: friction of asperities on member 0, shape (2,) [N].
         friction: coefficient, their sum over the load.
         rolling: resistance to rolling, which the oil in the inlet does to each surface, shape (2,) [N].
+        sliding_power: that oil and asperities take by sliding [W].
         pumping_power: that the flow under pressure turns into heat [W].
         separation: by which the bodies are further apart than without oil [m].
         stiffness: -dF/dh of the load by that separation, all else as it is: the film as a spring in series
@@ -99,6 +102,7 @@ class PatchFilm(eqx.Module):
     y: Float[Arrays, " y"]
     pressure: Field
     asperity_pressure: Field
+    dry_pressure: Field
     gap: Field
     film: Field
     deflection: Field
@@ -117,6 +121,7 @@ class PatchFilm(eqx.Module):
     boundary_force: Float[Arrays, "2"]
     friction: One
     rolling: Float[Arrays, "2"]
+    sliding_power: One
     pumping_power: One
     separation: One
     stiffness: One
@@ -181,6 +186,7 @@ def patch_film(
         y=y * length,
         pressure=pressure * flow.pressure,
         asperity_pressure=asperities * flow.pressure,
+        dry_pressure=jnp.asarray(held) * flow.pressure,
         gap=gap * flow.height,
         film=room * flow.height,
         deflection=(gap - level - problem.apart) * flow.height,
@@ -199,6 +205,7 @@ def patch_film(
         boundary_force=rubbed,
         friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
         rolling=jnp.stack([jnp.sum(row), column]) * rolls,
+        sliding_power=bodies.load(stress * fast[:, None]) * length**2 + rubs * (carried @ fast),
         pumping_power=pumping * rolls * problem.speed,
         separation=apart[0],
         stiffness=apart[1],

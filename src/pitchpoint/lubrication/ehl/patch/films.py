@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.subsurface import Stresses, below_row
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import WIDE
+from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import FIELDS, VECTORS, PatchFilm, Response, patch_film
 from pitchpoint.lubrication.ehl.patch.layout import Layout, problem_on
@@ -23,13 +23,16 @@ from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-__all__ = ["CELLS", "NODES", "PatchEnded", "PatchFilms", "film_near", "solve_patch"]
+__all__ = ["CELLS", "ENDS", "NODES", "PatchEnded", "PatchFilms", "film_near", "solve_patch"]
 
 NODES: Final = 129
 """Usual number of nodes along x: films in the middle come within .5 % of those on finer grids."""
 
 CELLS: Final = 128
 """Usual number of cells across."""
+
+ENDS: Final = "ends"
+"""Kind of the warning on lines that end sharply."""
 
 
 @dataclass(frozen=True)
@@ -328,23 +331,30 @@ def _warnings(
 ) -> Iterator[str]:
     half_width, radius = layout.half_width, float(np.min(np.asarray(contact.radius)))
     if half_width > WIDE * radius:
-        yield (
+        yield Doubt(
             f"the contact is {2e3 * half_width:.3g} mm wide, and the relative radius is {1e3 * radius:.3g} "
-            "mm: the bodies are no half spaces, as the deformation takes them"
+            "mm: the bodies are no half spaces, as the deformation takes them",
+            "wide",
+            half_width / radius,
         )
     if ended.code != Code.SOLVED:
         yield f"the film was not found: {ended.code.sentence}"
         return
     told = contact.fluid.outside(film.hertz_pressure)
     if told is not None:
-        yield f"{told}: films and traction there are extrapolated"
+        pressure = float(film.hertz_pressure)
+        yield Doubt(f"{told}: films and traction there are extrapolated", "pressure", pressure)
     if 0.0 < film.mean_film < least:
-        yield (
+        yield Doubt(
             f"the grid is coarse for a film of {1e9 * film.mean_film:.3g} nm: beside the contact the gap "
-            f"opens by {1e9 * least:.3g} nm within a cell; take more nodes"
+            f"opens by {1e9 * least:.3g} nm within a cell; take more nodes",
+            "grid",
+            least / float(film.mean_film),
         )
     if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
-        yield (
+        yield Doubt(
             "the contact line ends sharply: the pressure of the first and the last row is a number of the "
-            "grid; `near_ends` has it at distances from the ends"
+            "grid; `near_ends` has it at distances from the ends",
+            ENDS,
+            1.0,
         )
