@@ -19,13 +19,24 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.line import LEAST, SLOWEST
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap, lowered
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth
 from pitchpoint.lubrication.film_thickness import moes_1992
-from pitchpoint.programs import fast_program
+from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
-__all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on", "without_oil"]
+__all__ = [
+    "BESIDE",
+    "FEWEST",
+    "Layout",
+    "Problem",
+    "ladder",
+    "laid_out",
+    "lowered_on",
+    "problem_on",
+    "without_oil",
+]
 
 Field = Float[Arrays, "y x"]
 
@@ -299,6 +310,15 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
     return tuple(grids)
 
 
+_lowered = program(lowered)
+
+
+def lowered_on(maps: tuple[HeightMap, ...], layout: Layout, bodies: HalfSpace) -> Array:
+    """By how much less maps make the gap in each cell of a grid, shape (y, x) [m]."""
+    places = (layout.length * np.asarray(one) for one in (bodies.x, bodies.edges))
+    return _lowered(maps, *places)
+
+
 class Coated(Smooth):
     """Smooth surfaces that carry load where a trial lets them touch, so that it finds back.
 
@@ -329,6 +349,9 @@ class Problem(eqx.Module):
         film: guess of it, for a start.
         speed: unit of speed [m/s].
         length: unit of length [m].
+        pace: one over the time, in units of length and speed, in which the mass under a cell went from the
+            one before to what it is; zero for a steady film.
+        before: mass under each cell from which it went, shape (y, x).
     """
 
     flow: Flow
@@ -341,6 +364,8 @@ class Problem(eqx.Module):
     film: Float[Arrays, ""]
     speed: Float[Arrays, ""]
     length: Float[Arrays, ""]
+    pace: Float[Arrays, ""]
+    before: Float[Arrays, "y x"]
 
     def gap(self, pressure: Field, level: Array) -> Array:
         """Gap of the mean planes in every cell, shape (y, x)."""
@@ -368,6 +393,9 @@ def problem_on(
     x, y = (length * np.asarray(one) for one in (bodies.x, bodies.y))
     radius, unit = layout.radius, layout.speed
     height, film = length**2 / radius, layout.film
+    apart = contact.gap(array(x), array(y))
+    if contact.heights:
+        apart -= lowered_on(contact.heights, layout, bodies)
     entrainment = contact.entrainment(array(y))
     across = 0.5 * (contact.across_a + contact.across_b)
     fluid: Any = contact.fluid
@@ -384,7 +412,7 @@ def problem_on(
     found: Any = (
         flow,
         jax.tree.map(array, bodies),
-        contact.gap(array(x), array(y)) / height,
+        apart / height,
         entrainment / unit,
         across / unit,
         pressure * length / (height * contact.modulus),
@@ -392,5 +420,7 @@ def problem_on(
         array(film / height),
         array(unit),
         array(length),
+        array(0.0),
+        array(np.zeros((cells, nodes))),
     )
     return Problem(*found)

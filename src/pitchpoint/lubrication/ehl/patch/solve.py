@@ -28,6 +28,7 @@ from pitchpoint.lubrication.ehl.patch.newton import (
     State,
     iterated,
 )
+from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.programs import fast_program
 
 __all__ = ["Found", "dry_pressure", "dry_start", "finer", "shown_film", "solve"]
@@ -222,10 +223,16 @@ class _Solver:
 
 
 def solve(
-    contact: PatchContact, nodes: int = 129, cells: int = 128, told: Progress | None = None
+    contact: PatchContact,
+    nodes: int = 129,
+    cells: int = 128,
+    told: Progress | None = None,
+    layout: Layout | None = None,
 ) -> tuple[Layout, Problem, State]:
-    """Layout, problem and solution of a contact on the last grid of its ladder."""
-    layout, grids = laid_out(contact, cells), ladder(nodes, cells)
+    """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder."""
+    grids = ladder(nodes, cells)
+    layout = laid_out(contact, cells) if layout is None else layout
+    check_maps_on(contact, layout, cells)
     solver, found = _Solver(told), None
     for grid in grids:
         problem = problem_on(contact, layout, *grid, cells)

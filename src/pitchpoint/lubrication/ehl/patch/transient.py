@@ -1,0 +1,492 @@
+"""Films of finite contacts over time: load, speeds, form and oil change, rough surfaces pass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final, NamedTuple
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array
+from numpy.typing import ArrayLike, NDArray
+
+from pitchpoint._jax import array, jax
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.fields import PatchFilm
+from pitchpoint.lubrication.ehl.patch.films import (
+    CELLS,
+    NODES,
+    PatchEnded,
+    Turned,
+    back,
+    before,
+    check,
+    oriented,
+    told_film,
+    turned,
+)
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress, State, iterated
+from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
+from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, solve
+from pitchpoint.programs import program
+from pitchpoint.status import Code
+
+__all__ = ["STEPS", "Course", "PatchMoment", "march_patches"]
+
+STEPS: Final = ("given", "by_error")
+"""Ways to choose steps of time: from each given time to the next, or by an estimate of their error."""
+
+TOLERANCE: Final = 1e-3
+"""Usual error of a step, of the mass under the contact over the mean."""
+
+REMEMBERED: Final = 3
+"""Films before a step from which its error is estimated."""
+
+FIRST: Final = 0.01
+"""First step by error, over the first time between two given ones."""
+
+GROWING: Final = 2.0
+"""Largest factor between steps; the scheme is stable up to 2.4."""
+
+SHRINKING: Final = 0.3
+"""Smallest one."""
+
+SAFETY: Final = 0.9
+"""Part of the step by which the error would be just met."""
+
+MOST_CUTS: Final = 8
+"""Times that a step is cut before a march is given up."""
+
+TIED: Final = 2.0
+"""Time over which the first step of a second attempt lets oil flow, in units of the contact."""
+
+FEWEST_NODES: Final = 8
+"""Nodes over the half-width of a contact that a grid has to show."""
+
+Field = NDArray[np.float64]
+
+
+class Course(NamedTuple):
+    """Where a march stands, in units of its layout.
+
+    Attributes:
+        layout: where the grid lies, and its units.
+        lies: how it lies.
+        pressure: of the last film, shape (y, x).
+        level: of the surfaces.
+        times: of the last films, the latest first [s].
+        masses: under the cells of these films, each of shape (y, x).
+        step: of time that comes next by error [s]; none after the first film.
+    """
+
+    layout: Layout
+    lies: Turned
+    pressure: Field
+    level: float
+    times: tuple[float, ...]
+    masses: tuple[Field, ...]
+    step: float | None
+
+
+@dataclass(frozen=True)
+class PatchMoment:
+    """Film of a contact at one time of a march.
+
+    Attributes:
+        time: [s].
+        film: fields and what follows from them, NumPy arrays; NaN where the film was not found. Pumping power
+            and rolling resistance do not balance while the film is squeezed.
+        ended: how the steps since the moment before ended: the defects of the last one, and steps of Newton's
+            method in all of them.
+        time_steps: of time since the moment before.
+        course: from where the march goes on.
+        warnings: what to be wary of, in sentences.
+    """
+
+    time: float
+    film: PatchFilm
+    ended: PatchEnded
+    time_steps: int
+    course: Course
+    warnings: tuple[str, ...]
+
+    @property
+    def solved(self) -> bool:
+        """Whether the film was found."""
+        return self.ended.code == Code.SOLVED
+
+
+def march_patches(
+    contacts: Sequence[PatchContact],
+    times: ArrayLike,
+    *,
+    steps: str = "given",
+    tolerance: float = TOLERANCE,
+    nodes: int = NODES,
+    cells: int = CELLS,
+    after: PatchMoment | None = None,
+    progress: Progress | None = None,
+) -> Iterator[PatchMoment]:
+    """Films of a contact whose load, speeds, form and oil change over time, one after the other.
+
+    The balance of every cell holds d(rho h)/dt; load and pressure balance at every time, without the inertia
+    of the bodies. Second order in time: backward differences over two steps of any lengths, the first step of
+    first order. The film at the first time is the steady one of the first contact, with its speed of approach
+    and with height maps where they lie; maps of a member move with its surface from then on. Between the times
+    every value of the contacts is linear. One grid holds all contacts. Cells without pressure are full of oil
+    again as soon as pressure rises: what was lost at the outlet is not missing there.
+
+    Args:
+        contacts: one at each time, all of one kind, with arrays of the same shapes.
+        times: rising, shape (time,) [s].
+        steps: "given", one step from each time to the next, or "by_error", as many as the tolerance asks for.
+        tolerance: of a step by error: mean change of the mass under a cell, weighed by pressure, over its mean.
+        nodes: along x, one more than a power of two.
+        cells: across, a power of two.
+        after: moment of the same contacts after which to go on; earlier ones are left out.
+        progress: told the number of Newton's steps and the residual, after each of them.
+
+    Yields:
+        The film at each time. The march ends with a film that was not found.
+
+    Raises:
+        InputError: what `solve_patch` refuses, contacts of several kinds, times that do not rise, an approach
+            of later contacts, which the march finds, entrainment that turns round.
+    """
+    if steps not in STEPS:
+        raise InputError(f'there are no steps "{steps}"', key="steps", allowed=STEPS)
+    at = np.asarray(times, float)
+    _check_times(contacts, at)
+    lies = _lies(contacts) if after is None else after.course.lies
+    plan = _Plan(contacts, at, lies, nodes, cells, after)
+    return _march(plan, _Stepper(plan, progress, tolerance if steps == "by_error" else None), after)
+
+
+# ---- contacts over time
+
+
+def _check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> None:
+    if times.shape != (len(contacts),) or not len(contacts):
+        raise InputError(
+            f"{len(contacts)} contacts at times of the shape {times.shape}: every contact has its time",
+            key="times",
+        )
+    if not np.all(np.isfinite(times)) or not np.all(np.diff(times) > 0.0):
+        raise InputError("the times of a march have to rise", key="times")
+    for one in contacts:
+        check(one)
+    if any(_kind(one) != _kind(contacts[0]) for one in contacts):
+        raise InputError(
+            "the contacts of a march are of one kind: the same ends, oil laws, textures and height maps, with "
+            "arrays of the same shapes",
+            key="contacts",
+        )
+    if any(float(one.approach) for one in contacts[1:]):
+        raise InputError(
+            "the bodies of a march approach each other as the load asks: only the first film takes a speed of "
+            "approach",
+            key="approach",
+        )
+
+
+def _kind(contact: PatchContact) -> tuple[Any, ...]:
+    leaves, structure = jax.tree.flatten(contact)
+    return structure, [np.shape(one) for one in leaves]
+
+
+def _lies(contacts: Sequence[PatchContact]) -> Turned:
+    """How the grid of all contacts lies."""
+    found = [turned(one)[0] for one in contacts if _moves(one)]
+    lies = found[0] if found else Turned()
+    if any(one != lies for one in found):
+        raise InputError(
+            "the entrainment turns round or to another axis during the march; march each part alone",
+            key="speed_a",
+        )
+    return lies
+
+
+def _moves(contact: PatchContact) -> bool:
+    speeds = contact.speed_a + contact.speed_b, contact.across_a + contact.across_b
+    return any(bool(np.any(np.asarray(one))) for one in speeds)
+
+
+class _Plan:
+    """Contacts at any time, as their grid lies, and that grid."""
+
+    def __init__(
+        self,
+        contacts: Sequence[PatchContact],
+        times: NDArray[np.float64],
+        lies: Turned,
+        nodes: int,
+        cells: int,
+        after: PatchMoment | None,
+    ) -> None:
+        self.times, self.lies, self.grid = times, lies, (nodes, cells)
+        self.contacts = [oriented(one, lies) for one in contacts]
+        self.passed = _passed(self.contacts, times)
+        self.own = [laid_out(one, cells) for one in self.contacts]
+        self.layout = _common(self.own) if after is None else after.course.layout
+
+    def layout_of(self, number: int) -> Layout:
+        """The common grid and its units, with the film and the dry contact of one time."""
+        own = self.own[number]
+        told = {"film": own.film, "half_width": own.half_width}
+        return self.layout._replace(**told, hertz_pressure=own.hertz_pressure)
+
+    def contact(self, time: float) -> PatchContact:
+        """The contact at a time, with its maps where they are, and no approach but that of the film."""
+        number = int(np.clip(np.searchsorted(self.times, time) - 1, 0, len(self.times) - 2))
+        if len(self.times) == 1:
+            return self._placed(self.contacts[0], np.zeros((2, 2)))
+        step = self.times[number + 1] - self.times[number]
+        part = (time - self.times[number]) / step
+        one, other = self.contacts[number : number + 2]
+        between: PatchContact = jax.tree.map(lambda a, b: _between(a, b, part), one, other)
+        speeds = _speeds(one), _speeds(other)
+        way = part * speeds[0] + 0.5 * part**2 * (speeds[1] - speeds[0])
+        return self._placed(between, self.passed[number] + step * way)
+
+    def _placed(self, contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
+        maps = tuple(
+            one.standing() if one.member is None else one.standing(*way[one.member])
+            for one in contact.heights
+        )
+        return replace(contact, heights=maps, approach=array(0.0))
+
+    def problem(self, time: float) -> Problem:
+        """The contact at a time, in units of the common grid."""
+        nodes, cells = self.grid
+        return problem_on(self.contact(time), self.layout, nodes, cells, cells)
+
+
+def _between(one: Array, other: Array, part: float) -> Array:
+    return array((1.0 - part) * np.asarray(one) + part * np.asarray(other))
+
+
+def _speeds(contact: PatchContact) -> NDArray[np.float64]:
+    """Surface speeds of both members along and across, shape (2, 2) [m/s]."""
+    along = [float(np.mean(one)) for one in (contact.speed_a, contact.speed_b)]
+    return np.array([along, [float(contact.across_a), float(contact.across_b)]]).T
+
+
+def _passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Ways of both surfaces along and across at every time, shape (time, 2, 2) [m]."""
+    speeds = np.stack([_speeds(one) for one in contacts])
+    ways = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)[:, None, None]
+    return np.concatenate((np.zeros((1, 2, 2)), np.cumsum(ways, axis=0)))
+
+
+def _common(layouts: Sequence[Layout]) -> Layout:
+    """A grid that holds all contacts, in units of the largest."""
+    largest = max(layouts, key=lambda one: one.length)
+    lows = {name: min(getattr(one, name) for one in layouts) for name in ("inlet", "first", "film")}
+    highs = {
+        name: max(getattr(one, name) for one in layouts) for name in ("outlet", "last", "speed")
+    }
+    return largest._replace(**lows, **highs)
+
+
+# ---- one step after the other
+
+
+class _Step(NamedTuple):
+    """A film that a step of time found."""
+
+    problem: Problem
+    state: State
+    mass: Field
+
+
+class _Stepper:
+    """Steps of time from film to film.
+
+    Attributes:
+        plan: contacts over time.
+        told: called with the number of steps and the residual after each of them.
+        tolerance: of a step by error; None for given steps.
+    """
+
+    def __init__(self, plan: _Plan, told: Progress | None, tolerance: float | None) -> None:
+        self.plan, self.told, self.tolerance = plan, told, tolerance
+
+    def begun(self) -> tuple[Course, Problem, State]:
+        """The steady film of the first contact."""
+        plan = self.plan
+        first = plan.contact(plan.times[0])
+        first = replace(first, approach=plan.contacts[0].approach)
+        _, problem, state = solve(first, *plan.grid, self.told, plan.layout_of(0))
+        state = state._replace(pressure=np.asarray(state.pressure), level=float(state.level))
+        mass = np.asarray(_mass(problem, array(state.pressure), array(state.level)))
+        stands = state.pressure, state.level, (float(plan.times[0]),), (mass,), None
+        return Course(plan.layout, plan.lies, *stands), problem, state
+
+    def to(self, course: Course, time: float) -> tuple[Course, _Step, int, int]:
+        """Course at a time, the last step to it, and how many steps of time and of Newton's method it took."""
+        made, newton = 0, 0
+        while True:
+            step = self._length(course, time)
+            course, found = self._accepted(course, time, step)
+            made, newton = made + 1, newton + found.state.steps
+            if course.times[0] == time or not found.state.residual < ENOUGH:
+                return course, found, made, newton
+
+    def _length(self, course: Course, time: float) -> float:
+        """Length of the next step: parts of the way to the time that are all alike [s]."""
+        left = time - course.times[0]
+        if self.tolerance is None:
+            return left
+        step = FIRST * left if course.step is None else course.step
+        return left / np.ceil(left / step * (1.0 - 1e-9))
+
+    def _accepted(self, course: Course, time: float, step: float) -> tuple[Course, _Step]:
+        """A step whose error is within the tolerance, cut as often as that asks for."""
+        for _ in range(MOST_CUTS):
+            near = abs(course.times[0] + step - time) < 1e-6 * step
+            at = time if near else course.times[0] + step
+            found = self._found(course, at)
+            lost = not found.state.residual < ENOUGH
+            if self.tolerance is None:
+                break
+            off = np.inf if lost else _error(course, found, at)
+            factor = SAFETY * (self.tolerance / max(off, 1e-12)) ** (1.0 / 3.0)
+            factor = float(np.clip(factor, SHRINKING, GROWING))
+            if off <= self.tolerance:
+                return _onward(course, found, at)._replace(step=factor * step), found
+            found = found._replace(state=found.state._replace(residual=np.inf))
+            step *= min(factor, SAFETY)
+        return _onward(course, found, at), found
+
+    def _found(self, course: Course, time: float) -> _Step:
+        """The film at a time, from the one before."""
+        problem = _since(self.plan.problem(time), course, time)
+        given = array(course.pressure), array(course.level)
+        state = iterated(problem, *given, np.inf, self.told)
+        if not state.residual < ENOUGH:
+            state = iterated(problem, *given, TIED, self.told)
+        mass = np.asarray(_mass(problem, state.pressure, state.level))
+        return _Step(problem, state, mass)
+
+
+def _mass_of(problem: Problem, pressure: Array, level: Array) -> Array:
+    """Mass under every cell, shape (y, x)."""
+    gap = problem.gap(pressure, level)
+    return problem.flow.mass_and_ease(pressure - problem.flow.asperity_pressure(gap), gap)[0]
+
+
+_mass = program(_mass_of)
+
+
+def _since(problem: Problem, course: Course, time: float) -> Problem:
+    """The problem of a film that follows those of a course.
+
+    Backward differences over two steps: d m/dt = (m - before)/(the time of that), exact for masses that are
+    quadratic in time. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.5.
+    """
+    step, ratio = _ratio(course, time)
+    weight = (1.0 + 2.0 * ratio) / (1.0 + ratio)
+    mass = (1.0 + ratio) * course.masses[0]
+    if ratio:
+        mass = mass - ratio**2 / (1.0 + ratio) * course.masses[1]
+    pace = weight * course.layout.length / (course.layout.speed * step)
+    found: Problem = eqx.tree_at(
+        lambda one: (one.pace, one.before), problem, (array(pace), array(mass / weight))
+    )
+    return found
+
+
+def _ratio(course: Course, time: float) -> tuple[float, float]:
+    """A step of time [s], and its length over that of the one before; none after the first film."""
+    step = time - course.times[0]
+    if len(course.times) < 2:
+        return step, 0.0
+    return step, step / (course.times[0] - course.times[1])
+
+
+def _onward(course: Course, found: _Step, time: float) -> Course:
+    state = found.state
+    return course._replace(
+        pressure=np.asarray(state.pressure),
+        level=float(state.level),
+        times=(time, *course.times)[:REMEMBERED],
+        masses=(found.mass, *course.masses)[:REMEMBERED],
+    )
+
+
+def _error(course: Course, found: _Step, time: float) -> float:
+    """Error of a step: mean over the contact, weighed by pressure, over the mean mass.
+
+    The parabola through the three films before differs from the film by its own error and that of the step,
+    whose ratio is known. Before the first film nothing changed.
+    """
+    step, ratio = _ratio(course, time)
+    times, masses = list(course.times), list(course.masses)
+    while len(times) < REMEMBERED:
+        times.append(times[-1] - step)
+        masses.append(masses[-1])
+    ahead = _parabola(times, masses, time)
+    own = step * (1.0 + ratio) / (1.0 + 2.0 * ratio)
+    part = own / (own + time - times[2])
+    pressure = np.asarray(found.state.pressure)
+    weight = np.maximum(pressure, 0.0) * np.asarray(found.problem.bodies.areas)[:, None]
+    off = part * np.abs(found.mass - ahead)
+    return float(np.sum(weight * off) / np.sum(weight * found.mass))
+
+
+def _parabola(times: Sequence[float], masses: Sequence[Field], time: float) -> Field:
+    """Masses at a time by the parabola through three films."""
+    found = np.zeros_like(masses[0])
+    for k, mass in enumerate(masses):
+        others = [one for number, one in enumerate(times) if number != k]
+        found = found + mass * np.prod([(time - one) / (times[k] - one) for one in others])
+    return found
+
+
+def _march(plan: _Plan, stepper: _Stepper, after: PatchMoment | None) -> Iterator[PatchMoment]:
+    if after is None:
+        course, problem, state = stepper.begun()
+        moment = _moment(plan, 0, problem, course, state, (0, state.steps))
+        yield moment
+    else:
+        moment, course = after, after.course
+    for number, time in enumerate(plan.times):
+        if time <= moment.time or not moment.solved:
+            continue
+        course, step, made, newton = stepper.to(course, float(time))
+        moment = _moment(plan, number, step.problem, course, step.state, (made, newton))
+        yield moment
+
+
+def _moment(
+    plan: _Plan,
+    number: int,
+    problem: Problem,
+    course: Course,
+    state: State,
+    steps: tuple[int, int],
+) -> PatchMoment:
+    """Film at one of the times."""
+    contact, layout = plan.contact(plan.times[number]), plan.layout_of(number)
+    check_maps_on(contact, layout, plan.grid[1])
+    code = before(plan.contacts[0]) if number == 0 else Code.SOLVED
+    ended = PatchEnded(code, float(state.residual), abs(float(state.load)), steps[1])
+    solution = np.asarray(state.pressure), float(state.level), dry_pressure(problem)
+    told = told_film(contact, layout, problem, *solution, ended)
+    film: Any = jax.tree.map(np.asarray, back(told.film, plan.lies))
+    warnings = (*told.warnings, *_few(layout, plan.grid[0]))
+    time = float(plan.times[number])
+    return PatchMoment(time, film, told.ended, steps[0], course, warnings)
+
+
+def _few(layout: Layout, nodes: int) -> Iterator[str]:
+    """A sentence on contacts that are small on the grid of the largest one."""
+    shown = layout.half_width / (layout.outlet - layout.inlet) * (nodes - 1)
+    if shown < FEWEST_NODES:
+        yield (
+            f"the grid of the largest contact of the march has {shown:.1f} nodes over the half-width of this "
+            "one: take more nodes"
+        )
