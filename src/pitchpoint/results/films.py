@@ -137,7 +137,7 @@ _PATCH: Final = {
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
 }
 _MARCH: Final = {
-    "time": Variable("time", "t", "s"),
+    "time": Variable("time", "t", "s", "ms", "time"),
     "time_steps": _number("steps of time since the time before"),
     "newton_steps": _number("steps of Newton's method since the time before"),
 }

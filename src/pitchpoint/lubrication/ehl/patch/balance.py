@@ -49,7 +49,7 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
 
 
 def _stored(problem: Problem, mass: Field, rate: Array) -> Array:
-    """What cells store in a time, since the film before and, to tie its changes, since the mass that it has."""
+    """What cells store in a time: since the film before, and since the mass that they have, to tie it."""
     since = (problem.pace, problem.before), (rate, jax.lax.stop_gradient(mass))
     return sum((pace * (mass - before) for pace, before in since), jnp.zeros(()))
 

@@ -130,7 +130,7 @@ def solve_patch(
 
     Raises:
         InputError: values that no contact has, numbers of nodes or cells that no grid has, a line that is
-            entrained along its length or in two senses, height maps that move or leave out part of the contact.
+            entrained along its length or in two senses, height maps that move or do not cover it.
     """
     check(contact)
     check_standing(contact)
@@ -231,6 +231,7 @@ def turned(contact: PatchContact) -> tuple[Turned, PatchContact]:
 
 
 def oriented(contact: PatchContact, lies: Turned) -> PatchContact:
+    """The contact as its grid lies."""
     found = _swapped(contact) if lies.swapped else contact
     along, across = (-1.0 if one else 1.0 for one in (lies.along, lies.across))
     return replace(

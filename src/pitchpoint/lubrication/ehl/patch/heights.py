@@ -94,8 +94,8 @@ class HeightMap(eqx.Module):
             x, heights = -x[::-1], heights[:, ::-1]
         if across:
             y, heights = -y[::-1], heights[::-1]
-        given = {"member": self.member, "periodic": self.periodic}
-        return HeightMap(x=x, y=y, heights=heights, **given)
+        member, periodic = self.member, self.periodic
+        return HeightMap(x=x, y=y, heights=heights, member=member, periodic=periodic)
 
 
 def lowered(

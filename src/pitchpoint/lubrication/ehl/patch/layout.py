@@ -315,8 +315,8 @@ _lowered = program(lowered)
 
 def lowered_on(maps: tuple[HeightMap, ...], layout: Layout, bodies: HalfSpace) -> Array:
     """By how much less maps make the gap in each cell of a grid, shape (y, x) [m]."""
-    places = (layout.length * np.asarray(one) for one in (bodies.x, bodies.edges))
-    return _lowered(maps, *places)
+    x, edges = (layout.length * np.asarray(one) for one in (bodies.x, bodies.edges))
+    return _lowered(maps, array(x), array(edges))
 
 
 class Coated(Smooth):

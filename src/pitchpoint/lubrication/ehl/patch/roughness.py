@@ -74,8 +74,8 @@ def check_standing(contact: PatchContact) -> None:
         across = (contact.across_a, contact.across_b)[one.member]
         if np.any(np.asarray(_speed(contact, one.member))) or float(across):
             raise InputError(
-                f"heights that move with member {one.member} have no steady film: `march_patches` moves them, "
-                "and a map of no member stays where it is",
+                f"heights that move with member {one.member} have no steady film: `march_patches` moves "
+                "them, and a map of no member stays where it is",
                 key="heights",
             )
 

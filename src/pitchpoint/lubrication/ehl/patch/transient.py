@@ -135,7 +135,7 @@ def march_patches(
     The balance of every cell holds d(rho h)/dt; load and pressure balance at every time, without the inertia
     of the bodies. Second order in time: backward differences over two steps of any lengths, the first step of
     first order. The film at the first time is the steady one of the first contact, with its speed of approach
-    and with height maps where they lie; maps of a member move with its surface from then on. Between the times
+    and with height maps where they lie; those of a member move with its surface from then on. Between times
     every value of the contacts is linear. One grid holds all contacts. Cells without pressure are full of oil
     again as soon as pressure rises: what was lost at the outlet is not missing there.
 
@@ -143,7 +143,7 @@ def march_patches(
         contacts: one at each time, all of one kind, with arrays of the same shapes.
         times: rising, shape (time,) [s].
         steps: "given", one step from each time to the next, or "by_error", as many as the tolerance asks for.
-        tolerance: of a step by error: mean change of the mass under a cell, weighed by pressure, over its mean.
+        tolerance: of a step by error: mean of the mass under a cell, weighed by pressure, over its mean.
         nodes: along x, one more than a power of two.
         cells: across, a power of two.
         after: moment of the same contacts after which to go on; earlier ones are left out.
@@ -180,14 +180,14 @@ def _check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -
         check(one)
     if any(_kind(one) != _kind(contacts[0]) for one in contacts):
         raise InputError(
-            "the contacts of a march are of one kind: the same ends, oil laws, textures and height maps, with "
-            "arrays of the same shapes",
+            "the contacts of a march are of one kind: the same ends, oil laws, textures and height maps, "
+            "with arrays of the same shapes",
             key="contacts",
         )
     if any(float(one.approach) for one in contacts[1:]):
         raise InputError(
-            "the bodies of a march approach each other as the load asks: only the first film takes a speed of "
-            "approach",
+            "the bodies of a march approach each other as the load asks: only the first film takes a speed "
+            "of approach",
             key="approach",
         )
 
@@ -326,7 +326,7 @@ class _Stepper:
         return Course(plan.layout, plan.lies, *stands), problem, state
 
     def to(self, course: Course, time: float) -> tuple[Course, _Step, int, int]:
-        """Course at a time, the last step to it, and how many steps of time and of Newton's method it took."""
+        """Course at a time, the last step to it, and how many steps of time and of Newton's method."""
         made, newton = 0, 0
         while True:
             step = self._length(course, time)
@@ -341,7 +341,7 @@ class _Stepper:
         if self.tolerance is None:
             return left
         step = FIRST * left if course.step is None else course.step
-        return left / np.ceil(left / step * (1.0 - 1e-9))
+        return left / float(np.ceil(left / step * (1.0 - 1e-9)))
 
     def _accepted(self, course: Course, time: float, step: float) -> tuple[Course, _Step]:
         """A step whose error is within the tolerance, cut as often as that asks for."""
