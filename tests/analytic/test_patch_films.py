@@ -19,6 +19,7 @@ from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import linear, product
 from pitchpoint.lubrication.ehl.patch.response import polished
@@ -182,7 +183,15 @@ def test_asperities_carry_more_the_slower_the_surfaces_are():
     films = [coarse(line(speed=speed, texture=rough)).film for speed in (3.0, 0.3, 0.03)]
     shares = [float(film.asperity_share) for film in films]
     assert shares[0] < shares[1] < shares[2]
+    waves = np.linspace(-1.0, 1.0, 41) * 1e-3
+    heights = 3e-7 * np.cos(np.pi * waves / 1e-4) * np.ones((2, 1))
+    wavy = HeightMap(x=waves, y=np.array([-1.0, 1.0]), heights=heights)
+    films.append(coarse(line(speed=3.0, texture=rough, heights=wavy)).film)
+    assert films[-1].asperity_share > shares[0]
     for film in films:
+        traction = np.sum(film.traction_x * _widths(film)[:, None]) * np.diff(film.x)[0]
+        force = film.shear_force[0] + film.boundary_force[0]
+        assert traction == pytest.approx(float(force), rel=1e-10)
         rubbed = film.boundary_force[0] / (0.1 * float(line().load))
         assert rubbed == pytest.approx(float(film.asperity_share), rel=1e-9)
 

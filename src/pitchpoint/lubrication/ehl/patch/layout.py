@@ -144,7 +144,7 @@ def laid_out(contact: PatchContact, cells: int) -> Layout:
 def _of_ellipse(contact: PatchContact) -> Layout:
     radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
     given = array(radius), array(across)
-    ellipse = hertz_1881(
+    ellipse = _hertz(
         load=contact.load, radius=given[0], transverse_radius=given[1], modulus=contact.modulus
     )
     half_width, side = float(ellipse.along), float(ellipse.across)
@@ -158,6 +158,10 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
     return Layout(*ends, -before, BESIDE * reach, None, *units, radius, unit)
+
+
+# Its elliptic integrals are loops, which would be made anew for each contact.
+_hertz = program(hertz_1881)
 
 
 def _oblique(contact: PatchContact) -> float:

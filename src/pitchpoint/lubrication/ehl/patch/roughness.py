@@ -25,8 +25,8 @@ __all__ = ["check_maps", "check_maps_on", "check_standing", "unseen"]
 COARSEST: Final = 4
 """Steps of a map over the width of a contact, at least, along an axis on which heights change."""
 
-SHOWN: Final = 0.9
-"""Part of the Rq of a map that a grid has to show: what is left of waves as long as four cells."""
+SHOWN: Final = 0.85
+"""Part of the Rq of a map that a grid has to show: of waves as long as four cells .9 are left."""
 
 Ends = tuple[float, float]
 
@@ -161,7 +161,7 @@ def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Ite
         if seen < SHOWN * whole:
             yield (
                 f"the grid shows Rq = {1e9 * seen:.3g} nm of a height map with {1e9 * whole:.3g} nm: waves "
-                "shorter than four cells are lost; take more nodes, or take them as asperities"
+                "shorter than about four cells are lost; take more nodes, or take them as asperities"
             )
     if contact.heights:
         high, flat = _range(contact, layout, cells), layout.half_width**2 / (2.0 * layout.radius)

@@ -8,11 +8,12 @@ from typing import Any, Final, NamedTuple
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array
+from jaxtyping import Array, Float
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax
 from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import (
@@ -264,7 +265,7 @@ class _Plan:
         return problem_on(self.contact(time), self.layout, nodes, cells, cells)
 
 
-def _between(one: Array, other: Array, part: float) -> Array:
+def _between(one: Float[Arrays, "..."], other: Float[Arrays, "..."], part: float) -> Array:
     return array((1.0 - part) * np.asarray(one) + part * np.asarray(other))
 
 
