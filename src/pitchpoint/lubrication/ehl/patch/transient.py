@@ -55,11 +55,17 @@ GROWING: Final = 2.0
 SHRINKING: Final = 0.3
 """Smallest one."""
 
+HALF: Final = 0.5
+"""Part of a step that found no film which is tried next."""
+
 SAFETY: Final = 0.9
 """Part of the step by which the error would be just met."""
 
 MOST_CUTS: Final = 8
 """Times that a step is cut before a march is given up."""
+
+FEW: Final = 16
+"""Steps of Newton's method in a first attempt."""
 
 TIED: Final = 2.0
 """Time over which the first step of a second attempt lets oil flow, in units of the contact."""
@@ -345,28 +351,32 @@ class _Stepper:
         return left / float(np.ceil(left / step * (1.0 - 1e-9)))
 
     def _accepted(self, course: Course, time: float, step: float) -> tuple[Course, _Step]:
-        """A step whose error is within the tolerance, cut as often as that asks for."""
+        """A step that finds a film, within the tolerance if there is one, cut as often as that takes."""
         for _ in range(MOST_CUTS):
             near = abs(course.times[0] + step - time) < 1e-6 * step
             at = time if near else course.times[0] + step
             found = self._found(course, at)
-            lost = not found.state.residual < ENOUGH
-            if self.tolerance is None:
-                break
-            off = np.inf if lost else _error(course, found, at)
-            factor = SAFETY * (self.tolerance / max(off, 1e-12)) ** (1.0 / 3.0)
-            factor = float(np.clip(factor, SHRINKING, GROWING))
-            if off <= self.tolerance:
+            factor = self._factor(course, found, at)
+            if factor >= SAFETY:
                 return _onward(course, found, at)._replace(step=factor * step), found
-            found = found._replace(state=found.state._replace(residual=np.inf))
-            step *= min(factor, SAFETY)
-        return _onward(course, found, at), found
+            step *= factor
+        lost = found._replace(state=found.state._replace(residual=np.inf))
+        return _onward(course, found, at), lost
+
+    def _factor(self, course: Course, found: _Step, time: float) -> float:
+        """By how much longer the next step may be, or has to be shorter where it is below `SAFETY`."""
+        if not found.state.residual < ENOUGH:
+            return HALF
+        if self.tolerance is None:
+            return 1.0
+        off = max(_error(course, found, time), 1e-12)
+        return float(np.clip(SAFETY * (self.tolerance / off) ** (1.0 / 3.0), SHRINKING, GROWING))
 
     def _found(self, course: Course, time: float) -> _Step:
         """The film at a time, from the one before."""
         problem = _since(self.plan.problem(time), course, time)
         given = array(course.pressure), array(course.level)
-        state = iterated(problem, *given, np.inf, self.told)
+        state = iterated(problem, *given, np.inf, self.told, most=FEW)
         if not state.residual < ENOUGH:
             state = iterated(problem, *given, TIED, self.told)
         mass = np.asarray(_mass(problem, state.pressure, state.level))
