@@ -253,7 +253,9 @@ def solved_again(found: PatchFilms, by: np.ndarray) -> np.ndarray:
     solution = array(found.pressure), array(found.level)
     for _ in range(4):
         solution = POLISHED(problem, *solution)
-    film = FILM(contact, jax.tree.map(array, found.layout), problem, *solution, found.held)
+    film = FILM(
+        contact, jax.tree.map(array, found.layout), problem, *solution, found.held, found.response
+    )
     return np.asarray(figures(film))
 
 
@@ -347,3 +349,29 @@ def test_a_middle_that_does_not_touch_has_no_film():
     film = coarse(lifted).film
     assert film.y[-1] < 0.0
     assert np.isnan(film.central_film)
+
+
+@cache
+def wide_contact(load: float = 1.0, approach: float = 0.0) -> PatchFilms:
+    """A light contact of rough flanks that nearly fit, such as those in the zone of a strain wave gear."""
+    given = {"load": 940.0 * load, "length": 0.012, "radius": 1.5, "modulus": MODULUS, "fluid": OIL}
+    texture = Rough(rq=0.5e-6, modulus=MODULUS)
+    contact = finite_line(**given, speed_a=0.3, speed_b=0.3, texture=texture, approach=approach)
+    return coarse(contact)
+
+
+def test_stiffness_and_damping_are_those_of_contacts_that_are_solved_again():
+    film = wide_contact().film
+    less, more = (wide_contact(load=part).film.separation for part in (0.98, 1.02))
+    assert float(film.stiffness) == pytest.approx(0.04 * 940.0 / float(less - more), rel=0.01)
+    leaving, closing = (wide_contact(approach=v).film.separation for v in (-2e-6, 2e-6))
+    by_approach = float(closing - leaving) / 4e-6
+    assert float(film.damping) == pytest.approx(float(film.stiffness) * by_approach, rel=1e-3)
+
+
+def test_shear_below_a_crowned_line_is_between_those_of_lines_and_balls():
+    found, depth = crowned_line(), np.linspace(0.5, 1.1, 13) * float(crowned_line().film.half_width)
+    shear = np.asarray(found.stresses(depth, 0.3).largest_shear())
+    most = np.unravel_index(np.argmax(shear), shear.shape)
+    assert 0.295 < shear[most] / float(found.film.largest_pressure) < 0.32
+    assert depth[most[0]] == pytest.approx(0.786 * float(found.film.half_width), rel=0.08)

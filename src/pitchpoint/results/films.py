@@ -135,6 +135,9 @@ _PATCH: Final = {
     "boundary_force": _force("friction of asperities on member 0", "F_b"),
     "rolling": _force("rolling resistance of each surface", "F_r"),
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
+    "separation": deviation("by which the bodies are further apart than without oil", "h_s"),
+    "stiffness": Variable("stiffness of the film, in series with the dry contact", "k", "N/m"),
+    "damping": Variable("squeeze damping of the film", "c", "N s/m"),
 }
 _MARCH: Final = {
     "time": Variable("time", "t", "s", "ms", "time"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -15,7 +15,15 @@ from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
 from pitchpoint.lubrication.ehl.work import filled, shear_stress
 
-__all__ = ["END_DISTANCES", "FIELDS", "STRESSES", "VECTORS", "PatchFilm", "patch_film"]
+__all__ = [
+    "END_DISTANCES",
+    "FIELDS",
+    "STRESSES",
+    "VECTORS",
+    "PatchFilm",
+    "Response",
+    "patch_film",
+]
 
 Field = Float[Arrays, "y x"]
 One = Float[Arrays, ""]
@@ -43,6 +51,22 @@ STRESSES: Final = (("shear_x", "shear_y"), ("traction_x", "traction_y"))
 
 VECTORS: Final = ("minimum_place", "largest_place", "shear_force", "boundary_force", "rolling")
 """Names of what has a value along x and one along y, shape (2,)."""
+
+
+class Response(NamedTuple):
+    """How the bodies of a contact answer, in own units.
+
+    Attributes:
+        dry: approach of the bodies without oil.
+        dry_by_load: its change with the load, as a part of it.
+        by_load: change of the level with the load with oil, as a part of it.
+        by_approach: with the speed of approach, in the unit of `Flow.approach`.
+    """
+
+    dry: Float[Arrays, ""]
+    dry_by_load: Float[Arrays, ""]
+    by_load: Float[Arrays, ""]
+    by_approach: Float[Arrays, ""]
 
 
 class PatchFilm(eqx.Module):
@@ -76,6 +100,12 @@ class PatchFilm(eqx.Module):
         friction: coefficient, their sum over the load.
         rolling: resistance to rolling, which the oil in the inlet does to each surface, shape (2,) [N].
         pumping_power: that the flow under pressure turns into heat [W].
+        separation: by which the bodies are further apart than without oil [m].
+        stiffness: -dF/dh of the load by that separation, all else as it is: the film as a spring in series
+            with the dry contact. It wavers as the edge of a narrow contact passes nodes: by 20 % of smooth
+            heavy ones at 129 nodes, by 1 % of wide rough ones; on coarser grids by more [N/m].
+        damping: dF/dV of the load by the speed V at which the bodies approach, with the separation held
+            [N s/m].
         half_width: of the dry contact along x, of the rows that carry most [m].
         hertz_pressure: largest one of the dry contact, but for the ends of lines [Pa].
         film_ratio: smallest film over composite Rq; infinite for smooth surfaces.
@@ -106,6 +136,9 @@ class PatchFilm(eqx.Module):
     friction: One
     rolling: Float[Arrays, "2"]
     pumping_power: One
+    separation: One
+    stiffness: One
+    damping: One
     half_width: One
     hertz_pressure: One
     film_ratio: One
@@ -128,6 +161,7 @@ def patch_film(
     pressure: Array,
     level: Array,
     held: Array,
+    response: Response,
 ) -> PatchFilm:
     """Fields of a contact from a solution in its own units, as the grid lies.
 
@@ -138,6 +172,7 @@ def patch_film(
         pressure: solution, shape (y, x).
         level: of the surfaces.
         held: dry pressure, which films are weighed by, shape (y, x).
+        response: of the bodies.
     """
     flow, bodies, length = problem.flow, problem.bodies, problem.length
     gap = problem.gap(pressure, level)
@@ -154,6 +189,7 @@ def patch_film(
     shear, rubs = ([one * sense for sense in senses] for one in (stress, rubbing))
     row, column, pumping = work(problem, oil, gap)
     rolls = flow.pressure * flow.height * length
+    apart = _apart(contact, problem, level, response)
     low, high = jnp.argmin(gap), jnp.argmax(pressure)
     rough = 0.0 if contact.texture is None else contact.texture.rq
     sheared, rubbed = (
@@ -185,10 +221,26 @@ def patch_film(
         friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
         rolling=jnp.stack([jnp.sum(row), column]) * rolls,
         pumping_power=pumping * rolls * problem.speed,
+        separation=apart[0],
+        stiffness=apart[1],
+        damping=apart[2],
         half_width=jnp.asarray(layout.half_width),
         hertz_pressure=jnp.asarray(layout.hertz_pressure),
         film_ratio=jnp.min(gap) * flow.height / rough,
     )
+
+
+def _apart(
+    contact: PatchContact, problem: Problem, level: Array, response: Response
+) -> tuple[Array, Array, Array]:
+    """Separation, stiffness and damping; constants for derivatives, as dry bodies have none here."""
+    height = problem.flow.height
+    stiffness = -contact.load / ((response.by_load + response.dry_by_load) * height)
+    yields = response.by_approach * problem.length / problem.speed
+    found: tuple[Array, Array, Array] = jax.lax.stop_gradient(
+        ((level + response.dry) * height, stiffness, stiffness * yields)
+    )
+    return found
 
 
 def _sliding(contact: PatchContact, y: Array) -> tuple[Array, Array]:

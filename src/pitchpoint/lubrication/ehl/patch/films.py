@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.subsurface import Stresses, below_row
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
@@ -18,13 +19,14 @@ from pitchpoint.lubrication.ehl.patch.fields import (
     STRESSES,
     VECTORS,
     PatchFilm,
+    Response,
     patch_film,
 )
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
-from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, shown_film, solve
+from pitchpoint.lubrication.ehl.patch.solve import dry_bodies, shown_film, solve
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -80,6 +82,7 @@ class PatchFilms:
         pressure: solution in those units, for `film_near`, shape (y, x).
         level: of the surfaces in those units.
         held: dry pressure in those units, which films are weighed by, shape (y, x).
+        response: of the bodies, in those units.
         turned: how the grid lies.
         warnings: what to be wary of, in sentences.
     """
@@ -90,6 +93,7 @@ class PatchFilms:
     pressure: NDArray[np.float64]
     level: float
     held: NDArray[np.float64]
+    response: Response
     turned: Turned
     warnings: tuple[str, ...]
 
@@ -97,6 +101,24 @@ class PatchFilms:
     def solved(self) -> bool:
         """Whether the contact was solved."""
         return self.ended.code == Code.SOLVED
+
+    def stresses(self, depth: NDArray[np.float64], poisson: float) -> Stresses:
+        """Stresses by the pressure below the most loaded section along the entrainment.
+
+        Args:
+            depth: below the surface, positive; meaningful from about a cell on, shape (depth,) [m].
+            poisson: Poisson's ratio of the solid.
+
+        Raises:
+            InputError: films that were not solved, depths that are not positive, another Poisson's ratio.
+        """
+        if not self.solved:
+            raise InputError("films that were not solved have no stresses", key="films")
+        (rows, nodes), layout = self.pressure.shape, self.layout
+        bodies = layout.bodies(nodes, rows, rows, "half_space")
+        own = below_row(bodies, self.pressure, np.asarray(depth) / layout.length, poisson)
+        found: Stresses = jax.tree.map(lambda one: one * layout.pressure, own)
+        return replace(found, depth=array(depth))
 
 
 @dataclass(frozen=True)
@@ -137,13 +159,14 @@ def solve_patch(
     lies, own = turned(contact)
     code = before(own)
     layout, problem, state = solve(own, nodes, cells, progress)
-    held = dry_pressure(problem)
+    held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
     pressure: Any = np.asarray(end.pressure)
+    response = Response(array(approach), array(by_load), end.by_load, end.by_approach)
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
-    told = told_film(own, layout, problem, pressure, float(end.level), held, ended)
+    told = told_film(own, layout, problem, pressure, float(end.level), held, response, ended)
     found = back(told.film, lies), told.ended, layout, pressure, float(end.level)
-    return PatchFilms(*found, held, lies, told.warnings)
+    return PatchFilms(*found, held, response, lies, told.warnings)
 
 
 class Told(NamedTuple):
@@ -161,6 +184,7 @@ def told_film(
     pressure: NDArray[np.float64],
     level: float,
     held: NDArray[np.float64],
+    response: Response,
     ended: PatchEnded,
 ) -> Told:
     """Film of a solution, NaN where it is none, and what to be wary of; arguments as in `patch_film`.
@@ -172,7 +196,7 @@ def told_film(
     # Plain numbers would be constants of the program, which would be made anew for each contact; maps are
     # in the problem, and would make it anew for each number of them.
     lies_at, plain = jax.tree.map(array, layout), replace(own, heights=())
-    given = plain, lies_at, problem, array(pressure), array(level), array(held)
+    given = plain, lies_at, problem, array(pressure), array(level), array(held), response
     film = jax.tree.map(np.asarray, _film(*given))
     balanced = ended.reynolds < ENOUGH and ended.load < ENOUGH and np.all(np.isfinite(held))
     code = ended.code
@@ -198,7 +222,8 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     Returns:
         The same film, with the derivatives of the solution (implicit function theorem), first ones; every
         cell stays full of oil, or not, as it is. The grid stays where it is, and what belongs to it: there
-        are no derivatives by the length of a line, nor of `half_width` and `hertz_pressure`.
+        are no derivatives by the length of a line, nor of `half_width`, `hertz_pressure`, `separation`,
+        `stiffness` and `damping`.
 
     Raises:
         InputError: the films were not solved.
@@ -209,7 +234,7 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     rows, nodes = films.pressure.shape
     problem = problem_on(swapped, films.layout, nodes, rows, rows)
     pressure, level = polished(problem, array(films.pressure), array(films.level))
-    given = swapped, films.layout, problem, pressure, level, array(films.held)
+    given = swapped, films.layout, problem, pressure, level, array(films.held), films.response
     return back(patch_film(*given), films.turned)
 
 

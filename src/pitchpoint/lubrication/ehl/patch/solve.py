@@ -11,6 +11,7 @@ from jaxtyping import Array
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array
+from pitchpoint.contact.dry_contact import DryContact
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import (
@@ -31,7 +32,7 @@ from pitchpoint.lubrication.ehl.patch.newton import (
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.programs import fast_program
 
-__all__ = ["Found", "dry_pressure", "dry_start", "finer", "shown_film", "solve"]
+__all__ = ["Found", "dry_bodies", "dry_start", "dry_under", "finer", "shown_film", "solve"]
 
 FINER_TIME: Final = 2.0
 """Time over which the first step lets oil flow that starts from another film."""
@@ -47,6 +48,9 @@ STRIDE: Final = 4.0
 
 STRIDES: Final = 3
 """Times that a stride is made shorter, to its root, before a film is given up."""
+
+MORE: Final = 1e-3
+"""Part of the load by which dry bodies are loaded more and less to see how they yield."""
 
 
 class Attempt(NamedTuple):
@@ -96,10 +100,17 @@ def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], 
     return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
 
 
-def dry_pressure(problem: Problem) -> NDArray[np.float64]:
-    """Pressure without oil, shape (y, x)."""
-    dry = without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
-    return np.asarray(dry.pressure)
+def dry_under(problem: Problem, part: float = 1.0) -> DryContact:
+    """The contact without oil under a part of its load."""
+    load = problem.load * part
+    return without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, load)
+
+
+def dry_bodies(problem: Problem) -> tuple[NDArray[np.float64], float, float]:
+    """Pressure without oil, shape (y, x), approach of the bodies, and its change with ln of the load."""
+    dry, less, more = (dry_under(problem, part) for part in (1.0, 1.0 - MORE, 1.0 + MORE))
+    slope = float(more.approach - less.approach) / (2.0 * MORE)
+    return np.asarray(dry.pressure), float(dry.approach), slope
 
 
 def _bedded(problem: Problem, bed: float) -> HalfSpace:

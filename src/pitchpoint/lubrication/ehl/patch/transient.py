@@ -15,7 +15,7 @@ from pitchpoint._jax import array, jax
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.fields import PatchFilm
+from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, Response
 from pitchpoint.lubrication.ehl.patch.films import (
     CELLS,
     NODES,
@@ -31,7 +31,7 @@ from pitchpoint.lubrication.ehl.patch.films import (
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress, State, iterated
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
-from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, solve
+from pitchpoint.lubrication.ehl.patch.solve import dry_under, solve
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
@@ -104,8 +104,9 @@ class PatchMoment:
 
     Attributes:
         time: [s].
-        film: fields and what follows from them, NumPy arrays; NaN where the film was not found. Pumping power
-            and rolling resistance do not balance while the film is squeezed.
+        film: fields and what follows from them, NumPy arrays; NaN where the film was not found, and stiffness
+            and damping, which are those of steady films. Pumping power and rolling resistance do not balance
+            while the film is squeezed.
         ended: how the steps since the moment before ended: the defects of the last one, and steps of Newton's
             method in all of them.
         time_steps: of time since the moment before.
@@ -485,8 +486,10 @@ def _moment(
     check_maps_on(contact, layout, plan.grid[1])
     code = before(plan.contacts[0]) if number == 0 else Code.SOLVED
     ended = PatchEnded(code, float(state.residual), abs(float(state.load)), steps[1])
-    solution = np.asarray(state.pressure), float(state.level), dry_pressure(problem)
-    told = told_film(contact, layout, problem, *solution, ended)
+    dry, unknown = dry_under(problem), array(np.nan)
+    solution = np.asarray(state.pressure), float(state.level), np.asarray(dry.pressure)
+    response = Response(array(dry.approach), unknown, unknown, unknown)
+    told = told_film(contact, layout, problem, *solution, response, ended)
     film: Any = jax.tree.map(np.asarray, back(told.film, plan.lies))
     warnings = (*told.warnings, *_few(layout, plan.grid[0]))
     time = float(plan.times[number])
