@@ -8,12 +8,11 @@ from typing import Any, Final, NamedTuple
 
 import equinox as eqx
 import numpy as np
-from jaxtyping import Array, Float
+from jaxtyping import Array
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, Response
 from pitchpoint.lubrication.ehl.patch.films import (
@@ -23,13 +22,11 @@ from pitchpoint.lubrication.ehl.patch.films import (
     Turned,
     back,
     before,
-    check,
-    oriented,
     told_film,
-    turned,
 )
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress, State, iterated
+from pitchpoint.lubrication.ehl.patch.plan import Plan, all_lie, check_times
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.lubrication.ehl.patch.solve import dry_under, solve
 from pitchpoint.programs import program
@@ -38,7 +35,7 @@ from pitchpoint.status import Code
 __all__ = ["STEPS", "Course", "PatchMoment", "march_patches"]
 
 STEPS: Final = ("given", "by_error")
-"""Ways to choose steps of time: from each given time to the next, or by an estimate of their error."""
+"""Ways to choose steps of time: from each given time to the next, or by an estimate of the error."""
 
 TOLERANCE: Final = 1e-3
 """Usual error of a step, of the mass under the contact over the mean."""
@@ -150,11 +147,12 @@ def march_patches(
     Args:
         contacts: one at each time, all of one kind, with arrays of the same shapes.
         times: rising, shape (time,) [s].
-        steps: "given", one step from each time to the next, or "by_error", as many as the tolerance asks for.
+        steps: "given", one step from each time to the next, halved where it finds no film, or "by_error", as
+            many as the tolerance asks for.
         tolerance: of a step by error: mean of the mass under a cell, weighed by pressure, over its mean.
         nodes: along x, one more than a power of two.
         cells: across, a power of two.
-        after: moment of the same contacts after which to go on; earlier ones are left out.
+        after: moment of the same contacts and times after which to go on, on its grid.
         progress: told the number of Newton's steps and the residual, after each of them.
 
     Yields:
@@ -167,136 +165,13 @@ def march_patches(
     if steps not in STEPS:
         raise InputError(f'there are no steps "{steps}"', key="steps", allowed=STEPS)
     at = np.asarray(times, float)
-    _check_times(contacts, at)
-    lies = _lies(contacts) if after is None else after.course.lies
-    plan = _Plan(contacts, at, lies, nodes, cells, after)
+    check_times(contacts, at)
+    if after is None:
+        plan = Plan(contacts, at, all_lie(contacts), nodes, cells)
+    else:
+        course = after.course
+        plan = Plan(contacts, at, course.lies, *course.pressure.shape[::-1], course.layout)
     return _march(plan, _Stepper(plan, progress, tolerance if steps == "by_error" else None), after)
-
-
-# ---- contacts over time
-
-
-def _check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> None:
-    if times.shape != (len(contacts),) or not len(contacts):
-        raise InputError(
-            f"{len(contacts)} contacts at times of the shape {times.shape}: every contact has its time",
-            key="times",
-        )
-    if not np.all(np.isfinite(times)) or not np.all(np.diff(times) > 0.0):
-        raise InputError("the times of a march have to rise", key="times")
-    for one in contacts:
-        check(one)
-    if any(_kind(one) != _kind(contacts[0]) for one in contacts):
-        raise InputError(
-            "the contacts of a march are of one kind: the same ends, oil laws, textures and height maps, "
-            "with arrays of the same shapes",
-            key="contacts",
-        )
-    if any(float(one.approach) for one in contacts[1:]):
-        raise InputError(
-            "the bodies of a march approach each other as the load asks: only the first film takes a speed "
-            "of approach",
-            key="approach",
-        )
-
-
-def _kind(contact: PatchContact) -> tuple[Any, ...]:
-    leaves, structure = jax.tree.flatten(contact)
-    return structure, [np.shape(one) for one in leaves]
-
-
-def _lies(contacts: Sequence[PatchContact]) -> Turned:
-    """How the grid of all contacts lies."""
-    found = [turned(one)[0] for one in contacts if _moves(one)]
-    lies = found[0] if found else Turned()
-    if any(one != lies for one in found):
-        raise InputError(
-            "the entrainment turns round or to another axis during the march; march each part alone",
-            key="speed_a",
-        )
-    return lies
-
-
-def _moves(contact: PatchContact) -> bool:
-    speeds = contact.speed_a + contact.speed_b, contact.across_a + contact.across_b
-    return any(bool(np.any(np.asarray(one))) for one in speeds)
-
-
-class _Plan:
-    """Contacts at any time, as their grid lies, and that grid."""
-
-    def __init__(
-        self,
-        contacts: Sequence[PatchContact],
-        times: NDArray[np.float64],
-        lies: Turned,
-        nodes: int,
-        cells: int,
-        after: PatchMoment | None,
-    ) -> None:
-        self.times, self.lies, self.grid = times, lies, (nodes, cells)
-        self.contacts = [oriented(one, lies) for one in contacts]
-        self.passed = _passed(self.contacts, times)
-        self.own = [laid_out(one, cells) for one in self.contacts]
-        self.layout = _common(self.own) if after is None else after.course.layout
-
-    def layout_of(self, number: int) -> Layout:
-        """The common grid and its units, with the film and the dry contact of one time."""
-        own = self.own[number]
-        told = {"film": own.film, "half_width": own.half_width}
-        return self.layout._replace(**told, hertz_pressure=own.hertz_pressure)
-
-    def contact(self, time: float) -> PatchContact:
-        """The contact at a time, with its maps where they are, and no approach but that of the film."""
-        number = int(np.clip(np.searchsorted(self.times, time) - 1, 0, len(self.times) - 2))
-        if len(self.times) == 1:
-            return self._placed(self.contacts[0], np.zeros((2, 2)))
-        step = self.times[number + 1] - self.times[number]
-        part = (time - self.times[number]) / step
-        one, other = self.contacts[number : number + 2]
-        between: PatchContact = jax.tree.map(lambda a, b: _between(a, b, part), one, other)
-        speeds = _speeds(one), _speeds(other)
-        way = part * speeds[0] + 0.5 * part**2 * (speeds[1] - speeds[0])
-        return self._placed(between, self.passed[number] + step * way)
-
-    def _placed(self, contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
-        maps = tuple(
-            one.standing() if one.member is None else one.standing(*way[one.member])
-            for one in contact.heights
-        )
-        return replace(contact, heights=maps, approach=array(0.0))
-
-    def problem(self, time: float) -> Problem:
-        """The contact at a time, in units of the common grid."""
-        nodes, cells = self.grid
-        return problem_on(self.contact(time), self.layout, nodes, cells, cells)
-
-
-def _between(one: Float[Arrays, "..."], other: Float[Arrays, "..."], part: float) -> Array:
-    return array((1.0 - part) * np.asarray(one) + part * np.asarray(other))
-
-
-def _speeds(contact: PatchContact) -> NDArray[np.float64]:
-    """Surface speeds of both members along and across, shape (2, 2) [m/s]."""
-    along = [float(np.mean(one)) for one in (contact.speed_a, contact.speed_b)]
-    return np.array([along, [float(contact.across_a), float(contact.across_b)]]).T
-
-
-def _passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Ways of both surfaces along and across at every time, shape (time, 2, 2) [m]."""
-    speeds = np.stack([_speeds(one) for one in contacts])
-    ways = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)[:, None, None]
-    return np.concatenate((np.zeros((1, 2, 2)), np.cumsum(ways, axis=0)))
-
-
-def _common(layouts: Sequence[Layout]) -> Layout:
-    """A grid that holds all contacts, in units of the largest."""
-    largest = max(layouts, key=lambda one: one.length)
-    lows = {name: min(getattr(one, name) for one in layouts) for name in ("inlet", "first", "film")}
-    highs = {
-        name: max(getattr(one, name) for one in layouts) for name in ("outlet", "last", "speed")
-    }
-    return largest._replace(**lows, **highs)
 
 
 # ---- one step after the other
@@ -319,7 +194,7 @@ class _Stepper:
         tolerance: of a step by error; None for given steps.
     """
 
-    def __init__(self, plan: _Plan, told: Progress | None, tolerance: float | None) -> None:
+    def __init__(self, plan: Plan, told: Progress | None, tolerance: float | None) -> None:
         self.plan, self.told, self.tolerance = plan, told, tolerance
 
     def begun(self) -> tuple[Course, Problem, State]:
@@ -458,7 +333,7 @@ def _parabola(times: Sequence[float], masses: Sequence[Field], time: float) -> F
     return found
 
 
-def _march(plan: _Plan, stepper: _Stepper, after: PatchMoment | None) -> Iterator[PatchMoment]:
+def _march(plan: Plan, stepper: _Stepper, after: PatchMoment | None) -> Iterator[PatchMoment]:
     if after is None:
         course, problem, state = stepper.begun()
         moment = _moment(plan, 0, problem, course, state, (0, state.steps))
@@ -474,7 +349,7 @@ def _march(plan: _Plan, stepper: _Stepper, after: PatchMoment | None) -> Iterato
 
 
 def _moment(
-    plan: _Plan,
+    plan: Plan,
     number: int,
     problem: Problem,
     course: Course,
