@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.dry_contact import pressed
-from pitchpoint.contact.ellipse import hertz_1881
+from pitchpoint.contact.ellipse import Ellipse, hertz_1881
 from pitchpoint.contact.half_space import HalfSpace, graded_edges, half_space
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.errors import InputError
@@ -27,10 +27,11 @@ from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
 __all__ = [
-    "BESIDE",
     "FEWEST",
+    "Ends",
     "Layout",
     "Problem",
+    "extents",
     "ladder",
     "laid_out",
     "lowered_on",
@@ -39,6 +40,7 @@ __all__ = [
 ]
 
 Field = Float[Arrays, "y x"]
+Ends = tuple[float, float]
 
 FEWEST: Final = 33
 """Nodes along x of the coarsest grid; across it there is one cell less."""
@@ -143,10 +145,7 @@ def laid_out(contact: PatchContact, cells: int) -> Layout:
 
 def _of_ellipse(contact: PatchContact) -> Layout:
     radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
-    given = array(radius), array(across)
-    ellipse = _hertz(
-        load=contact.load, radius=given[0], transverse_radius=given[1], modulus=contact.modulus
-    )
+    ellipse = _ellipse(contact)
     half_width, side = float(ellipse.along), float(ellipse.across)
     pressure = float(ellipse.pressure)
     film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
@@ -162,6 +161,23 @@ def _of_ellipse(contact: PatchContact) -> Layout:
 
 # Its elliptic integrals are loops, which would be made anew for each contact.
 _hertz = program(hertz_1881)
+
+
+def _ellipse(contact: PatchContact) -> Ellipse:
+    """The dry contact of two smooth bodies."""
+    radius, across = array(contact.radius[0]), array(1.0 / contact.bend)
+    return _hertz(
+        load=contact.load, radius=radius, transverse_radius=across, modulus=contact.modulus
+    )
+
+
+def extents(contact: PatchContact, layout: Layout) -> tuple[Ends, Ends]:
+    """From where to where smooth bodies touch without oil along and across, a line in all rows [m]."""
+    along = -layout.half_width, layout.half_width
+    if contact.length is not None:
+        return along, (layout.first, layout.last)
+    side = float(_ellipse(contact).across)
+    return along, (-side, side)
 
 
 def _oblique(contact: PatchContact) -> float:

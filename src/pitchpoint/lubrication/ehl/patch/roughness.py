@@ -12,9 +12,10 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import (
-    BESIDE,
     FEWEST,
+    Ends,
     Layout,
+    extents,
     lowered_on,
     problem_on,
     without_oil,
@@ -27,8 +28,6 @@ COARSEST: Final = 4
 
 SHOWN: Final = 0.85
 """Part of the Rq of a map that a grid has to show: of waves as long as four cells .9 are left."""
-
-Ends = tuple[float, float]
 
 
 def check_maps(contact: PatchContact) -> None:
@@ -95,17 +94,9 @@ def check_maps_on(contact: PatchContact, layout: Layout, cells: int) -> None:
     if not contact.heights:
         return
     for one in contact.heights:
-        for axis, places, ends in zip("xy", (one.x, one.y), _patch(contact, layout), strict=True):
+        for axis, places, ends in zip("xy", (one.x, one.y), extents(contact, layout), strict=True):
             _check_cover(one, axis, np.asarray(places), ends)
     _check_reach(contact, layout, cells)
-
-
-def _patch(contact: PatchContact, layout: Layout) -> tuple[Ends, Ends]:
-    """From where to where a contact carries along and across [m]."""
-    if contact.length is None:
-        side = layout.last / BESIDE
-        return (-layout.length, layout.length), (-side, side)
-    return (-layout.length, layout.length), (layout.first, layout.last)
 
 
 def _check_cover(one: HeightMap, axis: str, places: NDArray[np.float64], ends: Ends) -> None:
@@ -154,7 +145,7 @@ def _range(contact: PatchContact, layout: Layout, cells: int) -> float:
 
 def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Iterator[str]:
     """Sentences on what the grid does not show of maps, and on contacts that are summits alone."""
-    patch = _patch(contact, layout)
+    patch = extents(contact, layout)
     for one in contact.heights:
         seen = _seen(one, layout, patch, (nodes, cells), contact.ends)
         whole = _rq(one, patch)

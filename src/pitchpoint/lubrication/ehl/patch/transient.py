@@ -170,7 +170,8 @@ def march_patches(
         plan = Plan(contacts, at, all_lie(contacts), nodes, cells)
     else:
         course = after.course
-        plan = Plan(contacts, at, course.lies, *course.pressure.shape[::-1], course.layout)
+        rows, places = course.pressure.shape
+        plan = Plan(contacts, at, course.lies, places, rows, course.layout)
     return _march(plan, _Stepper(plan, progress, tolerance if steps == "by_error" else None), after)
 
 
