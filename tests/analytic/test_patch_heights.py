@@ -99,6 +99,8 @@ def test_pressure_stands_on_waves_and_flattens_them():
     pressed, opened = ((getattr(wavy, k) - getattr(smooth, k))[inside] for k in ("pressure", "gap"))
     assert np.corrcoef(pressed, high[inside])[0, 1] > 0.8
     assert np.std(opened) < 0.6 * np.std(high[inside])
+    assert np.allclose(wavy.heights[:, 1:-1], high[:, 1:-1], atol=0.3 * 5e-8)
+    assert np.all(np.abs(smooth.heights) < 1e-15)
     outside = (smooth.pressure == 0.0) & (np.abs(wavy.x) > 2.0 * wavy.half_width)
     assert np.corrcoef((wavy.gap - smooth.gap)[outside], -high[outside])[0, 1] > 0.95
 

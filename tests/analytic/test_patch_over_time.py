@@ -207,6 +207,9 @@ def test_what_waves_do_at_the_inlet_passes_with_the_mean_speed():
 
 # ---- what is told and refused
 
+PLACES = np.linspace(-1e-3, 1e-3, 21)
+LEVEL = HeightMap(x=PLACES, y=PLACES, heights=np.zeros((21, 21)), member=0)
+
 
 def test_a_dataset_has_every_field_at_every_time():
     contacts, times = swelling(4)
@@ -237,6 +240,8 @@ def test_a_march_ends_with_a_film_that_is_not_found():
         ([ball(), ball(speed=-1.0)], [0.0, 1.0], {}, "the entrainment turns round"),
         ([ball(), ball(across=(1.0, 0.0), load=-1.0)], [0.0, 1.0], {}, "a load of -1 N"),
         ([ball(), ball(fluid=EYRING)], [0.0, 1.0], {}, "contacts of a march are of one kind"),
+        ([ball(heights=LEVEL)] * 2, [0.0, 1.0], {}, "a height map from 949 to 951 mm along x"),
+        ([ball(), ball()], [0.0, 1.0], {"nodes": 40}, "40 nodes: their number is a power of two"),
         ([ball(), ball()], [0.0, 1.0], {"steps": "few"}, 'there are no steps "few"'),
     ],
 )

@@ -124,6 +124,7 @@ _PATCH: Final = {
         )
     },
     "deflection": deviation("deflection of both bodies together", "u"),
+    "heights": deviation("heights of both surfaces that the cells see", "z"),
     "shear_x": _pressure("shear stress of the oil on member 0 along x, half way across", "τ_x"),
     "shear_y": _pressure("shear stress of the oil on member 0 along y, half way across", "τ_y"),
     "traction_x": _pressure("stress of oil and asperities on member 0 along x", "t_x"),

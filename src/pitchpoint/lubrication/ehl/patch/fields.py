@@ -38,6 +38,7 @@ FIELDS: Final = (
     "gap",
     "film",
     "deflection",
+    "heights",
     "filled",
     "shear_x",
     "shear_y",
@@ -80,6 +81,7 @@ class PatchFilm(eqx.Module):
         gap: between the mean planes; negative where they overlap [m].
         film: mean gap that is open to the oil [m].
         deflection: of both bodies together [m].
+        heights: of both surfaces together, as the cells see them of height maps [m].
         filled: part of the film that oil fills.
         shear_x: stress of the oil on member 0 along x, half way between the surfaces [Pa].
         shear_y: along y [Pa].
@@ -118,6 +120,7 @@ class PatchFilm(eqx.Module):
     gap: Field
     film: Field
     deflection: Field
+    heights: Field
     filled: Field
     shear_x: Field
     shear_y: Field
@@ -203,6 +206,7 @@ def patch_film(
         gap=gap * flow.height,
         film=room * flow.height,
         deflection=(gap - level - problem.apart) * flow.height,
+        heights=contact.gap(x * length, y * length) - problem.apart * flow.height,
         filled=full,
         shear_x=shear[0],
         shear_y=shear[1],

@@ -15,7 +15,8 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.films import Turned, check, oriented, turned
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
+from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 
 __all__ = ["Plan", "all_lie", "check_times"]
 
@@ -94,6 +95,12 @@ class Plan:
         self.passed = _passed(self.contacts, times)
         self.own = [laid_out(one, cells) for one in self.contacts]
         self.layout = layout or _common(self.own)
+
+    def check(self) -> None:
+        """InputError for numbers that no grid has, and for maps that leave the contact on the way."""
+        ladder(*self.grid)
+        for number, time in enumerate(self.times):
+            check_maps_on(self.contact(time), self.layout_of(number), self.grid[1])
 
     def layout_of(self, number: int) -> Layout:
         """The common grid and its units, with the film and the dry contact of one time."""

@@ -27,7 +27,6 @@ from pitchpoint.lubrication.ehl.patch.films import (
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress, State, iterated
 from pitchpoint.lubrication.ehl.patch.plan import Plan, all_lie, check_times
-from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.lubrication.ehl.patch.solve import dry_under, solve
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -172,6 +171,7 @@ def march_patches(
         course = after.course
         rows, places = course.pressure.shape
         plan = Plan(contacts, at, course.lies, places, rows, course.layout)
+    plan.check()
     return _march(plan, _Stepper(plan, progress, tolerance if steps == "by_error" else None), after)
 
 
@@ -359,7 +359,6 @@ def _moment(
 ) -> PatchMoment:
     """Film at one of the times."""
     contact, layout = plan.contact(plan.times[number]), plan.layout_of(number)
-    check_maps_on(contact, layout, plan.grid[1])
     code = before(plan.contacts[0]) if number == 0 else Code.SOLVED
     ended = PatchEnded(code, float(state.residual), abs(float(state.load)), steps[1])
     dry, unknown = dry_under(problem), array(np.nan)
