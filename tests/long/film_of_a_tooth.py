@@ -2,8 +2,8 @@
 
     .venv/bin/python tests/long/film_of_a_tooth.py [nodes [rq in um]]
 
-A crowned pair of 20 teeth each, module 4 mm, whose load doubles where one pair carries alone. Ends with an error
-if a film is not found, or if the film under a load that stays is not the steady one.
+A crowned pair of 20 teeth each, module 4 mm, whose load doubles where one pair carries alone. Ends with an
+error if a film is not found, or if the film under a load that stays is not the steady one.
 """
 
 import sys
