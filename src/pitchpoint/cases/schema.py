@@ -11,6 +11,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    Tag,
     ValidationError,
     ValidationInfo,
     model_validator,
@@ -24,8 +25,9 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
-from pitchpoint.input.tables import DECIDING, Table, alternatives, forms
+from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
+from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.registry import nearest
 
 __all__ = [
@@ -871,6 +873,13 @@ def _of_no_set(value: Any) -> Any:
 Losses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_set)]
 """Losses of one mesh, by value or by the name of a set."""
 DriveLosses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_no_set)]
+Formulas = Annotated[
+    Annotated[TorusFormulas, Tag("motion")] | Annotated[ZoneFilms, Tag("films")],
+    Field(discriminator=by("form", TorusFormulas, ZoneFilms)),
+]
+_SOURCE_OF = {TorusFormulas: "liu_xiong_2017", ZoneFilms: "xu_2021"}
+"""Bibliography entries of the papers whose equations take inputs of their own."""
+
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
 Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
@@ -894,7 +903,7 @@ class Case(Table):
     film: FilmTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
-    formulas: TorusFormulas | None = None
+    formulas: Formulas | None = None
     targets: Targets = ()
     issues: Issues = ()
 
@@ -1138,10 +1147,10 @@ def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
 
 def _check_formulas(case: Case) -> None:
     """InputError if inputs of formulas are given to a case whose source has none."""
-    if case.formulas is not None and case.source != "liu_xiong_2017":
+    if case.formulas is not None and case.source != (source := _SOURCE_OF[type(case.formulas)]):
         raise InputError(
             "these are inputs of the equations of one paper; they belong to a case with its source, "
-            'source = "liu_xiong_2017"',
+            f'source = "{source}"',
             key="formulas",
         )
 
