@@ -165,6 +165,7 @@ def test_contacts_of_finite_length(capsys: pytest.CaptureFixture[str]) -> None:
     told = capsys.readouterr().out
     assert "Code.SOLVED" in told
     assert "not found" not in told
+    assert "nan" not in told
 
 
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,7 +15,15 @@ from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
 from pitchpoint.lubrication.ehl.work import filled, shear_stress
 
-__all__ = ["END_DISTANCES", "FIELDS", "VECTORS", "PatchFilm", "Response", "patch_film"]
+__all__ = [
+    "END_DISTANCES",
+    "FIELDS",
+    "STRESSES",
+    "VECTORS",
+    "PatchFilm",
+    "Response",
+    "patch_film",
+]
 
 Field = Float[Arrays, "y x"]
 One = Float[Arrays, ""]
@@ -31,11 +39,17 @@ FIELDS: Final = (
     "gap",
     "film",
     "deflection",
+    "heights",
     "filled",
     "shear_x",
     "shear_y",
+    "traction_x",
+    "traction_y",
 )
 """Names of what has a value in every cell, shape (y, x)."""
+
+STRESSES: Final = (("shear_x", "shear_y"), ("traction_x", "traction_y"))
+"""Names of those along x and y of what has a direction."""
 
 VECTORS: Final = ("minimum_place", "largest_place", "shear_force", "boundary_force", "rolling")
 """Names of what has a value along x and one along y, shape (2,)."""
@@ -69,9 +83,13 @@ class PatchFilm(eqx.Module):
         gap: between the mean planes; negative where they overlap [m].
         film: mean gap that is open to the oil [m].
         deflection: of both bodies together [m].
+        heights: of both surfaces together, as the cells see them of height maps [m].
         filled: part of the film that oil fills.
         shear_x: stress of the oil on member 0 along x, half way between the surfaces [Pa].
         shear_y: along y [Pa].
+        traction_x: that and the friction of asperities; over the patch it is `shear_force` and
+            `boundary_force` [Pa].
+        traction_y: along y [Pa].
         central_film: gap of the mean planes at x = y = 0 [m]; NaN where nothing touches near y = 0.
         minimum_film: smallest gap of a cell [m].
         minimum_place: its x and y, shape (2,) [m].
@@ -106,9 +124,12 @@ class PatchFilm(eqx.Module):
     gap: Field
     film: Field
     deflection: Field
+    heights: Field
     filled: Field
     shear_x: Field
     shear_y: Field
+    traction_x: Field
+    traction_y: Field
     central_film: One
     minimum_film: One
     minimum_place: Float[Arrays, "2"]
@@ -171,16 +192,17 @@ def patch_film(
     fast = jnp.hypot(*sliding)
     still = jnp.where(fast == 0.0, 1.0, fast)
     stress = full * shear_stress(flow, oil, room, fast[:, None])
-    shear = [stress * (one / still)[:, None] for one in sliding]
-    carried = jnp.asarray(bodies.areas) * jnp.sum(asperities, axis=1) / problem.load
-    rubs = flow.texture.boundary_friction * contact.load
+    rubbing = flow.texture.boundary_friction * asperities * flow.pressure
+    senses = [(one / still)[:, None] for one in sliding]
+    shear, rubs = ([one * sense for sense in senses] for one in (stress, rubbing))
     row, column, pumping = work(problem, oil, gap)
     rolls = flow.pressure * flow.height * length
     apart = _apart(contact, problem, level, response)
     low, high = jnp.argmin(gap), jnp.argmax(pressure)
     rough = 0.0 if contact.texture is None else contact.texture.rq
-    sheared = jnp.stack([bodies.load(one) for one in shear]) * length**2
-    rubbed = jnp.stack([jnp.sum(rubs * carried * one / still) for one in sliding])
+    sheared, rubbed = (
+        jnp.stack([bodies.load(one) for one in field]) * length**2 for field in (shear, rubs)
+    )
     return PatchFilm(
         x=x * length,
         y=y * length,
@@ -190,9 +212,12 @@ def patch_film(
         gap=gap * flow.height,
         film=room * flow.height,
         deflection=(gap - level - problem.apart) * flow.height,
+        heights=contact.gap(x * length, y * length) - problem.apart * flow.height,
         filled=full,
         shear_x=shear[0],
         shear_y=shear[1],
+        traction_x=shear[0] + rubs[0],
+        traction_y=shear[1] + rubs[1],
         central_film=_in_the_middle(x, y, gap) * flow.height,
         minimum_film=jnp.min(gap) * flow.height,
         minimum_place=_place(x, y, low) * length,
@@ -200,12 +225,12 @@ def patch_film(
         largest_pressure=jnp.max(pressure) * flow.pressure,
         largest_place=_place(x, y, high) * length,
         near_ends=_near_ends(contact, layout, y * length, pressure) * flow.pressure,
-        asperity_share=jnp.sum(carried),
+        asperity_share=bodies.load(asperities) / problem.load,
         shear_force=sheared,
         boundary_force=rubbed,
         friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
         rolling=jnp.stack([jnp.sum(row), column]) * rolls,
-        sliding_power=bodies.load(stress * fast[:, None]) * length**2 + rubs * (carried @ fast),
+        sliding_power=bodies.load((stress + rubbing) * fast[:, None]) * length**2,
         pumping_power=pumping * rolls * problem.speed,
         separation=apart[0],
         stiffness=apart[1],

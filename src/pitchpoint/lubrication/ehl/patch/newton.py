@@ -339,7 +339,8 @@ def iterated(
         state = state._replace(residual=residual, load=float(at.load), steps=step)
         if told is not None:
             told(step, residual)
-        if not np.isfinite(residual) or step == most or (residual < TOLERANCE and rate == 0.0):
+        done = max(residual, abs(state.load)) < TOLERANCE and rate == 0.0
+        if not np.isfinite(residual) or step == most or done:
             break
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at), 0

@@ -29,9 +29,10 @@ from pitchpoint.lubrication.ehl.patch.newton import (
     State,
     iterated,
 )
+from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.programs import fast_program
 
-__all__ = ["Found", "dry_bodies", "dry_start", "finer", "shown_film", "solve"]
+__all__ = ["Found", "dry_bodies", "dry_start", "dry_under", "finer", "shown_film", "solve"]
 
 FINER_TIME: Final = 2.0
 """Time over which the first step lets oil flow that starts from another film."""
@@ -99,14 +100,15 @@ def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], 
     return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
 
 
+def dry_under(problem: Problem, part: float = 1.0) -> DryContact:
+    """The contact without oil under a part of its load."""
+    load = problem.load * part
+    return without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, load)
+
+
 def dry_bodies(problem: Problem) -> tuple[NDArray[np.float64], float, float]:
     """Pressure without oil, shape (y, x), approach of the bodies, and its change with ln of the load."""
-
-    def under(part: float) -> DryContact:
-        bodies, load = problem.bodies, problem.load * part
-        return without_oil(bodies, problem.apart, 1.0 / problem.yielding, load)
-
-    dry, less, more = (under(part) for part in (1.0, 1.0 - MORE, 1.0 + MORE))
+    dry, less, more = (dry_under(problem, part) for part in (1.0, 1.0 - MORE, 1.0 + MORE))
     slope = float(more.approach - less.approach) / (2.0 * MORE)
     return np.asarray(dry.pressure), float(dry.approach), slope
 
@@ -232,10 +234,16 @@ class _Solver:
 
 
 def solve(
-    contact: PatchContact, nodes: int = 129, cells: int = 128, told: Progress | None = None
+    contact: PatchContact,
+    nodes: int = 129,
+    cells: int = 128,
+    told: Progress | None = None,
+    layout: Layout | None = None,
 ) -> tuple[Layout, Problem, State]:
-    """Layout, problem and solution of a contact on the last grid of its ladder."""
-    layout, grids = laid_out(contact, cells), ladder(nodes, cells)
+    """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder."""
+    grids = ladder(nodes, cells)
+    layout = laid_out(contact, cells) if layout is None else layout
+    check_maps_on(contact, layout, cells)
     solver, found = _Solver(told), None
     for grid in grids:
         problem = problem_on(contact, layout, *grid, cells)
