@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, stencil
+from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, balance, stencil
 from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.programs import fast_program
 
@@ -38,23 +38,38 @@ ENOUGH: Final = 1e-6
 LONGEST_STEP: Final = 1.0
 """Largest change of a pressure in a step, in units of the largest dry pressure."""
 
-SHRINKING: Final = 0.2
-"""Least room for oil after a step, over that before."""
+SHORTEST: Final = 0.5**8
+"""Least part of a step that is tried."""
 
-HALVINGS: Final = 8
-"""Lengths of a step that are tried, each half of the one before."""
+MENDED: Final = 0.1
+"""Part of the balances that a step has to mend, over its own part."""
 
-SHORTER: Final = 2.0
-"""Factor by which that time shrinks after a step that was cut more than once."""
+SHORTER: Final = 0.1
+"""Least factor by which the time shrinks after a step that was cut."""
+
+FASTEST: Final = 100.0
+"""One over the shortest time of a step."""
 
 MOST: Final = 40
 """Steps after which an attempt is given up."""
+
+PATIENCE: Final = 12
+"""Steps over which the lowest residual has to fall in an attempt."""
+
+FALLING: Final = 0.5
+"""Factor by which it has to."""
 
 FIRST_TIME: Final = 1.0
 """Time over which the first step lets oil flow, in which surfaces pass a half-width."""
 
 LONGER: Final = 2.5
 """Factor by which that time grows with each full step."""
+
+SURE: Final = 0.1
+"""What a step leaves of the balances of its time from which on the next time grows more."""
+
+MUCH_LONGER: Final = 5.0
+"""Factor by which it grows then."""
 
 STEADY: Final = 1e-4
 """Residual from which on oil has all the time that it needs, and one over the time below which it has."""
@@ -287,24 +302,68 @@ def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
     )
 
 
-def moved(
-    problem: Problem, pressure: Array, level: Array, change: Array, longest: Array
-) -> tuple[Array, Array, Array]:
-    """Pressure and level after a step, and which part of it was taken: one where nothing had to be cut.
+class Moved(NamedTuple):
+    """What became of a step.
 
-    Every pressure changes by no more than the longest step; where the room for oil would shrink too much the
-    whole step is cut.
+    Attributes:
+        pressure: after it, shape (y, x).
+        level: of the surfaces.
+        part: of the step that was taken; one where nothing had to be cut.
+        left: what it leaves of the balances of its time, over what it found.
     """
+
+    pressure: Float[Array, "y x"]
+    level: Float[Array, ""]
+    part: Float[Array, ""]
+    left: Float[Array, ""]
+
+
+def moved(
+    at: Linear, pressure: Array, level: Array, change: Array, rate: Array, longest: Array
+) -> Moved:
+    """A step, cut until it mends the balances of the time that it lets oil flow.
+
+    Every pressure changes by no more than the longest step.
+    """
+    problem = at.problem
     inner = jnp.clip(change[:-1], -longest, longest).reshape(pressure.shape[0], -1)
     step, rise = jnp.pad(inner, ((0, 0), (1, 1))), change[-1]
     gap = problem.gap(pressure, level)
     grows = problem.gap(pressure + step, level + rise) - gap
-    least = SHRINKING * problem.flow.room(gap)
-    parts = 0.5 ** jnp.arange(HALVINGS)
-    kept = jax.lax.map(lambda part: jnp.all(problem.flow.room(gap + part * grows) > least), parts)
-    part = jnp.where(jnp.any(kept), parts[jnp.argmax(kept)], parts[-1])
-    whole = jnp.all(jnp.abs(change[:-1]) <= longest)
-    return pressure + part * step, level + part * rise, jnp.where(whole, part, 0.99 * part)
+    mass, begin = _mass(problem, pressure, gap), jnp.linalg.norm(at.rest)
+
+    def left(part: Array) -> Array:
+        rest = _rest_in_time(at, pressure + part * step, gap + part * grows, mass, rate)
+        ratio: Array = jnp.linalg.norm(rest) / begin
+        return ratio
+
+    def unfit(search: tuple[Array, Array]) -> Array:
+        part, found = search
+        return (part > SHORTEST) & ~(found <= 1.0 - MENDED * part)
+
+    def shorter(search: tuple[Array, Array]) -> tuple[Array, Array]:
+        part = 0.5 * search[0]
+        return part, left(part)
+
+    part, found = jax.lax.while_loop(unfit, shorter, (jnp.ones(()), left(jnp.ones(()))))
+    return Moved(pressure + part * step, level + part * rise, part, found)
+
+
+def _mass(problem: Problem, pressure: Array, gap: Array) -> Array:
+    """Mass of the oil under each cell."""
+    oil = pressure - problem.flow.asperity_pressure(gap)
+    mass, _ = problem.flow.mass_and_ease(oil, gap)
+    return jnp.asarray(mass)
+
+
+def _rest_in_time(at: Linear, pressure: Array, gap: Array, mass: Array, rate: Array) -> Array:
+    """What is left of all balances at another pressure, if the oil was another mass before."""
+    problem = at.problem
+    oil = pressure - problem.flow.asperity_pressure(gap)
+    gain, _ = balance(problem, oil, gap, jnp.zeros(()))
+    stored = (_mass(problem, pressure, gap) - mass) * jnp.asarray(problem.bodies.areas)[:, None]
+    rest: Array = jnp.minimum((rate * stored[:, 1:-1] - gain) / at.scale, oil[:, 1:-1])
+    return rest
 
 
 _linear, _rows = fast_program(linear), fast_program(rows)
@@ -333,26 +392,38 @@ def iterated(
     """
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
+    lowest: list[float] = []
     for step in range(most + 1):
         at = _linear(problem, state.pressure, state.level, array(rate))
         residual = float(jnp.max(jnp.abs(at.rest)))
         state = state._replace(residual=residual, load=float(at.load), steps=step)
         if told is not None:
             told(step, residual)
-        if not np.isfinite(residual) or step == most or (residual < TOLERANCE and rate == 0.0):
+        lowest.append(min([residual, *lowest[-1:]]))
+        ended = residual < TOLERANCE and rate == 0.0
+        if ended or not np.isfinite(residual) or step == most or _hopeless(lowest):
             break
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at), 0
         age += 1
         rest = np.append(np.ravel(at.rest), float(at.load))
         change = _mended(at, alone, array(-rest))
-        found, level, part = _moved(problem, state.pressure, state.level, change, array(longest))
-        state = state._replace(pressure=found, level=level)
-        rate = _rate(rate, float(part), residual)
+        given = at, state.pressure, state.level, change, array(rate), array(longest)
+        found = _moved(*given)
+        state = state._replace(pressure=found.pressure, level=found.level)
+        rate = _rate(rate, float(found.part), float(found.left), residual)
     return state
 
 
-def _rate(rate: float, part: float, residual: float) -> float:
+def _hopeless(lowest: list[float]) -> bool:
+    """Whether the lowest residual so far hardly falls."""
+    return len(lowest) > PATIENCE and lowest[-1] > FALLING * lowest[-1 - PATIENCE]
+
+
+def _rate(rate: float, part: float, left: float, residual: float) -> float:
     """One over the time of the next step: longer after whole steps, shorter after those that were cut."""
-    rate = rate / LONGER if part == 1.0 else rate if part > 0.98 else rate / part**SHORTER
+    if part < 1.0:
+        rate = min(rate / max(part, SHORTER), FASTEST)
+    else:
+        rate = rate / (LONGER if left > SURE else MUCH_LONGER)
     return 0.0 if rate < STEADY or residual < STEADY else rate

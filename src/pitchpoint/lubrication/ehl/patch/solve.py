@@ -44,8 +44,11 @@ SHOWN: Final = 0.8
 STRIDE: Final = 4.0
 """Film over the one that is looked for from it."""
 
-STRIDES: Final = 3
-"""Times that a stride is made shorter, to its root, before a film is given up."""
+LEAST_STRIDE: Final = 1.2
+"""Stride that is not made shorter any more: a film that is not found with it is given up."""
+
+MOST_STRIDES: Final = 12
+"""Films that are looked for on the way to one."""
 
 
 class Attempt(NamedTuple):
@@ -187,19 +190,20 @@ class _Solver:
 
     def thinner(self, problem: Problem, asked: float, found: Found) -> Found | None:
         """Solution with a film so many times as thick as it is, by films that become thinner and thinner."""
-        stride, left = STRIDE, STRIDES
-        while left:
-            now = float(found.problem.film / problem.film)
+        now, stride = float(found.problem.film / problem.film), STRIDE
+        for _ in range(MOST_STRIDES):
             factor = max(asked, now / stride)
             trial = problem.thicker(factor)
             dry, _ = dry_start(trial)
             state = self.iterated(trial, finer(found, trial, dry), FINER_TIME)
             if state.residual < ENOUGH:
-                found = Found(trial, dry, state)
-                if factor == asked:
-                    return found
+                found, now = Found(trial, dry, state), factor
+            elif now / factor < LEAST_STRIDE:
+                return None
             else:
-                stride, left = np.sqrt(stride), left - 1 if now > asked else 0
+                stride = float(np.sqrt(now / factor))
+            if now == asked:
+                return found
         return None
 
     def from_dry(self, problem: Problem) -> Found | None:
