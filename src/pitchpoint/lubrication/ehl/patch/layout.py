@@ -22,7 +22,7 @@ from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth
 from pitchpoint.lubrication.film_thickness import moes_1992
-from pitchpoint.programs import fast_program
+from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
 __all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on", "without_oil"]
@@ -148,7 +148,7 @@ def laid_out(contact: PatchContact, cells: int) -> Layout:
 def _of_ellipse(contact: PatchContact) -> Layout:
     radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
     given = array(radius), array(across)
-    ellipse = hertz_1881(
+    ellipse = _hertz(
         load=contact.load, radius=given[0], transverse_radius=given[1], modulus=contact.modulus
     )
     half_width, side = float(ellipse.along), float(ellipse.across)
@@ -294,6 +294,9 @@ def _of_line_load(contact: PatchContact, line_load: float, radius: float) -> tup
     given = {"line_load": array(line_load), "radius": array(radius), "modulus": contact.modulus}
     return float(line_half_width(**given)), float(line_pressure(**given))
 
+
+# Its root would be compiled anew for each contact.
+_hertz = program(hertz_1881)
 
 without_oil = fast_program(pressed)
 """Dry contact of a given load: of trials, starts and weights, one program a grid."""
