@@ -17,7 +17,7 @@ from pitchpoint.lubrication.ehl.patch.fields import FIELDS, VECTORS, PatchFilm, 
 from pitchpoint.lubrication.ehl.patch.layout import Layout, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
-from pitchpoint.lubrication.ehl.patch.solve import dry_pressure, shown_film, solve
+from pitchpoint.lubrication.ehl.patch.solve import Earlier, dry_pressure, shown_film, solve
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -98,6 +98,7 @@ def solve_patch(
     nodes: int = NODES,
     cells: int = CELLS,
     progress: Progress | None = None,
+    start: PatchFilms | None = None,
 ) -> PatchFilms:
     """Pressure and film over the patch of a contact of finite length, from coarse to fine grids.
 
@@ -106,6 +107,8 @@ def solve_patch(
         nodes: along x, one more than a power of two.
         cells: across, a power of two.
         progress: told the number of steps on a grid and the residual, after each of them.
+        start: film of a contact that is like this one, on any grid, such as at another speed: a solution is
+            looked for from there first, and is the same to the tolerance.
 
     Raises:
         InputError: values that no contact has, numbers of nodes or cells that no grid has, a line that is
@@ -114,7 +117,7 @@ def solve_patch(
     _check(contact)
     lies, own = _turned(contact)
     code = _before(own)
-    layout, problem, state = solve(own, nodes, cells, progress)
+    layout, problem, state = solve(own, nodes, cells, progress, _earlier(start))
     held = dry_pressure(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
     # Plain numbers would be constants of the program, which would be made anew for each contact.
@@ -160,6 +163,14 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     pressure, level = polished(problem, array(films.pressure), array(films.level))
     given = swapped, films.layout, problem, pressure, level, array(films.held)
     return _back(patch_film(*given), films.turned)
+
+
+def _earlier(films: PatchFilms | None) -> Earlier | None:
+    """What a start takes from films; nothing from those that were not solved."""
+    if films is None or not films.solved:
+        return None
+    film = float(films.film.mean_film) / films.layout.film
+    return Earlier(films.layout, films.pressure - films.held, film)
 
 
 # Both run once for a solution: it is quicker to compile them quickly.

@@ -118,6 +118,12 @@ class Layout(NamedTuple):
         edges = self._edges(finest)[:: finest // cells] / self.length
         return _bodies(tuple(x), tuple(edges), ends)
 
+    def places(self, nodes: int, cells: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Places along in units of length, and middles of the cells across over the width of the grid."""
+        edges = (self._edges(cells) - self.first) / (self.last - self.first)
+        along = np.linspace(self.inlet, self.outlet, nodes) / self.length
+        return along, 0.5 * (edges[1:] + edges[:-1])
+
     def _edges(self, cells: int) -> NDArray[np.float64]:
         if self.end is None:
             return np.linspace(self.first, self.last, cells + 1)

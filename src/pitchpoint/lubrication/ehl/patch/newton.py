@@ -15,8 +15,11 @@ from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.programs import fast_program
 
 __all__ = [
+    "CAREFUL",
     "ENOUGH",
+    "MOST",
     "Linear",
+    "Manner",
     "Progress",
     "Rows",
     "State",
@@ -35,17 +38,20 @@ TOLERANCE: Final = 1e-8
 ENOUGH: Final = 1e-6
 """Residual of a solution that rounding keeps from coming closer."""
 
-LONGEST_STEP: Final = 1.0
-"""Largest change of a pressure in a step, in units of the largest dry pressure."""
-
 SHORTEST: Final = 0.5**8
 """Least part of a step that is tried."""
 
 MENDED: Final = 0.1
 """Part of the balances that a step has to mend, over its own part."""
 
-SHORTER: Final = 0.1
-"""Least factor by which the time shrinks after a step that was cut."""
+SHRINKING: Final = 0.2
+"""Least room for oil after a step in the other manner, over that before."""
+
+NEARLY: Final = 0.99
+"""Part that counts for a step in which a pressure changed by the longest step."""
+
+SHORTER: Final = 2.0
+"""Power of its part by which the time shrinks after a step that was cut."""
 
 FASTEST: Final = 100.0
 """One over the shortest time of a step."""
@@ -53,8 +59,8 @@ FASTEST: Final = 100.0
 MOST: Final = 40
 """Steps after which an attempt is given up."""
 
-PATIENCE: Final = 12
-"""Steps over which the lowest residual has to fall in an attempt."""
+PATIENCE: Final = 15
+"""Steps over which the lowest residual has to fall in a careful attempt."""
 
 FALLING: Final = 0.5
 """Factor by which it has to."""
@@ -302,13 +308,26 @@ def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
     )
 
 
+class Manner(NamedTuple):
+    """How steps are taken.
+
+    Attributes:
+        careful: whether they are cut until they mend the balances of the time that they let oil flow; else
+            only where the room for oil would shrink too much.
+        longest: change of a pressure in a step.
+    """
+
+    careful: Any
+    longest: Any
+
+
 class Moved(NamedTuple):
     """What became of a step.
 
     Attributes:
         pressure: after it, shape (y, x).
         level: of the surfaces.
-        part: of the step that was taken; one where nothing had to be cut.
+        part: of the step that was taken; one where nothing had to be cut, nearly one where a pressure was.
         left: what it leaves of the balances of its time, over what it found.
     """
 
@@ -319,34 +338,39 @@ class Moved(NamedTuple):
 
 
 def moved(
-    at: Linear, pressure: Array, level: Array, change: Array, rate: Array, longest: Array
+    at: Linear, pressure: Array, level: Array, change: Array, rate: Array, manner: Manner
 ) -> Moved:
-    """A step, cut until it mends the balances of the time that it lets oil flow.
+    """A step in one manner or the other.
 
     Every pressure changes by no more than the longest step.
     """
-    problem = at.problem
+    problem, longest = at.problem, manner.longest
     inner = jnp.clip(change[:-1], -longest, longest).reshape(pressure.shape[0], -1)
     step, rise = jnp.pad(inner, ((0, 0), (1, 1))), change[-1]
     gap = problem.gap(pressure, level)
     grows = problem.gap(pressure + step, level + rise) - gap
     mass, begin = _mass(problem, pressure, gap), jnp.linalg.norm(at.rest)
+    least = SHRINKING * problem.flow.room(gap)
 
-    def left(part: Array) -> Array:
-        rest = _rest_in_time(at, pressure + part * step, gap + part * grows, mass, rate)
-        ratio: Array = jnp.linalg.norm(rest) / begin
-        return ratio
+    def tried(part: Array) -> tuple[Array, Array, Array]:
+        there = gap + part * grows
+        rest = _rest_in_time(at, pressure + part * step, there, mass, rate)
+        left = jnp.linalg.norm(rest) / begin
+        roomy = jnp.all(problem.flow.room(there) > least)
+        fits = jnp.where(manner.careful, left <= 1.0 - MENDED * part, roomy)
+        return part, left, fits
 
-    def unfit(search: tuple[Array, Array]) -> Array:
-        part, found = search
-        return (part > SHORTEST) & ~(found <= 1.0 - MENDED * part)
+    def unfit(search: tuple[Array, Array, Array]) -> Array:
+        return (search[0] > SHORTEST) & ~search[2]
 
-    def shorter(search: tuple[Array, Array]) -> tuple[Array, Array]:
-        part = 0.5 * search[0]
-        return part, left(part)
+    found = jax.lax.while_loop(unfit, lambda search: tried(0.5 * search[0]), tried(jnp.ones(())))
+    part, left, _ = found
+    whole = jnp.all(jnp.abs(change[:-1]) <= longest)
+    cut = jnp.where(whole, part, NEARLY * part)
+    return Moved(pressure + part * step, level + part * rise, cut, left)
 
-    part, found = jax.lax.while_loop(unfit, shorter, (jnp.ones(()), left(jnp.ones(()))))
-    return Moved(pressure + part * step, level + part * rise, part, found)
+
+CAREFUL: Final = Manner(True, 1.0)
 
 
 def _mass(problem: Problem, pressure: Array, gap: Array) -> Array:
@@ -376,7 +400,7 @@ def iterated(
     level: Any,
     time: float = FIRST_TIME,
     told: Progress | None = None,
-    longest: float = LONGEST_STEP,
+    manner: Manner = CAREFUL,
     most: int = MOST,
 ) -> State:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
@@ -387,12 +411,13 @@ def iterated(
         level: of the surfaces.
         time: of the first step; the shorter, the closer each step stays to the film before.
         told: called with the number of steps and the residual after each of them.
-        longest: change of a pressure in a step.
+        manner: in which steps are taken.
         most: steps after which an attempt is given up.
     """
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
     lowest: list[float] = []
+    held = Manner(*map(array, manner))
     for step in range(most + 1):
         at = _linear(problem, state.pressure, state.level, array(rate))
         residual = float(jnp.max(jnp.abs(at.rest)))
@@ -401,14 +426,19 @@ def iterated(
             told(step, residual)
         lowest.append(min([residual, *lowest[-1:]]))
         ended = residual < TOLERANCE and rate == 0.0
-        if ended or not np.isfinite(residual) or step == most or _hopeless(lowest):
+        if (
+            ended
+            or not np.isfinite(residual)
+            or step == most
+            or (manner.careful and _hopeless(lowest))
+        ):
             break
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at), 0
         age += 1
         rest = np.append(np.ravel(at.rest), float(at.load))
         change = _mended(at, alone, array(-rest))
-        given = at, state.pressure, state.level, change, array(rate), array(longest)
+        given = at, state.pressure, state.level, change, array(rate), held
         found = _moved(*given)
         state = state._replace(pressure=found.pressure, level=found.level)
         rate = _rate(rate, float(found.part), float(found.left), residual)
@@ -422,8 +452,8 @@ def _hopeless(lowest: list[float]) -> bool:
 
 def _rate(rate: float, part: float, left: float, residual: float) -> float:
     """One over the time of the next step: longer after whole steps, shorter after those that were cut."""
-    if part < 1.0:
-        rate = min(rate / max(part, SHORTER), FASTEST)
-    else:
+    if part < NEARLY:
+        rate = min(rate / part**SHORTER, FASTEST)
+    elif part == 1.0:
         rate = rate / (LONGER if left > SURE else MUCH_LONGER)
     return 0.0 if rate < STEADY or residual < STEADY else rate
