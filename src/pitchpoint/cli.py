@@ -370,9 +370,10 @@ def _progress(folder: Path | None) -> "Iterator[Progress]":
             else:
                 status.update(_plain(self.title))
 
-        def points(self, done: int) -> None:
+        def points(self, done: int, doing: str = "") -> None:
             if status is not None:
-                status.update(_plain(f"{self.title}: {done} points"))
+                told = f"{self.title}: {done} points"
+                status.update(_plain(f"{told}; {doing}" if doing else told))
 
     shown = Shown()
     try:

@@ -19,6 +19,7 @@ from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import linear, product
 from pitchpoint.lubrication.ehl.patch.response import polished
@@ -182,7 +183,15 @@ def test_asperities_carry_more_the_slower_the_surfaces_are():
     films = [coarse(line(speed=speed, texture=rough)).film for speed in (3.0, 0.3, 0.03)]
     shares = [float(film.asperity_share) for film in films]
     assert shares[0] < shares[1] < shares[2]
+    waves = np.linspace(-1.0, 1.0, 41) * 1e-3
+    heights = 3e-7 * np.cos(np.pi * waves / 1e-4) * np.ones((2, 1))
+    wavy = HeightMap(x=waves, y=np.array([-1.0, 1.0]), heights=heights)
+    films.append(coarse(line(speed=3.0, texture=rough, heights=wavy)).film)
+    assert films[-1].asperity_share > shares[0]
     for film in films:
+        traction = np.sum(film.traction_x * _widths(film)[:, None]) * np.diff(film.x)[0]
+        force = film.shear_force[0] + film.boundary_force[0]
+        assert traction == pytest.approx(float(force), rel=1e-10)
         rubbed = film.boundary_force[0] / (0.1 * float(line().load))
         assert rubbed == pytest.approx(float(film.asperity_share), rel=1e-9)
 
@@ -217,17 +226,25 @@ def test_derivatives_of_the_balances_are_those_of_differences():
 
 
 def changed(by: Any) -> PatchContact:
-    """The crowned line with another load, speed, viscosity and crown, by parts of these."""
+    """A crowned line with waves and with another load, speed, viscosity, crown and height of the waves, by
+    parts of these."""
     where = lambda one: (  # noqa: E731
         one.load,
         one.speed_a,
         one.speed_b,
         one.fluid.viscosity,
         one.profile[0].amount,
+        one.heights[0].heights,
     )
-    factors = [1.0 + by[k] for k in (0, 1, 1, 2, 3)]
-    values = tuple(f * one for f, one in zip(factors, where(line()), strict=True))
-    return eqx.tree_at(where, line(), values)
+    factors = [1.0 + by[k] for k in (0, 1, 1, 2, 3, 4)]
+    values = tuple(f * one for f, one in zip(factors, where(wavy_line()), strict=True))
+    return eqx.tree_at(where, wavy_line(), values)
+
+
+def wavy_line() -> PatchContact:
+    places = np.linspace(-1e-3, 1e-3, 101)
+    heights = 2e-8 * np.cos(np.pi * places / 1e-4) * np.ones((2, 1))
+    return line(heights=HeightMap(x=places, y=np.array([-1.0, 1.0]), heights=heights))
 
 
 def figures(film: Any) -> Any:
@@ -244,7 +261,9 @@ def solved_again(found: PatchFilms, by: np.ndarray) -> np.ndarray:
     solution = array(found.pressure), array(found.level)
     for _ in range(4):
         solution = POLISHED(problem, *solution)
-    film = FILM(contact, jax.tree.map(array, found.layout), problem, *solution, found.held)
+    film = FILM(
+        contact, jax.tree.map(array, found.layout), problem, *solution, found.held, found.response
+    )
     return np.asarray(figures(film))
 
 
@@ -252,9 +271,9 @@ FILM = jax.jit(patch_film)
 
 
 def test_derivatives_of_films_are_those_of_differences():
-    found = crowned_line()
-    exact = jax.jit(jax.jacfwd(lambda by: figures(film_near(changed(by), found))))(jnp.zeros(4))
-    step = 1e-4 * np.eye(4)
+    found = coarse(wavy_line())
+    exact = jax.jit(jax.jacfwd(lambda by: figures(film_near(changed(by), found))))(jnp.zeros(5))
+    step = 1e-4 * np.eye(5)
     ends = [[solved_again(found, sign * one) for one in step] for sign in (1.0, -1.0)]
     differences = (np.array(ends[0]) - np.array(ends[1])).T / 2e-4
     assert np.allclose(
@@ -338,3 +357,29 @@ def test_a_middle_that_does_not_touch_has_no_film():
     film = coarse(lifted).film
     assert film.y[-1] < 0.0
     assert np.isnan(film.central_film)
+
+
+@cache
+def wide_contact(load: float = 1.0, approach: float = 0.0) -> PatchFilms:
+    """A light contact of rough flanks that nearly fit, such as those in the zone of a strain wave gear."""
+    given = {"load": 940.0 * load, "length": 0.012, "radius": 1.5, "modulus": MODULUS, "fluid": OIL}
+    texture = Rough(rq=0.5e-6, modulus=MODULUS)
+    contact = finite_line(**given, speed_a=0.3, speed_b=0.3, texture=texture, approach=approach)
+    return coarse(contact)
+
+
+def test_stiffness_and_damping_are_those_of_contacts_that_are_solved_again():
+    film = wide_contact().film
+    less, more = (wide_contact(load=part).film.separation for part in (0.98, 1.02))
+    assert float(film.stiffness) == pytest.approx(0.04 * 940.0 / float(less - more), rel=0.01)
+    leaving, closing = (wide_contact(approach=v).film.separation for v in (-2e-6, 2e-6))
+    by_approach = float(closing - leaving) / 4e-6
+    assert float(film.damping) == pytest.approx(float(film.stiffness) * by_approach, rel=1e-3)
+
+
+def test_shear_below_a_crowned_line_is_between_those_of_lines_and_balls():
+    found, depth = crowned_line(), np.linspace(0.5, 1.1, 13) * float(crowned_line().film.half_width)
+    shear = np.asarray(found.stresses(depth, 0.3).largest_shear())
+    most = np.unravel_index(np.argmax(shear), shear.shape)
+    assert 0.295 < shear[most] / float(found.film.largest_pressure) < 0.32
+    assert depth[most[0]] == pytest.approx(0.786 * float(found.film.half_width), rel=0.08)

@@ -45,13 +45,6 @@ def on(contact: PatchContact, nodes: int, start: PatchFilms | None = None) -> Pa
     return found
 
 
-def test_the_film_in_the_middle_converges_with_the_grid():
-    films = [float(on(ball(), nodes).film.central_film) for nodes in (33, 65, 129)]
-    changes = np.abs(np.diff(films))
-    assert changes[1] < 0.5 * changes[0]
-    assert changes[1] < 0.01 * films[2]
-
-
 @pytest.mark.parametrize(
     ("contact", "earlier", "nodes"),
     [

@@ -37,6 +37,7 @@ from pitchpoint.gears.torus import table as torus
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.runs.jobs import jobs
 
 BASE = tomllib.loads("""
@@ -143,6 +144,7 @@ torque = "40 N m"
 temperatures = ["60 degC"]
 
 [formulas]
+form = "motion"
 bearing_stiffness = "2190 N/um"
 bearing_damping = 0.001
 mesh_damping = 0.005
@@ -172,6 +174,8 @@ verdict = "corrected"
 """)
 
 STRAIN_WAVE = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads("""
+source = "xu_2021"
+
 [gears]
 family = "strain_wave"
 teeth = [200, 202]
@@ -216,6 +220,16 @@ mean_diameter = "45 mm"
 f0 = 1.5
 f1 = 0.001
 preload = "300 N"
+
+[formulas]
+form = "films"
+load = "940 N"
+radius = ["1.5 m", "0.1 m"]
+entrainment = ["0.1 m/s", "0.13 m/s"]
+speeds = ["300 rpm", "3000 rpm"]
+eta_beta_sigma = 0.05
+sigma_over_beta = 0.01
+nodes = 33
 """)
 
 INVOLUTE = copy.deepcopy(STRAIN_WAVE)
@@ -333,6 +347,7 @@ BASES = {
 WALKS = [
     ("cylindrical", schema.Case, ()),
     ("strain wave", strain_wave.StrainWaveGears, ("gears",)),
+    ("strain wave", ZoneFilms, ("formulas",)),
     ("involute", strain_wave.InvoluteTooth, ("gears", "tooth")),
     ("involute", strain_wave.InvoluteGroove, ("gears", "circular_spline")),
     ("rack", rack_and_pinion.RackAndPinionGears, ("gears",)),

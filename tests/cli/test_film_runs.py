@@ -11,7 +11,8 @@ import xarray as xr
 from sound import PAIR
 
 from pitchpoint.analyses import film as solved
-from pitchpoint.analyses.film import _of_pieces
+from pitchpoint.analyses.film_contacts import states as states_of
+from pitchpoint.analyses.film_cycle import _of_pieces
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.films import film_model
@@ -86,7 +87,7 @@ def test_a_film_carries_the_load_of_the_balance(outcome: Outcome) -> None:
 
 def test_the_film_of_one_contact_is_that_of_the_solver_alone(outcome: Outcome, case: str) -> None:
     data, built = outcome.parts["film"], load_case(case)
-    states = solved._states(built)
+    states = states_of(built)
     at = np.unravel_index(np.argmax(states["line_load"]), states["line_load"].shape)
     contacts = FilmModel(nodes=33).contacts(
         **{
@@ -127,9 +128,9 @@ def test_energy_is_lost_by_sliding_and_rolling(outcome: Outcome) -> None:
 def test_a_film_that_is_not_found_withholds_the_loss(
     case: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lost(built: Any, given: np.ndarray, done: Any) -> Any:
-        films = honest(built, np.where(np.arange(len(given))[:, None] == 0, np.nan, given), done)
-        return films
+    def lost(built: Any, given: Any, done: Any) -> Any:
+        first = np.arange(len(given["line_load"])) == 0
+        return honest(built, {n: np.where(first, np.nan, one) for n, one in given.items()}, done)
 
     honest = solved._films
     monkeypatch.setattr(solved, "_films", lost)

@@ -23,7 +23,7 @@ from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-PAIR, MODIFIED, PLASTIC, MOTION, FILM, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
+PAIR, MODIFIED, PLASTIC, MOTION, FILM, FINITE, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
     text for kind, text in BLOCKS if kind == "toml"
 )
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
@@ -37,6 +37,7 @@ CASES = {
     "plastic": (PAIR, PLASTIC),
     "motion": (PAIR, MOTION),
     "film": (PAIR, FILM),
+    "finite": (PAIR, FINITE),
     "rack": (PAIR, RACK),
     "torus": (PAIR, TORUS),
     "wave": WAVE,
@@ -79,6 +80,7 @@ def test_a_case(name: str) -> None:
     assert ("vibration" in made) == (name in ("plastic", "motion"))
     assert ("start_up" in made) == (name == "motion")
     assert ("film" in made) == (name == "film")
+    assert ("finite_film" in made) == (name == "finite")
     assert ("running" in made) == (name in ("wave", "targets", "stages"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "targets"))
 
@@ -163,6 +165,7 @@ def test_contacts_of_finite_length(capsys: pytest.CaptureFixture[str]) -> None:
     told = capsys.readouterr().out
     assert "Code.SOLVED" in told
     assert "not found" not in told
+    assert "nan" not in told
 
 
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

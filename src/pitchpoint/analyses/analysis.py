@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import xarray as xr
 
@@ -11,7 +11,7 @@ from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.variable import Variable
 
-__all__ = ["ALONE", "Analysis", "Piece", "Progress", "Several", "Subject", "Unasked"]
+__all__ = ["ALONE", "Analysis", "Piece", "Progress", "Several", "Subject", "Unasked", "silent"]
 
 Piece = Mapping[str, Any]
 """Where a piece lies, as plain data of less than 1 kB: a torque, a range of points; empty for the whole."""
@@ -19,8 +19,16 @@ Piece = Mapping[str, Any]
 ALONE = "it is computed for one mesh; a stage in a file of its own has it"
 """Why a drive of several meshes has no part of a kind."""
 
-Progress = Callable[[int], None]
-"""Told the number of points that are done."""
+
+class Progress(Protocol):
+    """Told how far a piece is."""
+
+    def __call__(self, done: int, doing: str = "") -> None:
+        """Told the number of points that are done, and what is being done where points take long."""
+
+
+def silent(done: int, doing: str = "") -> None:
+    """Progress that nobody hears."""
 
 
 class Unasked(str):

@@ -1,67 +1,33 @@
 """Films of the contacts of a mesh solved over its cycle, beside film laws and friction laws."""
 
-import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
-from functools import lru_cache
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Array
 
-from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.analyses.caveats import cold_warning, conformal_warning
+from pitchpoint.analyses.film_contacts import LEAST, Done, alike, film_model_of, states
+from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.cases.build import Built, tooth_size
-from pitchpoint.cases.schema import FilmTable
-from pitchpoint.contact.contacts import Contacts
-from pitchpoint.efficiency.in_turns import balance_under
-from pitchpoint.efficiency.quasi_static import (
-    Design,
-    Engagement,
-    Models,
-    Operation,
-    cycle_nodes,
-    cycle_of,
-)
-from pitchpoint.efficiency.rows import one_engagement
-from pitchpoint.efficiency.summary import engaged
-from pitchpoint.loading.balance import Balance
-from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.doubts import UNSOLVED, extent_of, kind_of
 from pitchpoint.lubrication.ehl.fields import LineFilm
-from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
-from pitchpoint.status import told as told_of
 
-__all__ = ["film_part", "joined", "pieces"]
-
-Done = Callable[[int, int], None]
-"""Told the number of contacts that are done, and that of all."""
+__all__ = [
+    "OF_LINES",
+    "film_part",
+    "films_of_lines",
+    "joined",
+    "over_rough",
+    "pieces",
+    "values_of_lines",
+]
 
 TOGETHER = 6
 """Phases of a piece, so that little is lost when a run is stopped."""
-
-COUNTS = 0.05
-"""Part of a contact's load on asperities from which on it is told what that rests on."""
-
-LOWER = 0.05
-"""Part by which the largest pressure is below Hertz's from which on it is told."""
-
-UNEVEN = 0.3
-"""Rq R/b2 from which on rough flanks lower the largest pressure by 5 % or more at low speed."""
-
-LEAST = 1e-6
-"""Load per length over the largest one of the cycle below which a contact counts as unloaded."""
-
-ALIKE = 11
-"""Digits to which contacts are alike and solved once: those of both ends of a wave, say."""
 
 SHOWN_ALIKE = 6
 """Digits to which pairs carry alike and one of them is shown."""
@@ -69,11 +35,9 @@ SHOWN_ALIKE = 6
 SHOWN = 4
 """Pairs whose profiles are kept: those that carry most."""
 
-_SUMMITS = ("eta_beta_sigma", "sigma_over_beta")
 _LANES = ("phase", "pair", "slice")
 _OF_PIECE = ("point", "pair", "slice")
 _OF_PROFILE = ("point", "shown", "node")
-_MASKED = ("pressure", "friction", "film_by_law")
 _PROFILES = {
     "profile_place": "x",
     "profile_film": "gap",
@@ -88,135 +52,27 @@ _WARM_PROFILES = {
 """Profiles of films that are solved with their heat, which are along the same places."""
 
 
-def _asked(built: Built) -> FilmTable:
-    assert built.case.film is not None
-    return built.case.film
-
-
-def _laws() -> list[FilmThickness]:
-    """Film laws that hold for line contacts."""
-    return [law for law in FILM_THICKNESS.values() if shape_of(law) == "line"]
-
-
-# ---- contacts of the cycle
-
-
-@lru_cache(maxsize=2)
-def _states(built: Built) -> dict[str, np.ndarray]:
-    """What the contacts of a cycle carry and how they move, [phase, pair, slice].
-
-    Forces are those of the first friction law; what a law says, with an axis for all laws in front, stands
-    under its own forces.
-    """
-    known = _known(built)
-    each = [_under(built, known, models) for models in built.models]
-    pairs, cycle = each[0]
-    pairs |= {name: np.stack([one[name] for one, _ in each]) for name in _OF_LAW}
-    loaded = pairs["active"] & (pairs["line_load"] > LEAST * pairs["line_load"].max())
-    return {**pairs, **cycle, "loaded": loaded}
-
-
-_OF_LAW = ("friction", "sliding_loss", "rolling_loss", "load_by_law")
-
-
-def _known(built: Built) -> Engagement:
-    """Contacts and shares over the cycle."""
-    given, nodes = (built.design, built.operation), _nodes(built)
-    known = engaged(*given, built.models[0], nodes)
-    alone = built.models[0].without_friction
-    return known or one_engagement(built.design, built.operation.load, alone, nodes)
-
-
-def _under(
-    built: Built, known: Engagement, models: Models
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Contacts and cycle in balance under one friction law."""
-    given = built.design, built.operation
-    found, _ = balance_under(*given, known, models)
-    lanes, cycle = jax.device_get(_computed(*given, replace(known, body=None), found))
-    return {name: _in_pairs(built, values) for name, values in lanes.items()}, cycle
-
-
-def _nodes(built: Built) -> int:
-    """Nodes in each segment between events, so that there are as many phases as asked for."""
-    sharing = built.models[0].sharing
-    shape = jax.eval_shape(lambda mesh: cycle_nodes(mesh, sharing, 3)[0], built.design.mesh)
-    segments = int(shape.size) // 3
-    return max(3, -(-int(_asked(built).phases) // segments))
-
-
-@program
-def _computed(
-    design: Design, operation: Operation, known: Engagement, found: Balance
-) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Values at the contacts [..., pair, slice, node], and those of the whole mesh [node]."""
-    cycle = cycle_of(design, operation, known, found)
-    state, at, contacts = cycle.state, cycle.state.conditions, cycle.state.contacts
-    lanes = {
-        "active": contacts.active,
-        "path": contacts.path,
-        "weight_of_line": contacts.weight,
-        "radius": contacts.radius,
-        **_of_load(at, contacts),
-        "load_by_law": state.balance.load,
-        "friction": state.balance.friction,
-        "sliding_loss": state.sliding_loss,
-        "rolling_loss": state.rolling_loss,
-        "film_by_law": jnp.stack([evaluate(law, at) for law in _laws()]),
-    }
-    shape = contacts.active.shape
-    whole = {"drag_loss": state.drag_loss, "output_power": state.output_power}
-    courses = {name: jnp.broadcast_to(v, cycle.phase.shape) for name, v in whole.items()}
-    courses |= {"phase": cycle.phase, "weight": cycle.weight}
-    return {name: _spread(values, shape) for name, values in lanes.items()}, courses
-
-
-def _of_load(at: Conditions, contacts: Contacts) -> dict[str, Array]:
-    """What a contact carries and how its surfaces move; nothing where a pair is not in contact."""
-    values = {
-        "load": at.load,
-        "line_load": at.line_load,
-        "pressure": at.pressure,
-        "speed_a": at.speed_a,
-        "speed_b": at.speed_b,
-    }
-    return {name: jnp.where(contacts.active, one, 0.0) for name, one in values.items()}
-
-
-def _spread(values: Array, shape: tuple[int, ...]) -> Array:
-    return jnp.broadcast_to(values, (*values.shape[: values.ndim - 3], *shape))
-
-
-def _in_pairs(built: Built, values: np.ndarray) -> np.ndarray:
-    """Values [..., pair, slice, node] as [..., node, pair, slice] of the pairs that the mesh holds."""
-    ordered = np.moveaxis(np.asarray(values), -1, -3)
-    return built.design.mesh.in_pairs(ordered, ordered.ndim - 2)
-
-
 # ---- pieces
 
 
 def pieces(built: Built) -> Iterator[Piece]:
     """Ranges of phases."""
-    every = _states(built)["phase"].size
+    every = states(built)["phase"].size
     for first in range(0, every, TOGETHER):
         yield {"first": first, "count": min(TOGETHER, every - first)}
 
 
 def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     """Films of all contacts at some phases."""
-    states = _states(built)
+    given = states(built)
     taken = slice(piece["first"], piece["first"] + piece["count"])
-    some = {name: states[name][taken] for name in (*_GIVEN, "loaded", "load", "weight_of_line")}
+    some = {name: given[name][taken] for name in OF_LINES}
     first, count = piece["first"], piece["count"]
     done = lambda part, every: progress(first + count * part // every)  # noqa: E731
-    films, codes, back = _solved(built, some, done)
-    values = _values(films.film, some, back)
-    rq = float(built.design.roughness.composite_rq)
-    values["minimum_lambda"] = (
-        values["minimum_film"] / rq if rq > 0.0 else values["minimum_film"] * np.inf
-    )
-    profiles = _kept(films.film, states, some, back)
+    films, codes, back = films_of_lines(built, some, done)
+    values = values_of_lines(films.film, some, back)
+    values["minimum_lambda"] = over_rough(built, values["minimum_film"])
+    profiles = _kept(films.film, given, some, back)
     # Contacts that have no film are counted over the whole cycle.
     told = [text for text in films.warnings if kind_of(text) != UNSOLVED]
     return dataset(
@@ -237,37 +93,42 @@ def _largest(values: Any, solved: np.ndarray) -> float:
     return float(np.max(np.asarray(values)[solved], initial=0.0))
 
 
+def over_rough(built: Built, film: np.ndarray) -> np.ndarray:
+    """Film over composite Rq; infinite over smooth flanks."""
+    rq = float(built.design.roughness.composite_rq)
+    return film / rq if rq > 0.0 else film * np.inf
+
+
 _GIVEN = ("line_load", "radius", "speed_a", "speed_b")
 """What tells one contact of a mesh from another."""
 
+OF_LINES = (*_GIVEN, "loaded", "load", "weight_of_line")
+"""What is asked of the contacts of a cycle for their films as lines."""
 
-def _solved(
+
+def films_of_lines(
     built: Built, some: Mapping[str, np.ndarray], done: Done
 ) -> tuple[Films, np.ndarray, np.ndarray]:
-    """Films of the contacts that differ, codes [phase, pair, slice], and which film belongs to each lane."""
-    loaded = some["loaded"]
-    every = np.stack([some[name][loaded] for name in _GIVEN], axis=-1)
+    """Films of the contacts that differ, codes [phase, pair, slice], and which film belongs to each lane.
+
+    Each may have an inlet of its own.
+    """
+    loaded, names = some["loaded"], [name for name in (*_GIVEN, "inlet") if name in some]
+    every = np.stack([some[name][loaded] for name in names], axis=-1)
     if not every.size:
-        every = np.array([[0.0, 1.0, 0.0, 0.0]])
-    scale = np.max(np.abs(every), axis=0)
-    rounded = np.round(every / np.where(scale > 0.0, scale, 1.0), ALIKE)
-    _, where, inverse = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-    films = _films(built, every[where], done)
+        every = np.array([[0.0, 1.0, 0.0, 0.0, 1.0][: len(names)]])
+    where, inverse = alike(every, np.max(np.abs(every), axis=0))
+    films = _films(built, dict(zip(names, every[where].T, strict=True)), done)
     back = np.full(loaded.shape, -1)
-    back[loaded] = inverse.reshape(-1)[: loaded.sum()]
+    back[loaded] = inverse[: loaded.sum()]
     codes = np.where(back < 0, int(Code.UNLOADED), np.asarray(films.ended.code)[back])
     return films, codes, back
 
 
-def _model(built: Built) -> FilmModel:
-    assert built.film_model is not None
-    return built.film_model
-
-
-def _films(built: Built, given: np.ndarray, done: Done) -> Films:
-    model, design = _model(built), built.design
+def _films(built: Built, given: Mapping[str, np.ndarray], done: Done) -> Films:
+    model, design = film_model_of(built), built.design
     contacts = model.contacts(
-        **dict(zip(_GIVEN, given.T, strict=True)),
+        **given,
         modulus=float(design.modulus),
         oil=design.lubricant,
         temperature=float(built.operation.temperature),
@@ -277,7 +138,7 @@ def _films(built: Built, given: np.ndarray, done: Done) -> Films:
     return solve_lines(contacts, nodes=model.nodes, size=size, progress=done)
 
 
-def _values(
+def values_of_lines(
     film: LineFilm, some: Mapping[str, np.ndarray], back: np.ndarray
 ) -> dict[str, np.ndarray]:
     """What follows from the films, for every lane; not a number where there is none."""
@@ -349,295 +210,6 @@ def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
 
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them."""
-    states = _states(built)
-    found = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
-    loaded, codes = states["loaded"], found["film_status"].values
-    lanes = {
-        str(name): (tuple(map(str, one.dims)), one.values) for name, one in found.data_vars.items()
-    }
-    figures = _figures(states, {str(n): one.values for n, one in found.items()})
-    told = codes[loaded] if loaded.any() else np.array([int(Code.UNLOADED)])
-    data = dataset(
-        {
-            **lanes,
-            **_beside(states),
-            **_figure_dims(figures),
-            "weight": (("phase",), states["weight"]),
-            "shown_pair": (("shown",), _shown(states)),
-        },
-        {
-            "phase": ("phase", states["phase"]),
-            "law": built.law_names,
-            "film_law": [law.name for law in _laws()],
-        },
-        title="films",
-        travels=built.travels,
-        warnings=[*_lost(codes[loaded]), *_of_pieces(parts), *_about(built, states, found)],
-        solve=told_of(told, _residuals(parts, told), _iterations(parts)),
-        film_titles=[law.title for law in _laws()],
-        film_places=[law.place for law in _laws()],
-        choices=_choices(built),
-        other_rolling=_other_rolling(built),
-        assumed=_assumed(built, figures),
-        below_hertz=_below_hertz(built, states, figures),
-        pitch=str(built.way["pitch"]),
-    )
-    data["path"].attrs.update(built.way)
-    return data
-
-
-def _figure_dims(
-    figures: Mapping[str, np.ndarray],
-) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
-    """Figures with their dimensions: of all laws of film or friction, of the phases, or none."""
-    axes = {
-        "film_deviation": ("film_law",),
-        "largest_film_deviation": ("film_law",),
-        "film_loss": ("phase",),
-        "law_loss": ("law", "phase"),
-    }
-    return {
-        name: (axes.get(name, ("law",)[: np.ndim(one)]), np.asarray(one))
-        for name, one in figures.items()
-    }
-
-
-def _beside(states: Mapping[str, np.ndarray]) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
-    """Conditions at the contacts, and what film laws and friction laws say there."""
-    loaded = states["loaded"]
-    values = {name: np.where(loaded, states[name], np.nan) for name in _MASKED}
-    axes = {"friction": ("law",), "film_by_law": ("film_law",)}
-    given = {name: states[name] for name in ("load", "radius", "path")}
-    given |= {
-        "entrainment": np.abs(states["speed_a"] + states["speed_b"]) / 2.0,
-        "sliding_velocity": states["speed_a"] - states["speed_b"],
-        "active": states["active"],
-    }
-    every = {**given, **values}
-    return {name: ((*axes.get(name, ()), *_LANES), one) for name, one in every.items()}
-
-
-def _figures(
-    states: Mapping[str, np.ndarray], found: Mapping[str, np.ndarray]
-) -> dict[str, np.ndarray]:
-    """Figures of the cycle; what needs all loaded contacts is withheld if one of them is missing."""
-    loaded, weight = states["loaded"], states["weight"]
-    known = loaded & (found["film_status"] == Code.SOLVED)
-    whole = np.where(np.array_equal(known, loaded) and loaded.any(), 1.0, np.nan)
-    load = np.where(loaded, states["load"], 0.0)
-
-    def mean(values: np.ndarray) -> np.ndarray:
-        """Mean over the cycle of sums over the contacts that carry."""
-        sums = np.sum(np.where(loaded, np.nan_to_num(values), 0.0), axis=(-2, -1))
-        return np.asarray(sums @ weight)
-
-    total = mean(load) if loaded.any() else np.nan
-    own = states["load_by_law"]
-    sliding, rolling = (mean(found[f"film_{kind}_loss"]) * whole for kind in ("sliding", "rolling"))
-    by_law = states["sliding_loss"] + states["rolling_loss"]
-    figures = {
-        **_extremes(found),
-        "mean_film_friction": mean(load * found["film_friction"]) / total * whole,
-        "mean_boundary_part": mean(load * found["boundary_part"]) / total * whole,
-        "mean_law_friction": mean(own * states["friction"]) / mean(own)
-        if loaded.any()
-        else own[:, 0, 0, 0] * np.nan,
-        "mean_film_sliding_loss": sliding,
-        "mean_film_rolling_loss": rolling,
-        "mean_film_loss": sliding + rolling,
-        "mean_law_loss": mean(by_law),
-        "mean_law_rolling_loss": mean(states["rolling_loss"]),
-        "film_loss": _course(found, loaded, known),
-        "law_loss": np.sum(np.where(loaded, by_law, 0.0), axis=(-2, -1)),
-        "loaded_contacts": np.sum(loaded),
-        "solved_contacts": np.sum(known),
-        **_deviations(states["film_by_law"], found, known),
-    }
-    return figures | _efficiencies(states, figures)
-
-
-def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Smallest and largest values of the films that were found."""
-    low = {"smallest_film": "minimum_film", "smallest_lambda": "minimum_lambda"}
-    high = {
-        "largest_film_pressure": "film_pressure",
-        "largest_asperity_share": "asperity_share",
-        "largest_film_rise": "film_rise",
-        "largest_flash_rise": "flash_rise",
-    }
-
-    def end(name: str, reduce: Any) -> Any:
-        some = found[name][~np.isnan(found[name])]
-        return reduce(some) if some.size else np.nan
-
-    return {name: end(own, np.min) for name, own in low.items()} | {
-        name: end(own, np.max) for name, own in high.items()
-    }
-
-
-def _course(found: Mapping[str, np.ndarray], loaded: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """Loss by the films over the cycle; withheld at phases where a loaded contact is missing."""
-    lost = found["film_sliding_loss"] + found["film_rolling_loss"]
-    course = np.sum(np.where(known, np.nan_to_num(lost), 0.0), axis=(-2, -1))
-    missing = np.any(loaded & ~known, axis=(-2, -1))
-    return np.where(missing, np.nan, course)
-
-
-def _deviations(
-    by_law: np.ndarray, found: Mapping[str, np.ndarray], known: np.ndarray
-) -> dict[str, np.ndarray]:
-    """Films by law over those solved at the same place less one: mean, and where it is largest.
-
-    Where mean planes overlap there is no film to compare with.
-    """
-    solved = {"minimum": found["minimum_film"], "central": found["central_film"]}
-    apart = {place: known & (film > 0.0) for place, film in solved.items()}
-    each = [
-        law_film[apart[law.place]] / solved[law.place][apart[law.place]] - 1.0
-        for law, law_film in zip(_laws(), by_law, strict=True)
-    ]
-    largest = [one[np.argmax(np.abs(one))] if one.size else np.nan for one in each]
-    return {
-        "film_deviation": np.array([one.mean() if one.size else np.nan for one in each]),
-        "largest_film_deviation": np.array(largest),
-    }
-
-
-def _efficiencies(
-    states: Mapping[str, np.ndarray], figures: Mapping[str, np.ndarray]
-) -> dict[str, np.ndarray]:
-    """Efficiency by films and by law with the losses beside the teeth, and how far the laws are off."""
-    weight = states["weight"]
-    out, drag = states["output_power"] @ weight, states["drag_loss"] @ weight
-    film, law = figures["mean_film_loss"], figures["mean_law_loss"]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return {
-            "film_efficiency": np.where(out > 0.0, out / (out + drag + film), np.nan),
-            "law_efficiency": np.where(out > 0.0, out / (out + drag + law), np.nan),
-            "friction_deviation": figures["mean_law_friction"] / figures["mean_film_friction"]
-            - 1.0,
-            "loss_deviation": law / film - 1.0,
-        }
-
-
-# ---- words
-
-
-def _lost(codes: np.ndarray) -> Iterator[str]:
-    """Loaded contacts whose film was not found, by what became of them."""
-    for code in sorted({*codes.tolist()} - {int(Code.SOLVED)}):
-        yield (
-            f"Films: {int(np.sum(codes == code))} of {codes.size} loaded contacts have no film "
-            f"({Code(code).sentence}); the loss and efficiency by films are withheld."
-        )
-
-
-def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
-    """Warnings of all pieces: of a kind the worst one, and where it is."""
-    ends = np.cumsum([0, *(part.sizes["point"] for part in parts)])
-    kinds: dict[str, list[tuple[float, str, str]]] = {}
-    for k, part in enumerate(parts):
-        where = f"phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}"
-        told = zip(*(json.loads(part.attrs[name]) for name in ("doubts", "warnings")), strict=True)
-        for (kind, extent), text in told:
-            kinds.setdefault(kind, []).append((extent, where, text))
-    return [_worst(told) for told in kinds.values()]
-
-
-def _worst(told: Sequence[tuple[float, str, str]]) -> str:
-    """The worst one of warnings of one kind, of extent, place and words."""
-    _, where, text = max(told, key=lambda one: one[0])
-    others = ", and less at others" if len(told) > 1 else ""
-    return f"Films, {where}{others}: {text}."
-
-
-def _about(built: Built, states: Mapping[str, np.ndarray], found: xr.Dataset) -> list[str]:
-    """What the films leave out."""
-    run = {"load": np.where(states["loaded"], states["load"], 0.0), "radius": states["radius"]}
-    cold = [cold_warning(built, _moving(states, found))] if _is_cold(built) else []
-    return [*cold, *(f"Films: {text}" for text in conformal_warning(built.design.mesh, run))]
-
-
-def _is_cold(built: Built) -> bool:
-    return _model(built).thermal == ISOTHERMAL
-
-
-def _moving(states: Mapping[str, np.ndarray], found: xr.Dataset) -> dict[str, np.ndarray]:
-    """Contacts that carry, as a mesh cycle tells them, with what the films say."""
-    every = {
-        "pressure": states["pressure"],
-        "radius": states["radius"],
-        "entrainment": 0.5 * (states["speed_a"] + states["speed_b"]),
-        "sliding_velocity": states["speed_a"] - states["speed_b"],
-        "friction": found["film_friction"].values,
-        "film_thickness": found["central_film"].values,
-    }
-    solved = np.isfinite(every["friction"])
-    return {name: values[solved] for name, values in every.items()}
-
-
-def _other_rolling(built: Built) -> str:
-    """Why a law that solves films has another loss than its films; empty where it has not."""
-    solved = [one.law.title for one in built.models if one.law.films is not None]
-    model = built.models[0].rolling
-    if not solved or model.name == "none":
-        return ""
-    return (
-        f"{solved[0]}: the case takes rolling resistance from {model.title}; that of the films, which stands "
-        "beside it here, is their own."
-    )
-
-
-def _assumed(built: Built, figures: Mapping[str, np.ndarray]) -> str:
-    """What of the films rests on assumed asperities; empty where they carry little or were given."""
-    names = [name for name in _SUMMITS if getattr(_asked(built), name) is None]
-    if not names or not figures["largest_asperity_share"] > COUNTS:
-        return ""
-    part = 100.0 * figures["mean_boundary_part"] / figures["mean_film_friction"]
-    friction = f", and {part:.0f} % of the friction, rest" if np.isfinite(part) else " rests"
-    values = " and ".join(f"{name} {getattr(_model(built), name):g}" for name in names)
-    return f"the load on asperities{friction} on assumed {values}"
-
-
-def _below_hertz(
-    built: Built, states: Mapping[str, np.ndarray], figures: Mapping[str, np.ndarray]
-) -> str:
-    """Why rough flanks have a largest pressure below that of the dry contact; empty if they have not."""
-    if _model(built).asperities == SMOOTH or not states["loaded"].any():
-        return ""
-    most = np.argmax(np.where(states["loaded"], states["pressure"], 0.0))
-    pressure, radius = (states[name].reshape(-1)[most] for name in ("pressure", "radius"))
-    # b = 4 p R/E' of a dry line contact.
-    half_width = 4.0 * pressure * radius / float(built.design.modulus)
-    ratio = float(built.design.roughness.composite_rq) * radius / half_width**2
-    lacks = 1.0 - figures["largest_film_pressure"] / pressure
-    if not (lacks > LOWER and ratio > UNEVEN):
-        return ""
-    return (
-        f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load beyond "
-        f"the dry contact, where Rq R/b2 is {ratio:.2g}."
-    )
-
-
-def _choices(built: Built) -> dict[str, Any]:
-    """The choices behind the films, by name."""
-    model = _model(built)
-    return {
-        "nodes": model.nodes,
-        "viscosity_law": model.viscosity_law,
-        "density_law": model.density_law,
-        "shear_law": model.shear_law,
-        "asperities": model.asperities,
-        "boundary_friction": model.boundary_friction,
-        "inlet": model.inlet,
-        "thermal": model.thermal,
-    }
-
-
-def _residuals(parts: Sequence[xr.Dataset], codes: np.ndarray) -> np.ndarray:
-    largest = max(float(part.attrs["residual"]) for part in parts)
-    return np.full(codes.shape, largest)
-
-
-def _iterations(parts: Sequence[xr.Dataset]) -> np.ndarray:
-    return np.array([int(part.attrs["iterations"]) for part in parts])
+    given = states(built)
+    shown = {"shown_pair": (("shown",), _shown(given))}
+    return whole(built, given, parts, _LANES, shown, title="films")

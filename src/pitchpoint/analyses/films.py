@@ -11,15 +11,15 @@ from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import TOUCH
 
-__all__ = ["FILM"]
+__all__ = ["FILM", "FINITE_FILM"]
 
+_WARM = ("largest_film_rise", "largest_flash_rise")
 _MAIN = (
     "smallest_film",
     "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
-    "largest_film_rise",
-    "largest_flash_rise",
+    *_WARM,
     "mean_film_friction",
     "mean_boundary_part",
     "mean_film_loss",
@@ -27,6 +27,9 @@ _MAIN = (
     "loaded_contacts",
     "solved_contacts",
 )
+_FINITE_MAIN = tuple(name for name in _MAIN if name not in _WARM)
+_BY_LINES = ("mean_line_friction", "mean_line_loss")
+_OF_FINITE = ("smallest_central_film", "largest_end_pressure")
 _BY_LAW = (
     "mean_law_friction",
     "mean_law_loss",
@@ -39,10 +42,19 @@ _BY_FILM_LAW = ("film_deviation", "largest_film_deviation")
 
 def _dry(built: Built) -> str | None:
     """Why a case has no films: those of ellipses have no solver yet, or nobody asks for them."""
-    shape = built.design.mesh.shape
+    asked, shape = built.case.film, built.design.mesh.shape
+    if asked is not None and asked.over_patch:
+        return Unasked("[film] asks for contacts of finite length")
     if shape != "line":
         return f"these gears touch {TOUCH[shape]}, and ellipses have no line solver"
-    return Unasked("the case has no [film]") if built.case.film is None else None
+    return Unasked("the case has no [film]") if asked is None else None
+
+
+def _endless(built: Built) -> str | None:
+    """Why a case has no films of finite contacts: nobody asks for them."""
+    if built.case.film is None:
+        return Unasked("the case has no [film]")
+    return None if built.case.film.over_patch else Unasked("[film] asks for lines without ends")
 
 
 def _pieces(built: Built) -> Iterable[Piece]:
@@ -63,14 +75,42 @@ def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     return joined(built, parts)
 
 
+def _finite_pieces(built: Built) -> Iterable[Piece]:
+    from pitchpoint.analyses.finite_film import pieces
+
+    return pieces(built)
+
+
+def _finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    from pitchpoint.analyses.finite_film import finite_part
+
+    return finite_part(built, piece, progress)
+
+
+def _finite_joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    from pitchpoint.analyses.finite_film import joined
+
+    return joined(built, parts)
+
+
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    data = parts.get("film")
+    return {"film": _figures_of(parts.get("film"), _MAIN)}
+
+
+def _finite_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("finite_film")
+    beside = [name for name in (*_BY_LINES, *_OF_FINITE) if data is not None and name in data]
+    return {"finite_film": _figures_of(data, (*_FINITE_MAIN, *beside))}
+
+
+def _figures_of(data: xr.Dataset | None, names: Sequence[str]) -> dict[str, Any]:
+    """Figures of films, with those by laws beside them."""
     if data is None:
-        return {"film": {}}
-    every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in _MAIN}
+        return {}
+    every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in names}
     every["friction_laws"] = _each(data, "law", _BY_LAW)
     every["film_laws"] = _each(data, "film_law", _BY_FILM_LAW)
-    return {"film": every}
+    return every
 
 
 def _finite(values: np.ndarray) -> np.ndarray:
@@ -95,4 +135,15 @@ FILM = Analysis(
     joined=_joined,
     main=_MAIN,
     figures=_figures,
+)
+
+FINITE_FILM = Analysis(
+    name="finite_film",
+    title="films of finite contacts",
+    lacks=_endless,
+    compute=_finite_part,
+    pieces=_finite_pieces,
+    joined=_finite_joined,
+    main=_FINITE_MAIN,
+    figures=_finite_figures,
 )

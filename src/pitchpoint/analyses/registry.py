@@ -10,7 +10,7 @@ from pitchpoint.analyses.along_action import (
 )
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
-from pitchpoint.analyses.films import FILM
+from pitchpoint.analyses.films import FILM, FINITE_FILM
 from pitchpoint.analyses.joint import JOINT
 from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.analyses.loss_map import LOSS_MAP
@@ -31,6 +31,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     OPERATION,
     LAWS_THERE,
     FILM,
+    FINITE_FILM,
     TORSION,
     KINEMATIC_ERROR,
     JOINT,

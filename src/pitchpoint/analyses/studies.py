@@ -83,8 +83,14 @@ class _Planned:
     @property
     def pieces(self) -> list[Piece]:
         """Ranges of points."""
-        count = len(self.changes)
-        return [{"first": n, "stop": min(n + PIECE, count)} for n in range(0, count, PIECE)]
+        count, alone = (
+            len(self.changes),
+            any(key.startswith("formulas.") for key in self.changes[0]),
+        )
+        size = (
+            1 if alone else PIECE
+        )  # formulas that take inputs of their own solve motions and films
+        return [{"first": n, "stop": min(n + size, count)} for n in range(0, count, size)]
 
     def compute(self, _: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
         """Figures of a range of points."""

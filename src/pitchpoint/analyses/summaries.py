@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import jax
-from pitchpoint.analyses.analysis import Progress
+from pitchpoint.analyses.analysis import Progress, silent
 from pitchpoint.analyses.caveats import (
     demand_convergence,
     demand_films,
@@ -81,7 +81,7 @@ def summaries(
     points: Sequence[Ready],
     under: Sequence[Models | Acting],
     extra: Mapping[str, Any],
-    progress: Progress = lambda _: None,
+    progress: Progress = silent,
     *,
     title: str,
     may_lock: bool = False,

@@ -34,7 +34,7 @@ from pitchpoint.cases.solids import (
     solids_in_use,
     surrounded,
 )
-from pitchpoint.contact.contacts import TOUCH
+from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
@@ -71,6 +71,7 @@ from pitchpoint.status import Code, Status
 __all__ = [
     "ALONE",
     "BEARING_FREE",
+    "FILM_SOLVERS",
     "TEETH_ALONE",
     "Built",
     "build",
@@ -504,6 +505,19 @@ def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.A
     return {key: array(given.get(key, default), jnp.float64) for key, default in defaults.items()}
 
 
+FILM_SOLVERS: Mapping[Shape, tuple[str, ...]] = {
+    "line": ("line", "finite_line"),
+    "ellipse": ("elliptic",),
+}
+"""Solvers of films for contacts of a shape, by their names in `[film]`."""
+
+_WHY_NOT: Mapping[Shape, str] = {
+    "line": "lines have no elliptic solver",
+    "ellipse": "ellipses have no line solver",
+}
+"""What contacts of a shape are not solved by."""
+
+
 def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
     """InputError if a film, a rolling law or the user's own law holds for contacts of another shape."""
     models = case.models
@@ -519,9 +533,10 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
             raise error.at(key=key) from None
     if own is not None:
         demand_shape(own, mesh.shape)
-    if case.film is not None and mesh.shape != "line":
+    if case.film is not None and case.film.solver not in FILM_SOLVERS[mesh.shape]:
         raise InputError(
-            f"these gears touch {TOUCH[mesh.shape]}, and ellipses have no line solver; leave the table out",
+            f"these gears touch {TOUCH[mesh.shape]}, and {_WHY_NOT[mesh.shape]}; take "
+            f"{' or '.join(FILM_SOLVERS[mesh.shape])}, or leave the table out",
             key="film.solver",
         )
     if mesh.shape == "line" and models.elliptic_contact != USUAL_ELLIPSE:

@@ -5,6 +5,8 @@ from dataclasses import fields, replace
 from typing import Any, Final
 
 from pitchpoint.cases.schema import FilmTable
+from pitchpoint.contact.end_profiles import END_PROFILES
+from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.line import FLOODED
@@ -13,16 +15,24 @@ from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.rheology import SHEAR_STRESS
 from pitchpoint.materials.solids import SolidRecord
 
-__all__ = ["CHOICE_NOTES", "film_choices", "film_model"]
+__all__ = ["CHOICE_NOTES", "USUAL_ENDS", "end_surfaces", "film_choices", "film_model", "patch_grid"]
+
+PATCH_NODES: Final = 65
+"""Usual nodes along a patch over a mesh cycle, with one cell less across: grids with twice as many take about
+five times as long."""
 
 CHOICE_NOTES: Final[Mapping[str, str]] = {
     "eta_beta_sigma": "summits per area times their radius times Rq: assumed, of textbooks",
     "sigma_over_beta": "Rq over the radius of summits: assumed, of textbooks",
     "pattern": "Peklenik's number of the roughness, 1 for one without a direction",
     "boundary_friction": "of asperities that touch: assumed, of the 0.08 to 0.15 of steel",
+    "ends": "bodies go on beyond the contact line; mirrored where both end with it",
     "inlet": "where oil begins ahead of a contact: a module, about where flanks end",
 }
 """What usual choices rest on, by key of `[film]`."""
+
+USUAL_ENDS: Final = "half_space"
+"""Bodies on beyond the ends of a contact line, unless asked otherwise."""
 
 _OF_ASPERITIES = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
 _LAWS = ("viscosity_law", "density_law", "shear_law")
@@ -45,23 +55,56 @@ def film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | No
     chosen = {name: value for name, value in given.items() if value is not None}
     if "nodes" in chosen:
         chosen["nodes"] = int(chosen["nodes"])
-    if size is not None:
+    if table.over_patch:  # lines beside it have their own nodes, and oil that floods them as well
+        chosen.pop("nodes", None)
+    elif size is not None:
         chosen.setdefault("inlet", size)
     model = FilmModel(**chosen, shear_parameters=table.shear_parameters)
     return model if model.thermal == ISOTHERMAL else replace(model, members=_members(solids))
 
 
-def film_choices(model: FilmModel) -> dict[str, Any]:
+def patch_grid(table: FilmTable) -> tuple[int, int]:
+    """Nodes along the patch of a contact, and cells across it.
+
+    Args:
+        table: as validated.
+    """
+    nodes = int(table.nodes or PATCH_NODES)
+    return nodes, int(table.cells or nodes - 1)
+
+
+def end_surfaces(table: FilmTable, width: float, modulus: float) -> tuple[Surface, ...]:
+    """Surfaces that are missing at the ends of a contact line.
+
+    Args:
+        table: as validated.
+        width: of the face [m].
+        modulus: E' [Pa].
+
+    Raises:
+        InputError: ends that do not fit on the face.
+    """
+    if table.end_profile is None:
+        return ()
+    profile = END_PROFILES[table.end_profile]
+    try:
+        return profile.surfaces(width=width, modulus=modulus, **table.profile_parameters)
+    except InputError as error:
+        raise InputError(error.message, key=f"film.end_{error.key}") from None
+
+
+def film_choices(model: FilmModel, table: FilmTable | None = None) -> dict[str, Any]:
     """What decides about films and their friction, by key of `[film]`, in SI.
 
     Args:
         model: how films are solved.
+        table: of the case; None where a law asks for films.
     """
     laws = {name: getattr(model, name) for name in _LAWS}
     shear = {**SHEAR_STRESS[model.shear_law].parameters, **model.shear_parameters}
     rough = () if model.asperities == SMOOTH else _OF_ASPERITIES
     return {
-        "nodes": float(model.nodes),
+        **_grid_choices(model, table),
         **laws,
         **shear,
         "asperities": model.asperities,
@@ -69,6 +112,14 @@ def film_choices(model: FilmModel) -> dict[str, Any]:
         "inlet": model.inlet if model.inlet < FLOODED else "fully flooded",
         "thermal": model.thermal,
     }
+
+
+def _grid_choices(model: FilmModel, table: FilmTable | None) -> dict[str, Any]:
+    if table is None or not table.over_patch:
+        return {"nodes": float(model.nodes)}
+    nodes, cells = patch_grid(table)
+    ends = {"ends": table.ends or USUAL_ENDS} if table.solver == "finite_line" else {}
+    return {"nodes": float(nodes), "cells": float(cells), **ends}
 
 
 def _members(solids: Sequence[SolidRecord]) -> tuple[Conductor, Conductor]:

@@ -119,7 +119,7 @@ def _of_films(built: Built) -> dict[str, Followed]:
     """Choices by which films are solved, as they are where the case leaves them open."""
     if built.film_model is None:
         return {}
-    every = film_choices(built.film_model)
+    every = film_choices(built.film_model, built.case.film)
     return {
         key: Followed(value, "default", CHOICE_NOTES.get(key, "")) for key, value in every.items()
     }

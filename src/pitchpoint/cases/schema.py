@@ -11,6 +11,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    Tag,
     ValidationError,
     ValidationInfo,
     model_validator,
@@ -24,8 +25,9 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
-from pitchpoint.input.tables import DECIDING, Table, alternatives, forms
+from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
+from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.registry import nearest
 
 __all__ = [
@@ -82,6 +84,11 @@ DURATION = Quantity("time", 0.0, 1e4, "s", open_low=True)
 RISE = Quantity("time", 0.0, 1e4, "s")
 CYCLES = Quantity("dimensionless", 1, 8, whole=True)
 FILM_NODES = Quantity("dimensionless", 33, 1025, whole=True)
+FILM_CELLS = Quantity("dimensionless", 32, 256, whole=True)
+END_LENGTH = Quantity("length", 0.0, 1.0, "mm", open_low=True)
+END_RADIUS = Quantity("length", 0.0, 1e5, "mm", open_low=True)
+END_ANGLE = Quantity("angle", 0.0, pi / 2.0, "deg", open_low=True)
+LINE_LOAD = Quantity("line load", 0.0, 1e9, "N/mm", open_low=True)
 FILM_PHASES = Quantity("dimensionless", 3, 400, whole=True)
 STRESS = Quantity("pressure", 1e3, 1e10, "MPa")
 SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
@@ -228,6 +235,12 @@ def _asperities() -> list[str]:
     from pitchpoint.lubrication.ehl.texture import ASPERITIES
 
     return [SMOOTH, *ASPERITIES]
+
+
+def _end_profiles() -> list[str]:
+    from pitchpoint.contact.end_profiles import END_PROFILES
+
+    return list(END_PROFILES)
 
 
 def _asperity_loads() -> list[str]:
@@ -683,15 +696,30 @@ def _nodes(value: float) -> float:
     return value
 
 
+def _cells(value: float) -> float:
+    if int(value) & (int(value) - 1):
+        raise InputError(f"{value:g} cells along a contact line; allowed are 32, 64, 128 and 256")
+    return value
+
+
 class FilmTable(Table):
     """Films of the contacts solved over the mesh cycle; what is left out is as `FilmModel` has it.
 
-    `phases` are the least number of states over a mesh cycle. The parameters are those of the shear law.
+    `phases` are the least number of states over a mesh cycle. The parameters are those of the shear law, and
+    of the profile of the ends.
     """
 
-    solver: Literal["line"]
+    solver: Literal["line", "finite_line", "elliptic"]
     phases: Annotated[float, FILM_PHASES] = 24.0
     nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
+    cells: Annotated[float, FILM_CELLS, AfterValidator(_cells)] | None = None
+    ends: Literal["half_space", "mirrored"] | None = None
+    end_profile: Annotated[str, BeforeValidator(named(_end_profiles, "end profile"))] | None = None
+    end_length: Annotated[float, END_LENGTH] | None = None
+    end_radius: Annotated[float, END_RADIUS] | None = None
+    end_angle: Annotated[float, END_ANGLE] | None = None
+    end_line_load: Annotated[float, LINE_LOAD] | None = None
+    end_drop: Annotated[float, END_LENGTH] | None = None
     viscosity_law: (
         Annotated[str, BeforeValidator(named(_viscosities, "law of viscosity under pressure"))]
         | None
@@ -721,6 +749,48 @@ class FilmTable(Table):
         given = {name: getattr(self, name) for name in _OF_SHEAR}
         return {name: value for name, value in given.items() if value is not None}
 
+    @property
+    def over_patch(self) -> bool:
+        """True if films are solved over the whole patch of a contact, not as those of lines without ends."""
+        return self.solver != "line"
+
+    @property
+    def profile_parameters(self) -> dict[str, float]:
+        """Parameters of the profile of the ends that were given, by the names that it has for them [SI]."""
+        given = {name.removeprefix("end_"): getattr(self, name) for name in _OF_ENDS}
+        return {name: value for name, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _of_solver(self) -> "FilmTable":
+        for key, why in _NOT_OF[self.solver].items():
+            if getattr(self, key) is not None:
+                raise InputError(f"was given; {why}", key=key)
+        if self.over_patch:
+            _check_patch(self)
+        return self
+
+    @model_validator(mode="after")
+    def _of_profile(self) -> "FilmTable":
+        from pitchpoint.contact.end_profiles import END_PROFILES
+
+        given = self.profile_parameters
+        if self.end_profile is None:
+            for name in given:
+                raise InputError(
+                    "was given without end_profile, to which it belongs", key=f"end_{name}"
+                )
+            return self
+        needed, known = END_PROFILES[self.end_profile].parameters
+        for name in given:
+            if name not in known:
+                has = ", ".join(f"end_{one}" for one in known) or "none"
+                told = f"is no parameter of {self.end_profile}; it has {has}"
+                raise InputError(told, key=f"end_{name}")
+        for name in needed:
+            if name not in given:
+                raise InputError(f"is missing; {self.end_profile} asks for it", key=f"end_{name}")
+        return self
+
     @model_validator(mode="after")
     def _own(self) -> "FilmTable":
         from pitchpoint.lubrication.ehl.model import SMOOTH
@@ -741,6 +811,36 @@ class FilmTable(Table):
 
 _OF_SHEAR = ("eyring_stress", "limiting_coefficient", "limiting_stress")
 _OF_ROUGH = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
+_OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
+
+_NO_ENDS = 'lines of this solver have no ends; take solver = "finite_line", or leave it out'
+_NO_INLET = "over a patch oil begins where it floods the contact; leave it out"
+_ELLIPSE = "an ellipse ends by itself; leave it out"
+_NOT_OF: Mapping[str, Mapping[str, str]] = {
+    "line": {key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
+    "finite_line": {"inlet": _NO_INLET},
+    "elliptic": {
+        "inlet": _NO_INLET,
+        **{key: _ELLIPSE for key in ("ends", "end_profile", *_OF_ENDS)},
+    },
+}
+"""Keys that a solver of films has nothing to do with, and why."""
+
+MOST_NODES = 257
+"""Largest number of nodes along a patch, whose memory grows with their square times that of the cells."""
+
+
+def _check_patch(table: FilmTable) -> None:
+    """InputError for what solvers over a patch do not take."""
+    if table.nodes is not None and table.nodes > MOST_NODES:
+        told = f"{table.nodes:g} nodes along a patch; allowed are 33, 65, 129 and {MOST_NODES}"
+        raise InputError(told, key="nodes")
+    if table.thermal not in (None, "isothermal"):
+        told = 'films over a patch are isothermal; leave it out, or take solver = "line"'
+        raise InputError(told, key="thermal")
+    if table.pattern not in (None, 1.0):
+        told = "over a patch oil flows both ways, and only the pattern 1 is the same for both"
+        raise InputError(f"{table.pattern:g} was given; {told}", key="pattern")
 
 
 class Sweep(Table):
@@ -871,6 +971,13 @@ def _of_no_set(value: Any) -> Any:
 Losses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_set)]
 """Losses of one mesh, by value or by the name of a set."""
 DriveLosses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeValidator(_of_no_set)]
+Formulas = Annotated[
+    Annotated[TorusFormulas, Tag("motion")] | Annotated[ZoneFilms, Tag("films")],
+    Field(discriminator=by("form", TorusFormulas, ZoneFilms)),
+]
+_SOURCE_OF = {TorusFormulas: "liu_xiong_2017", ZoneFilms: "xu_2021"}
+"""Bibliography entries of the papers whose equations take inputs of their own."""
+
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
 Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
@@ -894,7 +1001,7 @@ class Case(Table):
     film: FilmTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
-    formulas: TorusFormulas | None = None
+    formulas: Formulas | None = None
     targets: Targets = ()
     issues: Issues = ()
 
@@ -1138,10 +1245,10 @@ def _check_load(case: Case | DriveCase, gears: GearsTable) -> None:
 
 def _check_formulas(case: Case) -> None:
     """InputError if inputs of formulas are given to a case whose source has none."""
-    if case.formulas is not None and case.source != "liu_xiong_2017":
+    if case.formulas is not None and case.source != (source := _SOURCE_OF[type(case.formulas)]):
         raise InputError(
             "these are inputs of the equations of one paper; they belong to a case with its source, "
-            'source = "liu_xiong_2017"',
+            f'source = "{source}"',
             key="formulas",
         )
 

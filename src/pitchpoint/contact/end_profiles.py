@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from inspect import signature
 from math import inf, pi, tan
 
 from pitchpoint._jax import array
@@ -117,6 +118,31 @@ class EndProfile:
     title: str
     function: Callable[..., tuple[Surface, ...]]
     sources: tuple[str, ...] = ()
+
+    @property
+    def parameters(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Names of its own numbers that have to be given, and of all that may be."""
+        own = [
+            one
+            for one in signature(self.function).parameters.values()
+            if one.name not in ("width", "modulus")
+        ]
+        needed = tuple(one.name for one in own if one.default is one.empty)
+        return needed, tuple(one.name for one in own)
+
+    def surfaces(self, *, width: float, modulus: float, **given: float) -> tuple[Surface, ...]:
+        """Surfaces of a face.
+
+        Args:
+            width: of the face [m].
+            modulus: E' of both bodies [Pa], for profiles that follow from a load.
+            given: its own numbers [SI].
+
+        Raises:
+            InputError: ends that do not fit on the face, with the key of the number.
+        """
+        elastic = {"modulus": modulus} if "modulus" in signature(self.function).parameters else {}
+        return self.function(width=width, **elastic, **given)
 
 
 END_PROFILES = Registry(

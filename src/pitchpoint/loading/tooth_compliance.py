@@ -24,6 +24,7 @@ __all__ = [
     "Terms",
     "ToothCompliance",
     "beam_compliance",
+    "bending",
     "interpolate",
     "tooth_compliance",
     "unit_stiffness",
@@ -168,12 +169,8 @@ def unit_stiffness(
 
     Source: Atanasiu et al. (2011), eq. 16: deflections of both teeth and of the contact add up.
     """
-    first, second = _moduli(solids, terms)
-    teeth = [
-        interpolate(tooth_compliance(section, solid, terms), section, contacts.flank[k])
-        for k, (section, solid) in enumerate(zip(sections, (first, second), strict=True))
-    ]
-    given = (contacts, sections, (first, second), line_load)
+    given = (contacts, sections, _moduli(solids, terms), line_load)
+    teeth = _bending(contacts, sections, solids, terms)
     if contacts.shape == "ellipse":
         over = [
             one if at.width is None else one / at.width
@@ -182,6 +179,32 @@ def unit_stiffness(
         return 1.0 / (over[0] + over[1] + _hertz(*given))
     flattening = jnp.where(terms.weber, _weber(*given), _linear(*given))
     return 1.0 / (teeth[0] + teeth[1] + flattening)
+
+
+def bending(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms) -> Field:
+    """How far both teeth of a pair bend by a load per length of contact line, without their contact [m2/N].
+
+    Args:
+        contacts: of a mesh of two gears.
+        sections: the tooth of each member.
+        solids: the material of each member.
+        terms: of an entry of `TOOTH_COMPLIANCE`.
+
+    Source: Atanasiu et al. (2011), eq. 16, less the deflection of the contact.
+    """
+    first, second = _bending(contacts, sections, solids, terms)
+    return first + second
+
+
+def _bending(
+    contacts: Contacts, sections: Sections, solids: Solids, terms: Terms
+) -> tuple[Field, Field]:
+    """The same of each tooth."""
+    first, second = (
+        interpolate(tooth_compliance(section, solid, terms), section, contacts.flank[k])
+        for k, (section, solid) in enumerate(zip(sections, _moduli(solids, terms), strict=True))
+    )
+    return first, second
 
 
 def interpolate(values: Float[Array, " node"], section: ToothSection, flank: Field) -> Field:

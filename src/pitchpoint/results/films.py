@@ -12,13 +12,14 @@ from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.heat import Temperatures
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, FIELDS, VECTORS
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms
+from pitchpoint.lubrication.ehl.patch.transient import PatchMoment
 from pitchpoint.lubrication.ehl.solve import Ended, Films
 from pitchpoint.results.store import dataset, describe
 from pitchpoint.results.variable import Variable, deviation, length, percent
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
-__all__ = ["film_dataset", "films_of_dataset", "patch_dataset"]
+__all__ = ["film_dataset", "films_of_dataset", "march_dataset", "patch_dataset"]
 
 
 def _pressure(long_name: str, symbol: str) -> Variable:
@@ -122,16 +123,29 @@ _PATCH: Final = {
             *("film_ratio", "half_width", "hertz_pressure"),
         )
     },
+    "dry_pressure": _pressure("pressure without oil", "p_d"),
     "deflection": deviation("deflection of both bodies together", "u"),
+    "heights": deviation("heights of both surfaces that the cells see", "z"),
     "shear_x": _pressure("shear stress of the oil on member 0 along x, half way across", "τ_x"),
     "shear_y": _pressure("shear stress of the oil on member 0 along y, half way across", "τ_y"),
+    "traction_x": _pressure("stress of oil and asperities on member 0 along x", "t_x"),
+    "traction_y": _pressure("stress of oil and asperities on member 0 along y", "t_y"),
     "minimum_place": length("place of the smallest film", "x_min, y_min"),
     "largest_place": length("place of the largest pressure", "x_max, y_max"),
     "near_ends": _pressure("largest pressure across, near the ends of the line", "p_e"),
     "shear_force": _force("shear of the oil on member 0", "F_s"),
     "boundary_force": _force("friction of asperities on member 0", "F_b"),
     "rolling": _force("rolling resistance of each surface", "F_r"),
+    "sliding_power": Variable("heat by sliding", "P_s", "W"),
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),
+    "separation": deviation("by which the bodies are further apart than without oil", "h_s"),
+    "stiffness": Variable("stiffness of the film, in series with the dry contact", "k", "N/m"),
+    "damping": Variable("squeeze damping of the film", "c", "N s/m"),
+}
+_MARCH: Final = {
+    "time": Variable("time", "t", "s", "ms", "time"),
+    "time_steps": _number("steps of time since the time before"),
+    "newton_steps": _number("steps of Newton's method since the time before"),
 }
 _OWN: Final = {
     f"{start}{name}": one for start, part in _PARTS.items() for name, one in part.items()
@@ -184,23 +198,66 @@ def patch_dataset(films: PatchFilms) -> xr.Dataset:
         the ends of a line [half-widths]. Every variable has `units` and `long_name`; the dataset has its
         status and its warnings, as JSON.
     """
+    return _over_patch([films], (), {}, "film over a patch")
+
+
+def march_dataset(moments: Sequence[PatchMoment]) -> xr.Dataset:
+    """Films over a patch at several times as a dataset.
+
+    Args:
+        moments: of `march_patches`, of one march.
+
+    Returns:
+        Dataset as of `patch_dataset` with `time` [s] before all other axes, and the number of steps of time
+        and of Newton's method since the time before. Warnings are those of all times.
+
+    Raises:
+        InputError: no moments.
+    """
+    if not moments:
+        raise InputError("a dataset of a march takes at least one of its moments", key="moments")
+    times = {"time": ("time", np.array([one.time for one in moments]))}
+    data = _over_patch(moments, ("time",), times, "films over a patch at several times")
+    counts = {
+        "time_steps": [one.time_steps for one in moments],
+        "newton_steps": [one.ended.steps for one in moments],
+    }
+    data = data.assign({name: ("time", np.array(values)) for name, values in counts.items()})
+    describe(data, _MARCH)
+    return data
+
+
+def _over_patch(
+    films: Sequence[PatchFilms] | Sequence[PatchMoment],
+    dims: tuple[str, ...],
+    coordinates: dict[str, Any],
+    title: str,
+) -> xr.Dataset:
+    """Films on one grid, one without axes of their own or several along one."""
     names = [name for name in _PATCH if name not in ("x", "y")]
-    dims = {name: _patch_dims(name) for name in names}
+    first = films[0].film
+
+    def values(name: str) -> Any:
+        found = [np.asarray(getattr(one.film, name)) for one in films]
+        return np.stack(found) if dims else found[0]
+
     data = dataset(
-        {name: (dims[name], np.asarray(getattr(films.film, name))) for name in names},
+        {name: ((*dims, *_patch_dims(name)), values(name)) for name in names},
         {
-            "x": ("x", np.asarray(films.film.x)),
-            "y": ("y", np.asarray(films.film.y)),
+            **coordinates,
+            "x": ("x", np.asarray(first.x)),
+            "y": ("y", np.asarray(first.y)),
             "direction": ["x", "y"],
             "end": ["first", "last"],
             "distance": ("distance", END_DISTANCES),
         },
-        title="film over a patch",
-        warnings=list(films.warnings),
+        title=title,
+        warnings=list(dict.fromkeys(told for one in films for told in one.warnings)),
         solve=told_of(
-            np.array([films.ended.code]),
-            np.array([films.ended.reynolds]),
-            np.array([films.ended.steps]),
+            *(
+                np.array([getattr(one.ended, name) for one in films])
+                for name in ("code", "reynolds", "steps")
+            )
         ),
     )
     describe(data, _PATCH)

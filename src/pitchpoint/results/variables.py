@@ -20,6 +20,11 @@ from pitchpoint.results.variable import (
 
 __all__ = ["VARIABLES", "variable_of"]
 
+
+def _pressure(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "Pa", "MPa", "pressure")
+
+
 VARIABLES: dict[str, Variable] = {
     "phase": Variable("phase of the mesh cycle", "φ", "1"),
     "weight": Variable("weight of the node in a mean over one period", "w", "1"),
@@ -77,6 +82,35 @@ VARIABLES: dict[str, Variable] = {
         "largest pressure of the film, solved", "p_max", "Pa", "MPa", "pressure"
     ),
     "asperity_share": percent("part of the load on asperities, solved", "L_a"),
+    "mean_film": deviation("mean film of the contact, weighed by its dry pressure", "h_m"),
+    "row_film": deviation("smallest film of the row in the middle of a line", "h_row"),
+    "minimum_place": length("place of the smallest film, along and across", "x, y"),
+    "largest_place": length("place of the largest pressure, along and across", "x, y"),
+    "near_ends": _pressure("largest pressure at a distance from the end of the line", "p_e"),
+    "distance": Variable("distance from the end of the line, in half-widths", "s/b", "1"),
+    "dry_pressure": _pressure("largest pressure of the dry contact, but for its ends", "p_H"),
+    "dry_half_width": length("half-width of the dry contact", "b"),
+    "film_inlet": length("distance before the contact at which its oil begins", "x_in"),
+    "film_defect": Variable("defect of the film, over the pressure of the dry contact", "", "1"),
+    "line_central_film": deviation("film in the middle of a line without ends", "h_c"),
+    "line_minimum_film": deviation("smallest film of a line without ends", "h_min"),
+    "line_friction": Variable("friction coefficient of a line without ends", "μ_line", "1"),
+    "line_loss": power("loss of a line without ends", "P_line"),
+    "mean_line_friction": Variable(
+        "mean friction coefficient by lines without ends", "μ_line", "1"
+    ),
+    "mean_line_loss": power("mean loss of the teeth by lines without ends", "P_line"),
+    "kept_x": length("place along the contact", "x"),
+    "kept_y": length("place across the contact", "y"),
+    "field_pressure": _pressure("pressure", "p"),
+    "field_asperity_pressure": _pressure("pressure that asperities carry", "p_a"),
+    "field_dry_pressure": _pressure("pressure without oil", "p_d"),
+    "field_film": deviation("film", "h"),
+    "coarse_central_film": deviation("film in the middle on a coarser grid", "h_c"),
+    "coarse_minimum_film": deviation("smallest film on a coarser grid", "h_min"),
+    "coarse_largest_pressure": _pressure("largest pressure on a coarser grid", "p_max"),
+    "coarse_near_ends": _pressure("pressure near the ends on a coarser grid", "p_e"),
+    "coarse_friction": Variable("friction coefficient on a coarser grid", "μ", "1"),
     "film_rise": Variable(
         "largest temperature of the film above its inlet, solved",
         "ΔT_film",
@@ -125,6 +159,10 @@ VARIABLES: dict[str, Variable] = {
         for body in (1, 2)
     },
     "smallest_film": Variable("smallest film of the mesh cycle", "h_min", "m", "um", "length"),
+    "smallest_central_film": deviation("smallest film in the middle of a contact", "h_c min"),
+    "largest_end_pressure": _pressure(
+        "largest pressure half a half-width from an end of a line", "p_0.5b"
+    ),
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
     "largest_film_pressure": Variable(
         "largest pressure of the films", "p_max", "Pa", "MPa", "pressure"

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Subject
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Subject, silent
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import Ready
@@ -15,10 +15,6 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.registry import nearest
 
 __all__ = ["Job", "job_of", "jobs"]
-
-
-def _silent(_: int) -> None:
-    """Progress that nobody hears."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +44,11 @@ class Job:
         """True if there may be more pieces than one."""
         return len(self.pieces) > 1 or self.analysis.onward is not None
 
-    def compute(self, piece: Piece, progress: Progress = _silent) -> xr.Dataset:
+    def compute(self, piece: Piece, progress: Progress = silent) -> xr.Dataset:
         """Dataset of a piece."""
         return self.analysis.compute(self.built, piece, progress)
 
-    def onward(self, last: xr.Dataset, progress: Progress = _silent) -> xr.Dataset | None:
+    def onward(self, last: xr.Dataset, progress: Progress = silent) -> xr.Dataset | None:
         """Next piece of a march after the last one, None at its end or where nothing marches."""
         march = self.analysis.onward
         return None if march is None else march(self.built, last, progress)

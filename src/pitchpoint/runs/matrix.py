@@ -1,8 +1,12 @@
 """Which analysis there is for which family, asked of a sample of each."""
 
+from collections.abc import Sequence
 from importlib import resources
 
+from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.build import FILM_SOLVERS, Built
+from pitchpoint.cases.stages import Ready
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.tables import tag
 from pitchpoint.runs.run import load_case
@@ -14,7 +18,7 @@ _SEVERAL = resources.files("pitchpoint.cases") / "stages.toml"
 _PAGE = """# Families and analyses
 
 What is computed for a case of each family, and for a drive of several stages, that holds every table which
-analyses ask for: yes, or why not.
+analyses ask for, with every solver of films: yes, or why not.
 Printed by `pitchpoint models --matrix` from the registries of families and analyses.
 
 """
@@ -22,13 +26,27 @@ Printed by `pitchpoint models --matrix` from the registries of families and anal
 
 def matrix() -> list[dict[str, str]]:
     """A row for each analysis: its name and title, and for each family yes, or why it is not there."""
-    samples = {tag(table): load_case(str(sample_of(table))) for table in TABLES}
-    samples["several stages"] = load_case(str(_SEVERAL))
+    samples = {tag(table): _asking(str(sample_of(table))) for table in TABLES}
+    samples["several stages"] = [load_case(str(_SEVERAL))]
     return [
         {"analysis": analysis.name, "title": analysis.title}
-        | {name: analysis.why_not(sample) or "yes" for name, sample in samples.items()}
+        | {name: _why_not(analysis, cases) for name, cases in samples.items()}
         for analysis in ANALYSES.values()
     ]
+
+
+def _asking(sample: str) -> list[Ready]:
+    """The sample, and the same with every solver of films that its contacts have."""
+    built = load_case(sample)
+    assert isinstance(built, Built)
+    solvers = FILM_SOLVERS[built.design.mesh.shape]
+    return [built, *(load_case(sample, settings={"film.solver": one}) for one in solvers)]
+
+
+def _why_not(analysis: Analysis | Several, cases: Sequence[Ready]) -> str:
+    """Yes if one of the cases has the analysis, else why the first one has not."""
+    reasons = [analysis.why_not(case) for case in cases]
+    return "yes" if None in reasons else str(reasons[0])
 
 
 def page() -> str:

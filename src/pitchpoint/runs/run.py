@@ -81,8 +81,8 @@ class Progress:
     def part(self, variant: str, title: str, reused: bool) -> None:
         """A part begins, or is read from disk."""
 
-    def points(self, done: int) -> None:
-        """Points of the part that are finished."""
+    def points(self, done: int, doing: str = "") -> None:
+        """Points of the part that are finished, and what is being done where they take long."""
 
 
 @dataclass

@@ -84,6 +84,7 @@ class FilmModel:
         oil: Lubricant,
         temperature: ArrayLike,
         roughness_rq: ArrayLike,
+        inlet: ArrayLike | None = None,
     ) -> LineContact:
         """Contacts `*b` to solve, of arrays that broadcast against each other.
 
@@ -96,12 +97,36 @@ class FilmModel:
             oil: between them.
             temperature: of the oil in the inlet [K].
             roughness_rq: composite Rq [m]; zero for smooth surfaces.
+            inlet: distance from the middle of a contact at which oil begins [m]; that of the model by
+                default.
 
         Raises:
             InputError: there is no thermal effect of this name, or it lacks what `members` tells.
         """
-        _check(oil, temperature, roughness_rq)
-        fluid = Fluid.of(
+        return LineContact(
+            line_load=line_load,
+            radius=radius,
+            modulus=modulus,
+            speed_a=speed_a,
+            speed_b=speed_b,
+            fluid=self.fluid(oil, temperature),
+            texture=self.texture(roughness_rq, modulus),
+            inlet=self.inlet if inlet is None else inlet,
+            conduction=self._conduction(oil),
+        )
+
+    def fluid(self, oil: Lubricant, temperature: ArrayLike) -> Fluid:
+        """The oil in a contact, by the laws of the model.
+
+        Args:
+            oil: between the bodies.
+            temperature: in the inlet [K].
+
+        Raises:
+            InputError: the oil is not known at this temperature.
+        """
+        _check_temperature(oil, temperature)
+        return Fluid.of(
             oil,
             temperature,
             viscosity_law=self.viscosity_law,
@@ -109,19 +134,20 @@ class FilmModel:
             shear_law=self.shear_law,
             shear_parameters=self.shear_parameters,
         )
+
+    def texture(self, roughness_rq: ArrayLike, modulus: ArrayLike) -> Rough | None:
+        """The surfaces by the asperities of the model; None for smooth ones.
+
+        Args:
+            roughness_rq: composite Rq [m]; zero for smooth surfaces.
+            modulus: E' [Pa].
+
+        Raises:
+            InputError: a roughness that no surface has, or rough contacts beside smooth ones.
+        """
+        _check_roughness(roughness_rq)
         smooth = self.asperities == SMOOTH or not np.any(np.asarray(roughness_rq) > 0.0)
-        texture = None if smooth else self._rough(roughness_rq, modulus)
-        return LineContact(
-            line_load=line_load,
-            radius=radius,
-            modulus=modulus,
-            speed_a=speed_a,
-            speed_b=speed_b,
-            fluid=fluid,
-            texture=texture,
-            inlet=self.inlet,
-            conduction=self._conduction(oil),
-        )
+        return None if smooth else self._rough(roughness_rq, modulus)
 
     def _conduction(self, oil: Lubricant) -> Conduction | None:
         if THERMAL[self.thermal].name == ISOTHERMAL:
@@ -146,8 +172,8 @@ class FilmModel:
         )
 
 
-def _check(oil: Lubricant, temperature: ArrayLike, roughness_rq: ArrayLike) -> None:
-    """InputError for an oil too cold or too warm, and for roughness that no surface has."""
+def _check_temperature(oil: Lubricant, temperature: ArrayLike) -> None:
+    """InputError for an oil too cold or too warm."""
     warm = np.asarray(temperature)
     if not np.all(np.asarray(oil.in_range(warm))):
         low, high = (float(np.min(np.asarray(one))) - 273.15 for one in (oil.T_min, oil.T_max))
@@ -157,6 +183,10 @@ def _check(oil: Lubricant, temperature: ArrayLike, roughness_rq: ArrayLike) -> N
             f"an oil at {worst:.4g} degC, whose values are meant for {low:.4g} to {high:.4g} degC{kelvin}",
             key="temperature",
         )
+
+
+def _check_roughness(roughness_rq: ArrayLike) -> None:
+    """InputError for roughness that no surface has."""
     rq = np.asarray(roughness_rq)
     if np.any(rq < 0.0):
         raise InputError(f"a composite roughness Rq of {1e6 * rq.min():.4g} um", key="roughness_rq")

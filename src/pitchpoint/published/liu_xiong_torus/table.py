@@ -32,6 +32,7 @@ class TorusFormulas(Table):
     """Inputs of the motion in six coordinates, eqs. 1 to 20.
 
     Attributes:
+        form: "motion".
         bearing_stiffness, bearing_damping: K_B and damping ratio of each gear on both ways.
         mesh_damping: damping ratio xi_m of eq. 9.
         error: amplitude e_s of the static transmission error.
@@ -45,6 +46,7 @@ class TorusFormulas(Table):
             that a constant torque drives, or of one whose speed is held.
     """
 
+    form: Literal["motion"] = "motion"
     bearing_stiffness: Annotated[float, STIFFNESS]
     bearing_damping: Annotated[float, RATIO]
     mesh_damping: Annotated[float, RATIO]

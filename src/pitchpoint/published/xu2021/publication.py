@@ -1,9 +1,12 @@
 """What Xu et al. (2021) print beside what the library computes, as quantities of a result."""
 
+from dataclasses import replace
+
 from pitchpoint.published import conjugate
-from pitchpoint.published.publication import Publication
+from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
 from pitchpoint.published.xu2021 import printed
-from pitchpoint.results.variable import Variable, angle, deviation, length, speed, torque
+from pitchpoint.published.xu2021.table import ZoneFilms
+from pitchpoint.results.variable import Variable, angle, deviation, length, percent, speed, torque
 
 __all__ = ["PUBLICATION"]
 
@@ -46,8 +49,126 @@ _VARIABLES = {
     "composite_roughness": deviation("composite Rq", "σ"),
 }
 
+
+def _plain(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "1")
+
+
+def _stiffness(long_name: str) -> Variable:
+    return Variable(long_name, "k_oil", "N/m", "N/um", "stiffness")
+
+
+def _pressure(long_name: str) -> Variable:
+    return Variable(long_name, "p", "Pa", "MPa", "pressure")
+
+
+def _turning(long_name: str) -> Variable:
+    return Variable(long_name, "n", "rad/s", "rpm", "rotational speed")
+
+
+_COURSES = {
+    "film_speed": {
+        "film_ratio": _plain("mean film over roughness", "λ"),
+        "asperity_share": percent("part of the load on asperities", "W"),
+        "film_stiffness": _stiffness("stiffness of the film"),
+    },
+    "film_place": {
+        "ridge_pressure": _pressure("pressure along the face, highest across"),
+        "ridge_film": deviation("film along the face, on the contact line", "h"),
+    },
+    "film_cut": {
+        "cut_pressure": _pressure("pressure across the contact, middle of the face"),
+        "cut_film": deviation("film across the contact, middle of the face", "h"),
+    },
+}
+"""Courses of a point, by what they run over."""
+
+_AXES = {
+    "film_speed": _turning("speed of the wave generator"),
+    "film_place": _plain("place along the face, over its width", "y/b"),
+    "film_cut": _plain("place across the contact, over the half-width", "x/b"),
+}
+
+_OF_POINT = {
+    "speed_of_one": _turning("speed at which the film is as thick as the roughness"),
+    "slow_share": percent("part of the load on asperities at 100 rpm", "W"),
+    "film_ratio_rise": _plain("least change of the film ratio to the next speed", "Δλ"),
+    "asperity_share_rise": percent(
+        "largest change of the part on asperities to the next speed", "ΔW"
+    ),
+    "film_stiffness_ratio": _plain(
+        "stiffness of the film at the highest speed over that at 500 rpm", "k/k"
+    ),
+    "rated_film_ratio": _plain("mean film over roughness at the operating point", "λ"),
+    "rated_asperity_share": percent("part of the load on asperities at the operating point", "W"),
+    "rated_film_stiffness": _stiffness("stiffness of the film at the operating point"),
+    "misprinted_film_ratio": _plain("the film ratio of the oil by eq. 12 as printed", "λ"),
+    "end_pressure": _plain(
+        "pressure a quarter of a half-width from the ends over that in the middle", "p/p"
+    ),
+    "end_film": _plain("film there over that in the middle", "h/h"),
+}
+"""Numbers of a point."""
+
+_NAMES = ("a", "b")
+
+
+def _pair(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}_{point}" for point in _NAMES)
+
+
+def _of_points(numbers: dict[str, Variable]) -> dict[str, Variable]:
+    return {
+        f"{name}_{point}": replace(one, long_name=f"{one.long_name}, point {point.upper()}")
+        for name, one in numbers.items()
+        for point in _NAMES
+    }
+
+
+_CURVES = tuple(
+    Curves(one.long_name, along, _pair(name))
+    for along, courses in _COURSES.items()
+    for name, one in courses.items()
+)
+
+_FILMS = Beside(
+    columns=("point A", "point B"),
+    rows={one.long_name: _pair(name) for name, one in _OF_POINT.items()},
+    note=(
+        "Films of one tooth at the root (A) and at the tip (B) of the zone, solved on the whole contact "
+        "line, with load and radius as eqs. 2 and 6 give them as printed. Entrainment at both points is "
+        "calibrated: the paper does not give it, and no motion of the teeth that was tried leads to both of "
+        "its speeds. Radii of a metre make contacts as wide as the flank, which half spaces do not hold for."
+    ),
+    curves=_CURVES,
+    solves={"films": _pair("films_status")},
+)
+
+
+def _films(point: Point) -> Read:
+    """Films of the zone; the solver is imported when a case asks for them."""
+    if not isinstance(point.formulas, ZoneFilms):
+        return {}
+    from pitchpoint.published.xu2021.films import films_at
+
+    return films_at(point)
+
+
 PUBLICATION = Publication(
     name="xu_2021",
-    readings=(printed.readings, conjugate.readings),
-    variables={**_VARIABLES, **conjugate.VARIABLES},
+    readings=(printed.readings, conjugate.readings, _films),
+    variables={
+        **_VARIABLES,
+        **conjugate.VARIABLES,
+        **_AXES,
+        **_of_points(_OF_POINT),
+        **_of_points({"films_status": _plain("status of the films", "")}),
+        **_of_points({k: v for courses in _COURSES.values() for k, v in courses.items()}),
+    },
+    beside=_FILMS,
+    courses={
+        name: f"{along}_place"
+        for along, courses in _COURSES.items()
+        for name in (along, *(one for course in courses for one in _pair(course)))
+    },
 )

@@ -42,11 +42,16 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
     width, spacing = _widths(problem)
     along = flows.conducts * jnp.diff(oil, axis=1) - flows.drawn
     beside = flows.sides * jnp.diff(_walled(oil), axis=0) - flows.carried
-    tied = rate * (flows.mass - jax.lax.stop_gradient(flows.mass))
-    rises = problem.flow.approach * problem.flow.density(oil) - tied
+    rises = problem.flow.approach * problem.flow.density(oil) - _stored(problem, flows.mass, rate)
     gain = jnp.diff(along, axis=1) + (jnp.diff(beside, axis=0) + rises * width * spacing)[:, 1:-1]
     own = flows.conducts[:, 1:] + flows.conducts[:, :-1]
     return gain, own + (flows.sides[1:] + flows.sides[:-1])[:, 1:-1]
+
+
+def _stored(problem: Problem, mass: Field, rate: Array) -> Array:
+    """What cells store in a time: since the film before, and since the mass that they have, to tie it."""
+    since = (problem.pace, problem.before), (rate, jax.lax.stop_gradient(mass))
+    return sum((pace * (mass - before) for pace, before in since), jnp.zeros(()))
 
 
 class Through(NamedTuple):

@@ -13,6 +13,7 @@ from pitchpoint.contact.gaps import missing_along
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.texture import Texture
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.fluid import Fluid
@@ -21,11 +22,14 @@ __all__ = ["PatchContact", "elliptic_contact", "finite_line"]
 
 STILL: Final = (0.0, 0.0)
 
+Heights = HeightMap | tuple[HeightMap, ...]
+
 
 class PatchContact(eqx.Module):
     """One contact between two bodies with oil between them, along x and across it, along y.
 
-    The gap of the bodies where they just touch is x^2/(2 R(y)) + y^2/(2 Ry) + relief(y).
+    The gap of the bodies where they just touch is x^2/(2 R(y)) + y^2/(2 Ry) + relief(y), less by what the
+    height maps stand out of their mean planes.
 
     Attributes:
         load: normal one F [N].
@@ -42,7 +46,8 @@ class PatchContact(eqx.Module):
         across_b: of member 1.
         approach: speed at which the bodies approach each other [m/s].
         fluid: the oil.
-        texture: of the surfaces; None for smooth ones.
+        texture: of the surfaces, below what the height maps show; None for smooth ones.
+        heights: maps of what stands out of the surfaces, or of both together.
         ends: of the bodies in `contact.half_space.ENDS`; static.
     """
 
@@ -61,6 +66,7 @@ class PatchContact(eqx.Module):
     fluid: Fluid
     texture: Texture | None
     profile: tuple[Surface, ...]
+    heights: tuple[HeightMap, ...]
     ends: str = eqx.field(static=True)
 
     def along(self, values: Float[Arrays, " k"], y: Float[Arrays, " y"]) -> Float[Array, " y"]:
@@ -68,7 +74,7 @@ class PatchContact(eqx.Module):
         return jnp.interp(y, self.places, values)
 
     def gap(self, x: Float[Arrays, " x"], y: Float[Arrays, " y"]) -> Float[Array, "y x"]:
-        """Gap of the bodies where they just touch, shape (y, x) [m]."""
+        """Gap of the bodies where their mean planes just touch, shape (y, x) [m]."""
         apart = self.along(self.relief, y) + missing_along(self.profile, y) + 0.5 * self.bend * y**2
         return jnp.asarray(x) ** 2 / (2.0 * self.along(self.radius, y)[:, None]) + apart[:, None]
 
@@ -91,6 +97,7 @@ def finite_line(
     profile: tuple[Surface, ...] = (),
     approach: ArrayLike = 0.0,
     texture: Texture | None = None,
+    heights: Heights = (),
     ends: str = "half_space",
 ) -> PatchContact:
     """A line contact of finite length, such as that of a tooth along its face.
@@ -108,6 +115,7 @@ def finite_line(
         profile: surfaces missing along the line, such as those of `contact.end_profiles`.
         approach: speed at which the bodies approach each other [m/s].
         texture: of the surfaces; None for smooth ones.
+        heights: map of what stands out of the surfaces, or one for each; with a texture, that is below them.
         ends: "half_space", or "mirrored" for bodies that both end with the line.
 
     Raises:
@@ -128,6 +136,7 @@ def finite_line(
         fluid=fluid,
         texture=texture,
         profile=profile,
+        heights=_maps(heights),
         ends=ends,
     )
 
@@ -144,6 +153,7 @@ def elliptic_contact(
     across: tuple[ArrayLike, ArrayLike] = STILL,
     approach: ArrayLike = 0.0,
     texture: Texture | None = None,
+    heights: Heights = (),
 ) -> PatchContact:
     """A contact of two bodies that touch in a point without load, and in an ellipse under it.
 
@@ -158,6 +168,7 @@ def elliptic_contact(
         across: surface speeds of both members along y [m/s].
         approach: speed at which the bodies approach each other [m/s].
         texture: of the surfaces; None for smooth ones.
+        heights: map of what stands out of the surfaces, or one for each; with a texture, that is below them.
     """
     one = jnp.ones(1)
     return PatchContact(
@@ -176,8 +187,13 @@ def elliptic_contact(
         fluid=fluid,
         texture=texture,
         profile=(),
+        heights=_maps(heights),
         ends="half_space",
     )
+
+
+def _maps(heights: Heights) -> tuple[HeightMap, ...]:
+    return (heights,) if isinstance(heights, HeightMap) else tuple(heights)
 
 
 def _at(places: Array, name: str, value: ArrayLike) -> Array:

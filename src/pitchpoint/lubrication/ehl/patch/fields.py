@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -15,7 +15,15 @@ from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
 from pitchpoint.lubrication.ehl.work import filled, shear_stress
 
-__all__ = ["END_DISTANCES", "FIELDS", "VECTORS", "PatchFilm", "patch_film"]
+__all__ = [
+    "END_DISTANCES",
+    "FIELDS",
+    "STRESSES",
+    "VECTORS",
+    "PatchFilm",
+    "Response",
+    "patch_film",
+]
 
 Field = Float[Arrays, "y x"]
 One = Float[Arrays, ""]
@@ -27,17 +35,40 @@ END_DISTANCES: Final = np.array([0.25, 0.5, 1.0, 2.0])
 FIELDS: Final = (
     "pressure",
     "asperity_pressure",
+    "dry_pressure",
     "gap",
     "film",
     "deflection",
+    "heights",
     "filled",
     "shear_x",
     "shear_y",
+    "traction_x",
+    "traction_y",
 )
 """Names of what has a value in every cell, shape (y, x)."""
 
+STRESSES: Final = (("shear_x", "shear_y"), ("traction_x", "traction_y"))
+"""Names of those along x and y of what has a direction."""
+
 VECTORS: Final = ("minimum_place", "largest_place", "shear_force", "boundary_force", "rolling")
 """Names of what has a value along x and one along y, shape (2,)."""
+
+
+class Response(NamedTuple):
+    """How the bodies of a contact answer, in own units.
+
+    Attributes:
+        dry: approach of the bodies without oil.
+        dry_by_load: its change with the load, as a part of it.
+        by_load: change of the level with the load with oil, as a part of it.
+        by_approach: with the speed of approach, in the unit of `Flow.approach`.
+    """
+
+    dry: Float[Arrays, ""]
+    dry_by_load: Float[Arrays, ""]
+    by_load: Float[Arrays, ""]
+    by_approach: Float[Arrays, ""]
 
 
 class PatchFilm(eqx.Module):
@@ -48,12 +79,17 @@ class PatchFilm(eqx.Module):
         y: places across, middles of the cells, shape (y,) [m].
         pressure: that oil and asperities carry together, shape (y, x) [Pa].
         asperity_pressure: that asperities carry [Pa].
+        dry_pressure: of the contact without oil, which films are weighed by [Pa].
         gap: between the mean planes; negative where they overlap [m].
         film: mean gap that is open to the oil [m].
         deflection: of both bodies together [m].
+        heights: of both surfaces together, as the cells see them of height maps [m].
         filled: part of the film that oil fills.
         shear_x: stress of the oil on member 0 along x, half way between the surfaces [Pa].
         shear_y: along y [Pa].
+        traction_x: that and the friction of asperities; over the patch it is `shear_force` and
+            `boundary_force` [Pa].
+        traction_y: along y [Pa].
         central_film: gap of the mean planes at x = y = 0 [m]; NaN where nothing touches near y = 0.
         minimum_film: smallest gap of a cell [m].
         minimum_place: its x and y, shape (2,) [m].
@@ -67,7 +103,14 @@ class PatchFilm(eqx.Module):
         boundary_force: friction of asperities on member 0, shape (2,) [N].
         friction: coefficient, their sum over the load.
         rolling: resistance to rolling, which the oil in the inlet does to each surface, shape (2,) [N].
+        sliding_power: that oil and asperities take by sliding [W].
         pumping_power: that the flow under pressure turns into heat [W].
+        separation: by which the bodies are further apart than without oil [m].
+        stiffness: -dF/dh of the load by that separation, all else as it is: the film as a spring in series
+            with the dry contact. It wavers as the edge of a narrow contact passes nodes: by 20 % of smooth
+            heavy ones at 129 nodes, by 1 % of wide rough ones; on coarser grids by more [N/m].
+        damping: dF/dV of the load by the speed V at which the bodies approach, with the separation held
+            [N s/m].
         half_width: of the dry contact along x, of the rows that carry most [m].
         hertz_pressure: largest one of the dry contact, but for the ends of lines [Pa].
         film_ratio: smallest film over composite Rq; infinite for smooth surfaces.
@@ -77,12 +120,16 @@ class PatchFilm(eqx.Module):
     y: Float[Arrays, " y"]
     pressure: Field
     asperity_pressure: Field
+    dry_pressure: Field
     gap: Field
     film: Field
     deflection: Field
+    heights: Field
     filled: Field
     shear_x: Field
     shear_y: Field
+    traction_x: Field
+    traction_y: Field
     central_film: One
     minimum_film: One
     minimum_place: Float[Arrays, "2"]
@@ -95,7 +142,11 @@ class PatchFilm(eqx.Module):
     boundary_force: Float[Arrays, "2"]
     friction: One
     rolling: Float[Arrays, "2"]
+    sliding_power: One
     pumping_power: One
+    separation: One
+    stiffness: One
+    damping: One
     half_width: One
     hertz_pressure: One
     film_ratio: One
@@ -118,6 +169,7 @@ def patch_film(
     pressure: Array,
     level: Array,
     held: Array,
+    response: Response,
 ) -> PatchFilm:
     """Fields of a contact from a solution in its own units, as the grid lies.
 
@@ -128,6 +180,7 @@ def patch_film(
         pressure: solution, shape (y, x).
         level: of the surfaces.
         held: dry pressure, which films are weighed by, shape (y, x).
+        response: of the bodies.
     """
     flow, bodies, length = problem.flow, problem.bodies, problem.length
     gap = problem.gap(pressure, level)
@@ -139,26 +192,32 @@ def patch_film(
     fast = jnp.hypot(*sliding)
     still = jnp.where(fast == 0.0, 1.0, fast)
     stress = full * shear_stress(flow, oil, room, fast[:, None])
-    shear = [stress * (one / still)[:, None] for one in sliding]
-    carried = jnp.asarray(bodies.areas) * jnp.sum(asperities, axis=1) / problem.load
-    rubs = flow.texture.boundary_friction * contact.load
+    rubbing = flow.texture.boundary_friction * asperities * flow.pressure
+    senses = [(one / still)[:, None] for one in sliding]
+    shear, rubs = ([one * sense for sense in senses] for one in (stress, rubbing))
     row, column, pumping = work(problem, oil, gap)
     rolls = flow.pressure * flow.height * length
+    apart = _apart(contact, problem, level, response)
     low, high = jnp.argmin(gap), jnp.argmax(pressure)
     rough = 0.0 if contact.texture is None else contact.texture.rq
-    sheared = jnp.stack([bodies.load(one) for one in shear]) * length**2
-    rubbed = jnp.stack([jnp.sum(rubs * carried * one / still) for one in sliding])
+    sheared, rubbed = (
+        jnp.stack([bodies.load(one) for one in field]) * length**2 for field in (shear, rubs)
+    )
     return PatchFilm(
         x=x * length,
         y=y * length,
         pressure=pressure * flow.pressure,
         asperity_pressure=asperities * flow.pressure,
+        dry_pressure=jnp.asarray(held) * flow.pressure,
         gap=gap * flow.height,
         film=room * flow.height,
         deflection=(gap - level - problem.apart) * flow.height,
+        heights=contact.gap(x * length, y * length) - problem.apart * flow.height,
         filled=full,
         shear_x=shear[0],
         shear_y=shear[1],
+        traction_x=shear[0] + rubs[0],
+        traction_y=shear[1] + rubs[1],
         central_film=_in_the_middle(x, y, gap) * flow.height,
         minimum_film=jnp.min(gap) * flow.height,
         minimum_place=_place(x, y, low) * length,
@@ -166,16 +225,33 @@ def patch_film(
         largest_pressure=jnp.max(pressure) * flow.pressure,
         largest_place=_place(x, y, high) * length,
         near_ends=_near_ends(contact, layout, y * length, pressure) * flow.pressure,
-        asperity_share=jnp.sum(carried),
+        asperity_share=bodies.load(asperities) / problem.load,
         shear_force=sheared,
         boundary_force=rubbed,
         friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
         rolling=jnp.stack([jnp.sum(row), column]) * rolls,
+        sliding_power=bodies.load((stress + rubbing) * fast[:, None]) * length**2,
         pumping_power=pumping * rolls * problem.speed,
+        separation=apart[0],
+        stiffness=apart[1],
+        damping=apart[2],
         half_width=jnp.asarray(layout.half_width),
         hertz_pressure=jnp.asarray(layout.hertz_pressure),
         film_ratio=jnp.min(gap) * flow.height / rough,
     )
+
+
+def _apart(
+    contact: PatchContact, problem: Problem, level: Array, response: Response
+) -> tuple[Array, Array, Array]:
+    """Separation, stiffness and damping; constants for derivatives, as dry bodies have none here."""
+    height = problem.flow.height
+    stiffness = -contact.load / ((response.by_load + response.dry_by_load) * height)
+    yields = response.by_approach * problem.length / problem.speed
+    found: tuple[Array, Array, Array] = jax.lax.stop_gradient(
+        ((level + response.dry) * height, stiffness, stiffness * yields)
+    )
+    return found
 
 
 def _sliding(contact: PatchContact, y: Array) -> tuple[Array, Array]:

@@ -4,31 +4,58 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.subsurface import Stresses, below_row
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import WIDE
+from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.fields import FIELDS, VECTORS, PatchFilm, patch_film
-from pitchpoint.lubrication.ehl.patch.layout import Layout, problem_on
+from pitchpoint.lubrication.ehl.patch.fields import (
+    FIELDS,
+    STRESSES,
+    VECTORS,
+    PatchFilm,
+    Response,
+    patch_film,
+)
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
-from pitchpoint.lubrication.ehl.patch.solve import Earlier, dry_pressure, shown_film, solve
+from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
+from pitchpoint.lubrication.ehl.patch.solve import Earlier, dry_bodies, shown_film, solve
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-__all__ = ["CELLS", "NODES", "PatchEnded", "PatchFilms", "film_near", "solve_patch"]
+__all__ = [
+    "CELLS",
+    "ENDS",
+    "NODES",
+    "PatchEnded",
+    "PatchFilms",
+    "Turned",
+    "back",
+    "before",
+    "check",
+    "film_near",
+    "oriented",
+    "solve_patch",
+    "told_film",
+    "turned",
+]
 
 NODES: Final = 129
 """Usual number of nodes along x: films in the middle come within .5 % of those on finer grids."""
 
 CELLS: Final = 128
 """Usual number of cells across."""
+
+ENDS: Final = "ends"
+"""Kind of the warning on lines that end sharply."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +86,7 @@ class PatchFilms:
         pressure: solution in those units, for `film_near`, shape (y, x).
         level: of the surfaces in those units.
         held: dry pressure in those units, which films are weighed by, shape (y, x).
+        response: of the bodies, in those units.
         turned: how the grid lies.
         warnings: what to be wary of, in sentences.
     """
@@ -69,6 +97,7 @@ class PatchFilms:
     pressure: NDArray[np.float64]
     level: float
     held: NDArray[np.float64]
+    response: Response
     turned: Turned
     warnings: tuple[str, ...]
 
@@ -76,6 +105,24 @@ class PatchFilms:
     def solved(self) -> bool:
         """Whether the contact was solved."""
         return self.ended.code == Code.SOLVED
+
+    def stresses(self, depth: NDArray[np.float64], poisson: float) -> Stresses:
+        """Stresses by the pressure below the most loaded section along the entrainment.
+
+        Args:
+            depth: below the surface, positive; meaningful from about a cell on, shape (depth,) [m].
+            poisson: Poisson's ratio of the solid.
+
+        Raises:
+            InputError: films that were not solved, depths that are not positive, another Poisson's ratio.
+        """
+        if not self.solved:
+            raise InputError("films that were not solved have no stresses", key="films")
+        (rows, nodes), layout = self.pressure.shape, self.layout
+        bodies = layout.bodies(nodes, rows, rows, "half_space")
+        own = below_row(bodies, self.pressure, np.asarray(depth) / layout.length, poisson)
+        found: Stresses = jax.tree.map(lambda one: one * layout.pressure, own)
+        return replace(found, depth=array(depth))
 
 
 @dataclass(frozen=True)
@@ -112,32 +159,64 @@ def solve_patch(
 
     Raises:
         InputError: values that no contact has, numbers of nodes or cells that no grid has, a line that is
-            entrained along its length or in two senses.
+            entrained along its length or in two senses, height maps that move or do not cover it.
     """
-    _check(contact)
-    lies, own = _turned(contact)
-    code = _before(own)
-    layout, problem, state = solve(own, nodes, cells, progress, _earlier(start))
-    held = dry_pressure(problem)
+    check(contact)
+    check_standing(contact)
+    lies, own = turned(contact)
+    code = before(own)
+    layout, problem, state = solve(own, nodes, cells, progress, earlier=_earlier(start))
+    held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
-    # Plain numbers would be constants of the program, which would be made anew for each contact.
-    lies_at = jax.tree.map(array, layout)
-    given = own, lies_at, problem, end.pressure, end.level, array(held)
+    pressure: Any = np.asarray(end.pressure)
+    response = Response(array(approach), array(by_load), end.by_load, end.by_approach)
+    ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
+    told = told_film(own, layout, problem, pressure, float(end.level), held, response, ended)
+    found = back(told.film, lies), told.ended, layout, pressure, float(end.level)
+    return PatchFilms(*found, held, response, lies, told.warnings)
+
+
+class Told(NamedTuple):
+    """Film of a solution as the grid lies, with what became of it."""
+
+    film: PatchFilm
+    ended: PatchEnded
+    warnings: tuple[str, ...]
+
+
+def told_film(
+    own: PatchContact,
+    layout: Layout,
+    problem: Problem,
+    pressure: NDArray[np.float64],
+    level: float,
+    held: NDArray[np.float64],
+    response: Response,
+    ended: PatchEnded,
+) -> Told:
+    """Film of a solution, NaN where it is none, and what to be wary of; arguments as in `patch_film`.
+
+    Args:
+        own: the contact, entrained along x of the grid.
+        ended: how the solve ended, with the code that was known before it.
+    """
+    # Plain numbers would be constants of the program, which would be made anew for each contact; maps are
+    # in the problem, and would make it anew for each number of them.
+    lies_at, plain = jax.tree.map(array, layout), replace(own, heights=())
+    given = plain, lies_at, problem, array(pressure), array(level), array(held), response
     film = jax.tree.map(np.asarray, _film(*given))
-    balanced = end.rest < ENOUGH and abs(end.load) < ENOUGH and np.all(np.isfinite(held))
+    balanced = ended.reynolds < ENOUGH and ended.load < ENOUGH and np.all(np.isfinite(held))
+    code = ended.code
     if code == Code.SOLVED and not balanced:
         code = Code.NOT_CONVERGED
     # Smooth surfaces touch on a grid that is too coarse for their film.
-    if code == Code.SOLVED and contact.texture is None and np.any(film.asperity_pressure > 0.0):
+    if code == Code.SOLVED and own.texture is None and np.any(film.asperity_pressure > 0.0):
         code = Code.UNRESOLVED
     if code != Code.SOLVED:
         film = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), film)
-    ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
     least = shown_film(problem) * float(problem.flow.height)
-    warnings = tuple(_warnings(contact, layout, film, ended, least))
-    pressure: Any = np.asarray(end.pressure)
-    found = _back(film, lies), ended, layout, pressure, float(end.level)
-    return PatchFilms(*found, held, lies, warnings)
+    ended = replace(ended, code=code)
+    return Told(film, ended, tuple(_warnings(own, layout, film, ended, least)))
 
 
 def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
@@ -150,19 +229,20 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     Returns:
         The same film, with the derivatives of the solution (implicit function theorem), first ones; every
         cell stays full of oil, or not, as it is. The grid stays where it is, and what belongs to it: there
-        are no derivatives by the length of a line, nor of `half_width` and `hertz_pressure`.
+        are no derivatives by the length of a line, nor of `half_width`, `hertz_pressure`, `separation`,
+        `stiffness` and `damping`.
 
     Raises:
         InputError: the films were not solved.
     """
     if not films.solved:
         raise InputError("films that were not solved have no derivatives", key="films")
-    swapped = _oriented(contact, films.turned)
+    swapped = oriented(contact, films.turned)
     rows, nodes = films.pressure.shape
     problem = problem_on(swapped, films.layout, nodes, rows, rows)
     pressure, level = polished(problem, array(films.pressure), array(films.level))
-    given = swapped, films.layout, problem, pressure, level, array(films.held)
-    return _back(patch_film(*given), films.turned)
+    given = swapped, films.layout, problem, pressure, level, array(films.held), films.response
+    return back(patch_film(*given), films.turned)
 
 
 def _earlier(films: PatchFilms | None) -> Earlier | None:
@@ -180,17 +260,18 @@ _settled, _film = program(settled), program(patch_film)
 # ---- how a contact lies
 
 
-def _turned(contact: PatchContact) -> tuple[Turned, PatchContact]:
+def turned(contact: PatchContact) -> tuple[Turned, PatchContact]:
     """The contact with its stronger entrainment along positive x, and how it was turned for that."""
     along = float(np.mean(np.asarray(contact.speed_a + contact.speed_b)))
     across = float(contact.across_a + contact.across_b)
     swapped = abs(across) > abs(along)
     main, other = (across, along) if swapped else (along, across)
     lies = Turned(swapped, main < 0.0, other < 0.0)
-    return lies, _oriented(contact, lies)
+    return lies, oriented(contact, lies)
 
 
-def _oriented(contact: PatchContact, lies: Turned) -> PatchContact:
+def oriented(contact: PatchContact, lies: Turned) -> PatchContact:
+    """The contact as its grid lies."""
     found = _swapped(contact) if lies.swapped else contact
     along, across = (-1.0 if one else 1.0 for one in (lies.along, lies.across))
     return replace(
@@ -199,6 +280,7 @@ def _oriented(contact: PatchContact, lies: Turned) -> PatchContact:
         speed_b=along * found.speed_b,
         across_a=across * found.across_a,
         across_b=across * found.across_b,
+        heights=tuple(one.turned(lies.swapped, lies.along, lies.across) for one in contact.heights),
     )
 
 
@@ -216,26 +298,27 @@ def _swapped(contact: PatchContact) -> PatchContact:
     )
 
 
-def _back(film: PatchFilm, lies: Turned) -> PatchFilm:
+def back(film: PatchFilm, lies: Turned) -> PatchFilm:
     """The film as the contact was given."""
     rows, nodes = (slice(None, None, -1 if one else None) for one in (lies.across, lies.along))
     sign = np.array([-1.0 if one else 1.0 for one in (lies.along, lies.across)])
     fields = {name: getattr(film, name)[rows, nodes] for name in FIELDS}
-    fields["shear_x"], fields["shear_y"] = sign[0] * fields["shear_x"], sign[1] * fields["shear_y"]
+    fields |= {name: sign[k] * fields[name] for pair in STRESSES for k, name in enumerate(pair)}
     fields |= {name: sign * getattr(film, name) for name in VECTORS}
     fields |= {"x": sign[0] * film.x[nodes], "y": sign[1] * film.y[rows]}
     if lies.swapped:
         fields |= {name: fields[name].T for name in FIELDS}
         fields |= {name: fields[name][::-1] for name in VECTORS}
         fields |= {"x": fields["y"], "y": fields["x"]}
-        fields |= {"shear_x": fields["shear_y"], "shear_y": fields["shear_x"]}
+        for one, other in STRESSES:
+            fields |= {one: fields[other], other: fields[one]}
     return replace(film, **fields)
 
 
 # ---- what is wrong with an input, and what is doubtful about a result
 
 
-def _before(contact: PatchContact) -> Code:
+def before(contact: PatchContact) -> Code:
     """What can be said of a contact before it is solved."""
     still = not np.any(np.asarray(contact.speed_a + contact.speed_b))
     if still and contact.texture is None and float(contact.approach) <= 0.0:
@@ -243,9 +326,10 @@ def _before(contact: PatchContact) -> Code:
     return Code.SOLVED
 
 
-def _check(contact: PatchContact) -> None:
+def check(contact: PatchContact) -> None:
     """InputError for values that no contact has."""
     _check_shapes(contact)
+    check_maps(contact)
     positive = {
         "load": (contact.load, "a load", "N"),
         "modulus": (contact.modulus, "a modulus E'", "Pa"),
@@ -316,23 +400,31 @@ def _warnings(
 ) -> Iterator[str]:
     half_width, radius = layout.half_width, float(np.min(np.asarray(contact.radius)))
     if half_width > WIDE * radius:
-        yield (
+        yield Doubt(
             f"the contact is {2e3 * half_width:.3g} mm wide, and the relative radius is {1e3 * radius:.3g} "
-            "mm: the bodies are no half spaces, as the deformation takes them"
+            "mm: the bodies are no half spaces, as the deformation takes them",
+            "wide",
+            half_width / radius,
         )
     if ended.code != Code.SOLVED:
         yield f"the film was not found: {ended.code.sentence}"
         return
     told = contact.fluid.outside(film.hertz_pressure)
     if told is not None:
-        yield f"{told}: films and traction there are extrapolated"
+        pressure = float(film.hertz_pressure)
+        yield Doubt(f"{told}: films and traction there are extrapolated", "pressure", pressure)
     if 0.0 < film.mean_film < least:
-        yield (
+        yield Doubt(
             f"the grid is coarse for a film of {1e9 * film.mean_film:.3g} nm: beside the contact the gap "
-            f"opens by {1e9 * least:.3g} nm within a cell; take more nodes"
+            f"opens by {1e9 * least:.3g} nm within a cell; take more nodes",
+            "grid",
+            least / float(film.mean_film),
         )
+    yield from unseen(contact, layout, *film.pressure.shape[::-1])
     if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
-        yield (
+        yield Doubt(
             "the contact line ends sharply: the pressure of the first and the last row is a number of the "
-            "grid; `near_ends` has it at distances from the ends"
+            "grid; `near_ends` has it at distances from the ends",
+            ENDS,
+            1.0,
         )

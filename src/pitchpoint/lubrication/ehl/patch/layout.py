@@ -12,22 +12,35 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.dry_contact import pressed
-from pitchpoint.contact.ellipse import hertz_1881
+from pitchpoint.contact.ellipse import Ellipse, hertz_1881
 from pitchpoint.contact.half_space import HalfSpace, graded_edges, half_space
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.line import LEAST, SLOWEST
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap, lowered
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 
-__all__ = ["FEWEST", "Layout", "Problem", "ladder", "laid_out", "problem_on", "without_oil"]
+__all__ = [
+    "FEWEST",
+    "Ends",
+    "Layout",
+    "Problem",
+    "extents",
+    "ladder",
+    "laid_out",
+    "lowered_on",
+    "problem_on",
+    "without_oil",
+]
 
 Field = Float[Arrays, "y x"]
+Ends = tuple[float, float]
 
 FEWEST: Final = 33
 """Nodes along x of the coarsest grid; across it there is one cell less."""
@@ -153,10 +166,7 @@ def laid_out(contact: PatchContact, cells: int) -> Layout:
 
 def _of_ellipse(contact: PatchContact) -> Layout:
     radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
-    given = array(radius), array(across)
-    ellipse = _hertz(
-        load=contact.load, radius=given[0], transverse_radius=given[1], modulus=contact.modulus
-    )
+    ellipse = _ellipse(contact)
     half_width, side = float(ellipse.along), float(ellipse.across)
     pressure = float(ellipse.pressure)
     film, borders = _film_and_borders(contact, radius, half_width, pressure)
@@ -168,6 +178,27 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
     return Layout(*ends, -before, borders.beside * reach, None, *units, radius, unit)
+
+
+# Its elliptic integrals are loops, which would be made anew for each contact.
+_hertz = program(hertz_1881)
+
+
+def _ellipse(contact: PatchContact) -> Ellipse:
+    """The dry contact of two smooth bodies."""
+    radius, across = array(contact.radius[0]), array(1.0 / contact.bend)
+    return _hertz(
+        load=contact.load, radius=radius, transverse_radius=across, modulus=contact.modulus
+    )
+
+
+def extents(contact: PatchContact, layout: Layout) -> tuple[Ends, Ends]:
+    """From where to where smooth bodies touch without oil along and across, a line in all rows [m]."""
+    along = -layout.half_width, layout.half_width
+    if contact.length is not None:
+        return along, (layout.first, layout.last)
+    side = float(_ellipse(contact).across)
+    return along, (-side, side)
 
 
 def _oblique(contact: PatchContact) -> float:
@@ -301,9 +332,6 @@ def _of_line_load(contact: PatchContact, line_load: float, radius: float) -> tup
     return float(line_half_width(**given)), float(line_pressure(**given))
 
 
-# Its root would be compiled anew for each contact.
-_hertz = program(hertz_1881)
-
 without_oil = fast_program(pressed)
 """Dry contact of a given load: of trials, starts and weights, one program a grid."""
 
@@ -326,6 +354,15 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
     while min(grids[0]) > FEWEST:
         grids.insert(0, (grids[0][0] // 2 + 1, grids[0][1] // 2))
     return tuple(grids)
+
+
+_lowered = program(lowered)
+
+
+def lowered_on(maps: tuple[HeightMap, ...], layout: Layout, bodies: HalfSpace) -> Array:
+    """By how much less maps make the gap in each cell of a grid, shape (y, x) [m]."""
+    x, edges = (layout.length * np.asarray(one) for one in (bodies.x, bodies.edges))
+    return _lowered(maps, array(x), array(edges))
 
 
 class Coated(Smooth):
@@ -358,6 +395,9 @@ class Problem(eqx.Module):
         film: guess of it, for a start.
         speed: unit of speed [m/s].
         length: unit of length [m].
+        pace: one over the time, in units of length and speed, in which the mass under a cell went from the
+            one before to what it is; zero for a steady film.
+        before: mass under each cell from which it went, shape (y, x).
     """
 
     flow: Flow
@@ -370,6 +410,8 @@ class Problem(eqx.Module):
     film: Float[Arrays, ""]
     speed: Float[Arrays, ""]
     length: Float[Arrays, ""]
+    pace: Float[Arrays, ""]
+    before: Float[Arrays, "y x"]
 
     def gap(self, pressure: Field, level: Array) -> Array:
         """Gap of the mean planes in every cell, shape (y, x)."""
@@ -397,6 +439,9 @@ def problem_on(
     x, y = (length * np.asarray(one) for one in (bodies.x, bodies.y))
     radius, unit = layout.radius, layout.speed
     height, film = length**2 / radius, layout.film
+    apart = contact.gap(array(x), array(y))
+    if contact.heights:
+        apart -= lowered_on(contact.heights, layout, bodies)
     entrainment = contact.entrainment(array(y))
     across = 0.5 * (contact.across_a + contact.across_b)
     fluid: Any = contact.fluid
@@ -413,7 +458,7 @@ def problem_on(
     found: Any = (
         flow,
         jax.tree.map(array, bodies),
-        contact.gap(array(x), array(y)) / height,
+        apart / height,
         entrainment / unit,
         across / unit,
         pressure * length / (height * contact.modulus),
@@ -421,5 +466,7 @@ def problem_on(
         array(film / height),
         array(unit),
         array(length),
+        array(0.0),
+        array(np.zeros((cells, nodes))),
     )
     return Problem(*found)

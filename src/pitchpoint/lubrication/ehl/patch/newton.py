@@ -425,13 +425,9 @@ def iterated(
         if told is not None:
             told(step, residual)
         lowest.append(min([residual, *lowest[-1:]]))
-        ended = residual < TOLERANCE and rate == 0.0
-        if (
-            ended
-            or not np.isfinite(residual)
-            or step == most
-            or (manner.careful and _hopeless(lowest))
-        ):
+        done = max(residual, abs(state.load)) < TOLERANCE and rate == 0.0
+        hopeless = manner.careful and _hopeless(lowest)
+        if not np.isfinite(residual) or step == most or done or hopeless:
             break
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at), 0

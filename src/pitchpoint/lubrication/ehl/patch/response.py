@@ -91,16 +91,20 @@ class Settled(NamedTuple):
         level: of the surfaces.
         rest: largest defect of the balance of a cell.
         load: defect of the load over it.
+        by_load: change of the level with the load, as a part of it.
+        by_approach: with the speed of approach.
     """
 
     pressure: Float[Array, "y x"]
     level: Float[Array, ""]
     rest: Float[Array, ""]
     load: Float[Array, ""]
+    by_load: Float[Array, ""]
+    by_approach: Float[Array, ""]
 
 
 def settled(problem: Problem, pressure: Array, level: Array) -> Settled:
-    """A last step from a solution, whose linear solve leaves nothing.
+    """A last step from a solution, whose linear solve leaves nothing, and what the level answers there.
 
     Args:
         problem: the contact.
@@ -109,4 +113,17 @@ def settled(problem: Problem, pressure: Array, level: Array) -> Settled:
     """
     pressure, level = polished(problem, pressure, level)
     end = linear(problem, pressure, level, jnp.zeros(()))
-    return Settled(pressure, level, jnp.max(jnp.abs(end.rest)), end.load)
+    alone = rows(end)
+    more = jnp.zeros(end.rest.size + 1).at[-1].set(1.0)
+    closing = _closing(problem, end, pressure, level)
+    by_load, by_approach = (answered(end, alone, one)[-1] for one in (more, closing))
+    largest = jnp.max(jnp.abs(end.rest))
+    return Settled(pressure, level, largest, end.load, by_load, by_approach)
+
+
+def _closing(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
+    """Change of all balances, taken away, with an approach of one."""
+    asperities = problem.flow.asperity_pressure(problem.gap(pressure, level))
+    oil = problem.flow.density(pressure - asperities)
+    gained = (oil * jnp.asarray(problem.bodies.areas)[:, None])[:, 1:-1]
+    return jnp.append(jnp.where(at.full, gained / at.scale, 0.0), 0.0)

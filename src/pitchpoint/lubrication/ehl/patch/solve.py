@@ -11,6 +11,7 @@ from jaxtyping import Array
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array
+from pitchpoint.contact.dry_contact import DryContact
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import (
@@ -30,9 +31,10 @@ from pitchpoint.lubrication.ehl.patch.newton import (
     State,
     iterated,
 )
+from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.programs import fast_program
 
-__all__ = ["Found", "dry_pressure", "dry_start", "finer", "shown_film", "solve"]
+__all__ = ["Found", "dry_bodies", "dry_start", "dry_under", "finer", "shown_film", "solve"]
 
 FINER_TIME: Final = 2.0
 """Time over which the first step lets oil flow that starts from another film."""
@@ -54,6 +56,9 @@ LEAST_STRIDE: Final = 1.2
 
 MOST_STRIDES: Final = 12
 """Films that are looked for on the way to one."""
+
+MORE: Final = 1e-3
+"""Part of the load by which dry bodies are loaded more and less to see how they yield."""
 
 
 class Attempt(NamedTuple):
@@ -110,10 +115,17 @@ def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], 
     return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
 
 
-def dry_pressure(problem: Problem) -> NDArray[np.float64]:
-    """Pressure without oil, shape (y, x)."""
-    dry = without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
-    return np.asarray(dry.pressure)
+def dry_under(problem: Problem, part: float = 1.0) -> DryContact:
+    """The contact without oil under a part of its load."""
+    load = problem.load * part
+    return without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, load)
+
+
+def dry_bodies(problem: Problem) -> tuple[NDArray[np.float64], float, float]:
+    """Pressure without oil, shape (y, x), approach of the bodies, and its change with ln of the load."""
+    dry, less, more = (dry_under(problem, part) for part in (1.0, 1.0 - MORE, 1.0 + MORE))
+    slope = float(more.approach - less.approach) / (2.0 * MORE)
+    return np.asarray(dry.pressure), float(dry.approach), slope
 
 
 def _bedded(problem: Problem, bed: float) -> HalfSpace:
@@ -185,7 +197,7 @@ def warm_start(earlier: Earlier, layout: Layout, problem: Problem) -> tuple[Any,
         one.places(*shape[::-1])
         for one, shape in ((earlier.layout, earlier.added.shape), (layout, (rows, nodes)))
     )
-    dry = dry_pressure(problem)
+    dry = np.asarray(dry_under(problem).pressure)
     added = _between(y, fine_y) @ earlier.added @ _between(x, fine_x).T
     return _together(problem, dry, added, earlier.film * float(problem.film))
 
@@ -286,10 +298,13 @@ def solve(
     nodes: int = 129,
     cells: int = 128,
     told: Progress | None = None,
+    layout: Layout | None = None,
     earlier: Earlier | None = None,
 ) -> tuple[Layout, Problem, State]:
-    """Layout, problem and solution of a contact on the last grid of its ladder."""
-    layout, grids = laid_out(contact, cells), ladder(nodes, cells)
+    """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder."""
+    grids = ladder(nodes, cells)
+    layout = laid_out(contact, cells) if layout is None else layout
+    check_maps_on(contact, layout, cells)
     solver, found = _Solver(told), None
     if earlier is not None:
         problem = problem_on(contact, layout, nodes, cells, cells)

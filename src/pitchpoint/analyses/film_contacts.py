@@ -1,0 +1,173 @@
+"""Contacts of a mesh over its cycle, for solvers of films: what they carry, and which are alike."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from jaxtyping import Array
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.schema import FilmTable
+from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.efficiency.in_turns import balance_under
+from pitchpoint.efficiency.quasi_static import (
+    Design,
+    Engagement,
+    Models,
+    Operation,
+    cycle_nodes,
+    cycle_of,
+)
+from pitchpoint.efficiency.rows import one_engagement
+from pitchpoint.efficiency.summary import engaged
+from pitchpoint.loading.balance import Balance
+from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
+from pitchpoint.programs import program
+
+__all__ = [
+    "LEAST",
+    "Done",
+    "alike",
+    "asked",
+    "by_pairs",
+    "film_laws",
+    "film_model_of",
+    "known",
+    "states",
+]
+
+Done = Callable[[int, int], None]
+"""Told the number of contacts that are done, and that of all."""
+
+LEAST = 1e-6
+"""Load per length over the largest one of the cycle below which a contact counts as unloaded."""
+
+ALIKE = 11
+"""Digits to which contacts are alike and solved once: those of both ends of a wave, say."""
+
+
+def asked(built: Built) -> FilmTable:
+    """The table of the case that asks for films."""
+    assert built.case.film is not None
+    return built.case.film
+
+
+def film_model_of(built: Built) -> FilmModel:
+    """How the films of a case are solved."""
+    assert built.film_model is not None
+    return built.film_model
+
+
+def film_laws(shape: Shape) -> list[FilmThickness]:
+    """Film laws that hold for contacts of a shape."""
+    return [law for law in FILM_THICKNESS.values() if shape_of(law) == shape]
+
+
+def alike(values: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Contacts that differ, and which of them each one is alike.
+
+    Args:
+        values: that tell contacts from each other [contact, value].
+        scale: of each value.
+    """
+    rounded = np.round(values / np.where(scale > 0.0, scale, 1.0), ALIKE)
+    _, where, inverse = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
+    return where, inverse.reshape(-1)
+
+
+@lru_cache(maxsize=2)
+def states(built: Built) -> dict[str, np.ndarray]:
+    """What the contacts of a cycle carry and how they move, [phase, pair, slice].
+
+    Forces are those of the first friction law; what a law says, with an axis for all laws in front, stands
+    under its own forces.
+    """
+    each = [_under(built, known(built), models) for models in built.models]
+    pairs, cycle = each[0]
+    pairs |= {name: np.stack([one[name] for one, _ in each]) for name in _OF_LAW}
+    loaded = pairs["active"] & (pairs["line_load"] > LEAST * pairs["line_load"].max())
+    return {**pairs, **cycle, "loaded": loaded}
+
+
+_OF_LAW = ("friction", "sliding_loss", "rolling_loss", "load_by_law")
+
+
+@lru_cache(maxsize=2)
+def known(built: Built) -> Engagement:
+    """Contacts and shares over the cycle."""
+    given, nodes = (built.design, built.operation), _nodes(built)
+    found = engaged(*given, built.models[0], nodes)
+    alone = built.models[0].without_friction
+    return found or one_engagement(built.design, built.operation.load, alone, nodes)
+
+
+def _under(
+    built: Built, engagement: Engagement, models: Models
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Contacts and cycle in balance under one friction law."""
+    given = built.design, built.operation
+    found, _ = balance_under(*given, engagement, models)
+    lanes, cycle = jax.device_get(_computed(*given, replace(engagement, body=None), found))
+    return {name: by_pairs(built, values) for name, values in lanes.items()}, cycle
+
+
+def _nodes(built: Built) -> int:
+    """Nodes in each segment between events, so that there are as many phases as asked for."""
+    sharing = built.models[0].sharing
+    shape = jax.eval_shape(lambda mesh: cycle_nodes(mesh, sharing, 3)[0], built.design.mesh)
+    segments = int(shape.size) // 3
+    return max(3, -(-int(asked(built).phases) // segments))
+
+
+@program
+def _computed(
+    design: Design, operation: Operation, engagement: Engagement, found: Balance
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Values at the contacts [..., pair, slice, node], and those of the whole mesh [node]."""
+    cycle = cycle_of(design, operation, engagement, found)
+    state, at, contacts = cycle.state, cycle.state.conditions, cycle.state.contacts
+    lanes = {
+        "active": contacts.active,
+        "path": contacts.path,
+        "weight_of_line": contacts.weight,
+        "radius": contacts.radius,
+        **_of_load(at, contacts),
+        "load_by_law": state.balance.load,
+        "friction": state.balance.friction,
+        "sliding_loss": state.sliding_loss,
+        "rolling_loss": state.rolling_loss,
+        "film_by_law": jnp.stack([evaluate(law, at) for law in film_laws(contacts.shape)]),
+    }
+    shape = contacts.active.shape
+    whole = {"drag_loss": state.drag_loss, "output_power": state.output_power}
+    courses = {name: jnp.broadcast_to(v, cycle.phase.shape) for name, v in whole.items()}
+    courses |= {"phase": cycle.phase, "weight": cycle.weight}
+    return {name: _spread(values, shape) for name, values in lanes.items()}, courses
+
+
+def _of_load(at: Conditions, contacts: Contacts) -> dict[str, Array]:
+    """What a contact carries and how its surfaces move; nothing where a pair is not in contact."""
+    values = {
+        "load": at.load,
+        # An ellipse has no length.
+        "line_load": at.line_load if contacts.shape == "line" else at.load,
+        "pressure": at.pressure,
+        "speed_a": at.speed_a,
+        "speed_b": at.speed_b,
+    }
+    return {name: jnp.where(contacts.active, one, 0.0) for name, one in values.items()}
+
+
+def _spread(values: Array, shape: tuple[int, ...]) -> Array:
+    return jnp.broadcast_to(values, (*values.shape[: values.ndim - 3], *shape))
+
+
+def by_pairs(built: Built, values: np.ndarray) -> np.ndarray:
+    """Values [..., pair, slice, node] as [..., node, pair, slice] of the pairs that the mesh holds."""
+    ordered = np.moveaxis(np.asarray(values), -1, -3)
+    return built.design.mesh.in_pairs(ordered, ordered.ndim - 2)

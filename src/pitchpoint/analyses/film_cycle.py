@@ -1,0 +1,346 @@
+"""Figures of films over a mesh cycle, whatever solved them: losses, efficiency, deviations, words."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.caveats import cold_warning, conformal_warning
+from pitchpoint.analyses.film_contacts import asked, film_laws, film_model_of
+from pitchpoint.cases.build import Built
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
+from pitchpoint.lubrication.ehl.model import SMOOTH
+from pitchpoint.results.store import dataset
+from pitchpoint.status import Code
+from pitchpoint.status import told as told_of
+
+__all__ = ["whole"]
+
+States = Mapping[str, np.ndarray]
+Lanes = Mapping[str, tuple[tuple[str, ...], np.ndarray]]
+
+COUNTS = 0.05
+"""Part of a contact's load on asperities from which on it is told what that rests on."""
+
+LOWER = 0.05
+"""Part by which the largest pressure is below Hertz's from which on it is told."""
+
+UNEVEN = 0.3
+"""Rq R/b2 from which on rough flanks lower the largest pressure by 5 % or more at low speed."""
+
+_SUMMITS = ("eta_beta_sigma", "sigma_over_beta")
+_MASKED = ("pressure", "friction", "film_by_law")
+
+
+def whole(
+    built: Built,
+    states: States,
+    parts: Sequence[xr.Dataset],
+    lanes: tuple[str, ...],
+    more: Lanes,
+    **attributes: Any,
+) -> xr.Dataset:
+    """Films of the cycle, with those by film laws and friction by the laws of the case beside them.
+
+    Args:
+        built: the case.
+        states: what its contacts carry and how they move.
+        parts: films by pieces, on points that are the phases.
+        lanes: names of the axes of a contact.
+        more: what else the dataset holds.
+        attributes: of the dataset.
+    """
+    found = xr.concat(parts, "point", combine_attrs="drop").rename(point="phase")
+    loaded, codes = states["loaded"], found["film_status"].values
+    solved = {str(name): (tuple(map(str, one.dims)), one.values) for name, one in found.items()}
+    figures = _figures(built, states, {name: values for name, (_, values) in solved.items()})
+    told = codes[loaded] if loaded.any() else np.array([int(Code.UNLOADED)])
+    laws = film_laws(built.design.mesh.shape)
+    data = dataset(
+        {
+            **solved,
+            **_beside(states, lanes),
+            **_figure_dims(figures),
+            "weight": (("phase",), states["weight"]),
+            **more,
+        },
+        {
+            "phase": ("phase", states["phase"]),
+            "law": built.law_names,
+            "film_law": [law.name for law in laws],
+        },
+        travels=built.travels,
+        warnings=[*_lost(codes[loaded]), *_of_pieces(parts), *_about(built, states, found)],
+        solve=told_of(told, _residuals(parts, told), _iterations(parts)),
+        film_titles=[law.title for law in laws],
+        film_places=[law.place for law in laws],
+        choices=_choices(built),
+        other_rolling=_other_rolling(built),
+        assumed=_assumed(built, figures),
+        below_hertz=_below_hertz(built, states, figures),
+        pitch=str(built.way["pitch"]),
+        **attributes,
+    )
+    data["path"].attrs.update(built.way)
+    return data
+
+
+def _figure_dims(
+    figures: Mapping[str, np.ndarray],
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Figures with their dimensions: of all laws of film or friction, of the phases, or none."""
+    axes = {
+        "film_deviation": ("film_law",),
+        "largest_film_deviation": ("film_law",),
+        "film_loss": ("phase",),
+        "law_loss": ("law", "phase"),
+    }
+    return {
+        name: (axes.get(name, ("law",)[: np.ndim(one)]), np.asarray(one))
+        for name, one in figures.items()
+    }
+
+
+def _beside(
+    states: States, lanes: tuple[str, ...]
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Conditions at the contacts, and what film laws and friction laws say there."""
+    loaded = states["loaded"]
+    values = {name: np.where(loaded, states[name], np.nan) for name in _MASKED}
+    axes = {"friction": ("law",), "film_by_law": ("film_law",)}
+    given = {name: states[name] for name in ("load", "radius", "path")}
+    given |= {
+        "entrainment": np.abs(states["speed_a"] + states["speed_b"]) / 2.0,
+        "sliding_velocity": states["speed_a"] - states["speed_b"],
+        "active": states["active"],
+    }
+    every = {**given, **values}
+    return {name: ((*axes.get(name, ()), *lanes), one) for name, one in every.items()}
+
+
+def _figures(
+    built: Built, states: States, found: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Figures of the cycle; what needs all loaded contacts is withheld if one of them is missing."""
+    loaded, weight = states["loaded"], states["weight"]
+    known = loaded & (found["film_status"] == Code.SOLVED)
+    whole = np.where(np.array_equal(known, loaded) and loaded.any(), 1.0, np.nan)
+    load = np.where(loaded, states["load"], 0.0)
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        """Mean over the cycle of sums over the contacts that carry."""
+        sums = np.sum(np.where(loaded, np.nan_to_num(values), 0.0), axis=(-2, -1))
+        return np.asarray(sums @ weight)
+
+    total = mean(load) if loaded.any() else np.nan
+    own = states["load_by_law"]
+    sliding, rolling = (mean(found[f"film_{kind}_loss"]) * whole for kind in ("sliding", "rolling"))
+    by_law = states["sliding_loss"] + states["rolling_loss"]
+    figures = {
+        **_extremes(found),
+        "mean_film_friction": mean(load * found["film_friction"]) / total * whole,
+        "mean_boundary_part": mean(load * found["boundary_part"]) / total * whole,
+        "mean_law_friction": mean(own * states["friction"]) / mean(own)
+        if loaded.any()
+        else own[:, 0, 0, 0] * np.nan,
+        "mean_film_sliding_loss": sliding,
+        "mean_film_rolling_loss": rolling,
+        "mean_film_loss": sliding + rolling,
+        "mean_law_loss": mean(by_law),
+        "mean_law_rolling_loss": mean(states["rolling_loss"]),
+        "film_loss": _course(found, loaded, known),
+        "law_loss": np.sum(np.where(loaded, by_law, 0.0), axis=(-2, -1)),
+        "loaded_contacts": np.sum(loaded),
+        "solved_contacts": np.sum(known),
+        **_deviations(built, states["film_by_law"], found, known),
+    }
+    return figures | _efficiencies(states, figures)
+
+
+def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Smallest and largest values of the films that were found."""
+    low = {"smallest_film": "minimum_film", "smallest_lambda": "minimum_lambda"}
+    high = {
+        "largest_film_pressure": "film_pressure",
+        "largest_asperity_share": "asperity_share",
+        "largest_film_rise": "film_rise",
+        "largest_flash_rise": "flash_rise",
+    }
+    high = {name: own for name, own in high.items() if own in found}
+
+    def end(name: str, reduce: Any) -> Any:
+        some = found[name][~np.isnan(found[name])]
+        return reduce(some) if some.size else np.nan
+
+    return {name: end(own, np.min) for name, own in low.items()} | {
+        name: end(own, np.max) for name, own in high.items()
+    }
+
+
+def _course(found: Mapping[str, np.ndarray], loaded: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Loss by the films over the cycle; withheld at phases where a loaded contact is missing."""
+    lost = found["film_sliding_loss"] + found["film_rolling_loss"]
+    course = np.sum(np.where(known, np.nan_to_num(lost), 0.0), axis=(-2, -1))
+    missing = np.any(loaded & ~known, axis=(-2, -1))
+    return np.where(missing, np.nan, course)
+
+
+def _deviations(
+    built: Built, by_law: np.ndarray, found: Mapping[str, np.ndarray], known: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Films by law over those solved at the same place less one: mean, and where it is largest.
+
+    Laws of lines know no ends: their smallest film is that of a row in the middle. Where mean planes
+    overlap there is no film to compare with.
+    """
+    least = "row_film" if "row_film" in found else "minimum_film"
+    solved = {"minimum": found[least], "central": found["central_film"]}
+    apart = {place: known & (film > 0.0) for place, film in solved.items()}
+    each = [
+        law_film[apart[law.place]] / solved[law.place][apart[law.place]] - 1.0
+        for law, law_film in zip(film_laws(built.design.mesh.shape), by_law, strict=True)
+    ]
+    largest = [one[np.argmax(np.abs(one))] if one.size else np.nan for one in each]
+    return {
+        "film_deviation": np.array([one.mean() if one.size else np.nan for one in each]),
+        "largest_film_deviation": np.array(largest),
+    }
+
+
+def _efficiencies(states: States, figures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Efficiency by films and by law with the losses beside the teeth, and how far the laws are off."""
+    weight = states["weight"]
+    out, drag = states["output_power"] @ weight, states["drag_loss"] @ weight
+    film, law = figures["mean_film_loss"], figures["mean_law_loss"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return {
+            "film_efficiency": np.where(out > 0.0, out / (out + drag + film), np.nan),
+            "law_efficiency": np.where(out > 0.0, out / (out + drag + law), np.nan),
+            "friction_deviation": figures["mean_law_friction"] / figures["mean_film_friction"]
+            - 1.0,
+            "loss_deviation": law / film - 1.0,
+        }
+
+
+# ---- words
+
+
+def _lost(codes: np.ndarray) -> Iterator[str]:
+    """Loaded contacts whose film was not found, by what became of them."""
+    for code in sorted({*codes.tolist()} - {int(Code.SOLVED)}):
+        yield (
+            f"Films: {int(np.sum(codes == code))} of {codes.size} loaded contacts have no film "
+            f"({Code(code).sentence}); the loss and efficiency by films are withheld."
+        )
+
+
+def _of_pieces(parts: Sequence[xr.Dataset]) -> list[str]:
+    """Warnings of all pieces: of a kind the worst one, and where it is."""
+    ends = np.cumsum([0, *(part.sizes["point"] for part in parts)])
+    kinds: dict[str, list[tuple[float, str, str]]] = {}
+    for k, part in enumerate(parts):
+        where = f"phases {ends[k] + 1} to {ends[k + 1]} of {ends[-1]}"
+        told = zip(*(json.loads(part.attrs[name]) for name in ("doubts", "warnings")), strict=True)
+        for (kind, extent), text in told:
+            kinds.setdefault(kind, []).append((extent, where, text))
+    return [_worst(told) for told in kinds.values()]
+
+
+def _worst(told: Sequence[tuple[float, str, str]]) -> str:
+    """The worst one of warnings of one kind, of extent, place and words."""
+    _, where, text = max(told, key=lambda one: one[0])
+    others = ", and less at others" if len(told) > 1 else ""
+    return f"Films, {where}{others}: {text}."
+
+
+def _about(built: Built, states: States, found: xr.Dataset) -> list[str]:
+    """What the films leave out."""
+    run = {"load": np.where(states["loaded"], states["load"], 0.0), "radius": states["radius"]}
+    cold = [cold_warning(built, _moving(states, found))] if _is_cold(built) else []
+    return [*cold, *(f"Films: {text}" for text in conformal_warning(built.design.mesh, run))]
+
+
+def _is_cold(built: Built) -> bool:
+    return film_model_of(built).thermal == ISOTHERMAL
+
+
+def _moving(states: States, found: xr.Dataset) -> dict[str, np.ndarray]:
+    """Contacts that carry, as a mesh cycle tells them, with what the films say."""
+    every = {
+        "pressure": states["pressure"],
+        "radius": states["radius"],
+        "entrainment": 0.5 * (states["speed_a"] + states["speed_b"]),
+        "sliding_velocity": states["speed_a"] - states["speed_b"],
+        "friction": found["film_friction"].values,
+        "film_thickness": found["central_film"].values,
+    }
+    solved = np.isfinite(every["friction"])
+    return {name: values[solved] for name, values in every.items()}
+
+
+def _other_rolling(built: Built) -> str:
+    """Why a law that solves films has another loss than its films; empty where it has not."""
+    solved = [one.law.title for one in built.models if one.law.films is not None]
+    model = built.models[0].rolling
+    if not solved or model.name == "none":
+        return ""
+    return (
+        f"{solved[0]}: the case takes rolling resistance from {model.title}; that of the films, which stands "
+        "beside it here, is their own."
+    )
+
+
+def _assumed(built: Built, figures: Mapping[str, np.ndarray]) -> str:
+    """What of the films rests on assumed asperities; empty where they carry little or were given."""
+    names = [name for name in _SUMMITS if getattr(asked(built), name) is None]
+    if not names or not figures["largest_asperity_share"] > COUNTS:
+        return ""
+    part = 100.0 * figures["mean_boundary_part"] / figures["mean_film_friction"]
+    friction = f", and {part:.0f} % of the friction, rest" if np.isfinite(part) else " rests"
+    values = " and ".join(f"{name} {getattr(film_model_of(built), name):g}" for name in names)
+    return f"the load on asperities{friction} on assumed {values}"
+
+
+def _below_hertz(built: Built, states: States, figures: Mapping[str, np.ndarray]) -> str:
+    """Why rough flanks have a largest pressure below that of the dry contact; empty if they have not."""
+    smooth = film_model_of(built).asperities == SMOOTH
+    if smooth or asked(built).over_patch or not states["loaded"].any():
+        return ""  # pressures of patches stand beside those of their own dry contacts
+    most = np.argmax(np.where(states["loaded"], states["pressure"], 0.0))
+    pressure, radius = (states[name].reshape(-1)[most] for name in ("pressure", "radius"))
+    # b = 4 p R/E' of a dry line contact.
+    half_width = 4.0 * pressure * radius / float(built.design.modulus)
+    ratio = float(built.design.roughness.composite_rq) * radius / half_width**2
+    lacks = 1.0 - figures["largest_film_pressure"] / pressure
+    if not (lacks > LOWER and ratio > UNEVEN):
+        return ""
+    return (
+        f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load beyond "
+        f"the dry contact, where Rq R/b2 is {ratio:.2g}."
+    )
+
+
+def _choices(built: Built) -> dict[str, Any]:
+    """The choices behind the films, by name."""
+    model = film_model_of(built)
+    return {
+        "nodes": model.nodes,
+        "viscosity_law": model.viscosity_law,
+        "density_law": model.density_law,
+        "shear_law": model.shear_law,
+        "asperities": model.asperities,
+        "boundary_friction": model.boundary_friction,
+        "inlet": model.inlet,
+        "thermal": model.thermal,
+    }
+
+
+def _residuals(parts: Sequence[xr.Dataset], codes: np.ndarray) -> np.ndarray:
+    largest = max(float(part.attrs["residual"]) for part in parts)
+    return np.full(codes.shape, largest)
+
+
+def _iterations(parts: Sequence[xr.Dataset]) -> np.ndarray:
+    return np.array([int(part.attrs["iterations"]) for part in parts])

@@ -1,0 +1,471 @@
+"""Films over the whole patch of the contacts of a mesh, solved over its cycle, beside those of lines."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.film import OF_LINES, films_of_lines, over_rough, values_of_lines
+from pitchpoint.analyses.film_contacts import alike, asked, states
+from pitchpoint.analyses.film_cycle import whole
+from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
+from pitchpoint.cases.build import Built, tooth_size
+from pitchpoint.cases.films import patch_grid
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import Doubt, extent_of, kind_of
+from pitchpoint.lubrication.ehl.line import FLOODED
+from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
+from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
+from pitchpoint.lubrication.ehl.patch.layout import FEWEST
+from pitchpoint.results.store import dataset
+from pitchpoint.status import Code
+
+__all__ = ["finite_part", "joined", "pieces"]
+
+TOGETHER = 2
+"""Phases of a piece, so that little is lost when a run is stopped."""
+
+KINDS = ("carries most", "thinnest film")
+"""Contacts whose fields are kept."""
+
+_LANES = ("phase", "pair", "line")
+_OF_PIECE = ("point", "pair", "line")
+_MORE = {
+    "minimum_place": ("direction",),
+    "largest_place": ("direction",),
+    "near_ends": ("end", "distance"),
+}
+"""Axes of values of a contact that are no single numbers."""
+
+_FIELDS = {
+    "field_pressure": "pressure",
+    "field_asperity_pressure": "asperity_pressure",
+    "field_dry_pressure": "dry_pressure",
+    "field_film": "gap",
+}
+_OF_FIELD = ("kept", "y", "x")
+
+_COARSE = ("central_film", "minimum_film", "largest_pressure", "near_ends", "friction")
+"""What is solved once more on a coarser grid."""
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A contact that no solver takes.
+
+    Attributes:
+        why: in words.
+    """
+
+    why: str
+
+
+def pieces(built: Built) -> Iterator[Piece]:
+    """Ranges of phases."""
+    every = wholes(built).states["phase"].size
+    for first in range(0, every, TOGETHER):
+        yield {"first": first, "count": min(TOGETHER, every - first)}
+
+
+def finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    """Films of all contacts at some phases."""
+    first, count = piece["first"], piece["count"]
+    taken, given = slice(first, first + count), wholes(built)
+    loaded, load = (given.states[name][taken] for name in ("loaded", "load"))
+
+    def done(part: int, every: int, doing: str = "") -> None:
+        progress(first + count * part // every, doing)
+
+    films, back = _solved(built, given.numbers[taken][loaded], given.scale, done)
+    lanes = np.full(loaded.shape, -1)
+    lanes[loaded] = back
+    values = _values(built, films, lanes, load)
+    lines = _as_lines(built, given, taken, values["film_inlet"])
+    ended = [one.ended for one in films if isinstance(one, PatchFilms)]
+    found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
+    told = [*_told(films), *_starved(built, values["film_inlet"])]
+    return dataset(
+        {
+            **{name: ((*_OF_PIECE, *_MORE.get(name, ())), one) for name, one in values.items()},
+            **{name: (_OF_PIECE, one) for name, one in lines.items()},
+            **_kept(built, films, lanes, values, load),
+        },
+        {},
+        warnings=told,
+        doubts=[[kind_of(text), extent_of(text)] for text in told],
+        residual=max((one.ended.reynolds for one in found), default=0.0),
+        iterations=max((one.steps for one in ended), default=0),
+    )
+
+
+def _told(films: Sequence[PatchFilms | Refused]) -> list[str]:
+    """Warnings of contacts that were solved, and why others were refused, each once.
+
+    What the last row of a line is has its place beside the pressures near the ends.
+    """
+    texts: dict[str, None] = {}
+    for one in films:
+        if isinstance(one, Refused):
+            texts[f"a contact was not taken: {one.why}"] = None
+        elif one.solved:
+            texts |= dict.fromkeys(text for text in one.warnings if kind_of(text) != ENDS)
+    return [*texts]
+
+
+def _starved(built: Built, inlet: np.ndarray) -> Iterator[Doubt]:
+    """Oil that is drawn from further away than flanks reach."""
+    size, farthest = tooth_size(built.design.mesh), np.nanmax(inlet, initial=0.0)
+    if size is not None and farthest > size:
+        yield Doubt(
+            f"a film draws its oil from {1e3 * farthest:.3g} mm before a contact on, and flanks are about "
+            f"{1e3 * size:.3g} mm high: it comes out too thick, and rolling resistance too large; "
+            'solver = "line" has an inlet',
+            "inlet",
+            farthest / size,
+        )
+
+
+def _solved(
+    built: Built, numbers: np.ndarray, scale: np.ndarray, done: Any
+) -> tuple[list[PatchFilms | Refused], np.ndarray]:
+    """Films of the contacts that differ, and which of them belongs to each contact."""
+    if not len(numbers):
+        return [], np.zeros(0, int)
+    where, back = alike(numbers, scale)
+    films = []
+    for k, one in enumerate(numbers[where]):
+        told = f"contact {k + 1} of {len(where)}"
+
+        def step(number: int, residual: float, k: int = k, told: str = told) -> None:
+            done(k, len(where), f"{told}, Newton step {number}, residual {residual:.0e}")
+
+        films.append(_one(built, one, patch_grid(asked(built)), step))
+        done(k + 1, len(where))
+    return films, back
+
+
+def _one(
+    built: Built, numbers: np.ndarray, grid: tuple[int, int], told: Any = None
+) -> PatchFilms | Refused:
+    nodes, cells = grid
+    try:
+        return solve_patch(one_contact(built, numbers), nodes=nodes, cells=cells, progress=told)
+    except InputError as error:
+        return Refused(error.message)
+
+
+# ---- values of the contacts
+
+
+def _values(
+    built: Built, films: Sequence[PatchFilms | Refused], lanes: np.ndarray, load: np.ndarray
+) -> dict[str, np.ndarray]:
+    """What follows from the films, for every lane; not a number where there is none."""
+    line = built.design.mesh.shape == "line"
+    each = [_of_film(one, line) if isinstance(one, PatchFilms) else {} for one in films]
+    codes = [int(_code(one)) for one in films]
+    defects = [one.ended.reynolds if isinstance(one, PatchFilms) else np.nan for one in films]
+
+    def lane(values: list[Any], shape: tuple[int, ...] = ()) -> np.ndarray:
+        every = np.full((len(values) + 1, *shape), np.nan)
+        for k, one in enumerate(values):
+            every[k] = one
+        found: np.ndarray = every[lanes]
+        return found
+
+    found = {
+        name: lane([one.get(name, np.nan) for one in each], shape)
+        for name, shape in _SHAPES.items()
+        if line or name not in _ROWS
+    }
+    status = np.array([*codes, int(Code.UNLOADED)])[lanes]
+    held = np.where(lanes < 0, np.nan, load)
+    found["boundary_part"] = found.pop("boundary_force") / held
+    found["minimum_lambda"] = over_rough(built, found["minimum_film"])
+    return found | {"film_status": status, "film_defect": lane(defects)}
+
+
+def _code(one: PatchFilms | Refused) -> Code:
+    return one.ended.code if isinstance(one, PatchFilms) else Code.NOT_CONVERGED
+
+
+_NAMES = {
+    "central_film": "central_film",
+    "minimum_film": "minimum_film",
+    "mean_film": "mean_film",
+    "film_pressure": "largest_pressure",
+    "dry_pressure": "hertz_pressure",
+    "dry_half_width": "half_width",
+    "asperity_share": "asperity_share",
+    "film_friction": "friction",
+    "film_sliding_loss": "sliding_power",
+    "film_rolling_loss": "pumping_power",
+    "minimum_place": "minimum_place",
+    "largest_place": "largest_place",
+    "near_ends": "near_ends",
+}
+"""Values of contacts, and what they are of a film over a patch."""
+
+_SHAPES: dict[str, tuple[int, ...]] = {
+    **dict.fromkeys([*_NAMES, "boundary_force", "rolling_resistance", "film_inlet"], ()),
+    "minimum_place": (2,),
+    "largest_place": (2,),
+    "near_ends": (2, END_DISTANCES.size),
+    "row_film": (),
+}
+_ROWS = ("row_film",)
+"""Values that lines alone have."""
+
+
+def _of_film(films: PatchFilms, line: bool) -> dict[str, Any]:
+    film = films.film
+    found = {name: np.asarray(getattr(film, own)) for name, own in _NAMES.items()}
+    return found | {
+        "boundary_force": np.hypot(*film.boundary_force),
+        "rolling_resistance": np.hypot(*film.rolling),
+        "film_inlet": -films.layout.inlet,
+        **({"row_film": _of_middle_row(film)} if line else {}),
+    }
+
+
+def _of_middle_row(film: PatchFilm) -> float:
+    """Smallest film of the row of cells in the middle of a line [m]; none where the grid ends before."""
+    y = np.asarray(film.y)
+    row = int(np.argmin(np.abs(y)))
+    there = y[0] <= 0.0 <= y[-1]
+    return float(np.min(np.asarray(film.gap)[row])) if there else np.nan
+
+
+def _as_lines(
+    built: Built, given: Wholes, taken: slice, inlet: np.ndarray
+) -> dict[str, np.ndarray]:
+    """The same contacts, with the same inlets, by the solver of lines without ends; nothing of ellipses."""
+    if built.design.mesh.shape != "line":
+        return {}
+    slices = states(built)
+    some = {name: slices[name][taken] for name in OF_LINES}
+    begins = np.broadcast_to(inlet[..., None], given.grouped(some["load"]).shape)
+    flooded = np.where(np.isnan(begins), FLOODED, begins)
+    some["inlet"] = flooded.reshape(some["load"].shape)
+    films, _, back = films_of_lines(built, some, _silent)
+    every = values_of_lines(films.film, some, back)
+    parts = {name: given.grouped(every[name]) for name in _OF_LINE}
+    load, loaded = given.grouped(some["load"]), given.grouped(some["loaded"])
+    signs = np.sign(given.grouped(some["speed_b"] - some["speed_a"]))
+
+    def total(values: np.ndarray) -> np.ndarray:
+        sums = np.sum(np.where(loaded, values, 0.0), axis=-1)
+        return np.where(np.any(loaded, axis=-1), sums, np.nan)
+
+    loss = parts["film_sliding_loss"] + parts["film_rolling_loss"]
+    drawn = np.abs(total(signs * parts["film_friction"] * load))
+    least = np.min(np.where(loaded, parts["minimum_film"], np.inf), axis=-1)
+    return {
+        "line_central_film": in_the_middle(given.middles[taken], parts["central_film"]),
+        "line_minimum_film": np.where(np.isinf(least), np.nan, least),
+        "line_friction": drawn / total(load),
+        "line_loss": total(loss),
+    }
+
+
+_OF_LINE = (
+    "central_film",
+    "minimum_film",
+    "film_friction",
+    "film_sliding_loss",
+    "film_rolling_loss",
+)
+
+
+def _silent(part: int, every: int) -> None:
+    """Lines take no time beside patches."""
+
+
+# ---- fields
+
+
+def _kept(
+    built: Built,
+    films: Sequence[PatchFilms | Refused],
+    lanes: np.ndarray,
+    values: Mapping[str, np.ndarray],
+    load: np.ndarray,
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Fields of the contact that carries most and of that with the thinnest film, and where they are."""
+    nodes, cells = patch_grid(asked(built))
+    film = values["minimum_film"]
+    solved = np.isfinite(film)
+    places = {"kept_x": nodes, "kept_y": cells}
+    empty = {
+        **{name: np.full((len(KINDS), cells, nodes), np.nan) for name in _FIELDS},
+        **{name: np.full((len(KINDS), size), np.nan) for name, size in places.items()},
+    }
+    at = np.full((len(KINDS), lanes.ndim), -1)
+    if solved.any():
+        ranks = np.where(solved, load, -np.inf), np.where(solved, -film, -np.inf)
+        for k, rank in enumerate(ranks):
+            at[k] = np.unravel_index(np.argmax(rank), rank.shape)
+            found = films[lanes[tuple(at[k])]]
+            assert isinstance(found, PatchFilms)
+            for name, own in (*_FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
+                empty[name][k] = getattr(found.film, own)
+    dims = {**dict.fromkeys(_FIELDS, _OF_FIELD), "kept_x": ("kept", "x"), "kept_y": ("kept", "y")}
+    data = {name: (dims[name], one) for name, one in empty.items()}
+    return data | {"kept_at": (("kept", "axis"), at)}
+
+
+def _fields(
+    built: Built, parts: Sequence[xr.Dataset], whole_film: Mapping[str, np.ndarray]
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Fields of the two contacts of the whole cycle, and the same on a coarser grid."""
+    load = wholes(built).states["load"]
+    film = whole_film["minimum_film"]
+    firsts = np.cumsum([0, *(part.sizes["point"] for part in parts)])
+    found: dict[str, list[np.ndarray]] = {}
+    for k, best in enumerate((load, -film)):
+        ranks = []
+        for first, part in zip(firsts, parts, strict=False):
+            phase, pair, line = part["kept_at"].values[k]
+            ranks.append(best[first + phase, pair, line] if phase >= 0 else -np.inf)
+        chosen = int(np.argmax(ranks))
+        at = parts[chosen]["kept_at"].values[k].copy()
+        at[0] += firsts[chosen] if at[0] >= 0 else 0
+        for name in (*_FIELDS, "kept_x", "kept_y"):
+            found.setdefault(name, []).append(parts[chosen][name].values[k])
+        found.setdefault("kept_at", []).append(at)
+    dims = {**dict.fromkeys(_FIELDS, _OF_FIELD), "kept_x": ("kept", "x"), "kept_y": ("kept", "y")}
+    dims["kept_at"] = ("kept", "axis")
+    return {name: (dims[name], np.stack(one)) for name, one in found.items()}
+
+
+def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Values of the kept contacts on the next coarser grid; not a number without one."""
+    nodes, cells = patch_grid(asked(built))
+    dims = {"near_ends": ("kept", "end", "distance")}
+    shapes = {"near_ends": (2, END_DISTANCES.size)}
+    found = {name: np.full((len(at), *shapes.get(name, ())), np.nan) for name in _COARSE}
+    known: dict[tuple[int, ...], PatchFilms | Refused] = {}
+    for k, place in enumerate(map(tuple, at)):
+        if min(nodes, cells + 1) <= FEWEST or place[0] < 0:
+            continue
+        if place not in known:
+            given = wholes(built).numbers[place]
+            known[place] = _one(built, given, (nodes // 2 + 1, cells // 2))
+        film = known[place]
+        if isinstance(film, PatchFilms):
+            for name in _COARSE:
+                found[name][k] = getattr(film.film, name)
+    return {f"coarse_{name}": (dims.get(name, ("kept",)), values) for name, values in found.items()}
+
+
+# ---- the whole
+
+
+def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Films of the cycle, with those of lines, and of film laws and friction laws, beside them."""
+    given = wholes(built)
+    names = [name for name, one in parts[0].items() if "point" not in one.dims]
+    lanes = [part.drop_vars(names) for part in parts]
+    values = {
+        name: np.concatenate([part[name].values for part in parts])
+        for name in (*_FOR_FIGURES, *_BY_LINES)
+        if name in parts[0]
+    }
+    fields = _fields(built, parts, values)
+    more = {
+        **fields,
+        **_coarse(built, fields["kept_at"][1]),
+        **_line_figures(given.states, values),
+        **_finite_figures(values),
+        "line_length": (_LANES, given.states["weight_of_line"]),
+        "direction": (("direction",), np.array(["x", "y"])),
+        "end": (("end",), np.array(["first", "last"])),
+        "distance": (("distance",), END_DISTANCES),
+        "kept": (("kept",), np.array(KINDS)),
+    }
+    table = asked(built)
+    nodes, cells = patch_grid(table)
+    data = whole(
+        built,
+        given.states,
+        lanes,
+        _LANES,
+        more,
+        title="films of finite contacts",
+        solver=table.solver,
+        grid=json.dumps([nodes, cells]),
+        ends=table.ends or "",
+        end_profile=table.end_profile or "",
+        sharp=_sharp(given.states, values),
+    )
+    return data.set_coords(["direction", "end", "distance", "kept"])
+
+
+_BY_LINES = ("line_friction", "line_loss")
+_FOR_FIGURES = (
+    "minimum_film",
+    "central_film",
+    "near_ends",
+    "film_pressure",
+    "largest_place",
+    "dry_half_width",
+)
+
+NEAR = 1
+"""Number of the distance from an end whose pressure is shown first: half a half-width."""
+
+SHARP = 0.25
+"""Half-widths from an end within which a largest pressure is that of the end."""
+
+
+def _finite_figures(
+    values: Mapping[str, np.ndarray],
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Smallest film in the middle of a contact, and largest pressure near an end of a line."""
+    near, central = values["near_ends"][..., NEAR], values["central_film"]
+    found = {"smallest_central_film": ((), np.min(central[np.isfinite(central)], initial=np.inf))}
+    if np.isfinite(near).any():
+        found["largest_end_pressure"] = ((), np.nanmax(near))
+    return {
+        name: (dims, np.where(np.isinf(one), np.nan, one)) for name, (dims, one) in found.items()
+    }
+
+
+def _sharp(states: Mapping[str, np.ndarray], values: Mapping[str, np.ndarray]) -> str:
+    """What the largest pressure is where lines end sharply, in words; empty where none does."""
+    pressure = np.where(
+        np.isfinite(values["near_ends"][..., 0, 0]), values["film_pressure"], np.nan
+    )
+    if np.isnan(pressure).all():
+        return ""
+    at = np.unravel_index(np.nanargmax(pressure), pressure.shape)
+    end = 0.5 * states["weight_of_line"][at] - np.abs(values["largest_place"][at][1])
+    if end > SHARP * values["dry_half_width"][at]:
+        return ""
+    return (
+        f"The lines end sharply: the largest pressure, {1e-6 * pressure[at]:.0f} MPa, is that of the last "
+        "row and a number of the grid, and so is the smallest film where it lies there. Compare those at a "
+        "distance from the end, or give the flanks an end relief or end_profile."
+    )
+
+
+def _line_figures(
+    states: Mapping[str, np.ndarray], values: Mapping[str, np.ndarray]
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Mean friction and loss by films of lines without ends, withheld where one of them is missing."""
+    if "line_loss" not in values:
+        return {}
+    loaded, weight = states["loaded"], states["weight"]
+    load = np.where(loaded, states["load"], 0.0)
+
+    def mean(each: np.ndarray) -> np.ndarray:
+        return np.asarray(np.sum(np.where(loaded, each, 0.0), axis=(-2, -1)) @ weight)
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        friction = mean(load * values["line_friction"]) / mean(load)
+    whole_loss = mean(values["line_loss"]) if loaded.any() else np.array(np.nan)
+    return {"mean_line_friction": ((), friction), "mean_line_loss": ((), whole_loss)}

@@ -1,0 +1,193 @@
+"""What is wrong with height maps of a contact, and what its grid does not show of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.heights import HeightMap
+from pitchpoint.lubrication.ehl.patch.layout import (
+    FEWEST,
+    Ends,
+    Layout,
+    extents,
+    lowered_on,
+    problem_on,
+    without_oil,
+)
+
+__all__ = ["check_maps", "check_maps_on", "check_standing", "unseen"]
+
+COARSEST: Final = 4
+"""Steps of a map over the width of a contact, at least, along an axis on which heights change."""
+
+SHOWN: Final = 0.85
+"""Part of the Rq of a map that a grid has to show: of waves as long as four cells .9 are left."""
+
+
+def check_maps(contact: PatchContact) -> None:
+    """InputError for heights that no surface has, and for maps that cannot move as a whole."""
+    for one in contact.heights:
+        for key, values in (("heights", one.heights), ("x", one.x), ("y", one.y)):
+            wrong = int(np.sum(~np.isfinite(np.asarray(values))))
+            if wrong:
+                what = "height" if key == "heights" else f"place {key}"
+                raise InputError(
+                    f"a height map with {wrong} {what}{'s' * (wrong > 1)} that are no finite number",
+                    key=key,
+                )
+        for key, places in (("x", one.x), ("y", one.y)):
+            if not np.all(np.diff(np.asarray(places)) > 0.0):
+                raise InputError(f"places {key} of a height map have to rise", key=key)
+        _check_period(one)
+        if one.member is not None and np.unique(np.asarray(_speed(contact, one.member))).size > 1:
+            raise InputError(
+                "a height map moves as a whole: the surface that takes it along needs one speed along the "
+                "contact line",
+                key="heights",
+            )
+
+
+def _check_period(one: HeightMap) -> None:
+    heights = np.asarray(one.heights)
+    begins, ends = (heights[:, 0], heights[0]), (heights[:, -1], heights[-1])
+    off = max(float(np.max(np.abs(a - b))) for a, b in zip(begins, ends, strict=True))
+    if one.periodic and off > 1e-6 * np.ptp(heights):
+        raise InputError(
+            f"a periodic height map ends {1e9 * off:.3g} nm from the heights with which it begins: its last "
+            "row and column are the first ones of the next period",
+            key="heights",
+        )
+
+
+def check_standing(contact: PatchContact) -> None:
+    """InputError for maps on surfaces that move, which have no steady film."""
+    for one in contact.heights:
+        if one.member is None:
+            continue
+        across = (contact.across_a, contact.across_b)[one.member]
+        if np.any(np.asarray(_speed(contact, one.member))) or float(across):
+            raise InputError(
+                f"heights that move with member {one.member} have no steady film: `march_patches` moves "
+                "them, and a map of no member stays where it is",
+                key="heights",
+            )
+
+
+def _speed(contact: PatchContact, member: int) -> NDArray[np.float64]:
+    return np.asarray((contact.speed_a, contact.speed_b)[member])
+
+
+def check_maps_on(contact: PatchContact, layout: Layout, cells: int) -> None:
+    """InputError for maps that leave parts of the contact out, that are coarse, or that outgrow its grid.
+
+    Args:
+        contact: one, with its maps where they are.
+        layout: of its grid.
+        cells: across it.
+    """
+    if not contact.heights:
+        return
+    for one in contact.heights:
+        for axis, places, ends in zip("xy", (one.x, one.y), extents(contact, layout), strict=True):
+            _check_cover(one, axis, np.asarray(places), ends)
+    _check_reach(contact, layout, cells)
+
+
+def _check_cover(one: HeightMap, axis: str, places: NDArray[np.float64], ends: Ends) -> None:
+    low, high = ends
+    if not one.periodic and (places[0] > low or places[-1] < high):
+        raise InputError(
+            f"a height map from {_mm(places[0])} to {_mm(places[-1])} mm along {axis}: the contact reaches "
+            f"from {_mm(low)} to {_mm(high)} mm, and the map has to cover it",
+            key=axis,
+        )
+    changes = np.ptp(np.asarray(one.heights), axis=1 if axis == "x" else 0).max() > 0.0
+    inside = (places[1:] > low) & (places[:-1] < high) | one.periodic
+    step = float(np.max(np.diff(places)[inside]))
+    if changes and step > (high - low) / COARSEST:
+        raise InputError(
+            f"a height map with steps of {_mm(step)} mm along {axis}: the contact is {_mm(high - low)} mm "
+            f"long there, and takes at least {COARSEST} of them",
+            key=axis,
+        )
+
+
+def _mm(place: float) -> str:
+    return f"{1e3 * place:.4g}"
+
+
+def _check_reach(contact: PatchContact, layout: Layout, cells: int) -> None:
+    """InputError where heights let dry bodies touch at the edge of the grid."""
+    problem = problem_on(contact, layout, FEWEST, FEWEST - 1, cells)
+    dry = without_oil(problem.bodies, problem.apart, 1.0 / problem.yielding, problem.load)
+    held = np.asarray(dry.pressure) > 0.0
+    half = np.inf if contact.length is None else 0.5 * float(contact.length)
+    inside = np.array([layout.first > -half, layout.last < half])
+    if np.any(held[:, [0, -1]]) or np.any(held[[0, -1]][inside]):
+        raise InputError(
+            f"heights over {1e6 * _range(contact, layout, cells):.4g} um let the bodies touch at the edge of "
+            "the grid, which lies around the contact of their mean planes: take form and long waves as "
+            "radius, relief or profile, or a larger load",
+            key="heights",
+        )
+
+
+def _range(contact: PatchContact, layout: Layout, cells: int) -> float:
+    bodies = layout.bodies(FEWEST, FEWEST - 1, cells, contact.ends)
+    return float(np.ptp(np.asarray(lowered_on(contact.heights, layout, bodies))))
+
+
+def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Iterator[str]:
+    """Sentences on what the grid does not show of maps, and on contacts that are summits alone."""
+    patch = extents(contact, layout)
+    for one in contact.heights:
+        seen = _seen(one, layout, patch, (nodes, cells), contact.ends)
+        whole = _rq(one, patch)
+        if seen < SHOWN * whole:
+            yield (
+                f"the grid shows Rq = {1e9 * seen:.3g} nm of a height map with {1e9 * whole:.3g} nm: waves "
+                "shorter than about four cells are lost; take more nodes, or take them as asperities"
+            )
+    if contact.heights:
+        high, flat = _range(contact, layout, cells), layout.half_width**2 / (2.0 * layout.radius)
+        if high > flat:
+            yield (
+                f"heights over {1e6 * high:.3g} um are larger than the {1e6 * flat:.3g} um by which the load "
+                "flattens the bodies: the contact is one of single summits, on a grid made for all of it"
+            )
+
+
+def _rq(one: HeightMap, patch: tuple[Ends, Ends]) -> float:
+    """Rq of a map at its own places on the contact, or of a whole period [m]."""
+    heights = np.asarray(one.heights)
+    x, y = (np.asarray(places) for places in (one.x, one.y))
+    if not one.periodic:
+        along, across = (_on(places, ends) for places, ends in zip((x, y), patch, strict=True))
+        heights = heights[np.ix_(across, along)]
+    return float(np.std(heights))
+
+
+def _on(places: NDArray[np.float64], ends: Ends) -> NDArray[np.bool_]:
+    """Places on the contact, with those just beyond it."""
+    low = places[places <= ends[0]][-1:]
+    high = places[places >= ends[1]][:1]
+    found: NDArray[np.bool_] = (places >= low) & (places <= high)
+    return found
+
+
+def _seen(
+    one: HeightMap, layout: Layout, patch: tuple[Ends, Ends], grid: tuple[int, int], ends: str
+) -> float:
+    """Rq of what the cells of the contact see of a map [m]."""
+    bodies = layout.bodies(*grid, grid[1], ends)
+    places = (layout.length * np.asarray(one) for one in (bodies.x, bodies.y))
+    along, across = (
+        (at >= low) & (at <= high) for at, (low, high) in zip(places, patch, strict=True)
+    )
+    return float(np.std(np.asarray(lowered_on((one,), layout, bodies))[np.ix_(across, along)]))

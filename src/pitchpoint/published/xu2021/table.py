@@ -1,0 +1,50 @@
+"""The table [formulas] of the case: two points of the meshing zone, whose films its figures show."""
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity
+from pitchpoint.input.tables import Table
+
+__all__ = ["ZoneFilms"]
+
+FORCE = Quantity("force", 0.0, 1e6, "N", open_low=True)
+RADIUS = Quantity("length", 1e-4, 100.0, "m")
+SPEED = Quantity("velocity", 0.0, 100.0, "m/s", open_low=True)
+TURNS = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
+FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
+NODES = Quantity("dimensionless", 33, 1025, whole=True)
+
+_MOST = 100
+
+
+class ZoneFilms(Table):
+    """Contacts of one tooth at points A, at its root, and B, at its tip, eqs. 7 to 16.
+
+    Attributes:
+        form: "films".
+        load: of the tooth at both points.
+        radius: relative radius of curvature R at A and B.
+        entrainment: mean surface speed at A and B at the speed of the operating point.
+        speeds: of the wave generator at which films are solved, rising.
+        eta_beta_sigma, sigma_over_beta: of the asperities.
+        nodes: of the grid along the motion; across the face there is one cell less.
+    """
+
+    form: Literal["films"] = "films"
+    load: Annotated[float, FORCE]
+    radius: tuple[Annotated[float, RADIUS], Annotated[float, RADIUS]]
+    entrainment: tuple[Annotated[float, SPEED], Annotated[float, SPEED]]
+    speeds: Annotated[tuple[Annotated[float, TURNS], ...], Field(min_length=2, max_length=_MOST)]
+    eta_beta_sigma: Annotated[float, FACTOR]
+    sigma_over_beta: Annotated[float, FACTOR]
+    nodes: Annotated[float, NODES]
+
+    @model_validator(mode="after")
+    def _rising(self) -> "ZoneFilms":
+        if any(later <= one for one, later in pairwise(self.speeds)):
+            raise InputError("the speeds have to rise", key="speeds")
+        return self

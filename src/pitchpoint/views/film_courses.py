@@ -1,0 +1,495 @@
+"""Figures, tables and words of films that were solved over the mesh cycle, whatever solved them."""
+
+import json
+from collections.abc import Iterator, Sequence
+from itertools import cycle
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    INK,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    law_title,
+    laws,
+    layout,
+    pair_key,
+    plain,
+    short_axis,
+)
+from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
+from pitchpoint.views.point import period_of
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Paragraph, Printed, Table
+
+__all__ = [
+    "MOST",
+    "NONE",
+    "answered",
+    "beneath",
+    "counted",
+    "course",
+    "course_figure",
+    "courses",
+    "figures_table",
+    "film_laws",
+    "gone",
+    "of_most",
+    "place_of",
+    "printed",
+    "solved_how",
+    "told",
+]
+
+NONE = "No film was found."
+
+_FIGURES = (
+    "smallest_film",
+    "smallest_lambda",
+    "largest_film_pressure",
+    "largest_asperity_share",
+)
+_PARTS = {
+    "mean_film_friction": ("mean_boundary_part",),
+    "mean_film_loss": ("mean_film_sliding_loss",),
+}
+"""Figures with the parts that stand under them."""
+
+_BESIDE = {
+    "mean_film_friction": "mean_law_friction",
+    "mean_film_loss": "mean_law_loss",
+    "mean_film_rolling_loss": "mean_law_rolling_loss",
+    "film_efficiency": "law_efficiency",
+}
+"""Figures by the films, and the same by a friction law."""
+
+_WARMTH = ("largest_film_rise", "largest_flash_rise")
+"""Figures of films that are no isothermal ones."""
+
+_FINITE = ("smallest_central_film", "largest_end_pressure")
+"""Figures of films that are solved over the whole patch of a contact."""
+
+_NOTES = ("sharp", "below_hertz", "other_rolling")
+"""Attributes with sentences under the figures of the films."""
+
+_CENTRAL = ("longdash", "dashdot", "dot")
+"""Dashes of film laws for the middle, in turns: laws that agree lie upon each other."""
+
+
+def answered(data: xr.Dataset) -> str:
+    """Thinnest film, load on asperities, friction and efficiency by the films, in words."""
+    if int(data["solved_contacts"]) == 0:
+        return NONE
+    words = (
+        f"{_least(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; asperities "
+        f"carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
+    )
+    if rests := str(data.attrs["assumed"]):
+        words = f"{words}; {rests}"
+    if not np.isfinite(float(data["mean_film_loss"])):
+        return f"{words}; loss and efficiency are withheld, some films were not found"
+    friction, loss = (told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
+    return f"{words}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def _least(data: xr.Dataset) -> str:
+    """Thinnest films, in words."""
+    least = told(data, "smallest_film")
+    if "smallest_central_film" not in data:
+        return f"{least} at least"
+    middle = told(data, "smallest_central_film")
+    return f"{middle} at least in the middle of a contact, {least} anywhere"
+
+
+def _near_ends(data: xr.Dataset) -> str:
+    """Largest pressure near the ends of lines, in words."""
+    if "largest_end_pressure" not in data:
+        return ""
+    return f"; pressure up to {told(data, 'largest_end_pressure')} half a half-width from an end"
+
+
+def _thermal(data: xr.Dataset) -> str:
+    """Name of the thermal effect of the films."""
+    return str(json.loads(data.attrs["choices"])["thermal"])
+
+
+def _main(data: xr.Dataset) -> tuple[str, ...]:
+    """Names of the figures of the films themselves."""
+    found = (*(name for name in _FINITE if name in data), *_FIGURES)
+    return found if _thermal(data) == ISOTHERMAL else (*found, *_WARMTH)
+
+
+def _first(data: xr.Dataset) -> tuple[str, ...]:
+    """Those on the screen: a largest pressure at a sharp end is none to begin with."""
+    sharp = bool(data.attrs.get("sharp"))
+    return tuple(one for one in _main(data) if not (sharp and one == "largest_film_pressure"))
+
+
+def _warmed(data: xr.Dataset) -> str:
+    if _thermal(data) == ISOTHERMAL:
+        return ""
+    film, flash = (told(data, name) for name in _WARMTH)
+    return f"; films are up to {film} warmer than their inlet, surfaces {flash}"
+
+
+def _efficient(data: xr.Dataset) -> str:
+    if not np.isfinite(float(data["film_efficiency"])):
+        return ""
+    return f", efficiency {told(data, 'film_efficiency')}"
+
+
+def told(data: xr.Dataset, name: str) -> str:
+    """A figure of the films with its unit."""
+    return show.quantity(name, float(data[name]), of=data)
+
+
+def courses(name: str, outcome: Outcome, data: xr.Dataset, more: Sequence[Figure] = ()) -> Panel:
+    """Films, film over roughness, asperities, friction and loss over the mesh cycle, and more figures."""
+    axis = period_of(outcome).axis
+    return Panel(
+        "",
+        [
+            *more,
+            _films(f"{name}_thickness", data, axis),
+            *_ratios(f"{name}_ratio", data, axis),
+            _asperities(f"{name}_asperities", data, axis),
+            _frictions(f"{name}_friction", outcome, data, axis),
+            _losses(f"{name}_loss", outcome, data, axis),
+        ],
+    )
+
+
+MOST = "Of the contact that carries most at a phase."
+MEANS = "Mean of all contacts by their load."
+
+
+def of_most(data: xr.Dataset, values: np.ndarray) -> np.ndarray:
+    """Values [..., phase, pair, slice] at the contact of each phase that carries most [..., phase]."""
+    load = data["load"].values
+    flat = np.argmax(load.reshape(load.shape[0], -1), axis=-1)
+    each = values.reshape(*values.shape[:-2], -1)
+    found: np.ndarray = each[..., np.arange(load.shape[0]), flat]
+    return found
+
+
+def _mean(data: xr.Dataset, values: np.ndarray) -> np.ndarray:
+    """Mean over the contacts by their load [..., phase]; not a number where a film is missing."""
+    carries = np.where(np.isnan(data["pressure"].values), 0.0, data["load"].values)
+    weighed = np.where(carries > 0.0, carries * values, 0.0).sum(axis=(-2, -1))
+    total = carries.sum(axis=(-2, -1))
+    found: np.ndarray = weighed / np.where(total > 0.0, total, np.nan)
+    return found
+
+
+def course(data: xr.Dataset, name: str, key: Key, values: np.ndarray) -> Trace:
+    """Values [phase] of a variable over the mesh cycle."""
+    x, y = gapped(*folded(data["phase"].values, values))
+    return plain(key, x, display(name, y, data), show.unit_of(name, data))
+
+
+def course_figure(
+    name: str, title: str, variable: str, lines: list[tuple[Key, Trace]], axis: str, note: str
+) -> Figure:
+    """Lines of one variable over the mesh cycle."""
+    look = layout(axis, short_axis(variable), yaxis={"rangemode": "tozero"})
+    keys = tuple(key for key, _ in lines)
+    return Figure(name, title, [trace for _, trace in lines], look, note, keys, NONE)
+
+
+_OF_LINES_ALONE = {
+    "row_film": Key("solved, smallest of the middle row", INK, "dot"),
+    "line_minimum_film": Key("line without ends, smallest", GREY),
+    "line_central_film": Key("line without ends, in the middle", GREY, "dash"),
+}
+_SOLVED = (Key("solved, smallest", INK), Key("solved, in the middle", INK, "dash"))
+
+
+def _films(name: str, data: xr.Dataset, axis: str) -> Figure:
+    """Films solved beside those of every regression."""
+    solved = [of_most(data, data[one].values) for one in ("minimum_film", "central_film")]
+    lines = [
+        (key, course(data, "minimum_film", key, values))
+        for key, values in zip(_SOLVED, solved, strict=True)
+    ]
+    lines += [
+        (key, course(data, one, key, of_most(data, data[one].values)))
+        for one, key in _OF_LINES_ALONE.items()
+        if one in data
+    ]
+    by_law = of_most(data, data["film_by_law"].values)
+    lines += [
+        (key, course(data, "film_by_law", key, values))
+        for key, values in zip(_film_keys(data), by_law, strict=True)
+    ]
+    note = f"{MOST} Regressions of the film in the middle are broken lines; all are those of smooth surfaces."
+    return course_figure(name, "Film over the mesh cycle", "minimum_film", lines, axis, note)
+
+
+def _film_keys(data: xr.Dataset) -> list[Key]:
+    """Film laws, in broken lines where they give the film in the middle."""
+    titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
+    broken = cycle(_CENTRAL)
+    dashes = [next(broken) if place == "central" else "solid" for place in places]
+    each = enumerate(zip(titles, dashes, strict=True))
+    return [Key(title, PALETTE[k % len(PALETTE)], dash) for k, (title, dash) in each]
+
+
+def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[Figure]:
+    """Film over roughness with the lubrication regimes; none over smooth flanks."""
+    ratio, film = data["minimum_lambda"].values, data["minimum_film"].values
+    if not np.any(np.isfinite(ratio)):
+        return
+    rough = np.nanmedian(film / ratio)
+    thinnest = np.min(np.where(np.isnan(ratio), np.inf, ratio), axis=(-2, -1))
+    given = {
+        Key("solved, smallest", INK): of_most(data, ratio),
+        Key("solved, in the middle", INK, "dash"): of_most(data, data["central_film"].values)
+        / rough,
+        Key("solved, thinnest of all contacts", GREY, "dot"): np.where(
+            np.isinf(thinnest), np.nan, thinnest
+        ),
+    }
+    by_law = of_most(data, data["film_by_law"].values) / rough
+    given |= dict(zip(_film_keys(data), by_law, strict=True))
+    lines = [(key, course(data, "minimum_lambda", key, values)) for key, values in given.items()]
+    title = "Film over composite Rq, and lubrication regimes"
+    note = f"{MOST} {REGRESSED} What asperities carry stands in the next figure."
+    figure = course_figure(name, title, "minimum_lambda", lines, axis, note)
+    figure.layout.setdefault("shapes", [])
+    figure.layout.setdefault("annotations", [])
+    regimes(figure.layout, figure.data)
+    yield figure
+
+
+def _asperities(name: str, data: xr.Dataset, axis: str) -> Figure:
+    """Part of the load that asperities carry."""
+    shares = data["asperity_share"].values
+    key, most = (
+        Key("all contacts", PALETTE[0]),
+        Key("contact that carries most", PALETTE[1], "dash"),
+    )
+    lines = [
+        (key, course(data, "asperity_share", key, _mean(data, shares))),
+        (most, course(data, "asperity_share", most, of_most(data, shares))),
+    ]
+    title = "Part of the load on asperities"
+    return course_figure(name, title, "asperity_share", lines, axis, MEANS)
+
+
+def _frictions(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> Figure:
+    """Friction coefficient by the films, its part by asperities, and that of the laws of the case."""
+    both = {
+        Key("by films", INK): "film_friction",
+        Key("of it by asperities", INK, "dot"): "boundary_part",
+    }
+    lines = [
+        (key, course(data, one, key, _mean(data, data[one].values))) for key, one in both.items()
+    ]
+    for key, values in zip(_law_keys(outcome, data), data["friction"].values, strict=True):
+        lines.append((key, course(data, "friction", key, _mean(data, values))))
+    return course_figure(name, "Friction coefficient", "friction", lines, axis, MEANS)
+
+
+def _law_keys(outcome: Outcome, data: xr.Dataset) -> list[Key]:
+    names = enumerate(laws(data))
+    return [Key(law_title(outcome, law), PALETTE[k % len(PALETTE)]) for k, law in names]
+
+
+def _losses(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> Figure:
+    """Loss of the teeth by the films, and by the laws of the case."""
+    key = Key("by films", INK)
+    lines = [(key, course(data, "film_loss", key, data["film_loss"].values))]
+    for law, values in zip(_law_keys(outcome, data), data["law_loss"].values, strict=True):
+        lines.append((law, course(data, "law_loss", law, values)))
+    note = "Sliding and rolling of all contacts."
+    return course_figure(name, "Loss of the teeth", "film_loss", lines, axis, note)
+
+
+def gone(data: xr.Dataset) -> Iterator[Paragraph]:
+    """That contacts have no film, where some have none."""
+    missing = int(data["loaded_contacts"]) - int(data["solved_contacts"])
+    if missing:
+        yield Paragraph(
+            f"{missing} loaded contacts have no film, and nothing is shown of them; loss, efficiency and "
+            "mean friction by films are withheld.",
+            "warning",
+        )
+
+
+def solved_how(data: xr.Dataset, contacts: str, grid: str) -> str:
+    """How the films were solved, in words.
+
+    Args:
+        data: films of the cycle.
+        contacts: what they are, in words.
+        grid: on which they were solved, in words.
+    """
+    solve, chosen = json.loads(data.attrs["solve"]), json.loads(data.attrs["choices"])
+    named = ", ".join(f"{name.replace('_', ' ')} {chosen[name]}" for name in _CHOSEN)
+    return (
+        f"Pressure, film and load of each of {int(data['loaded_contacts'])} {contacts} together, at "
+        f"{data.sizes['phase']} phases of the mesh cycle under the forces of the balance with the first "
+        f"friction law: {solve['sentence']}; at most {solve['iterations']} iterations, largest defect "
+        f"{solve['residual']:.0e} of Hertz's pressure. {grid}; {named}, "
+        f"boundary friction {chosen['boundary_friction']:g}. {_warmth(data)}"
+    )
+
+
+def _warmth(data: xr.Dataset) -> str:
+    thermal = _thermal(data)
+    if thermal == ISOTHERMAL:
+        return "Isothermal."
+    film, flash = (told(data, name) for name in _WARMTH)
+    named = thermal.replace("_", " ")
+    return f"With heat ({named}): films up to {film} above their inlet, surfaces up to {flash}."
+
+
+def figures_table(outcome: Outcome, data: xr.Dataset) -> Table:
+    """Figures of the cycle, with those of lines without ends and of the friction laws beside them."""
+    known, lines = laws(data), [LINES] * ("mean_line_loss" in data)
+
+    def row(name: str, cells: Sequence[str]) -> tuple[str, ...]:
+        beside = [told(data, _OF_LINES[name]) if name in _OF_LINES else "" for _ in lines]
+        title = titled(name, data).removesuffix(" by the films")
+        return (title, told(data, name), *beside, *cells)
+
+    empty = [""] * len(known)
+    rows = [row(name, empty) for name in _main(data)]
+    for own, by_law in _BESIDE.items():
+        values = data[by_law].values
+        rows.append(row(own, [show.quantity(by_law, float(one), of=data) for one in values]))
+        rows += [row(part, empty) for part in _PARTS.get(own, ())]
+    named = [law_title(outcome, law) for law in known]
+    return Table(["", "by films", *lines, *named], rows, compact=True)
+
+
+LINES = "lines without ends"
+
+_OF_LINES = {"mean_film_friction": "mean_line_friction", "mean_film_loss": "mean_line_loss"}
+
+
+def film_laws(data: xr.Dataset) -> Iterator[Block]:
+    """How far film laws are off, as a table and words."""
+    yield _film_laws_table(data)
+    yield Paragraph(
+        "Film by regression less that solved at the same place, over that solved: mean of all contacts that "
+        "carry, and where it is largest. Regressions know no roughness. A film here is the distance of the "
+        "mean planes: asperities carry load and hinder the flow of oil. Nothing is compared where these "
+        "overlap.",
+        "note",
+    )
+
+
+def _film_laws_table(data: xr.Dataset) -> Table:
+    titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
+    names = ("film_deviation", "largest_film_deviation")
+    rows = [
+        (title, place, *(show.quantity(name, float(data[name].values[k])) for name in names))
+        for k, (title, place) in enumerate(zip(titles, places, strict=True))
+    ]
+    return Table(["Film law", "place", "mean", "largest"], rows, compact=True)
+
+
+def beneath(data: xr.Dataset) -> Iterator[Paragraph]:
+    """Notes under the figures: what rests on assumptions, where the film is thinnest."""
+    if rests := _assumed(data):
+        yield Paragraph(rests, "note")
+    yield from (Paragraph(data.attrs[name], "note") for name in _NOTES if data.attrs.get(name))
+    yield Paragraph(_thinnest(data), "note")
+    if _overlap(data):
+        yield Paragraph(OVERLAP, "note")
+
+
+def place_of(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
+    """Where a contact of the cycle is, in words."""
+    at = f"phase {float(data['phase'][phase]) % 1.0:.3f}, {pair_key(pair).label}"
+    many = data["minimum_film"].shape[-1]
+    word = data["minimum_film"].dims[-1]
+    return f"{at}, {word} {part + 1} of {many}, counted along the face" if many > 1 else at
+
+
+def _thinnest(data: xr.Dataset) -> str:
+    """Where the film is thinnest, in words."""
+    film = data["minimum_film"].values
+    if np.isnan(film).all():
+        return NONE
+    phase, pair, part = map(int, np.unravel_index(np.nanargmin(film), film.shape))
+    at = place_of(data, phase, pair, part)
+    there = {name: data[name].values[phase, pair, part] for name in _THERE}
+    least, rough, pressed = (show.quantity(name, float(v), of=data) for name, v in there.items())
+    return f"The thinnest film is at {at}: {least}, {rough} of Rq, under {pressed} at most."
+
+
+_THERE = ("minimum_film", "minimum_lambda", "film_pressure")
+
+_CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
+
+
+def printed(title: str, data: xr.Dataset) -> Iterator[Printed]:
+    """What the screen shows of films: their figures, then friction and losses beside those of laws."""
+    row = {head(name, data): shown(name, float(data[name]), data) for name in _first(data)}
+    yield Printed(title, [row], counted(data))
+    rows = [{"friction by": "films", **_row(data, [*_BESIDE], ())}]
+    if "mean_line_loss" in data:
+        rows.append({"friction by": LINES, **_row(data, [*_OF_LINES.values()], (), [*_OF_LINES])})
+    rows += [
+        {"friction by": law, **_row(data, [*_BESIDE.values()], (k,), [*_BESIDE])}
+        for k, law in enumerate(laws(data))
+    ]
+    yield Printed("", rows, str(data.attrs["other_rolling"]))
+
+
+def _row(
+    data: xr.Dataset, names: Sequence[str], at: tuple[int, ...], heads: Sequence[str] = ()
+) -> dict[str, str]:
+    pairs = zip(heads or names, names, strict=True)
+    symbols = {
+        "mean_film_friction": "μ mean",
+        "mean_film_loss": "P [W]",
+        "mean_film_rolling_loss": "of it rolling [W]",
+        "film_efficiency": "η [%]",
+    }
+    empty = dict.fromkeys(symbols.values(), "")
+    return empty | {
+        symbols[head]: shown(name, float(data[name].values[at]), data) for head, name in pairs
+    }
+
+
+def counted(data: xr.Dataset) -> str:
+    """How many contacts have a film, and what of it rests on assumptions."""
+    found, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
+    words = f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
+    return " ".join(
+        filter(
+            None,
+            (
+                words,
+                _assumed(data),
+                str(data.attrs.get("sharp", "")),
+                str(data.attrs["below_hertz"]),
+                OVERLAP if _overlap(data) else "",
+            ),
+        )
+    )
+
+
+def _assumed(data: xr.Dataset) -> str:
+    """What rests on assumed asperities, as a sentence; empty if nothing does."""
+    words = str(data.attrs["assumed"])
+    return f"{words[0].upper()}{words[1:]}." if words else ""
+
+
+def _overlap(data: xr.Dataset) -> bool:
+    return float(data["smallest_film"]) < 0.0
+
+
+OVERLAP = "Films below zero: the mean planes of the rough flanks overlap."

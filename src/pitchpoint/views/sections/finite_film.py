@@ -1,0 +1,416 @@
+"""Films over patches of finite contacts: maps of pressure and film, cuts, ends, courses of the cycle."""
+
+import json
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    INK,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    layout,
+    plain,
+    rounded,
+    short_axis,
+)
+from pitchpoint.views.film_courses import (
+    MOST,
+    NONE,
+    answered,
+    beneath,
+    course,
+    course_figure,
+    courses,
+    figures_table,
+    film_laws,
+    gone,
+    of_most,
+    place_of,
+    printed,
+    solved_how,
+)
+from pitchpoint.views.lines import titled
+from pitchpoint.views.point import period_of
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
+
+__all__ = ["FINITE_FILM"]
+
+_THIN = 2.0
+"""Film over that in the middle up to which a map has colours."""
+
+_STEEP = 1.5
+"""Pressure over the largest one in the middle up to which a map has colours."""
+
+_WIDE = 1.8
+"""Half-widths up to which a map shows a contact."""
+
+_EDGE = 0.05
+"""Part of the largest dry pressure at which its edge is drawn."""
+
+_MOST_CELLS = 130
+"""Cells either way that a map in a page shows at most."""
+
+_CONTACTS = {"finite_line": "line contacts with their ends", "elliptic": "elliptic contacts"}
+
+
+# ---- maps
+
+
+def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
+    """Pressure and film over the patch of a contact, and cuts through both."""
+    figures = [
+        _map(f"{name}_pressure", data, kept, "field_pressure", "YlOrRd"),
+        _map(f"{name}_film", data, kept, "field_film", "Viridis"),
+        _cut_across(f"{name}_cut_pressure", data, kept, "field_pressure"),
+        _cut_across(f"{name}_cut_film", data, kept, "field_film"),
+        _ridge(f"{name}_ridge", data, kept),
+        _valley(f"{name}_valley", data, kept),
+    ]
+    return Panel("", figures)
+
+
+def _places(data: xr.Dataset, kept: int) -> tuple[np.ndarray, np.ndarray]:
+    return data["kept_x"].values[kept], data["kept_y"].values[kept]
+
+
+def _middle_film(data: xr.Dataset, kept: int) -> float:
+    """Film where the pressure of the middle rows is largest [m]."""
+    pressure, film = (data[f"field_{name}"].values[kept] for name in ("pressure", "film"))
+    row = film.shape[0] // 2
+    return float(film[row, np.argmax(pressure[row])])
+
+
+def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) -> Figure:
+    """A variable over the patch, with the edge of the dry contact."""
+    values, pressed = data[variable].values[kept], variable == "field_pressure"
+    low = 0.0 if pressed else min(float(np.nanmin(values)), 0.0)
+    high = _highest(values) if pressed else _THIN * _middle_film(data, kept)
+    shown = float(display(variable, low)), float(display(variable, max(high, low + 1e-12)))
+    heat = {
+        **_heat(data, kept, variable),
+        "zmin": shown[0],
+        "zmax": shown[1],
+        "colorscale": colours,
+        "reversescale": pressed,
+    }
+    unit = show.unit_of("kept_x")
+    look = layout(f"x [{unit}]", f"y [{unit}]", xaxis={"range": _reach(data, kept)})
+    note = "" if pressed else f"Colours end at {_THIN:g} times the film in the middle."
+    if pressed and high < float(np.nanmax(values)):
+        note = f"Colours end at {_STEEP:g} times the largest pressure in the middle."
+    keys = (Key("edge of the dry contact", INK, "dot"),)
+    traces = [heat, _outline(data, kept, heat)]
+    return Figure(name, titled(variable), traces, look, note, keys, NONE)
+
+
+def _heat(data: xr.Dataset, kept: int, variable: str) -> Trace:
+    """Cells of a map, thinned where there are more than a page can show."""
+    (x, y), (rows, columns) = _places(data, kept), _cells(data, kept)
+    unit, along = show.unit_of(variable), show.unit_of("kept_x")
+    return {
+        "type": "heatmap",
+        "x": rounded(display("kept_x", x[columns])),
+        "y": rounded(display("kept_y", y[rows])),
+        "z": rounded(display(variable, data[variable].values[kept][np.ix_(rows, columns)]), 4),
+        "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
+        "hovertemplate": f"%{{z:.4~g}} {unit}<br>x %{{x:.3~g}} {along}, y %{{y:.3~g}} {along}"
+        "<extra></extra>",
+    }
+
+
+def _outline(data: xr.Dataset, kept: int, heat: Trace) -> Trace:
+    """Edge of the dry contact."""
+    dry = _dry(data, kept)[np.ix_(*_cells(data, kept))]
+    return {
+        "type": "contour",
+        "x": heat["x"],
+        "y": heat["y"],
+        "z": rounded(dry / np.max(dry), 3),
+        "contours": {"start": _EDGE, "end": _EDGE, "size": 1.0, "coloring": "none"},
+        "line": {"color": INK, "width": 1.2, "dash": "dot"},
+        "showscale": False,
+        "hoverinfo": "skip",
+    }
+
+
+def _dry(data: xr.Dataset, kept: int) -> np.ndarray:
+    found: np.ndarray = data["field_dry_pressure"].values[kept]
+    return found
+
+
+def _reach(data: xr.Dataset, kept: int) -> list[float]:
+    """Ends of an axis along the contact that shows it with what is beside it."""
+    x, _ = _places(data, kept)
+    wide = _WIDE * float(np.max(np.abs(x[np.any(_dry(data, kept) > 0.0, axis=0)])))
+    return [float(display("kept_x", end)) for end in (-wide, wide)]
+
+
+def _cells(data: xr.Dataset, kept: int) -> tuple[np.ndarray, np.ndarray]:
+    rows, columns = (_thinned(size) for size in _dry(data, kept).shape)
+    return rows, columns
+
+
+def _highest(pressure: np.ndarray) -> float:
+    """Pressure at which colours end: ends of lines would take all of them."""
+    middle = float(np.max(pressure[pressure.shape[0] // 2]))
+    return min(float(np.max(pressure)), _STEEP * middle)
+
+
+def _thinned(size: int) -> np.ndarray:
+    return np.unique(np.linspace(0, size - 1, min(size, _MOST_CELLS)).round().astype(int))
+
+
+# ---- cuts
+
+
+def _rows(data: xr.Dataset, kept: int) -> Iterator[tuple[Key, int]]:
+    """Rows of cuts along x: in the middle, near both ends, half a half-width away from them."""
+    x, y = _places(data, kept)
+    carries = _dry(data, kept) > 0.0
+    held = np.flatnonzero(np.any(carries, axis=1))
+    wide = 0.5 * np.ptp(x[np.any(carries, axis=0)])
+    ends = y[held[0]] + 0.5 * wide, y[held[-1]] - 0.5 * wide
+    middle = 0.5 * (y[held[0]] + y[held[-1]])
+    places = (middle, ends[1]) if _symmetric(data, kept) else (middle, *ends)
+    for colour, place in zip((INK, *PALETTE), places, strict=False):
+        row = int(np.argmin(np.abs(y - place)))
+        yield Key(_at_row(data, kept, row), colour), row
+
+
+def _symmetric(data: xr.Dataset, kept: int) -> bool:
+    """True if both ends are alike."""
+    pressure = data["field_pressure"].values[kept]
+    return bool(np.allclose(pressure, pressure[::-1], rtol=0.0, atol=1e-4 * np.max(pressure)))
+
+
+def _at_row(data: xr.Dataset, kept: int, row: int) -> str:
+    place = show.number(float(display("kept_y", data["kept_y"].values[kept, row])), 3)
+    unit = show.unit_of("kept_y")
+    return f"y = {place} {unit}"
+
+
+def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> Figure:
+    """Values along x, in the middle and near both ends."""
+    x, _ = _places(data, kept)
+    values, rows = data[variable].values[kept], [*_rows(data, kept)]
+    lines = [_line(key, "kept_x", x, variable, values[row]) for key, row in rows]
+    more = {"xaxis": {"range": _reach(data, kept)}}
+    if variable == "field_film":
+        low = min(float(np.nanmin(values)), 0.0)
+        ends = 1.1 * low, 2.0 * _THIN * _middle_film(data, kept)
+        more["yaxis"] = {"range": [float(display(variable, end)) for end in ends]}
+    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis(variable), **more)
+    what = "Pressure" if variable == "field_pressure" else "Film"
+    title = f"{what} along the contact, in the middle and near its ends"
+    return Figure(name, title, lines, look, "", tuple(key for key, _ in rows), NONE)
+
+
+def _line(key: Key, along: str, places: np.ndarray, variable: str, values: np.ndarray) -> Trace:
+    return plain(
+        key,
+        display(along, places),
+        display(variable, values),
+        show.unit_of(variable),
+        name=key.label,
+    )
+
+
+def _ridge(name: str, data: xr.Dataset, kept: int) -> Figure:
+    """Largest pressure of every row, and what asperities carry there."""
+    _, y = _places(data, kept)
+    keys = Key("with oil", INK), Key("dry", GREY, "dash"), Key("of it on asperities", INK, "dot")
+    names = ("field_pressure", "field_dry_pressure", "field_asperity_pressure")
+    lines = [
+        _line(key, "kept_y", y, "field_pressure", np.max(data[one].values[kept], axis=1))
+        for key, one in zip(keys, names, strict=True)
+    ]
+    look = layout(f"y [{show.unit_of('kept_y')}]", short_axis("field_pressure"))
+    return Figure(name, "Largest pressure across the contact", lines, look, "", keys, NONE)
+
+
+def _valley(name: str, data: xr.Dataset, kept: int) -> Figure:
+    """Smallest film of every row, and film in its middle."""
+    x, y = _places(data, kept)
+    film = data["field_film"].values[kept]
+    held = np.any(_dry(data, kept) > 0.0, axis=1)
+    middle = film[:, int(np.argmin(np.abs(x)))]
+    keys = Key("in the middle, x = 0", INK, "dash"), Key("smallest of the row", INK)
+    values = np.where(held, middle, np.nan), np.where(held, np.min(film, axis=1), np.nan)
+    lines = [
+        _line(key, "kept_y", y, "field_film", one) for key, one in zip(keys, values, strict=True)
+    ]
+    look = layout(f"y [{show.unit_of('kept_y')}]", short_axis("field_film"))
+    return Figure(
+        name, "Film across the contact, where its dry rows carry", lines, look, "", keys, NONE
+    )
+
+
+# ---- over the mesh cycle
+
+
+def _pressures(name: str, outcome: Outcome, data: xr.Dataset) -> Figure:
+    """Largest pressures over the mesh cycle: in all, near the ends, and of the dry line."""
+    near = np.nanmax(data["near_ends"].values, axis=-2, initial=-np.inf)
+    near = np.where(np.isfinite(near), near, np.nan)
+    given = {
+        Key("largest, with oil", INK): data["film_pressure"].values,
+        Key("Hertz", GREY, "dash"): data["pressure"].values,
+    }
+    for k, far in enumerate(data["distance"].values):
+        if np.isfinite(near[..., k]).any():
+            given[Key(f"{far:g} b from an end", PALETTE[k])] = near[..., k]
+    lines = [
+        (key, course(data, "film_pressure", key, of_most(data, values)))
+        for key, values in given.items()
+    ]
+    axis = period_of(outcome).axis
+    return course_figure(name, "Pressure over the mesh cycle", "film_pressure", lines, axis, MOST)
+
+
+# ---- tables and words
+
+
+def _ends_table(data: xr.Dataset) -> Table:
+    """Pressures at distances from the ends of the contact that carries most, here and on a coarser grid."""
+    at = tuple(data["kept_at"].values[0])
+    here, coarse = data["near_ends"].values[at], data["coarse_near_ends"].values[0]
+
+    def cells(values: np.ndarray) -> list[str]:
+        return [_or_nothing("near_ends", float(one)) for one in values]
+
+    rows = [
+        (
+            f"{far:g} b from the end",
+            *cells(here[:, k]),
+            _or_nothing("near_ends", float(np.max(coarse[:, k]))),
+        )
+        for k, far in enumerate(data["distance"].values)
+    ]
+    largest = float(data["film_pressure"].values[at])
+    coarse_largest = _or_nothing("film_pressure", float(data["coarse_largest_pressure"].values[0]))
+    last = "largest of all cells: in the last row a number of the grid"
+    rows.append((last, _or_nothing("film_pressure", largest), "", coarse_largest))
+    rows.append(
+        ("Hertz, without ends", _or_nothing("pressure", float(data["pressure"].values[at])), "", "")
+    )
+    return Table(["", "first end", "last end", "higher one on a coarser grid"], rows, compact=True)
+
+
+def _or_nothing(name: str, value: float) -> str:
+    return show.quantity(name, value) if np.isfinite(value) else ""
+
+
+def _grid_table(data: xr.Dataset) -> Table:
+    """Values of the contact that carries most, on its grid, on one of half as many cells, and as a line."""
+    at = tuple(data["kept_at"].values[0])
+    lines = ["line without ends"] * ("line_central_film" in data)
+
+    def value(name: str) -> str:
+        return _or_nothing(name, float(data[name].values[at])) if name in data else ""
+
+    rows = []
+    for name, endless in _ON_GRIDS.items():
+        coarse = float(data[f"coarse_{_COARSE.get(name, name)}"].values[0])
+        beside = [value(endless) for _ in lines]
+        rows.append((titled(name), value(name), _or_nothing(name, coarse), *beside))
+    return Table(["", "this grid", "half as many cells either way", *lines], rows, compact=True)
+
+
+_ON_GRIDS = {
+    "central_film": "line_central_film",
+    "minimum_film": "",
+    "film_friction": "line_friction",
+}
+_COARSE = {"film_friction": "friction"}
+
+
+_WHICH = ("carries most", "has the thinnest film")
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    for position, title, outcome in page.each("finite_film"):
+        if title:
+            yield Heading(title)
+        yield from _of_variant(position, outcome)
+
+
+def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
+    data = outcome.parts["finite_film"]
+    yield from gone(data)
+    yield Paragraph(solved_how(data, _CONTACTS[data.attrs["solver"]], _grid(data)))
+    yield figures_table(outcome, data)
+    yield from beneath(data)
+    if int(data["solved_contacts"]):
+        yield from _of_kept(position, data)
+    yield Heading("Over the mesh cycle")
+    name = f"finite{position}"
+    more = [_pressures(f"{name}_pressures", outcome, data)]
+    yield courses(name, outcome, data, more)
+    yield from film_laws(data)
+
+
+def _grid(data: xr.Dataset) -> str:
+    nodes, cells = json.loads(data.attrs["grid"])
+    ends = {
+        "mirrored": ", bodies that end with the line",
+        "half_space": ", bodies that go on beyond it",
+    }
+    profile = data.attrs["end_profile"].replace("_", " ")
+    told = f", ends {profile}" if profile else ""
+    return f"{nodes} nodes along and {cells} cells across{ends.get(data.attrs['ends'], '')}{told}"
+
+
+def _of_kept(position: int, data: xr.Dataset) -> Iterator[Block]:
+    """Maps and cuts of the contacts that are kept, and what their grid is worth."""
+    places = [tuple(map(int, at)) for at in data["kept_at"].values]
+    for k, (phase, pair, part) in enumerate(places):
+        if k and places[k] == places[0]:
+            yield Paragraph("It has the thinnest film as well.", "note")
+            continue
+        yield Heading(f"The contact that {_WHICH[k]}")
+        yield Paragraph(
+            f"At {place_of(data, phase, pair, part)}: {_loaded(data, places[k])}. Oil enters from "
+            "the left where the surfaces run to the right.",
+            "note",
+        )
+        yield maps_panel(f"patch{position}_{k}", data, k)
+    yield Heading("What the grid is worth")
+    if np.isfinite(data["near_ends"].values).any():
+        yield _ends_table(data)
+    if np.isfinite(data["coarse_central_film"].values).any():
+        yield _grid_table(data)
+
+
+def _loaded(data: xr.Dataset, at: tuple[int, ...]) -> str:
+    force = show.quantity("load", float(data["load"].values[at]))
+    long = float(data["line_length"].values[at]) if data.attrs["solver"] == "finite_line" else 0.0
+    return f"{force} on {show.quantity('line_length', long)}" if long else force
+
+
+FINITE_FILM = Section(
+    name="finite_film",
+    title="Films of finite contacts",
+    short="Finite contacts",
+    order=231.0,
+    parts=("finite_film",),
+    blocks=_blocks,
+    answer=lambda one: (
+        [("Films of finite contacts", answered(one.parts["finite_film"]))]
+        if "finite_film" in one.parts
+        else []
+    ),
+    screen=lambda one: (
+        printed("Films of finite contacts", one.parts["finite_film"])
+        if "finite_film" in one.parts
+        else ()
+    ),
+)
