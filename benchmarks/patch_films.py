@@ -1,23 +1,31 @@
 """Films of contacts of finite length: processor seconds on 129 x 128 and 257 x 256, and memory.
 
-    .venv/bin/python benchmarks/patch_films.py
+    OPENBLAS_NUM_THREADS=1 .venv/bin/python benchmarks/patch_films.py --rival PYTHON
 
-Programs are compiled before the clock starts. The dry contact and all coarser grids count.
+PYTHON is the interpreter of an environment with slippy, as `rivals/slippy_point.py` makes it; without it the
+package is timed alone. Programs are compiled before the clock starts. The dry contact and all coarser grids
+count. The rival's film is that of its own grid; ours on finer ones tell how far both are off.
 """
 
+import argparse
+import json
 import os
 import resource
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
 
 import numpy as np
 
+from pitchpoint._jax import array
 from pitchpoint.contact.end_profiles import crowned, log_relieved
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
+from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import State
 from pitchpoint.lubrication.ehl.patch.solve import solve
 from pitchpoint.materials.fluid import Fluid
@@ -27,6 +35,7 @@ LONG = 56.5
 """Length of the lines over their half-width."""
 
 FINE, FINER = (129, 128), (257, 256)
+RIVAL, RIVALS_NODES = Path(__file__).parent / "rivals" / "slippy_point.py", 65
 
 
 def line(
@@ -98,8 +107,61 @@ def rows() -> Iterator[tuple[str, float]]:
         yield name, seconds
 
 
+def rivals_ball() -> PatchContact:
+    """The ball with the rival's steel and oil."""
+    slope = 0.68 * 5.1e-9 * (np.log(0.096) + 9.67)
+    oil = Fluid(viscosity=0.096, pressure_viscosity=slope)
+    steel = 2.0 * 200e9 / (2.0 * (1.0 - 0.3**2))
+    return elliptic_contact(
+        load=800.0,
+        radius=0.01905,
+        transverse_radius=0.01905,
+        modulus=steel,
+        speed_a=4.0,
+        speed_b=4.0,
+        fluid=oil,
+    )
+
+
+def beside_slippy(python: str | None) -> None:
+    """Print the ball of the rival on three grids, and the rival."""
+    contact, own = rivals_ball(), {}
+    for nodes in (RIVALS_NODES, 129, 257):
+        own[nodes], state = timed(contact, (nodes, nodes - 1))
+        film = 1e9 * middle(contact, nodes, state)
+        print(f"ball of slippy, {nodes}: {own[nodes]:.2f} s, film {film:.0f} nm", flush=True)
+    if python is None:
+        print("slippy is left out: `--rival PYTHON` names the python of an environment with it")
+        return
+    done = subprocess.run(
+        [python, str(RIVAL), "--nodes", str(RIVALS_NODES)],
+        env=os.environ | {"OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    told = json.loads(done.stdout.splitlines()[-1])
+    ratio = told["seconds"] / own[RIVALS_NODES]
+    print(
+        f"slippy, {RIVALS_NODES}: {told['seconds']:.2f} s, {ratio:.1f} times as long, "
+        f"film {1e9 * told['film']:.0f} nm"
+    )
+
+
+def middle(contact: PatchContact, nodes: int, state: State) -> float:
+    """Gap at the node next to the middle [m]."""
+    layout = laid_out(contact, nodes - 1)
+    problem = problem_on(contact, layout, nodes, nodes - 1, nodes - 1)
+    gap = problem.gap(array(state.pressure), array(state.level)) * problem.flow.height
+    node = int(np.argmin(np.abs(np.asarray(problem.bodies.x))))
+    return float(gap[nodes // 2, node])
+
+
 def main() -> int:
     """Print the figures."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--rival", help="python of an environment with slippy")
+    beside_slippy(parser.parse_args().rival)
     seconds = dict(rows())
     print(f"median: {np.median(list(seconds.values())):.2f} s")
     first = next(iter(CASES))

@@ -26,7 +26,7 @@ from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
-from pitchpoint.lubrication.ehl.patch.solve import dry_bodies, shown_film, solve
+from pitchpoint.lubrication.ehl.patch.solve import Earlier, dry_bodies, shown_film, solve
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -145,6 +145,7 @@ def solve_patch(
     nodes: int = NODES,
     cells: int = CELLS,
     progress: Progress | None = None,
+    start: PatchFilms | None = None,
 ) -> PatchFilms:
     """Pressure and film over the patch of a contact of finite length, from coarse to fine grids.
 
@@ -153,6 +154,8 @@ def solve_patch(
         nodes: along x, one more than a power of two.
         cells: across, a power of two.
         progress: told the number of steps on a grid and the residual, after each of them.
+        start: film of a contact that is like this one, on any grid, such as at another speed: a solution is
+            looked for from there first, and is the same to the tolerance.
 
     Raises:
         InputError: values that no contact has, numbers of nodes or cells that no grid has, a line that is
@@ -162,7 +165,7 @@ def solve_patch(
     check_standing(contact)
     lies, own = turned(contact)
     code = before(own)
-    layout, problem, state = solve(own, nodes, cells, progress)
+    layout, problem, state = solve(own, nodes, cells, progress, earlier=_earlier(start))
     held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
     pressure: Any = np.asarray(end.pressure)
@@ -240,6 +243,14 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     pressure, level = polished(problem, array(films.pressure), array(films.level))
     given = swapped, films.layout, problem, pressure, level, array(films.held), films.response
     return back(patch_film(*given), films.turned)
+
+
+def _earlier(films: PatchFilms | None) -> Earlier | None:
+    """What a start takes from films; nothing from those that were not solved."""
+    if films is None or not films.solved:
+        return None
+    film = float(films.film.mean_film) / films.layout.film
+    return Earlier(films.layout, films.pressure - films.held, film)
 
 
 # Both run once for a solution: it is quicker to compile them quickly.

@@ -45,11 +45,8 @@ Ends = tuple[float, float]
 FEWEST: Final = 33
 """Nodes along x of the coarsest grid; across it there is one cell less."""
 
-OUTLET: Final = 1.5
-"""End of the grid behind the middle, in half-widths."""
-
-BESIDE: Final = 1.6
-"""Ends of the grid on both sides of an ellipse, in its semi-axes."""
+THIN: Final = 0.006
+"""Film and Rq over the square of the half-width and the curvature up to which a grid ends nearby."""
 
 END_CELL: Final = 0.1
 """Width of the cells at the ends of a line, in half-widths, unless uniform ones are narrower."""
@@ -74,6 +71,24 @@ MOST_TRIALS: Final = 10
 
 FEWEST_ROWS: Final = 16
 """Rows that have to carry on the last of them."""
+
+
+class Borders(NamedTuple):
+    """How far a grid reaches from the middle of a contact.
+
+    Attributes:
+        inlet: ahead of it [half-widths].
+        outlet: behind it [half-widths].
+        beside: on both sides of an ellipse [its semi-axis across].
+    """
+
+    inlet: float
+    outlet: float = 1.5
+    beside: float = 1.6
+
+
+NEARBY: Final = Borders(1.5, 1.2, 1.2)
+"""Borders for thin films: the gap there is more than ten of them, and cells are smaller."""
 
 
 class Layout(NamedTuple):
@@ -116,6 +131,12 @@ class Layout(NamedTuple):
         edges = self._edges(finest)[:: finest // cells] / self.length
         return _bodies(tuple(x), tuple(edges), ends)
 
+    def places(self, nodes: int, cells: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Places along in units of length, and middles of the cells across over the width of the grid."""
+        edges = (self._edges(cells) - self.first) / (self.last - self.first)
+        along = np.linspace(self.inlet, self.outlet, nodes) / self.length
+        return along, 0.5 * (edges[1:] + edges[:-1])
+
     def _edges(self, cells: int) -> NDArray[np.float64]:
         if self.end is None:
             return np.linspace(self.first, self.last, cells + 1)
@@ -148,15 +169,15 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     ellipse = _ellipse(contact)
     half_width, side = float(ellipse.along), float(ellipse.across)
     pressure = float(ellipse.pressure)
-    film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
+    film, borders = _film_and_borders(contact, radius, half_width, pressure)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
     length, reach = half_width * longer, side * wider
-    ends = -inlet * length, OUTLET * length
+    ends = -borders.inlet * length, borders.outlet * length
     # Oil that comes in obliquely needs an inlet beside the contact too.
-    before = max(BESIDE, inlet * _oblique(contact)) * reach
+    before = max(borders.beside, borders.inlet * _oblique(contact)) * reach
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, -before, BESIDE * reach, None, *units, radius, unit)
+    return Layout(*ends, -before, borders.beside * reach, None, *units, radius, unit)
 
 
 # Its elliptic integrals are loops, which would be made anew for each contact.
@@ -190,11 +211,11 @@ def _oblique(contact: PatchContact) -> float:
 def _of_line(contact: PatchContact, cells: int) -> Layout:
     half_width, pressure, (low, high) = _carrying(contact)
     radius, face = float(np.mean(contact.radius)), float(contact.length)  # type: ignore[arg-type]
-    film, inlet = _film_and_inlet(contact, radius, half_width, pressure)
+    film, borders = _film_and_borders(contact, radius, half_width, pressure)
     longer = _longer(contact, radius, film, half_width)
     length = half_width * longer
-    ends = -inlet * length, OUTLET * length
-    beyond = (BESIDE - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
+    ends = -borders.inlet * length, borders.outlet * length
+    beyond = (borders.beside - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
     if contact.ends == "half_space":
         first, last = max(low - beyond, -0.5 * face), min(high + beyond, 0.5 * face)
     else:  # free faces are where the bodies end, whatever touches
@@ -215,14 +236,17 @@ def _unit_of_speed(contact: PatchContact, radius: float, length: float) -> float
 
 def _longer(contact: PatchContact, radius: float, film: float, half_width: float) -> float:
     """Length over which a contact carries, over that of the dry one: thick films and asperities add to it."""
-    rough = 0.0 if contact.texture is None else float(contact.texture.rq)
-    return float(np.sqrt(1.0 + radius * SPREAD * (film + rough) / half_width**2))
+    return float(np.sqrt(1.0 + radius * SPREAD * (film + _roughness(contact)) / half_width**2))
 
 
-def _film_and_inlet(
+def _roughness(contact: PatchContact) -> float:
+    return 0.0 if contact.texture is None else float(contact.texture.rq)
+
+
+def _film_and_borders(
     contact: PatchContact, radius: float, half_width: float, pressure: float
-) -> tuple[float, float]:
-    """Guess of the film in the middle [m], and length of inlet that floods it [half-widths]."""
+) -> tuple[float, Borders]:
+    """Guess of the film in the middle [m], and a grid whose inlet floods it."""
     line_load = 0.5 * np.pi * pressure * half_width
     speed = max(float(np.max(np.abs(entrainment_of(contact)))), SLOWEST)
     oil, modulus = contact.fluid, float(contact.modulus)
@@ -236,8 +260,10 @@ def _film_and_inlet(
     )
     speeds = 2.0 * float(oil.viscosity) * speed / (modulus * radius)
     load = line_load / (modulus * radius) / np.sqrt(speeds)
+    if (float(film) + _roughness(contact)) * radius < THIN * half_width**2:
+        return float(film), NEARBY
     inlet = np.select([load > 30.0, load > 10.0, load > 5.0], [3.0, 4.0, 5.0], 6.0)
-    return float(film), float(inlet)
+    return float(film), Borders(float(inlet))
 
 
 def entrainment_of(contact: PatchContact) -> NDArray[np.float64]:

@@ -10,13 +10,16 @@ from jaxtyping import Array, Bool, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, stencil
+from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, balance, stencil
 from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.programs import fast_program
 
 __all__ = [
+    "CAREFUL",
     "ENOUGH",
+    "MOST",
     "Linear",
+    "Manner",
     "Progress",
     "Rows",
     "State",
@@ -35,26 +38,44 @@ TOLERANCE: Final = 1e-8
 ENOUGH: Final = 1e-6
 """Residual of a solution that rounding keeps from coming closer."""
 
-LONGEST_STEP: Final = 1.0
-"""Largest change of a pressure in a step, in units of the largest dry pressure."""
+SHORTEST: Final = 0.5**8
+"""Least part of a step that is tried."""
+
+MENDED: Final = 0.1
+"""Part of the balances that a step has to mend, over its own part."""
 
 SHRINKING: Final = 0.2
-"""Least room for oil after a step, over that before."""
+"""Least room for oil after a step in the other manner, over that before."""
 
-HALVINGS: Final = 8
-"""Lengths of a step that are tried, each half of the one before."""
+NEARLY: Final = 0.99
+"""Part that counts for a step in which a pressure changed by the longest step."""
 
 SHORTER: Final = 2.0
-"""Factor by which that time shrinks after a step that was cut more than once."""
+"""Power of its part by which the time shrinks after a step that was cut."""
+
+FASTEST: Final = 100.0
+"""One over the shortest time of a step."""
 
 MOST: Final = 40
 """Steps after which an attempt is given up."""
+
+PATIENCE: Final = 15
+"""Steps over which the lowest residual has to fall in a careful attempt."""
+
+FALLING: Final = 0.5
+"""Factor by which it has to."""
 
 FIRST_TIME: Final = 1.0
 """Time over which the first step lets oil flow, in which surfaces pass a half-width."""
 
 LONGER: Final = 2.5
 """Factor by which that time grows with each full step."""
+
+SURE: Final = 0.1
+"""What a step leaves of the balances of its time from which on the next time grows more."""
+
+MUCH_LONGER: Final = 5.0
+"""Factor by which it grows then."""
 
 STEADY: Final = 1e-4
 """Residual from which on oil has all the time that it needs, and one over the time below which it has."""
@@ -287,24 +308,86 @@ def _searched(at: Linear, alone: Rows, search: _Search) -> _Search:
     )
 
 
-def moved(
-    problem: Problem, pressure: Array, level: Array, change: Array, longest: Array
-) -> tuple[Array, Array, Array]:
-    """Pressure and level after a step, and which part of it was taken: one where nothing had to be cut.
+class Manner(NamedTuple):
+    """How steps are taken.
 
-    Every pressure changes by no more than the longest step; where the room for oil would shrink too much the
-    whole step is cut.
+    Attributes:
+        careful: whether they are cut until they mend the balances of the time that they let oil flow; else
+            only where the room for oil would shrink too much.
+        longest: change of a pressure in a step.
     """
+
+    careful: Any
+    longest: Any
+
+
+class Moved(NamedTuple):
+    """What became of a step.
+
+    Attributes:
+        pressure: after it, shape (y, x).
+        level: of the surfaces.
+        part: of the step that was taken; one where nothing had to be cut, nearly one where a pressure was.
+        left: what it leaves of the balances of its time, over what it found.
+    """
+
+    pressure: Float[Array, "y x"]
+    level: Float[Array, ""]
+    part: Float[Array, ""]
+    left: Float[Array, ""]
+
+
+def moved(
+    at: Linear, pressure: Array, level: Array, change: Array, rate: Array, manner: Manner
+) -> Moved:
+    """A step in one manner or the other.
+
+    Every pressure changes by no more than the longest step.
+    """
+    problem, longest = at.problem, manner.longest
     inner = jnp.clip(change[:-1], -longest, longest).reshape(pressure.shape[0], -1)
     step, rise = jnp.pad(inner, ((0, 0), (1, 1))), change[-1]
     gap = problem.gap(pressure, level)
     grows = problem.gap(pressure + step, level + rise) - gap
+    mass, begin = _mass(problem, pressure, gap), jnp.linalg.norm(at.rest)
     least = SHRINKING * problem.flow.room(gap)
-    parts = 0.5 ** jnp.arange(HALVINGS)
-    kept = jax.lax.map(lambda part: jnp.all(problem.flow.room(gap + part * grows) > least), parts)
-    part = jnp.where(jnp.any(kept), parts[jnp.argmax(kept)], parts[-1])
+
+    def tried(part: Array) -> tuple[Array, Array, Array]:
+        there = gap + part * grows
+        rest = _rest_in_time(at, pressure + part * step, there, mass, rate)
+        left = jnp.linalg.norm(rest) / begin
+        roomy = jnp.all(problem.flow.room(there) > least)
+        fits = jnp.where(manner.careful, left <= 1.0 - MENDED * part, roomy)
+        return part, left, fits
+
+    def unfit(search: tuple[Array, Array, Array]) -> Array:
+        return (search[0] > SHORTEST) & ~search[2]
+
+    found = jax.lax.while_loop(unfit, lambda search: tried(0.5 * search[0]), tried(jnp.ones(())))
+    part, left, _ = found
     whole = jnp.all(jnp.abs(change[:-1]) <= longest)
-    return pressure + part * step, level + part * rise, jnp.where(whole, part, 0.99 * part)
+    cut = jnp.where(whole, part, NEARLY * part)
+    return Moved(pressure + part * step, level + part * rise, cut, left)
+
+
+CAREFUL: Final = Manner(True, 1.0)
+
+
+def _mass(problem: Problem, pressure: Array, gap: Array) -> Array:
+    """Mass of the oil under each cell."""
+    oil = pressure - problem.flow.asperity_pressure(gap)
+    mass, _ = problem.flow.mass_and_ease(oil, gap)
+    return jnp.asarray(mass)
+
+
+def _rest_in_time(at: Linear, pressure: Array, gap: Array, mass: Array, rate: Array) -> Array:
+    """What is left of all balances at another pressure, if the oil was another mass before."""
+    problem = at.problem
+    oil = pressure - problem.flow.asperity_pressure(gap)
+    gain, _ = balance(problem, oil, gap, jnp.zeros(()))
+    stored = (_mass(problem, pressure, gap) - mass) * jnp.asarray(problem.bodies.areas)[:, None]
+    rest: Array = jnp.minimum((rate * stored[:, 1:-1] - gain) / at.scale, oil[:, 1:-1])
+    return rest
 
 
 _linear, _rows = fast_program(linear), fast_program(rows)
@@ -317,7 +400,7 @@ def iterated(
     level: Any,
     time: float = FIRST_TIME,
     told: Progress | None = None,
-    longest: float = LONGEST_STEP,
+    manner: Manner = CAREFUL,
     most: int = MOST,
 ) -> State:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
@@ -328,32 +411,45 @@ def iterated(
         level: of the surfaces.
         time: of the first step; the shorter, the closer each step stays to the film before.
         told: called with the number of steps and the residual after each of them.
-        longest: change of a pressure in a step.
+        manner: in which steps are taken.
         most: steps after which an attempt is given up.
     """
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
+    lowest: list[float] = []
+    held = Manner(*map(array, manner))
     for step in range(most + 1):
         at = _linear(problem, state.pressure, state.level, array(rate))
         residual = float(jnp.max(jnp.abs(at.rest)))
         state = state._replace(residual=residual, load=float(at.load), steps=step)
         if told is not None:
             told(step, residual)
+        lowest.append(min([residual, *lowest[-1:]]))
         done = max(residual, abs(state.load)) < TOLERANCE and rate == 0.0
-        if not np.isfinite(residual) or step == most or done:
+        hopeless = manner.careful and _hopeless(lowest)
+        if not np.isfinite(residual) or step == most or done or hopeless:
             break
         if alone is None or residual > NEAR or age >= AGE:
             alone, age = _rows(at), 0
         age += 1
         rest = np.append(np.ravel(at.rest), float(at.load))
         change = _mended(at, alone, array(-rest))
-        found, level, part = _moved(problem, state.pressure, state.level, change, array(longest))
-        state = state._replace(pressure=found, level=level)
-        rate = _rate(rate, float(part), residual)
+        given = at, state.pressure, state.level, change, array(rate), held
+        found = _moved(*given)
+        state = state._replace(pressure=found.pressure, level=found.level)
+        rate = _rate(rate, float(found.part), float(found.left), residual)
     return state
 
 
-def _rate(rate: float, part: float, residual: float) -> float:
+def _hopeless(lowest: list[float]) -> bool:
+    """Whether the lowest residual so far hardly falls."""
+    return len(lowest) > PATIENCE and lowest[-1] > FALLING * lowest[-1 - PATIENCE]
+
+
+def _rate(rate: float, part: float, left: float, residual: float) -> float:
     """One over the time of the next step: longer after whole steps, shorter after those that were cut."""
-    rate = rate / LONGER if part == 1.0 else rate if part > 0.98 else rate / part**SHORTER
+    if part < NEARLY:
+        rate = min(rate / part**SHORTER, FASTEST)
+    elif part == 1.0:
+        rate = rate / (LONGER if left > SURE else MUCH_LONGER)
     return 0.0 if rate < STEADY or residual < STEADY else rate

@@ -23,8 +23,10 @@ from pitchpoint.lubrication.ehl.patch.layout import (
     without_oil,
 )
 from pitchpoint.lubrication.ehl.patch.newton import (
+    CAREFUL,
     ENOUGH,
-    LONGEST_STEP,
+    MOST,
+    Manner,
     Progress,
     State,
     iterated,
@@ -37,6 +39,9 @@ __all__ = ["Found", "dry_bodies", "dry_start", "dry_under", "finer", "shown_film
 FINER_TIME: Final = 2.0
 """Time over which the first step lets oil flow that starts from another film."""
 
+WARM_TIME: Final = 10.0
+"""The same from a film of another contact."""
+
 BED: Final = 0.3
 """Part of film and Rq by which the layer of a start yields to the unit of pressures."""
 
@@ -46,8 +51,11 @@ SHOWN: Final = 0.8
 STRIDE: Final = 4.0
 """Film over the one that is looked for from it."""
 
-STRIDES: Final = 3
-"""Times that a stride is made shorter, to its root, before a film is given up."""
+LEAST_STRIDE: Final = 1.2
+"""Stride that is not made shorter any more: a film that is not found with it is given up."""
+
+MOST_STRIDES: Final = 12
+"""Films that are looked for on the way to one."""
 
 MORE: Final = 1e-3
 """Part of the load by which dry bodies are loaded more and less to see how they yield."""
@@ -59,19 +67,26 @@ class Attempt(NamedTuple):
     Attributes:
         bed: part of film and Rq by which the layer yields to the unit of pressures.
         time: of the first step.
-        longest: change of a pressure in a step.
+        manner: in which steps are taken.
     """
 
     bed: float
     time: float
-    longest: float
+    manner: Manner
 
 
 ATTEMPTS: Final = (
-    Attempt(BED, 1.0, 1.0),
-    Attempt(BED, 1.0, 0.3),
-    Attempt(0.5, 2.0, 0.3),
+    Attempt(BED, 1.0, Manner(False, 1.0)),
+    Attempt(BED, 1.0, CAREFUL),
+    Attempt(BED, 1.0, Manner(False, 0.3)),
+    Attempt(0.5, 2.0, Manner(False, 0.3)),
 )
+
+BOLD: Final = Manner(False, 0.3)
+"""Manner in which a film is looked for from another where careful steps do not find it."""
+
+MOST_ON_GRID: Final = 160
+"""Steps on one grid after which it is given up."""
 
 
 class Found(NamedTuple):
@@ -147,13 +162,44 @@ def finer(coarse: Found, fine: Problem, fine_dry: NDArray[np.float64]) -> tuple[
     along = _between(np.asarray(before.bodies.x), np.asarray(fine.bodies.x))
     across = _between(np.asarray(before.bodies.y), np.asarray(fine.bodies.y))
     added = across @ (np.asarray(coarse.state.pressure) - coarse.dry) @ along.T
-    pressure = np.maximum(fine_dry + added, 0.0)
-    pressure[:, [0, -1]] = 0.0
-    areas = np.asarray(fine.bodies.areas)[:, None]
-    pressure *= float(fine.load) / np.sum(pressure * areas)
     mean = _mean_gap(before, coarse.dry, coarse.state.pressure, coarse.state.level)
-    lies = _mean_gap(fine, fine_dry, array(pressure), 0.0)
-    return pressure, mean * float(fine.film / before.film) - lies
+    return _together(fine, fine_dry, added, mean * float(fine.film / before.film))
+
+
+def _together(
+    problem: Problem, dry: NDArray[np.float64], added: NDArray[np.float64], film: float
+) -> tuple[Any, Any]:
+    """Pressure of the load from a dry one and what a film adds, and the level for a mean film."""
+    pressure = np.maximum(dry + added, 0.0)
+    pressure[:, [0, -1]] = 0.0
+    pressure *= float(problem.load) / np.sum(pressure * np.asarray(problem.bodies.areas)[:, None])
+    return pressure, film - _mean_gap(problem, dry, array(pressure), 0.0)
+
+
+class Earlier(NamedTuple):
+    """A solution of a contact that is like the one in question, on any grid.
+
+    Attributes:
+        layout: where its grid lies.
+        added: what the film adds to the dry pressure, in the units of that, shape (y, x).
+        film: mean one over the guess of that.
+    """
+
+    layout: Layout
+    added: NDArray[np.float64]
+    film: float
+
+
+def warm_start(earlier: Earlier, layout: Layout, problem: Problem) -> tuple[Any, Any]:
+    """Pressure and level of a start from a solution of a contact that is like this one."""
+    rows, nodes = np.shape(problem.apart)
+    (x, y), (fine_x, fine_y) = (
+        one.places(*shape[::-1])
+        for one, shape in ((earlier.layout, earlier.added.shape), (layout, (rows, nodes)))
+    )
+    dry = np.asarray(dry_under(problem).pressure)
+    added = _between(y, fine_y) @ earlier.added @ _between(x, fine_x).T
+    return _together(problem, dry, added, earlier.film * float(problem.film))
 
 
 def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -175,11 +221,13 @@ class _Solver:
     Attributes:
         told: called with the number of steps and the residual after each of them.
         steps: of all iterations so far.
+        left: steps that are left on a grid.
         last: where the last one ended.
     """
 
     told: Progress | None
     steps: int = 0
+    left: int = MOST_ON_GRID
     last: State | None = None
 
     def on_grid(self, problem: Problem, before: Found | None, *, last: bool) -> Found | None:
@@ -188,6 +236,7 @@ class _Solver:
         Grids show no film that is much thinner than the gap that opens within a cell: on all but the last one
         oil flows faster.
         """
+        self.left = MOST_ON_GRID
         shown = max(1.0, shown_film(problem) / float(problem.film))
         asked = 1.0 if last else shown
         found = None if before is None else self.thinner(problem, asked, before)
@@ -199,36 +248,47 @@ class _Solver:
 
     def thinner(self, problem: Problem, asked: float, found: Found) -> Found | None:
         """Solution with a film so many times as thick as it is, by films that become thinner and thinner."""
-        stride, left = STRIDE, STRIDES
-        while left:
-            now = float(found.problem.film / problem.film)
+        now, stride = float(found.problem.film / problem.film), STRIDE
+        for _ in range(MOST_STRIDES):
             factor = max(asked, now / stride)
             trial = problem.thicker(factor)
             dry, _ = dry_start(trial)
-            state = self.iterated(trial, finer(found, trial, dry), FINER_TIME)
+            last = now / factor < LEAST_STRIDE
+            state = self.near(trial, finer(found, trial, dry), boldly=last)
             if state.residual < ENOUGH:
-                found = Found(trial, dry, state)
-                if factor == asked:
-                    return found
+                found, now = Found(trial, dry, state), factor
+            elif last:
+                return None
             else:
-                stride, left = np.sqrt(stride), left - 1 if now > asked else 0
+                stride = float(np.sqrt(now / factor))
+            if now == asked:
+                return found
         return None
 
     def from_dry(self, problem: Problem) -> Found | None:
         """Solution from a dry contact, by one attempt or another."""
         for attempt in ATTEMPTS:
             dry, level = dry_start(problem, attempt.bed)
-            state = self.iterated(problem, (dry, level), attempt.time, attempt.longest)
+            state = self.iterated(problem, (dry, level), attempt.time, attempt.manner)
             if state.residual < ENOUGH:
                 return Found(problem, dry, state)
         return None
 
+    def near(self, problem: Problem, start: tuple[Any, Any], *, boldly: bool) -> State:
+        """Where iterations from another film end, in one manner, and the other where that is asked for."""
+        state = self.iterated(problem, start, FINER_TIME, CAREFUL)
+        if boldly and not state.residual < ENOUGH:
+            state = self.iterated(problem, start, FINER_TIME, BOLD)
+        return state
+
     def iterated(
-        self, problem: Problem, start: tuple[Any, Any], time: float, longest: float = LONGEST_STEP
+        self, problem: Problem, start: tuple[Any, Any], time: float, manner: Manner
     ) -> State:
         pressure, level = map(array, start)
-        state = iterated(problem, pressure, level, time, self.told, longest)
+        most = min(MOST, self.left)
+        state = iterated(problem, pressure, level, time, self.told, manner, most)
         self.steps += state.steps
+        self.left -= state.steps
         self.last = state._replace(steps=self.steps)
         return state
 
@@ -239,14 +299,22 @@ def solve(
     cells: int = 128,
     told: Progress | None = None,
     layout: Layout | None = None,
+    earlier: Earlier | None = None,
 ) -> tuple[Layout, Problem, State]:
     """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder."""
     grids = ladder(nodes, cells)
     layout = laid_out(contact, cells) if layout is None else layout
     check_maps_on(contact, layout, cells)
     solver, found = _Solver(told), None
+    if earlier is not None:
+        problem = problem_on(contact, layout, nodes, cells, cells)
+        start = warm_start(earlier, layout, problem)
+        state = solver.iterated(problem, start, WARM_TIME, CAREFUL)
+        if state.residual < ENOUGH:
+            return layout, problem, state
     for grid in grids:
         problem = problem_on(contact, layout, *grid, cells)
         found = solver.on_grid(problem, found, last=grid == grids[-1])
     assert solver.last is not None
-    return layout, problem, solver.last
+    last = solver.last if found is not None else solver.last._replace(residual=np.inf)
+    return layout, problem, last
