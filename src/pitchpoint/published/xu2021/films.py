@@ -64,8 +64,10 @@ class _Zone:
     place: int
     face_width: float
 
-    def film(self, speed: float, thicker: float = 1.0) -> PatchFilms:
-        """Film at a speed of the wave generator, of an oil so many times as viscous."""
+    def film(
+        self, speed: float, start: PatchFilms | None = None, thicker: float = 1.0
+    ) -> PatchFilms:
+        """Film at a speed of the wave generator, from one at another; of an oil so many times as viscous."""
         rolling = self.given.entrainment[self.place] * speed / self.speed
         nodes = int(self.given.nodes)
         contact = finite_line(
@@ -84,7 +86,7 @@ class _Zone:
                 sigma_over_beta=self.given.sigma_over_beta,
             ),
         )
-        return solve_patch(contact, nodes=nodes, cells=nodes - 1)
+        return solve_patch(contact, nodes=nodes, cells=nodes - 1, start=start)
 
     @property
     def modulus(self) -> float:
@@ -122,8 +124,10 @@ def films_at(point: Point) -> Read:
 
 
 def _of_zone(zone: _Zone) -> dict[str, Any]:
-    films = [zone.film(speed) for speed in zone.given.speeds]
-    rated = zone.film(zone.speed)
+    films: list[PatchFilms] = []
+    for speed in zone.given.speeds:
+        films.append(zone.film(speed, films[-1] if films else None))
+    rated = zone.film(zone.speed, films[-1])
     rq = float(zone.design.roughness.composite_rq)
     ratio = np.array([float(one.film.mean_film) for one in films]) / rq
     share = np.array([float(one.film.asperity_share) for one in films])
@@ -159,7 +163,9 @@ def _misprinted(zone: _Zone) -> float:
     """Mean film of the oil by eq. 12 as printed, which is as much more viscous at any pressure [m]."""
     at = {"temperature": zone.temperature, **OIL}
     return float(
-        zone.film(zone.speed, float(printed_viscosity(**at) / viscosity(**at))).film.mean_film
+        zone.film(
+            zone.speed, thicker=float(printed_viscosity(**at) / viscosity(**at))
+        ).film.mean_film
     )
 
 
