@@ -219,7 +219,7 @@ def test_a_dataset_has_every_field_at_every_time():
     assert np.array_equal(data["time"], times)
     assert data["time"].attrs["units"] == "s"
     bare = {name for name, one in data.variables.items() if "units" not in one.attrs}
-    assert bare == {"direction", "end", "distance"}
+    assert bare == {"direction", "end"}
     loads = data["pressure"].sum(("y", "x")) * np.diff(data["x"])[0] * np.diff(data["y"])[0]
     assert np.allclose(loads, [float(one.load) for one in contacts], rtol=1e-6)
 

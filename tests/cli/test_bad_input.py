@@ -118,6 +118,7 @@ start_up = { duration = "10 ms", rise = "1 ms", speed = "10 rpm", count = 50 }
 [film]
 solver = "line"
 phases = 9
+in_series = false
 nodes = 65
 viscosity_law = "roelands_1966"
 density_law = "dowson_higginson_1966"

@@ -349,3 +349,38 @@ def test_the_thinnest_film_is_named_and_dry_contacts_are_marked(
 
 def warnings_of(outcome: Outcome) -> list[str]:
     return json.loads(outcome.parts["film"].attrs["warnings"])
+
+
+def test_films_in_series_yield_as_films_of_more_load_do(case: str) -> None:
+    """Virtual work: the torque times the rotation by films is the sum of forces times what films give way."""
+    outcome = running.run(case, settings={"film.in_series": True})["default"]
+    data, built = outcome.parts["film"], load_case(case)
+    torque, part = 50.0, 0.01
+    states = states_of(built)
+
+    def film(times: float) -> np.ndarray:
+        some = {**states, "line_load": times * states["line_load"]}
+        films, _, back = solved.films_of_lines(built, some, lambda *_: None)
+        return np.where(back < 0, 0.0, np.asarray(films.film.mean_film)[back])
+
+    turned = np.sum(states["load"] * (film(1.0 - part) - film(1.0 + part)), axis=(1, 2)) / torque
+    stiffness = 2.0 * part * torque / float(turned @ states["weight"])
+    assert float(data["film_torsional_stiffness"]) == pytest.approx(stiffness, rel=0.05)
+    dry, films, both = (
+        float(data[name])
+        for name in (
+            "stiffness_without_films",
+            "film_torsional_stiffness",
+            "stiffness_with_films",
+        )
+    )
+    assert 1.0 / both == pytest.approx(1.0 / dry + 1.0 / films, rel=1e-12)
+    assert 0.8 < both / dry < 1.0
+    assert "less)" in film_answer(outcome)
+
+
+def test_films_in_series_need_a_torque(case: str) -> None:
+    settings = {"film.in_series": True, "operation.torque": "0 N m"}
+    with pytest.raises(InputError, match="nothing is carried") as told:
+        running.run(case, settings=settings)
+    assert told.value.key == "film.in_series"

@@ -162,6 +162,8 @@ def values_of_lines(
         "rolling_resistance": rolling,
         "film_sliding_loss": drawn * sliding * some["weight_of_line"],
         "film_rolling_loss": rolling * (some["speed_a"] + some["speed_b"]),
+        "film_stiffness": lane(film.stiffness) * some["weight_of_line"],
+        "film_damping": lane(film.damping) * some["weight_of_line"],
     }
 
 

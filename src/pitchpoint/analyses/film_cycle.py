@@ -9,6 +9,7 @@ import xarray as xr
 
 from pitchpoint.analyses.caveats import cold_warning, conformal_warning
 from pitchpoint.analyses.film_contacts import asked, film_laws, film_model_of
+from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.build import Built
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.model import SMOOTH
@@ -156,7 +157,8 @@ def _figures(
         "solved_contacts": np.sum(known),
         **_deviations(built, states["film_by_law"], found, known),
     }
-    return figures | _efficiencies(states, figures)
+    figures |= _efficiencies(states, figures)
+    return figures | series_figures(built, states, found) if asked(built).in_series else figures
 
 
 def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -30,6 +30,7 @@ _MAIN = (
 _FINITE_MAIN = tuple(name for name in _MAIN if name not in _WARM)
 _BY_LINES = ("mean_line_friction", "mean_line_loss")
 _OF_FINITE = ("smallest_central_film", "largest_end_pressure")
+_IN_SERIES = ("film_torsional_stiffness", "stiffness_without_films", "stiffness_with_films")
 _BY_LAW = (
     "mean_law_friction",
     "mean_law_loss",
@@ -59,7 +60,9 @@ def _endless(built: Built) -> str | None:
 
 def _pieces(built: Built) -> Iterable[Piece]:
     from pitchpoint.analyses.film import pieces
+    from pitchpoint.analyses.film_series import check_series
 
+    check_series(built)
     return pieces(built)
 
 
@@ -76,8 +79,10 @@ def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 
 def _finite_pieces(built: Built) -> Iterable[Piece]:
+    from pitchpoint.analyses.film_series import check_series
     from pitchpoint.analyses.finite_film import pieces
 
+    check_series(built)
     return pieces(built)
 
 
@@ -107,7 +112,8 @@ def _figures_of(data: xr.Dataset | None, names: Sequence[str]) -> dict[str, Any]
     """Figures of films, with those by laws beside them."""
     if data is None:
         return {}
-    every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in names}
+    asked = [name for name in _IN_SERIES if name in data]
+    every: dict[str, Any] = {name: numbers(_finite(data[name].values)) for name in (*names, *asked)}
     every["friction_laws"] = _each(data, "law", _BY_LAW)
     every["film_laws"] = _each(data, "film_law", _BY_FILM_LAW)
     return every

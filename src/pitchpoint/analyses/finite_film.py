@@ -204,6 +204,8 @@ _NAMES = {
     "film_friction": "friction",
     "film_sliding_loss": "sliding_power",
     "film_rolling_loss": "pumping_power",
+    "film_stiffness": "stiffness",
+    "film_damping": "damping",
     "minimum_place": "minimum_place",
     "largest_place": "largest_place",
     "near_ends": "near_ends",

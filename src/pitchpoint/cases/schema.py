@@ -705,12 +705,14 @@ def _cells(value: float) -> float:
 class FilmTable(Table):
     """Films of the contacts solved over the mesh cycle; what is left out is as `FilmModel` has it.
 
-    `phases` are the least number of states over a mesh cycle. The parameters are those of the shear law, and
+    `phases` are the least number of states over a mesh cycle; `in_series` asks what the films take from the
+    torsional stiffness. The parameters are those of the shear law, and
     of the profile of the ends.
     """
 
     solver: Literal["line", "finite_line", "elliptic"]
     phases: Annotated[float, FILM_PHASES] = 24.0
+    in_series: Annotated[bool, BeforeValidator(_flag)] = False
     nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
     cells: Annotated[float, FILM_CELLS, AfterValidator(_cells)] | None = None
     ends: Literal["half_space", "mirrored"] | None = None

@@ -130,6 +130,21 @@ VARIABLES: dict[str, Variable] = {
     "rolling_resistance": force("rolling resistance of each surface, solved", "F_roll"),
     "film_sliding_loss": power("sliding loss of the pair by its film", "P_s"),
     "film_rolling_loss": power("rolling loss of the pair by its film", "P_r"),
+    "film_stiffness": Variable("stiffness of the film", "k_film", "N/m", "N/um", "stiffness"),
+    "film_damping": Variable("squeeze damping of the film", "c_film", "N s/m"),
+    "film_torsional_stiffness": Variable(
+        "torsional stiffness of the films alone",
+        "K_film",
+        "N m/rad",
+        "kN m/rad",
+        "torsional stiffness",
+    ),
+    "stiffness_without_films": Variable(
+        "torsional stiffness without films", "K", "N m/rad", "kN m/rad", "torsional stiffness"
+    ),
+    "stiffness_with_films": Variable(
+        "torsional stiffness, films in series", "K'", "N m/rad", "kN m/rad", "torsional stiffness"
+    ),
     "film_status": Variable("status of the film", "", "1"),
     "film_by_law": Variable("film thickness by regression", "h", "m", "um", "length"),
     "film_loss": power("loss of the teeth by their films", "P_EHL"),

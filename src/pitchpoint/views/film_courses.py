@@ -78,6 +78,14 @@ _WARMTH = ("largest_film_rise", "largest_flash_rise")
 _FINITE = ("smallest_central_film", "largest_end_pressure")
 """Figures of films that are solved over the whole patch of a contact."""
 
+_SERIES = ("stiffness_without_films", "film_torsional_stiffness", "stiffness_with_films")
+"""Stiffness that films take part in, where the case asks for it."""
+
+IN_SERIES = (
+    "Films in series: at the speed of the operating point, with forces in proportion to the torque; at rest "
+    "there are none."
+)
+
 _NOTES = ("sharp", "below_hertz", "other_rolling")
 """Attributes with sentences under the figures of the films."""
 
@@ -95,10 +103,25 @@ def answered(data: xr.Dataset) -> str:
     )
     if rests := str(data.attrs["assumed"]):
         words = f"{words}; {rests}"
+    words += _in_series(data)
     if not np.isfinite(float(data["mean_film_loss"])):
         return f"{words}; loss and efficiency are withheld, some films were not found"
     friction, loss = (told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
     return f"{words}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def _in_series(data: xr.Dataset) -> str:
+    """What films take from the torsional stiffness, in words."""
+    if "stiffness_with_films" not in data:
+        return ""
+    without, films = (told(data, f"stiffness_{which}_films") for which in ("without", "with"))
+    part = 1.0 - float(data["stiffness_with_films"] / data["stiffness_without_films"])
+    if not np.isfinite(part):
+        return "; what films take from the torsional stiffness is withheld"
+    return (
+        f"; in series at this speed films take the torsional stiffness from {without} to {films} "
+        f"({100.0 * part:.2g} % less)"
+    )
 
 
 def _least(data: xr.Dataset) -> str:
@@ -364,6 +387,7 @@ def figures_table(outcome: Outcome, data: xr.Dataset) -> Table:
 
     empty = [""] * len(known)
     rows = [row(name, empty) for name in _main(data)]
+    rows += [row(name, empty) for name in _SERIES if name in data]
     for own, by_law in _BESIDE.items():
         values = data[by_law].values
         rows.append(row(own, [show.quantity(by_law, float(one), of=data) for one in values]))
@@ -446,6 +470,12 @@ def printed(title: str, data: xr.Dataset) -> Iterator[Printed]:
         for k, law in enumerate(laws(data))
     ]
     yield Printed("", rows, str(data.attrs["other_rolling"]))
+    if "stiffness_with_films" in data:
+        yield Printed(
+            "",
+            [{head(name, data): shown(name, float(data[name]), data) for name in _SERIES}],
+            IN_SERIES,
+        )
 
 
 def _row(
