@@ -372,6 +372,8 @@ def moved(
 
 CAREFUL: Final = Manner(True, 1.0)
 
+USUAL: Final = Manner(False, 1.0)
+
 
 def _mass(problem: Problem, pressure: Array, gap: Array) -> Array:
     """Mass of the oil under each cell."""
@@ -400,7 +402,7 @@ def iterated(
     level: Any,
     time: float = FIRST_TIME,
     told: Progress | None = None,
-    manner: Manner = CAREFUL,
+    manner: Manner = USUAL,
     most: int = MOST,
 ) -> State:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
