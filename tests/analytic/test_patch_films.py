@@ -383,3 +383,26 @@ def test_shear_below_a_crowned_line_is_between_those_of_lines_and_balls():
     most = np.unravel_index(np.argmax(shear), shear.shape)
     assert 0.295 < shear[most] / float(found.film.largest_pressure) < 0.32
     assert depth[most[0]] == pytest.approx(0.786 * float(found.film.half_width), rel=0.08)
+
+
+def test_oil_that_begins_nearby_starves_a_patch_as_it_starves_a_line():
+    inlet = 1.6 * float(crowned_line().film.half_width)
+    starved = solve_patch(line(inlet=inlet), nodes=129, cells=64)
+    film = starved.film
+    row = film.pressure.shape[0] // 2
+    load = float(np.sum(film.pressure[row]) * (film.x[1] - film.x[0]))
+    given = {"line_load": load, "radius": 0.01, "modulus": MODULUS, "fluid": OIL}
+    alone, flooded = (
+        solve_lines(LineContact(**given, speed_a=1.0, speed_b=1.0, **more), nodes=257).film
+        for more in ({"inlet": inlet}, {})
+    )
+    assert float(alone.central_film) < 0.95 * float(flooded.central_film)
+    assert float(film.central_film) == pytest.approx(float(alone.central_film), rel=0.02)
+    assert any("the contact is starved" in told for told in starved.warnings)
+    assert not any("starved" in told for told in crowned_line().warnings)
+
+
+def test_a_patch_begins_no_nearer_than_its_grid():
+    found = coarse(line(inlet=1e-5))
+    assert -found.layout.inlet == pytest.approx(1.5 * found.layout.length)
+    assert any("at the nearest" in told for told in found.warnings)

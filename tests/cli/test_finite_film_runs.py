@@ -299,7 +299,6 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
         ({"nodes": 513}, "nodes", "allowed are 33, 65, 129 and 257"),
         ({"cells": 48}, "cells", "allowed are 32, 64, 128 and 256"),
         ({"solver": "line", "cells": 64}, "cells", 'take solver = "finite_line"'),
-        ({"inlet": "2 mm"}, "inlet", "oil begins where it floods the contact"),
         ({"thermal": "mean_film"}, "thermal", "films over a patch are isothermal"),
         ({"pattern": 3.0}, "pattern", "oil flows both ways"),
         ({"ends": "free"}, "ends", "mirrored"),

@@ -13,10 +13,10 @@ from pitchpoint.analyses.film import OF_LINES, films_of_lines, over_rough, value
 from pitchpoint.analyses.film_contacts import alike, asked, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
-from pitchpoint.cases.build import Built, tooth_size
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import Doubt, extent_of, kind_of
+from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
@@ -87,7 +87,7 @@ def finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     lines = _as_lines(built, given, taken, values["film_inlet"])
     ended = [one.ended for one in films if isinstance(one, PatchFilms)]
     found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
-    told = [*_told(films), *_starved(built, values["film_inlet"])]
+    told = _told(films)
     return dataset(
         {
             **{name: ((*_OF_PIECE, *_MORE.get(name, ())), one) for name, one in values.items()},
@@ -116,19 +116,6 @@ def _told(films: Sequence[PatchFilms | Refused]) -> list[str]:
     return [*texts]
 
 
-def _starved(built: Built, inlet: np.ndarray) -> Iterator[Doubt]:
-    """Oil that is drawn from further away than flanks reach."""
-    size, farthest = tooth_size(built.design.mesh), np.nanmax(inlet, initial=0.0)
-    if size is not None and farthest > size:
-        yield Doubt(
-            f"a film draws its oil from {1e3 * farthest:.3g} mm before a contact on, and flanks are about "
-            f"{1e3 * size:.3g} mm high: it comes out too thick, and rolling resistance too large; "
-            'solver = "line" has an inlet',
-            "inlet",
-            farthest / size,
-        )
-
-
 def _solved(
     built: Built, numbers: np.ndarray, scale: np.ndarray, done: Any
 ) -> tuple[list[PatchFilms | Refused], np.ndarray]:
@@ -136,24 +123,30 @@ def _solved(
     if not len(numbers):
         return [], np.zeros(0, int)
     where, back = alike(numbers, scale)
-    films = []
+    films: list[PatchFilms | Refused] = []
     for k, one in enumerate(numbers[where]):
+        before = next((film for film in films[::-1] if isinstance(film, PatchFilms)), None)
         told = f"contact {k + 1} of {len(where)}"
 
         def step(number: int, residual: float, k: int = k, told: str = told) -> None:
             done(k, len(where), f"{told}, Newton step {number}, residual {residual:.0e}")
 
-        films.append(_one(built, one, patch_grid(asked(built)), step))
+        films.append(_one(built, one, patch_grid(asked(built)), step, before))
         done(k + 1, len(where))
     return films, back
 
 
 def _one(
-    built: Built, numbers: np.ndarray, grid: tuple[int, int], told: Any = None
+    built: Built,
+    numbers: np.ndarray,
+    grid: tuple[int, int],
+    told: Any = None,
+    start: PatchFilms | None = None,
 ) -> PatchFilms | Refused:
     nodes, cells = grid
     try:
-        return solve_patch(one_contact(built, numbers), nodes=nodes, cells=cells, progress=told)
+        contact = one_contact(built, numbers)
+        return solve_patch(contact, nodes=nodes, cells=cells, progress=told, start=start)
     except InputError as error:
         return Refused(error.message)
 

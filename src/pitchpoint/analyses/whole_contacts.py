@@ -166,6 +166,7 @@ def one_contact(built: Built, numbers: np.ndarray) -> PatchContact:
     modulus = float(design.modulus)
     common: dict[str, Any] = {
         "modulus": modulus,
+        "inlet": model.inlet,
         "fluid": model.fluid(design.lubricant, float(built.operation.temperature)),
         "texture": model.texture(rq, modulus),
     }

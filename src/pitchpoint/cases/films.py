@@ -55,9 +55,9 @@ def film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | No
     chosen = {name: value for name, value in given.items() if value is not None}
     if "nodes" in chosen:
         chosen["nodes"] = int(chosen["nodes"])
-    if table.over_patch:  # lines beside it have their own nodes, and oil that floods them as well
+    if table.over_patch:  # lines beside it have their own nodes
         chosen.pop("nodes", None)
-    elif size is not None:
+    if size is not None:
         chosen.setdefault("inlet", size)
     model = FilmModel(**chosen, shear_parameters=table.shear_parameters)
     return model if model.thermal == ISOTHERMAL else replace(model, members=_members(solids))

@@ -816,15 +816,11 @@ _OF_ROUGH = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction"
 _OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
 
 _NO_ENDS = 'lines of this solver have no ends; take solver = "finite_line", or leave it out'
-_NO_INLET = "over a patch oil begins where it floods the contact; leave it out"
 _ELLIPSE = "an ellipse ends by itself; leave it out"
 _NOT_OF: Mapping[str, Mapping[str, str]] = {
     "line": {key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
-    "finite_line": {"inlet": _NO_INLET},
-    "elliptic": {
-        "inlet": _NO_INLET,
-        **{key: _ELLIPSE for key in ("ends", "end_profile", *_OF_ENDS)},
-    },
+    "finite_line": {},
+    "elliptic": {key: _ELLIPSE for key in ("ends", "end_profile", *_OF_ENDS)},
 }
 """Keys that a solver of films has nothing to do with, and why."""
 

@@ -20,7 +20,16 @@ from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.rheology import SHEAR_STRESS
 from pitchpoint.status import Code
 
-__all__ = ["UNSOLVED", "Doubt", "check", "extent_of", "flooded_inlet", "kind_of", "warnings"]
+__all__ = [
+    "UNSOLVED",
+    "Doubt",
+    "check",
+    "extent_of",
+    "flooded_inlet",
+    "kind_of",
+    "starved",
+    "warnings",
+]
 
 COARSE: Final = 0.03
 """Error by the grid from which on it is told."""
@@ -353,12 +362,22 @@ def _of_inlet(contact: LineContact, half_width: NDArray[np.float64]) -> Iterator
     given, needed = np.asarray(contact.inlet) / half_width, flooded_inlet(contact)
     worst = np.argmin(given / needed)
     if given[worst] < needed[worst] * (1.0 - 1e-9):
-        yield Doubt(
-            f"oil begins {given[worst]:.3g} half-widths before the middle of a contact, and a fully flooded "
-            f"one draws it from {needed[worst]:.3g} on: the contact is starved",
-            "inlet",
-            needed[worst] / given[worst],
-        )
+        yield starved(given[worst], needed[worst])
+
+
+def starved(given: float, needed: float) -> Doubt:
+    """That oil begins nearer to a contact than it would take to flood it.
+
+    Args:
+        given: distance from the middle of the contact at which it begins [half-widths].
+        needed: that from which on a fully flooded one draws it [half-widths].
+    """
+    return Doubt(
+        f"oil begins {given:.3g} half-widths before the middle of a contact, and a fully flooded one draws "
+        f"it from {needed:.3g} on: the contact is starved",
+        "inlet",
+        needed / given,
+    )
 
 
 def flooded_inlet(contact: LineContact) -> NDArray[np.float64]:

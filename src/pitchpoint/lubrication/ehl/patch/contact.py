@@ -13,6 +13,7 @@ from pitchpoint.contact.gaps import missing_along
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.texture import Texture
 from pitchpoint.materials._leaves import as_array
@@ -45,6 +46,7 @@ class PatchContact(eqx.Module):
         across_a: surface speed of member 0 along y [m/s].
         across_b: of member 1.
         approach: speed at which the bodies approach each other [m/s].
+        inlet: distance from the middle of the contact, along the entrainment, at which oil begins [m].
         fluid: the oil.
         texture: of the surfaces, below what the height maps show; None for smooth ones.
         heights: maps of what stands out of the surfaces, or of both together.
@@ -63,6 +65,7 @@ class PatchContact(eqx.Module):
     across_a: Float[Arrays, ""]
     across_b: Float[Arrays, ""]
     approach: Float[Arrays, ""]
+    inlet: Float[Arrays, ""]
     fluid: Fluid
     texture: Texture | None
     profile: tuple[Surface, ...]
@@ -96,6 +99,7 @@ def finite_line(
     relief: ArrayLike = 0.0,
     profile: tuple[Surface, ...] = (),
     approach: ArrayLike = 0.0,
+    inlet: ArrayLike = FLOODED,
     texture: Texture | None = None,
     heights: Heights = (),
     ends: str = "half_space",
@@ -114,6 +118,8 @@ def finite_line(
         relief: by which the bodies lie apart besides, one or one at each place [m]: crowning, misalignment.
         profile: surfaces missing along the line, such as those of `contact.end_profiles`.
         approach: speed at which the bodies approach each other [m/s].
+        inlet: distance from the middle of the contact, along the entrainment, at which oil begins [m]; fully
+            flooded unless given.
         texture: of the surfaces; None for smooth ones.
         heights: map of what stands out of the surfaces, or one for each; with a texture, that is below them.
         ends: "half_space", or "mirrored" for bodies that both end with the line.
@@ -133,6 +139,7 @@ def finite_line(
         across_a=as_array(0.0),
         across_b=as_array(0.0),
         approach=as_array(approach),
+        inlet=as_array(inlet),
         fluid=fluid,
         texture=texture,
         profile=profile,
@@ -152,6 +159,7 @@ def elliptic_contact(
     fluid: Fluid,
     across: tuple[ArrayLike, ArrayLike] = STILL,
     approach: ArrayLike = 0.0,
+    inlet: ArrayLike = FLOODED,
     texture: Texture | None = None,
     heights: Heights = (),
 ) -> PatchContact:
@@ -167,6 +175,8 @@ def elliptic_contact(
         fluid: the oil.
         across: surface speeds of both members along y [m/s].
         approach: speed at which the bodies approach each other [m/s].
+        inlet: distance from the middle of the contact, along the entrainment, at which oil begins [m]; fully
+            flooded unless given.
         texture: of the surfaces; None for smooth ones.
         heights: map of what stands out of the surfaces, or one for each; with a texture, that is below them.
     """
@@ -184,6 +194,7 @@ def elliptic_contact(
         across_a=as_array(across[0]),
         across_b=as_array(across[1]),
         approach=as_array(approach),
+        inlet=as_array(inlet),
         fluid=fluid,
         texture=texture,
         profile=(),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.subsurface import Stresses, below_row
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt
+from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt, starved
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import (
     FIELDS,
@@ -333,6 +333,7 @@ def check(contact: PatchContact) -> None:
     positive = {
         "load": (contact.load, "a load", "N"),
         "modulus": (contact.modulus, "a modulus E'", "Pa"),
+        "inlet": (contact.inlet, "a distance at which oil begins", "m"),
         "radius": (contact.radius, "a relative radius of curvature", "m"),
         "viscosity": (contact.fluid.viscosity, "a viscosity", "Pa s"),
         "pressure_viscosity": (
@@ -395,6 +396,20 @@ def _check_senses(contact: PatchContact) -> None:
         )
 
 
+def _of_inlet(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
+    """Oil that begins nearer than it would take to flood the contact."""
+    begins, asked = -layout.inlet, float(contact.inlet)
+    if begins < layout.flooded * (1.0 - 1e-9):
+        yield starved(begins / layout.half_width, layout.flooded / layout.half_width)
+    if asked < begins * (1.0 - 1e-9):
+        yield Doubt(
+            f"oil is to begin {1e3 * asked:.3g} mm before the middle of a contact, and a patch has it from "
+            f"{1e3 * begins:.3g} mm on at the nearest: the film comes out too thick",
+            "inlet of a patch",
+            begins / asked,
+        )
+
+
 def _warnings(
     contact: PatchContact, layout: Layout, film: PatchFilm, ended: PatchEnded, least: float
 ) -> Iterator[str]:
@@ -409,6 +424,7 @@ def _warnings(
     if ended.code != Code.SOLVED:
         yield f"the film was not found: {ended.code.sentence}"
         return
+    yield from _of_inlet(contact, layout)
     told = contact.fluid.outside(film.hertz_pressure)
     if told is not None:
         pressure = float(film.hertz_pressure)

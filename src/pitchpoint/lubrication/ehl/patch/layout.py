@@ -28,6 +28,7 @@ from pitchpoint.status import Code
 
 __all__ = [
     "FEWEST",
+    "NEARBY",
     "Ends",
     "Layout",
     "Problem",
@@ -107,6 +108,7 @@ class Layout(NamedTuple):
         hertz_pressure: largest one of it, but for edges [Pa].
         radius: relative radius along x that units are made of [m].
         speed: unit of speed [m/s].
+        flooded: distance ahead of the middle from which on oil floods the contact [m].
     """
 
     inlet: float
@@ -121,6 +123,7 @@ class Layout(NamedTuple):
     hertz_pressure: float
     radius: float
     speed: float
+    flooded: float
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
         """Half spaces on a grid of so many nodes along and cells across, in units of length.
@@ -172,12 +175,13 @@ def _of_ellipse(contact: PatchContact) -> Layout:
     film, borders = _film_and_borders(contact, radius, half_width, pressure)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
     length, reach = half_width * longer, side * wider
-    ends = -borders.inlet * length, borders.outlet * length
+    flooded = borders.inlet * length
+    ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     # Oil that comes in obliquely needs an inlet beside the contact too.
     before = max(borders.beside, borders.inlet * _oblique(contact)) * reach
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, -before, borders.beside * reach, None, *units, radius, unit)
+    return Layout(*ends, -before, borders.beside * reach, None, *units, radius, unit, flooded)
 
 
 # Its elliptic integrals are loops, which would be made anew for each contact.
@@ -214,7 +218,8 @@ def _of_line(contact: PatchContact, cells: int) -> Layout:
     film, borders = _film_and_borders(contact, radius, half_width, pressure)
     longer = _longer(contact, radius, film, half_width)
     length = half_width * longer
-    ends = -borders.inlet * length, borders.outlet * length
+    flooded = borders.inlet * length
+    ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     beyond = (borders.beside - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
     if contact.ends == "half_space":
         first, last = max(low - beyond, -0.5 * face), min(high + beyond, 0.5 * face)
@@ -226,7 +231,12 @@ def _of_line(contact: PatchContact, cells: int) -> Layout:
     cell = None if fine else end
     units = length, pressure / longer, film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, first, last, cell, *units, radius, unit)
+    return Layout(*ends, first, last, cell, *units, radius, unit, flooded)
+
+
+def _begins(contact: PatchContact, length: float) -> float:
+    """Distance ahead of the middle at which oil begins; no grid begins within a contact."""
+    return max(float(contact.inlet), NEARBY.inlet * length)
 
 
 def _unit_of_speed(contact: PatchContact, radius: float, length: float) -> float:

@@ -156,6 +156,7 @@ def _common(layouts: Sequence[Layout]) -> Layout:
     largest = max(layouts, key=lambda one: one.length)
     lows = {name: min(getattr(one, name) for one in layouts) for name in ("inlet", "first", "film")}
     highs = {
-        name: max(getattr(one, name) for one in layouts) for name in ("outlet", "last", "speed")
+        name: max(getattr(one, name) for one in layouts)
+        for name in ("outlet", "last", "speed", "flooded")
     }
     return largest._replace(**lows, **highs)
