@@ -287,6 +287,16 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
     assert told["largest_end_pressure"] > 0.0
 
 
+@pytest.mark.parametrize("lean", ["80 um", "-80 um"])
+def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
+    one = running.run(case, settings={"gears.misalignment": lean})["default"]
+    data = one.parts["finite_film"]
+    ends = np.isfinite(data["near_ends"].values[..., 0]).any(axis=(0, 1, 2))
+    assert ends.sum() == 1
+    assert data.attrs["sharp"].startswith("The lines end sharply: the largest pressure")
+    assert "p_max [MPa]" not in [*SECTION.screen(one)][0].rows[0]
+
+
 @pytest.mark.parametrize(
     ("settings", "key", "words"),
     [

@@ -432,9 +432,8 @@ def _finite_figures(
 
 def _sharp(states: Mapping[str, np.ndarray], values: Mapping[str, np.ndarray]) -> str:
     """What the largest pressure is where lines end sharply, in words; empty where none does."""
-    pressure = np.where(
-        np.isfinite(values["near_ends"][..., 0, 0]), values["film_pressure"], np.nan
-    )
+    touches = np.isfinite(values["near_ends"][..., 0]).any(axis=-1)
+    pressure = np.where(touches, values["film_pressure"], np.nan)
     if np.isnan(pressure).all():
         return ""
     at = np.unravel_index(np.nanargmax(pressure), pressure.shape)
