@@ -47,7 +47,13 @@ _FIELDS = {
     "field_dry_pressure": "dry_pressure",
     "field_film": "gap",
 }
-_OF_FIELD = ("kept", "y", "x")
+_KEPT = {
+    **dict.fromkeys(_FIELDS, ("kept", "y", "x")),
+    "kept_x": ("kept", "x"),
+    "kept_y": ("kept", "y"),
+    "kept_at": ("kept", "axis"),
+}
+"""Axes of what is kept of contacts."""
 
 _COARSE = ("central_film", "minimum_film", "largest_pressure", "near_ends", "friction")
 """What is solved once more on a coarser grid."""
@@ -246,7 +252,7 @@ def _as_lines(
     begins = np.broadcast_to(inlet[..., None], given.grouped(some["load"]).shape)
     flooded = np.where(np.isnan(begins), FLOODED, begins)
     some["inlet"] = flooded.reshape(some["load"].shape)
-    films, _, back = films_of_lines(built, some, _silent)
+    films, _, back = films_of_lines(built, some)
     every = values_of_lines(films.film, some, back)
     parts = {name: given.grouped(every[name]) for name in _OF_LINE}
     load, loaded = given.grouped(some["load"]), given.grouped(some["loaded"])
@@ -274,10 +280,6 @@ _OF_LINE = (
     "film_sliding_loss",
     "film_rolling_loss",
 )
-
-
-def _silent(part: int, every: int) -> None:
-    """Lines take no time beside patches."""
 
 
 # ---- fields
@@ -308,9 +310,7 @@ def _kept(
             assert isinstance(found, PatchFilms)
             for name, own in (*_FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
                 empty[name][k] = getattr(found.film, own)
-    dims = {**dict.fromkeys(_FIELDS, _OF_FIELD), "kept_x": ("kept", "x"), "kept_y": ("kept", "y")}
-    data = {name: (dims[name], one) for name, one in empty.items()}
-    return data | {"kept_at": (("kept", "axis"), at)}
+    return {name: (_KEPT[name], one) for name, one in (empty | {"kept_at": at}).items()}
 
 
 def _fields(
@@ -332,9 +332,7 @@ def _fields(
         for name in (*_FIELDS, "kept_x", "kept_y"):
             found.setdefault(name, []).append(parts[chosen][name].values[k])
         found.setdefault("kept_at", []).append(at)
-    dims = {**dict.fromkeys(_FIELDS, _OF_FIELD), "kept_x": ("kept", "x"), "kept_y": ("kept", "y")}
-    dims["kept_at"] = ("kept", "axis")
-    return {name: (dims[name], np.stack(one)) for name, one in found.items()}
+    return {name: (_KEPT[name], np.stack(one)) for name, one in found.items()}
 
 
 def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
