@@ -287,6 +287,15 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
     assert told["largest_end_pressure"] > 0.0
 
 
+def test_without_a_torque_nothing_is_loaded(case: str) -> None:
+    one = running.run(case, settings={"operation.torque": "0 N m"})["default"]
+    words = dict(SECTION.answer(one))["Films of finite contacts"]
+    first, *_ = SECTION.screen(one)
+    assert words.startswith("Nothing is loaded") and first.line == words
+    page = render({"default": one})
+    assert words in page and "No film was found" not in page
+
+
 @pytest.mark.parametrize("lean", ["80 um", "-80 um"])
 def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     one = running.run(case, settings={"gears.misalignment": lean})["default"]
