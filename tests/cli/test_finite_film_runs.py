@@ -24,6 +24,7 @@ from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
 from pitchpoint.views.report import render
+from pitchpoint.views.screen import shown
 from pitchpoint.views.sections.finite_film import FINITE_FILM as SECTION
 
 MODELS = '[models]\nfriction = { name = "constant", coefficient = 0.05 }\n'
@@ -285,6 +286,11 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
         float(outcome.parts["finite_film"]["mean_line_loss"])
     )
     assert told["largest_end_pressure"] > 0.0
+
+
+def test_what_rounding_leaves_is_zero_on_the_screen() -> None:
+    assert shown("largest_asperity_share", 1e-15) == shown("largest_asperity_share", 0.0) == "0"
+    assert shown("largest_asperity_share", 1e-6) == "0.0001"
 
 
 def test_without_a_torque_nothing_is_loaded(case: str) -> None:
