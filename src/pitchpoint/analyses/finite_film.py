@@ -55,7 +55,10 @@ _KEPT = {
 }
 """Axes of what is kept of contacts."""
 
-_COARSE = ("central_film", "minimum_film", "largest_pressure", "near_ends", "friction")
+_COARSE = {
+    **{name: name for name in ("central_film", "minimum_film", "largest_pressure", "near_ends")},
+    "friction": "friction_magnitude",
+}
 """What is solved once more on a coarser grid."""
 
 
@@ -89,7 +92,7 @@ def finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     films, back = _solved(built, given.numbers[taken][loaded], given.scale, done)
     lanes = np.full(loaded.shape, -1)
     lanes[loaded] = back
-    values = _values(built, films, lanes, load)
+    values = _values(built, films, lanes)
     lines = _as_lines(built, given, taken, values["film_inlet"])
     ended = [one.ended for one in films if isinstance(one, PatchFilms)]
     found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
@@ -161,7 +164,7 @@ def _one(
 
 
 def _values(
-    built: Built, films: Sequence[PatchFilms | Refused], lanes: np.ndarray, load: np.ndarray
+    built: Built, films: Sequence[PatchFilms | Refused], lanes: np.ndarray
 ) -> dict[str, np.ndarray]:
     """What follows from the films, for every lane; not a number where there is none."""
     line = built.design.mesh.shape == "line"
@@ -182,8 +185,6 @@ def _values(
         if line or name not in _ROWS
     }
     status = np.array([*codes, int(Code.UNLOADED)])[lanes]
-    held = np.where(lanes < 0, np.nan, load)
-    found["boundary_part"] = found.pop("boundary_force") / held
     found["minimum_lambda"] = over_rough(built, found["minimum_film"])
     return found | {"film_status": status, "film_defect": lane(defects)}
 
@@ -200,7 +201,8 @@ _NAMES = {
     "dry_pressure": "hertz_pressure",
     "dry_half_width": "half_width",
     "asperity_share": "asperity_share",
-    "film_friction": "friction",
+    "film_friction": "friction_magnitude",
+    "boundary_part": "boundary_magnitude",
     "film_sliding_loss": "sliding_power",
     "film_rolling_loss": "pumping_power",
     "film_stiffness": "stiffness",
@@ -209,10 +211,14 @@ _NAMES = {
     "largest_place": "largest_place",
     "near_ends": "near_ends",
 }
-"""Values of contacts, and what they are of a film over a patch."""
+"""Values of contacts, and what they are of a film over a patch.
+
+Friction is that of magnitudes, as friction laws and lines have it: sliding of a helical line changes its
+sense at the pitch line, and the force of the whole contact says little about heat and loss.
+"""
 
 _SHAPES: dict[str, tuple[int, ...]] = {
-    **dict.fromkeys([*_NAMES, "boundary_force", "rolling_resistance", "film_inlet"], ()),
+    **dict.fromkeys([*_NAMES, "rolling_resistance", "film_inlet"], ()),
     "minimum_place": (2,),
     "largest_place": (2,),
     "near_ends": (2, END_DISTANCES.size),
@@ -226,7 +232,6 @@ def _of_film(films: PatchFilms, line: bool) -> dict[str, Any]:
     film = films.film
     found = {name: np.asarray(getattr(film, own)) for name, own in _NAMES.items()}
     return found | {
-        "boundary_force": np.hypot(*film.boundary_force),
         "rolling_resistance": np.hypot(*film.rolling),
         "film_inlet": -films.layout.inlet,
         **({"row_film": _of_middle_row(film)} if line else {}),
@@ -256,19 +261,17 @@ def _as_lines(
     every = values_of_lines(films.film, some, back)
     parts = {name: given.grouped(every[name]) for name in _OF_LINE}
     load, loaded = given.grouped(some["load"]), given.grouped(some["loaded"])
-    signs = np.sign(given.grouped(some["speed_b"] - some["speed_a"]))
 
     def total(values: np.ndarray) -> np.ndarray:
         sums = np.sum(np.where(loaded, values, 0.0), axis=-1)
         return np.where(np.any(loaded, axis=-1), sums, np.nan)
 
     loss = parts["film_sliding_loss"] + parts["film_rolling_loss"]
-    drawn = np.abs(total(signs * parts["film_friction"] * load))
     least = np.min(np.where(loaded, parts["minimum_film"], np.inf), axis=-1)
     return {
         "line_central_film": in_the_middle(given.middles[taken], parts["central_film"]),
         "line_minimum_film": np.where(np.isinf(least), np.nan, least),
-        "line_friction": drawn / total(load),
+        "line_friction": total(parts["film_friction"] * load) / total(load),
         "line_loss": total(loss),
     }
 
@@ -350,8 +353,8 @@ def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np
             known[place] = _one(built, given, (nodes // 2 + 1, cells // 2))
         film = known[place]
         if isinstance(film, PatchFilms):
-            for name in _COARSE:
-                found[name][k] = getattr(film.film, name)
+            for name, own in _COARSE.items():
+                found[name][k] = getattr(film.film, own)
     return {f"coarse_{name}": (dims.get(name, ("kept",)), values) for name, values in found.items()}
 
 
