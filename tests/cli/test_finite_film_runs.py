@@ -338,7 +338,12 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     assert ends.sum() == 1
     assert data.attrs["sharp"].startswith("The lines end sharply: the largest pressure")
     first, *_ = SECTION.screen(one)
-    assert "p_max [MPa]" not in first.rows[0]
+    assert "p_max [MPa]" not in first.rows[0] and "h_c min [um]" not in first.rows[0]
+    assert "12 of 12 contact lines touch at one end only" in first.line
+    words = dict(SECTION.answer(one))["Films of finite contacts"]
+    assert " at least, " in words and "undefined" not in words
+    page = render({"default": one})
+    assert "not compared" in page and "undefined, no power" not in page
 
 
 @pytest.mark.parametrize(

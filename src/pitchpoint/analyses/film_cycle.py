@@ -274,14 +274,14 @@ def _moving(states: States, found: xr.Dataset) -> dict[str, np.ndarray]:
     Sliding is its mean by the traction, so that friction, load and it give the sliding power.
     """
     drawn = found["film_friction"].values * states["load"]
-    lost = found["film_sliding_loss"].values
+    lost, central = found["film_sliding_loss"].values, found["central_film"].values
     every = {
         "pressure": states["pressure"],
         "radius": states["radius"],
         "entrainment": 0.5 * (states["speed_a"] + states["speed_b"]),
         "sliding_velocity": lost / np.where(drawn > 0.0, drawn, 1.0),
         "friction": found["film_friction"].values,
-        "film_thickness": found["central_film"].values,
+        "film_thickness": np.where(np.isnan(central), found["minimum_film"].values, central),
     }
     solved = np.isfinite(every["friction"])
     return {name: values[solved] for name, values in every.items()}

@@ -397,6 +397,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         ends=table.ends or "",
         end_profile=table.end_profile or "",
         sharp=_sharp(given.states, values),
+        leaning=_leaning(values),
     )
     return data.set_coords(["direction", "end", "distance", "kept"])
 
@@ -429,6 +430,18 @@ def _finite_figures(
     return {
         name: (dims, np.where(np.isinf(one), np.nan, one)) for name, (dims, one) in found.items()
     }
+
+
+def _leaning(values: Mapping[str, np.ndarray]) -> str:
+    """That lines have no film in their middle, as nothing touches there, in words; empty where all have."""
+    found = np.isfinite(values["minimum_film"])
+    off = found & ~np.isfinite(values["central_film"])
+    if not off.any():
+        return ""
+    return (
+        f"{off.sum()} of {found.sum()} contact lines touch at one end only: they have no film in their "
+        "middle, and film laws, which stand for the middle, are not compared with them."
+    )
 
 
 def _sharp(states: Mapping[str, np.ndarray], values: Mapping[str, np.ndarray]) -> str:

@@ -88,7 +88,7 @@ IN_SERIES = (
     "there are none."
 )
 
-_NOTES = ("sharp", "below_hertz", "other_rolling")
+_NOTES = ("leaning", "sharp", "below_hertz", "other_rolling")
 """Attributes with sentences under the figures of the films."""
 
 _CENTRAL = ("longdash", "dashdot", "dot")
@@ -134,7 +134,7 @@ def _in_series(data: xr.Dataset) -> str:
 def _least(data: xr.Dataset) -> str:
     """Thinnest films, in words."""
     least = told(data, "smallest_film")
-    if "smallest_central_film" not in data:
+    if not np.isfinite(float(data.get("smallest_central_film", np.nan))):
         return f"{least} at least"
     middle = told(data, "smallest_central_film")
     return f"{middle} at least in the middle of a contact, {least} anywhere"
@@ -154,7 +154,8 @@ def _thermal(data: xr.Dataset) -> str:
 
 def _main(data: xr.Dataset) -> tuple[str, ...]:
     """Names of the figures of the films themselves."""
-    found = (*(name for name in _FINITE if name in data), *_FIGURES)
+    known = (name for name in _FINITE if name in data and np.isfinite(float(data[name])))
+    found = (*known, *_FIGURES)
     return found if _thermal(data) == ISOTHERMAL else (*found, *_WARMTH)
 
 
@@ -424,10 +425,14 @@ def _film_laws_table(data: xr.Dataset) -> Table:
     titles, places = (json.loads(data.attrs[f"film_{what}"]) for what in ("titles", "places"))
     names = ("film_deviation", "largest_film_deviation")
     rows = [
-        (title, place, *(show.quantity(name, float(data[name].values[k])) for name in names))
+        (title, place, *(_compared(name, float(data[name].values[k])) for name in names))
         for k, (title, place) in enumerate(zip(titles, places, strict=True))
     ]
     return Table(["Film law", "place", "mean", "largest"], rows, compact=True)
+
+
+def _compared(name: str, value: float) -> str:
+    return show.quantity(name, value) if np.isfinite(value) else "not compared"
 
 
 def beneath(data: xr.Dataset) -> Iterator[Paragraph]:
@@ -512,6 +517,7 @@ def counted(data: xr.Dataset) -> str:
             (
                 words,
                 _assumed(data),
+                str(data.attrs.get("leaning", "")),
                 str(data.attrs.get("sharp", "")),
                 str(data.attrs["below_hertz"]),
                 OVERLAP if _overlap(data) else "",
