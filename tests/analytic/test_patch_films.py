@@ -141,14 +141,6 @@ def _edges(middles: np.ndarray) -> np.ndarray:
     return np.append(middles - half, middles[-1] + half)
 
 
-def test_symmetric_contacts_have_symmetric_films():
-    film = crowned_line().film
-    assert np.allclose(film.gap, film.gap[::-1], rtol=1e-6, atol=0.0)
-    assert np.allclose(
-        film.pressure, film.pressure[::-1], rtol=0.0, atol=1e-6 * film.hertz_pressure
-    )
-
-
 def test_entrainment_along_the_other_axis_turns_the_film():
     along, across = (
         coarse(ball((2.0, 0.0), ratio=3.0)),

@@ -87,6 +87,7 @@ def test_symmetric_contacts_have_symmetric_films():
     for contact in (line(), ball()):
         film = on(contact, 65).film
         assert np.allclose(film.gap, film.gap[::-1], rtol=1e-7)
+        assert np.allclose(film.pressure, film.pressure[::-1], atol=1e-6 * film.hertz_pressure)
 
 
 def test_another_ellipse_needs_no_other_program():

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from sound import PAIR
 
-from pitchpoint.analyses import finite_film
+from pitchpoint.analyses import film_cycle, finite_film
 from pitchpoint.analyses.analysis import silent
 from pitchpoint.analyses.caveats import cold_warning
 from pitchpoint.analyses.film_contacts import states
@@ -24,6 +24,7 @@ from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
 from pitchpoint.views.report import render
+from pitchpoint.views.screen import shown
 from pitchpoint.views.sections.finite_film import FINITE_FILM as SECTION
 
 MODELS = '[models]\nfriction = { name = "constant", coefficient = 0.05 }\n'
@@ -122,6 +123,34 @@ def test_lines_without_ends_stand_beside_and_agree_in_the_middle(
     at = tuple(data["kept_at"].values[0])
     ratio = data["near_ends"].values[at] / float(data["pressure"].values[at])
     assert (np.diff(ratio, axis=-1) < 0.0).all() and (ratio[:, 1] > 1.2).all()
+
+
+def test_friction_of_lines_across_the_pitch_line_is_that_of_their_slices(
+    case: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard: list[dict[str, np.ndarray]] = []
+    monkeypatch.setattr(film_cycle, "cold_warning", lambda _, run: heard.append(run) or "")
+    helical = {"gears.helix_angle": "20 deg"}
+    data = running.run(case, settings=helical)["default"].parts["finite_film"]
+    friction, beside = data["film_friction"].values, data["line_friction"].values
+    known = np.isfinite(friction)
+    assert friction[known] == pytest.approx(beside[known], rel=0.2)
+    assert float(data["mean_film_friction"]) == pytest.approx(
+        float(data["mean_line_friction"]), rel=0.1
+    )
+    assert (data["boundary_part"].values[known] < friction[known]).all()
+    # What is told of heat is the power, and not that of the slice that carries most.
+    slides = np.full(known.shape, np.nan)
+    slides[known] = heard[0]["sliding_velocity"]
+    power = (friction * slides * data["load"].values)[known]
+    assert power == pytest.approx(data["film_sliding_loss"].values[known])
+    built = load_case(case, settings=helical)
+    slices = states(built)
+    ahead = slices["load"] * np.sign(slices["speed_b"] - slices["speed_a"])
+    turns = np.abs(ahead.sum(axis=-1)) / np.where(known, data["load"].values, np.nan)[..., 0]
+    at = (*np.unravel_index(np.nanargmin(turns), turns.shape), 0)
+    film = solve_patch(one_contact(built, wholes(built).numbers[at]), nodes=33, cells=32).film
+    assert float(film.friction) < 0.7 * friction[at]
 
 
 def test_crown_and_lean_are_the_relief_along_the_line(leaning: str) -> None:
@@ -285,6 +314,31 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
         float(outcome.parts["finite_film"]["mean_line_loss"])
     )
     assert told["largest_end_pressure"] > 0.0
+
+
+def test_what_rounding_leaves_is_zero_on_the_screen() -> None:
+    assert shown("largest_asperity_share", 1e-15) == shown("largest_asperity_share", 0.0) == "0"
+    assert shown("largest_asperity_share", 1e-6) == "0.0001"
+
+
+def test_without_a_torque_nothing_is_loaded(case: str) -> None:
+    one = running.run(case, settings={"operation.torque": "0 N m"})["default"]
+    words = dict(SECTION.answer(one))["Films of finite contacts"]
+    first, *_ = SECTION.screen(one)
+    assert words.startswith("Nothing is loaded") and first.line == words
+    page = render({"default": one})
+    assert words in page and "No film was found" not in page
+
+
+@pytest.mark.parametrize("lean", ["80 um", "-80 um"])
+def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
+    one = running.run(case, settings={"gears.misalignment": lean})["default"]
+    data = one.parts["finite_film"]
+    ends = np.isfinite(data["near_ends"].values[..., 0]).any(axis=(0, 1, 2))
+    assert ends.sum() == 1
+    assert data.attrs["sharp"].startswith("The lines end sharply: the largest pressure")
+    first, *_ = SECTION.screen(one)
+    assert "p_max [MPa]" not in first.rows[0]
 
 
 @pytest.mark.parametrize(

@@ -107,7 +107,7 @@ OF_LINES = (*_GIVEN, "loaded", "load", "weight_of_line")
 
 
 def films_of_lines(
-    built: Built, some: Mapping[str, np.ndarray], done: Done
+    built: Built, some: Mapping[str, np.ndarray], done: Done | None = None
 ) -> tuple[Films, np.ndarray, np.ndarray]:
     """Films of the contacts that differ, codes [phase, pair, slice], and which film belongs to each lane.
 
@@ -125,7 +125,7 @@ def films_of_lines(
     return films, codes, back
 
 
-def _films(built: Built, given: Mapping[str, np.ndarray], done: Done) -> Films:
+def _films(built: Built, given: Mapping[str, np.ndarray], done: Done | None) -> Films:
     model, design = film_model_of(built), built.design
     contacts = model.contacts(
         **given,

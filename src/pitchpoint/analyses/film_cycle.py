@@ -269,12 +269,17 @@ def _is_cold(built: Built) -> bool:
 
 
 def _moving(states: States, found: xr.Dataset) -> dict[str, np.ndarray]:
-    """Contacts that carry, as a mesh cycle tells them, with what the films say."""
+    """Contacts that carry, as a mesh cycle tells them, with what the films say.
+
+    Sliding is its mean by the traction, so that friction, load and it give the sliding power.
+    """
+    drawn = found["film_friction"].values * states["load"]
+    lost = found["film_sliding_loss"].values
     every = {
         "pressure": states["pressure"],
         "radius": states["radius"],
         "entrainment": 0.5 * (states["speed_a"] + states["speed_b"]),
-        "sliding_velocity": states["speed_a"] - states["speed_b"],
+        "sliding_velocity": lost / np.where(drawn > 0.0, drawn, 1.0),
         "friction": found["film_friction"].values,
         "film_thickness": found["central_film"].values,
     }

@@ -42,12 +42,13 @@ _BY_FILM_LAW = ("film_deviation", "largest_film_deviation")
 
 
 def _dry(built: Built) -> str | None:
-    """Why a case has no films: those of ellipses have no solver yet, or nobody asks for them."""
+    """Why a case has no films of lines: it asks for finite contacts or none, or has ellipses."""
     asked, shape = built.case.film, built.design.mesh.shape
     if asked is not None and asked.over_patch:
         return Unasked("[film] asks for contacts of finite length")
     if shape != "line":
-        return f"these gears touch {TOUCH[shape]}, and ellipses have no line solver"
+        touch = f"these gears touch {TOUCH[shape]}"
+        return f'{touch}; solver = "elliptic" in [film] gives films of finite contacts'
     return Unasked("the case has no [film]") if asked is None else None
 
 

@@ -47,9 +47,18 @@ _FIELDS = {
     "field_dry_pressure": "dry_pressure",
     "field_film": "gap",
 }
-_OF_FIELD = ("kept", "y", "x")
+_KEPT = {
+    **dict.fromkeys(_FIELDS, ("kept", "y", "x")),
+    "kept_x": ("kept", "x"),
+    "kept_y": ("kept", "y"),
+    "kept_at": ("kept", "axis"),
+}
+"""Axes of what is kept of contacts."""
 
-_COARSE = ("central_film", "minimum_film", "largest_pressure", "near_ends", "friction")
+_COARSE = {
+    **{name: name for name in ("central_film", "minimum_film", "largest_pressure", "near_ends")},
+    "friction": "friction_magnitude",
+}
 """What is solved once more on a coarser grid."""
 
 
@@ -83,7 +92,7 @@ def finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     films, back = _solved(built, given.numbers[taken][loaded], given.scale, done)
     lanes = np.full(loaded.shape, -1)
     lanes[loaded] = back
-    values = _values(built, films, lanes, load)
+    values = _values(built, films, lanes)
     lines = _as_lines(built, given, taken, values["film_inlet"])
     ended = [one.ended for one in films if isinstance(one, PatchFilms)]
     found = [one for one in films if isinstance(one, PatchFilms) and one.solved]
@@ -155,7 +164,7 @@ def _one(
 
 
 def _values(
-    built: Built, films: Sequence[PatchFilms | Refused], lanes: np.ndarray, load: np.ndarray
+    built: Built, films: Sequence[PatchFilms | Refused], lanes: np.ndarray
 ) -> dict[str, np.ndarray]:
     """What follows from the films, for every lane; not a number where there is none."""
     line = built.design.mesh.shape == "line"
@@ -176,8 +185,6 @@ def _values(
         if line or name not in _ROWS
     }
     status = np.array([*codes, int(Code.UNLOADED)])[lanes]
-    held = np.where(lanes < 0, np.nan, load)
-    found["boundary_part"] = found.pop("boundary_force") / held
     found["minimum_lambda"] = over_rough(built, found["minimum_film"])
     return found | {"film_status": status, "film_defect": lane(defects)}
 
@@ -194,7 +201,8 @@ _NAMES = {
     "dry_pressure": "hertz_pressure",
     "dry_half_width": "half_width",
     "asperity_share": "asperity_share",
-    "film_friction": "friction",
+    "film_friction": "friction_magnitude",
+    "boundary_part": "boundary_magnitude",
     "film_sliding_loss": "sliding_power",
     "film_rolling_loss": "pumping_power",
     "film_stiffness": "stiffness",
@@ -203,10 +211,14 @@ _NAMES = {
     "largest_place": "largest_place",
     "near_ends": "near_ends",
 }
-"""Values of contacts, and what they are of a film over a patch."""
+"""Values of contacts, and what they are of a film over a patch.
+
+Friction is that of magnitudes, as friction laws and lines have it: sliding of a helical line changes its
+sense at the pitch line, and the force of the whole contact says little about heat and loss.
+"""
 
 _SHAPES: dict[str, tuple[int, ...]] = {
-    **dict.fromkeys([*_NAMES, "boundary_force", "rolling_resistance", "film_inlet"], ()),
+    **dict.fromkeys([*_NAMES, "rolling_resistance", "film_inlet"], ()),
     "minimum_place": (2,),
     "largest_place": (2,),
     "near_ends": (2, END_DISTANCES.size),
@@ -220,7 +232,6 @@ def _of_film(films: PatchFilms, line: bool) -> dict[str, Any]:
     film = films.film
     found = {name: np.asarray(getattr(film, own)) for name, own in _NAMES.items()}
     return found | {
-        "boundary_force": np.hypot(*film.boundary_force),
         "rolling_resistance": np.hypot(*film.rolling),
         "film_inlet": -films.layout.inlet,
         **({"row_film": _of_middle_row(film)} if line else {}),
@@ -246,23 +257,21 @@ def _as_lines(
     begins = np.broadcast_to(inlet[..., None], given.grouped(some["load"]).shape)
     flooded = np.where(np.isnan(begins), FLOODED, begins)
     some["inlet"] = flooded.reshape(some["load"].shape)
-    films, _, back = films_of_lines(built, some, _silent)
+    films, _, back = films_of_lines(built, some)
     every = values_of_lines(films.film, some, back)
     parts = {name: given.grouped(every[name]) for name in _OF_LINE}
     load, loaded = given.grouped(some["load"]), given.grouped(some["loaded"])
-    signs = np.sign(given.grouped(some["speed_b"] - some["speed_a"]))
 
     def total(values: np.ndarray) -> np.ndarray:
         sums = np.sum(np.where(loaded, values, 0.0), axis=-1)
         return np.where(np.any(loaded, axis=-1), sums, np.nan)
 
     loss = parts["film_sliding_loss"] + parts["film_rolling_loss"]
-    drawn = np.abs(total(signs * parts["film_friction"] * load))
     least = np.min(np.where(loaded, parts["minimum_film"], np.inf), axis=-1)
     return {
         "line_central_film": in_the_middle(given.middles[taken], parts["central_film"]),
         "line_minimum_film": np.where(np.isinf(least), np.nan, least),
-        "line_friction": drawn / total(load),
+        "line_friction": total(parts["film_friction"] * load) / total(load),
         "line_loss": total(loss),
     }
 
@@ -274,10 +283,6 @@ _OF_LINE = (
     "film_sliding_loss",
     "film_rolling_loss",
 )
-
-
-def _silent(part: int, every: int) -> None:
-    """Lines take no time beside patches."""
 
 
 # ---- fields
@@ -308,9 +313,7 @@ def _kept(
             assert isinstance(found, PatchFilms)
             for name, own in (*_FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
                 empty[name][k] = getattr(found.film, own)
-    dims = {**dict.fromkeys(_FIELDS, _OF_FIELD), "kept_x": ("kept", "x"), "kept_y": ("kept", "y")}
-    data = {name: (dims[name], one) for name, one in empty.items()}
-    return data | {"kept_at": (("kept", "axis"), at)}
+    return {name: (_KEPT[name], one) for name, one in (empty | {"kept_at": at}).items()}
 
 
 def _fields(
@@ -332,9 +335,7 @@ def _fields(
         for name in (*_FIELDS, "kept_x", "kept_y"):
             found.setdefault(name, []).append(parts[chosen][name].values[k])
         found.setdefault("kept_at", []).append(at)
-    dims = {**dict.fromkeys(_FIELDS, _OF_FIELD), "kept_x": ("kept", "x"), "kept_y": ("kept", "y")}
-    dims["kept_at"] = ("kept", "axis")
-    return {name: (dims[name], np.stack(one)) for name, one in found.items()}
+    return {name: (_KEPT[name], np.stack(one)) for name, one in found.items()}
 
 
 def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
@@ -352,8 +353,8 @@ def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np
             known[place] = _one(built, given, (nodes // 2 + 1, cells // 2))
         film = known[place]
         if isinstance(film, PatchFilms):
-            for name in _COARSE:
-                found[name][k] = getattr(film.film, name)
+            for name, own in _COARSE.items():
+                found[name][k] = getattr(film.film, own)
     return {f"coarse_{name}": (dims.get(name, ("kept",)), values) for name, values in found.items()}
 
 
@@ -432,9 +433,8 @@ def _finite_figures(
 
 def _sharp(states: Mapping[str, np.ndarray], values: Mapping[str, np.ndarray]) -> str:
     """What the largest pressure is where lines end sharply, in words; empty where none does."""
-    pressure = np.where(
-        np.isfinite(values["near_ends"][..., 0, 0]), values["film_pressure"], np.nan
-    )
+    touches = np.isfinite(values["near_ends"][..., 0]).any(axis=-1)
+    pressure = np.where(touches, values["film_pressure"], np.nan)
     if np.isnan(pressure).all():
         return ""
     at = np.unravel_index(np.nanargmax(pressure), pressure.shape)

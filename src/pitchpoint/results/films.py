@@ -135,6 +135,8 @@ _PATCH: Final = {
     "near_ends": _pressure("largest pressure across, near the ends of the line", "p_e"),
     "shear_force": _force("shear of the oil on member 0", "F_s"),
     "boundary_force": _force("friction of asperities on member 0", "F_b"),
+    "friction_magnitude": _number("integral of the magnitude of the traction over the load", "μ_t"),
+    "boundary_magnitude": _number("its part by asperities", "μ_b"),
     "rolling": _force("rolling resistance of each surface", "F_r"),
     "sliding_power": Variable("heat by sliding", "P_s", "W"),
     "pumping_power": Variable("heat of the flow under pressure", "P_p", "W"),

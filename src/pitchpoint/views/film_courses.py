@@ -50,7 +50,9 @@ __all__ = [
     "told",
 ]
 
-NONE = "No film was found."
+NONE = "There is no film to show."
+LOST = "No film was found."
+UNLOADED = "Nothing is loaded: no contact carries, and none has a film."
 
 _FIGURES = (
     "smallest_film",
@@ -96,7 +98,7 @@ _CENTRAL = ("longdash", "dashdot", "dot")
 def answered(data: xr.Dataset) -> str:
     """Thinnest film, load on asperities, friction and efficiency by the films, in words."""
     if int(data["solved_contacts"]) == 0:
-        return NONE
+        return _none(data)
     words = (
         f"{_least(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; asperities "
         f"carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
@@ -108,6 +110,11 @@ def answered(data: xr.Dataset) -> str:
         return f"{words}; loss and efficiency are withheld, some films were not found"
     friction, loss = (told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
     return f"{words}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
+
+
+def _none(data: xr.Dataset) -> str:
+    """Why there is no film at all, in words."""
+    return LOST if int(data["loaded_contacts"]) else UNLOADED
 
 
 def _in_series(data: xr.Dataset) -> str:
@@ -445,7 +452,7 @@ def _thinnest(data: xr.Dataset) -> str:
     """Where the film is thinnest, in words."""
     film = data["minimum_film"].values
     if np.isnan(film).all():
-        return NONE
+        return _none(data)
     phase, pair, part = map(int, np.unravel_index(np.nanargmin(film), film.shape))
     at = place_of(data, phase, pair, part)
     there = {name: data[name].values[phase, pair, part] for name in _THERE}
@@ -498,6 +505,7 @@ def counted(data: xr.Dataset) -> str:
     """How many contacts have a film, and what of it rests on assumptions."""
     found, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
     words = f"{found} of {every} loaded contacts of the mesh cycle have a film that was found."
+    words = words if every else UNLOADED
     return " ".join(
         filter(
             None,

@@ -6,7 +6,7 @@ import numpy as np
 
 from pitchpoint import units
 from pitchpoint.analyses.figures import covers
-from pitchpoint.views.show import described
+from pitchpoint.views.show import NOISE, described
 
 __all__ = ["cell", "efficiency_of", "head", "shown"]
 
@@ -38,4 +38,5 @@ def shown(name: str, value: float, of: Any = None) -> str:
         return "none"
     if variable.display == "1":
         return f"{value:.4f}"
-    return f"{units.convert(value, variable.display, variable.kind):.5g}"
+    converted = float(units.convert(value, variable.display, variable.kind))
+    return f"{converted:.5g}" if abs(converted) >= NOISE else "0"

@@ -10,6 +10,7 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 
 __all__ = [
+    "NOISE",
     "axis_title",
     "described",
     "number",
@@ -33,8 +34,9 @@ _UNITS = {
     "N m": "N\u00a0m",
     "1": "",
 }
-# Smaller values in display units are left by rounding.
-_NOISE = 1e-9
+NOISE = 1e-9
+"""Value in display units below which one is left by rounding."""
+
 _LAST_UNIT = re.compile(r"(?<=\d) (um|degC|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
 
 
@@ -115,7 +117,7 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
     if not isfinite(value):
         return "undefined, no power" if variable.display == "%" else "undefined"
     shown = float(units.convert(value, variable.display, variable.kind))
-    if abs(shown) < _NOISE:
+    if abs(shown) < NOISE:
         shown = 0.0
     text = f"{shown:.2f}" if variable.display == "%" else number(shown, trailing=True)
     return f"{text} {unit(variable.display)}".strip() if with_unit else text

@@ -101,7 +101,11 @@ class PatchFilm(eqx.Module):
         asperity_share: part of the load that asperities carry.
         shear_force: of the oil on member 0, along x and y, shape (2,) [N].
         boundary_force: friction of asperities on member 0, shape (2,) [N].
-        friction: coefficient, their sum over the load.
+        friction: net coefficient of the contact, the sum of both as vectors over the load; where sliding
+            changes its sense along a line, parts of it cancel.
+        friction_magnitude: integral of the magnitude of the traction over the load: what heats and wears,
+            and what lines without ends side by side add up to.
+        boundary_magnitude: its part by asperities.
         rolling: resistance to rolling, which the oil in the inlet does to each surface, shape (2,) [N].
         sliding_power: that oil and asperities take by sliding [W].
         pumping_power: that the flow under pressure turns into heat [W].
@@ -141,6 +145,8 @@ class PatchFilm(eqx.Module):
     shear_force: Float[Arrays, "2"]
     boundary_force: Float[Arrays, "2"]
     friction: One
+    friction_magnitude: One
+    boundary_magnitude: One
     rolling: Float[Arrays, "2"]
     sliding_power: One
     pumping_power: One
@@ -200,6 +206,9 @@ def patch_film(
     apart = _apart(contact, problem, level, response)
     low, high = jnp.argmin(gap), jnp.argmax(pressure)
     rough = 0.0 if contact.texture is None else contact.texture.rq
+    # Surfaces that do not slide against each other have no traction, whatever asperities carry there.
+    slides = (fast > 0.0)[:, None]
+    dragged = [bodies.load(one * slides) * length**2 for one in (stress, rubbing)]
     sheared, rubbed = (
         jnp.stack([bodies.load(one) for one in field]) * length**2 for field in (shear, rubs)
     )
@@ -229,6 +238,8 @@ def patch_film(
         shear_force=sheared,
         boundary_force=rubbed,
         friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
+        friction_magnitude=(dragged[0] + dragged[1]) / contact.load,
+        boundary_magnitude=dragged[1] / contact.load,
         rolling=jnp.stack([jnp.sum(row), column]) * rolls,
         sliding_power=bodies.load((stress + rubbing) * fast[:, None]) * length**2,
         pumping_power=pumping * rolls * problem.speed,
