@@ -6,11 +6,13 @@ from scipy.constants import pi
 
 from pitchpoint import programs
 from pitchpoint.contact.end_profiles import crowned
+from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch import solve as solving
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.newton import _hopeless
+from pitchpoint.lubrication.ehl.patch.transient import march_patches
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.materials.fluid import Fluid
 
@@ -110,3 +112,27 @@ def test_thin_films_have_the_film_of_an_infinite_line():
     given = {"line_load": load, "radius": 0.01, "modulus": MODULUS, "fluid": OIL}
     infinite = solve_lines(LineContact(**given, speed_a=0.012, speed_b=0.012), nodes=513).film
     assert found.film.central_film == pytest.approx(float(infinite.central_film), rel=0.02)
+
+
+def test_a_thick_film_between_balls_leaks_as_that_of_rigid_ones():
+    """Of rigid balls h = 128 (U/W)^2 (.131 atan(1/2) + 1.683)^2 (3/5)^2 R; its grid keeps a part away."""
+    oil = Fluid(viscosity=0.05, pressure_viscosity=2e-8, shear_law="newtonian")
+    given = {"load": 1.0, "radius": 0.01, "transverse_radius": 0.01, "modulus": MODULUS}
+    found = solve_patch(
+        elliptic_contact(**given, fluid=oil, speed_a=3.0, speed_b=3.0), nodes=33, cells=32
+    )
+    rigid = 128.0 * (0.05 * 3.0 * 0.01 * (0.131 * np.arctan(0.5) + 1.683) * 0.6) ** 2 * 0.01
+    assert 0.75 * rigid < float(found.film.minimum_film) < rigid
+    assert any("up to 20 % too thin" in told for told in found.warnings)
+
+
+def test_oil_begins_ahead_of_a_contact():
+    given = {"load": 30.0, "radius": 0.01, "transverse_radius": 0.01, "modulus": MODULUS}
+    given |= {"fluid": OIL, "speed_a": 1.0, "speed_b": 1.0}
+    with pytest.raises(InputError, match="a distance at which oil begins"):
+        solve_patch(elliptic_contact(**given, inlet=-1e-3), nodes=33, cells=32)
+
+
+def test_a_march_by_error_has_a_tolerance():
+    with pytest.raises(InputError, match="it must be positive"):
+        march_patches([ball(), ball()], [0.0, 1e-3], steps="by_error", tolerance=-1.0, nodes=33)

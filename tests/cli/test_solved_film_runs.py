@@ -103,7 +103,7 @@ def test_what_decides_about_films_is_among_the_inputs():
     assert smooth["viscosity_law"] == ("roelands_1966", "default")
     assert not {"eyring_stress", "pattern", "boundary_friction"} & smooth.keys()
     warm = film_rows(f'{FILE}\n[film]\nsolver = "line"\nthermal = "mean_film"\n')
-    assert warm.keys() - by_law.keys() == {"solver", "phases"}
+    assert warm.keys() - by_law.keys() == {"solver", "phases", "in_series"}
     assert film_rows(PAIR) == {}
 
 

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from pitchpoint.analyses.analysis import Unasked
-from pitchpoint.analyses.torsion import engaged_at, rigid, wound_ups
+from pitchpoint.analyses.film_contacts import known
+from pitchpoint.analyses.torsion import rigid, wound_ups
 from pitchpoint.cases.build import Built
 from pitchpoint.errors import InputError
 from pitchpoint.status import Code
@@ -37,7 +38,7 @@ def series_figures(
 
     A contact under the force F whose film yields by dh for dF adds dh F/T to the rotation under the torque T
     (virtual work), with forces in proportion to the torque. Films are those at the speed of the operating
-    point: at rest there are none. All are withheld if the film of a loaded contact is missing.
+    point: at rest there are none. What films take is withheld if that of a loaded contact is missing.
 
     Args:
         built: the case.
@@ -51,18 +52,12 @@ def series_figures(
     missing = bool(np.any(loaded & ~solved)) or not loaded.any()
     with np.errstate(divide="ignore", invalid="ignore"):
         yields = np.where(loaded, force**2 / found["film_stiffness"], 0.0)
-    compliance = np.sum(yields, axis=(-2, -1)) @ states["weight"] / torque**2
-    dry = _without(built, torque)
+    compliance = np.sum(yields, axis=(-2, -1)) / torque**2
+    (wound,), _ = wound_ups(built, known(built), np.array([torque]))
+    dry, weight = np.asarray(wound.stiffness), states["weight"]
     whole = np.nan if missing else 1.0
     return {
-        "film_torsional_stiffness": np.asarray(whole / compliance),
-        "stiffness_without_films": np.asarray(dry),
-        "stiffness_with_films": np.asarray(whole / (compliance + 1.0 / dry)),
+        "film_torsional_stiffness": np.asarray(whole / (compliance @ weight)),
+        "stiffness_without_films": np.asarray(dry @ weight),
+        "stiffness_with_films": np.asarray(whole * (1.0 / (1.0 / dry + compliance)) @ weight),
     }
-
-
-def _without(built: Built, torque: float) -> float:
-    """Slope of the torque over the wind-up of the loaded member, mean over the cycle [N m/rad]."""
-    known = engaged_at(built)
-    (wound,), _ = wound_ups(built, known, np.array([torque]))
-    return float(np.asarray(wound.stiffness) @ np.asarray(known.weight))

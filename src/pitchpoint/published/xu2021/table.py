@@ -16,7 +16,7 @@ RADIUS = Quantity("length", 1e-4, 100.0, "m")
 SPEED = Quantity("velocity", 0.0, 100.0, "m/s", open_low=True)
 TURNS = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
 FACTOR = Quantity("dimensionless", 0.0, 10.0, open_low=True)
-NODES = Quantity("dimensionless", 33, 1025, whole=True)
+NODES = Quantity("dimensionless", 33, 257, whole=True)
 
 _MOST = 100
 
@@ -47,4 +47,13 @@ class ZoneFilms(Table):
     def _rising(self) -> "ZoneFilms":
         if any(later <= one for one, later in pairwise(self.speeds)):
             raise InputError("the speeds have to rise", key="speeds")
+        return self
+
+    @model_validator(mode="after")
+    def _of_a_grid(self) -> "ZoneFilms":
+        even = int(self.nodes) - 1
+        if even & (even - 1):
+            raise InputError(
+                "their number is a power of two and one more: 33, 65, 129 or 257", key="nodes"
+            )
         return self

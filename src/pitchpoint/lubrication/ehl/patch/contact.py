@@ -204,7 +204,10 @@ def elliptic_contact(
 
 
 def _maps(heights: Heights) -> tuple[HeightMap, ...]:
-    return (heights,) if isinstance(heights, HeightMap) else tuple(heights)
+    found = (heights,) if isinstance(heights, HeightMap) else tuple(heights)
+    if not all(isinstance(one, HeightMap) for one in found):
+        raise InputError("heights are a HeightMap, or several", key="heights")
+    return found
 
 
 def _at(places: Array, name: str, value: ArrayLike) -> Array:

@@ -22,7 +22,7 @@ from pitchpoint.lubrication.ehl.patch.fields import (
     Response,
     patch_film,
 )
-from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, problem_on
+from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, leaks, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
 from pitchpoint.lubrication.ehl.patch.response import polished, settled
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
@@ -53,6 +53,9 @@ NODES: Final = 129
 
 CELLS: Final = 128
 """Usual number of cells across."""
+
+THICK: Final = 3.0
+"""Length of a contact with its film over that without from which on it is told."""
 
 ENDS: Final = "ends"
 """Kind of the warning on lines that end sharply."""
@@ -362,15 +365,20 @@ def check(contact: PatchContact) -> None:
 def _check_shapes(contact: PatchContact) -> None:
     """InputError for arrays where one number belongs, and for places that do not rise."""
     single = {"load": contact.load, "modulus": contact.modulus, "approach": contact.approach}
+    single |= {"across": contact.across_a + contact.across_b, "inlet": contact.inlet}
     if contact.length is not None:
         single["length"] = contact.length
+    else:
+        single["transverse_radius"] = contact.bend
     for key, value in single.items():
         if np.ndim(value):
             raise InputError(
                 f"one contact has one {key}, not an array of shape {np.shape(value)}", key=key
             )
-    if contact.length is None and np.shape(contact.radius) != (1,):
-        raise InputError("an ellipse has one radius along x, not an array", key="radius")
+    for key in ("radius", "speed_a", "speed_b"):
+        if contact.length is None and np.shape(getattr(contact, key)) != (1,):
+            told = key.replace("_", " ")
+            raise InputError(f"an ellipse has one {told} along x, not an array", key=key)
     places = np.asarray(contact.places)
     if places.ndim != 1 or not np.all(np.diff(places) > 0.0):
         raise InputError("places along the line have to rise", key="places")
@@ -397,10 +405,18 @@ def _check_senses(contact: PatchContact) -> None:
 
 
 def _of_inlet(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
-    """Oil that begins nearer than it would take to flood the contact."""
+    """Oil that begins nearer than it would take to flood the contact, and thick films that leak."""
     begins, asked = -layout.inlet, float(contact.inlet)
     if begins < layout.flooded * (1.0 - 1e-9):
         yield starved(begins / layout.half_width, layout.flooded / layout.half_width)
+    longer = layout.length / layout.half_width
+    if longer > THICK and leaks(contact, layout):
+        yield Doubt(
+            f"the film lengthens the contact {longer:.3g} times: in the room of its grid it comes out up to "
+            "20 % too thin",
+            "thick",
+            longer,
+        )
     if asked < begins * (1.0 - 1e-9):
         yield Doubt(
             f"oil is to begin {1e3 * asked:.3g} mm before the middle of a contact, and a patch has it from "

@@ -35,6 +35,7 @@ __all__ = [
     "extents",
     "ladder",
     "laid_out",
+    "leaks",
     "lowered_on",
     "problem_on",
     "without_oil",
@@ -88,8 +89,19 @@ class Borders(NamedTuple):
     beside: float = 1.6
 
 
+ROOM_THICK: Final = 9.0
+"""Reach ahead and to the sides of films that are thick against what bodies yield [lengths with the film]."""
+
 NEARBY: Final = Borders(1.5, 1.2, 1.2)
 """Borders for thin films: the gap there is more than ten of them, and cells are smaller."""
+
+
+WHOLE: Final = 0.98
+"""Part of a line from which on it carries over all of its length."""
+
+
+APART: Final = 4.0
+"""Gap over the film where bodies touch from which on a film hardly carries."""
 
 
 class Layout(NamedTuple):
@@ -152,36 +164,38 @@ def _bodies(x: tuple[float, ...], edges: tuple[float, ...], ends: str) -> HalfSp
     return half_space(np.array(x), np.array(edges), ends)
 
 
-def laid_out(contact: PatchContact, cells: int) -> Layout:
+def laid_out(contact: PatchContact, cells: int, film: float | None = None) -> Layout:
     """Where the grid of a contact lies.
 
     Args:
         contact: one, of values.
         cells: across it.
+        film: in the middle, where it is known better than by a law of long lines [m].
 
     Raises:
         InputError: a line whose contact is wider than any grid, or that carries nowhere.
     """
     if contact.length is None:
-        return _of_ellipse(contact)
-    return _of_line(contact, cells)
+        return _of_ellipse(contact, film)
+    return _of_line(contact, cells, film)
 
 
-def _of_ellipse(contact: PatchContact) -> Layout:
+def _of_ellipse(contact: PatchContact, known: float | None) -> Layout:
     radius, across = float(contact.radius[0]), 1.0 / float(contact.bend)
     ellipse = _ellipse(contact)
     half_width, side = float(ellipse.along), float(ellipse.across)
     pressure = float(ellipse.pressure)
-    film, borders = _film_and_borders(contact, radius, half_width, pressure)
+    film, borders = _film_and_borders(contact, radius, half_width, pressure, known)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
     length, reach = half_width * longer, side * wider
-    flooded = borders.inlet * length
+    flooded = _reach(borders.inlet, longer) * length
     ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     # Oil that comes in obliquely needs an inlet beside the contact too.
-    before = max(borders.beside, borders.inlet * _oblique(contact)) * reach
+    beside = _reach(borders.beside, wider)
+    before = max(beside, borders.inlet * _oblique(contact)) * reach
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
-    return Layout(*ends, -before, borders.beside * reach, None, *units, radius, unit, flooded)
+    return Layout(*ends, -before, beside * reach, None, *units, radius, unit, flooded)
 
 
 # Its elliptic integrals are loops, which would be made anew for each contact.
@@ -194,6 +208,14 @@ def _ellipse(contact: PatchContact) -> Ellipse:
     return _hertz(
         load=contact.load, radius=radius, transverse_radius=across, modulus=contact.modulus
     )
+
+
+def leaks(contact: PatchContact, layout: Layout) -> bool:
+    """Whether the bodies part to the sides, so that a thick film leaks: of ellipses and of crowned lines."""
+    if contact.length is None:
+        return True
+    _, apart = _beside(contact)
+    return bool(np.mean(apart > APART * layout.film) > 0.5)
 
 
 def extents(contact: PatchContact, layout: Layout) -> tuple[Ends, Ends]:
@@ -212,13 +234,16 @@ def _oblique(contact: PatchContact) -> float:
     return abs(across) / whole if whole > 0.0 else 0.0
 
 
-def _of_line(contact: PatchContact, cells: int) -> Layout:
+def _of_line(contact: PatchContact, cells: int, known: float | None) -> Layout:
     half_width, pressure, (low, high) = _carrying(contact)
     radius, face = float(np.mean(contact.radius)), float(contact.length)  # type: ignore[arg-type]
-    film, borders = _film_and_borders(contact, radius, half_width, pressure)
+    film, borders = _film_and_borders(contact, radius, half_width, pressure, known)
     longer = _longer(contact, radius, film, half_width)
     length = half_width * longer
-    flooded = borders.inlet * length
+    part = high - low < WHOLE * face
+    if part:  # of a line that is crowned, say: oil leaks to the sides, as from an ellipse
+        low, high = _wetted(contact, low, high, film * _thick(longer))
+    flooded = (_reach(borders.inlet, longer) if part else borders.inlet) * length
     ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     beyond = (borders.beside - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
     if contact.ends == "half_space":
@@ -253,14 +278,38 @@ def _roughness(contact: PatchContact) -> float:
     return 0.0 if contact.texture is None else float(contact.texture.rq)
 
 
+def _thick(longer: float) -> float:
+    """From zero, for films that hardly lengthen a contact, to one, for those that make all of its length."""
+    return float((1.0 - longer**-2) ** 8)
+
+
+def _reach(border: float, longer: float) -> float:
+    """How far a grid reaches, over the length of a contact with its film."""
+    return border + (ROOM_THICK - border) * _thick(longer)
+
+
+def _wetted(contact: PatchContact, low: float, high: float, film: float) -> tuple[float, float]:
+    """From where to where a line carries with a film: where bodies part slowly a thick one reaches far."""
+    y, apart = _beside(contact)
+    near = y[apart <= ROOM_THICK**2 * film]
+    return min(low, float(near[0])), max(high, float(near[-1]))
+
+
+def _beside(contact: PatchContact) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places along a line, and by how much more the bodies lie apart there than where they touch [m]."""
+    y = np.linspace(-0.5, 0.5, 257) * float(contact.length)  # type: ignore[arg-type]
+    apart = np.asarray(contact.gap(array([0.0]), array(y)))[:, 0]
+    return y, apart - np.min(apart)
+
+
 def _film_and_borders(
-    contact: PatchContact, radius: float, half_width: float, pressure: float
+    contact: PatchContact, radius: float, half_width: float, pressure: float, known: float | None
 ) -> tuple[float, Borders]:
-    """Guess of the film in the middle [m], and a grid whose inlet floods it."""
+    """Film in the middle, guessed unless known [m], and a grid whose inlet floods it."""
     line_load = 0.5 * np.pi * pressure * half_width
     speed = max(float(np.max(np.abs(entrainment_of(contact)))), SLOWEST)
     oil, modulus = contact.fluid, float(contact.modulus)
-    film = moes_1992(
+    guess = moes_1992(
         line_load=array(line_load),
         entrainment=array(speed),
         viscosity=oil.viscosity,
@@ -268,12 +317,13 @@ def _film_and_borders(
         radius=array(radius),
         modulus=contact.modulus,
     )
+    film = float(guess) if known is None else known
     speeds = 2.0 * float(oil.viscosity) * speed / (modulus * radius)
     load = line_load / (modulus * radius) / np.sqrt(speeds)
-    if (float(film) + _roughness(contact)) * radius < THIN * half_width**2:
-        return float(film), NEARBY
+    if (film + _roughness(contact)) * radius < THIN * half_width**2:
+        return film, NEARBY
     inlet = np.select([load > 30.0, load > 10.0, load > 5.0], [3.0, 4.0, 5.0], 6.0)
-    return float(film), Borders(float(inlet))
+    return film, Borders(float(inlet))
 
 
 def entrainment_of(contact: PatchContact) -> NDArray[np.float64]:
@@ -352,9 +402,9 @@ def ladder(nodes: int, cells: int) -> tuple[tuple[int, int], ...]:
     Raises:
         InputError: numbers that no grid has.
     """
-    for what, number, even in (("nodes", nodes, nodes - 1), ("cells", cells, cells)):
-        whole = isinstance(number, int | np.integer)
-        if not whole or even < FEWEST - 1 or even & (even - 1):
+    for what, number, odd in (("nodes", nodes, 1), ("cells", cells, 0)):
+        even = number - odd if isinstance(number, int | np.integer) else 0
+        if even < FEWEST - 1 or even & (even - 1):
             raise InputError(
                 f"{number} {what}: their number is a power of two from {FEWEST - 1} on"
                 + (" and one more" if what == "nodes" else ""),

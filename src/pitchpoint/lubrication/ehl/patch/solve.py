@@ -19,6 +19,7 @@ from pitchpoint.lubrication.ehl.patch.layout import (
     Problem,
     ladder,
     laid_out,
+    leaks,
     problem_on,
     without_oil,
 )
@@ -56,6 +57,12 @@ LEAST_STRIDE: Final = 1.2
 
 MOST_STRIDES: Final = 12
 """Films that are looked for on the way to one."""
+
+ROOMIER: Final = 1.05
+"""Factor by which a grid has to become longer or wider to be worth another layout."""
+
+MOST_LAYOUTS: Final = 8
+"""Layouts for films that turn out thicker than they were taken for."""
 
 MORE: Final = 1e-3
 """Part of the load by which dry bodies are loaded more and less to see how they yield."""
@@ -293,6 +300,22 @@ class _Solver:
         return state
 
 
+def _film_of(problem: Problem, dry: NDArray[np.float64], state: State) -> float:
+    """Mean film of a solution [m]."""
+    own = _mean_gap(problem, dry, state.pressure, state.level)
+    return own * float(problem.flow.height)
+
+
+def _roomier(contact: PatchContact, layout: Layout, cells: int, film: float) -> Layout | None:
+    """A grid for a film that is thicker than it was taken for; None where that is no larger."""
+    if not (film > layout.film and leaks(contact, layout)):
+        return None
+    other = laid_out(contact, cells, film)
+    sizes = ((one.length, one.last - one.first) for one in (other, layout))
+    larger = any(new > ROOMIER * old for new, old in zip(*sizes, strict=True))
+    return other if larger else None
+
+
 def solve(
     contact: PatchContact,
     nodes: int = 129,
@@ -301,18 +324,35 @@ def solve(
     layout: Layout | None = None,
     earlier: Earlier | None = None,
 ) -> tuple[Layout, Problem, State]:
-    """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder."""
-    grids = ladder(nodes, cells)
+    """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder.
+
+    Where the film on the coarsest grid is so much thicker than it was taken for that it needs more room, it
+    gets that.
+    """
+    grids, fixed = ladder(nodes, cells), layout is not None
     layout = laid_out(contact, cells) if layout is None else layout
     check_maps_on(contact, layout, cells)
-    solver, found = _Solver(told), None
+    solver = _Solver(told)
     if earlier is not None:
         problem = problem_on(contact, layout, nodes, cells, cells)
         start = warm_start(earlier, layout, problem)
         state = solver.iterated(problem, start, WARM_TIME, CAREFUL)
-        if state.residual < ENOUGH:
+        film = _film_of(problem, np.asarray(dry_under(problem).pressure), state)
+        if state.residual < ENOUGH and _roomier(contact, layout, cells, film) is None:
             return layout, problem, state
-    for grid in grids:
+    problem = problem_on(contact, layout, *grids[0], cells)
+    found = solver.on_grid(problem, None, last=len(grids) == 1)
+    for _ in range(0 if fixed else MOST_LAYOUTS):
+        if found is None or float(found.problem.film) != float(problem.film):
+            break
+        film = _film_of(problem, found.dry, found.state)
+        more = _roomier(contact, layout, cells, film)
+        if more is None:
+            break
+        layout = more
+        problem = problem_on(contact, layout, *grids[0], cells)
+        found = solver.on_grid(problem, None, last=len(grids) == 1)
+    for grid in grids[1:]:
         problem = problem_on(contact, layout, *grid, cells)
         found = solver.on_grid(problem, found, last=grid == grids[-1])
     assert solver.last is not None

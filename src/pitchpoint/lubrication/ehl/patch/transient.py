@@ -159,10 +159,18 @@ def march_patches(
 
     Raises:
         InputError: what `solve_patch` refuses, contacts of several kinds, times that do not rise, an approach
-            of later contacts, which the march finds, entrainment that turns round.
+            of later contacts, which the march finds, entrainment that turns round, a tolerance that is not
+            positive, a moment after which nothing comes.
     """
     if steps not in STEPS:
         raise InputError(f'there are no steps "{steps}"', key="steps", allowed=STEPS)
+    if not 0.0 < tolerance < np.inf:  # written so that NaN fails
+        raise InputError(f"a tolerance of {tolerance:.4g}: it must be positive", key="tolerance")
+    if after is not None and not after.solved:
+        raise InputError(
+            "the film of this moment was not found, and nothing goes on after it; take one before",
+            key="after",
+        )
     at = np.asarray(times, float)
     check_times(contacts, at)
     if after is None:
