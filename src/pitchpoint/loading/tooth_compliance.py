@@ -169,8 +169,9 @@ def unit_stiffness(
 
     Source: Atanasiu et al. (2011), eq. 16: deflections of both teeth and of the contact add up.
     """
-    given = (contacts, sections, _moduli(solids, terms), line_load)
-    teeth = _bending(contacts, sections, solids, terms)
+    yielding = _moduli(solids, terms)
+    teeth = _bending(contacts, sections, yielding, terms)
+    given = (contacts, sections, yielding, line_load)
     if contacts.shape == "ellipse":
         over = [
             one if at.width is None else one / at.width
@@ -192,19 +193,16 @@ def bending(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms
 
     Source: Atanasiu et al. (2011), eq. 16, less the deflection of the contact.
     """
-    first, second = _bending(contacts, sections, solids, terms)
+    first, second = _bending(contacts, sections, _moduli(solids, terms), terms)
     return first + second
 
 
-def _bending(
-    contacts: Contacts, sections: Sections, solids: Solids, terms: Terms
-) -> tuple[Field, Field]:
-    """The same of each tooth."""
-    first, second = (
+def _bending(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms) -> list[Field]:
+    """The same of each tooth, of solids as they yield under these terms."""
+    return [
         interpolate(tooth_compliance(section, solid, terms), section, contacts.flank[k])
-        for k, (section, solid) in enumerate(zip(sections, _moduli(solids, terms), strict=True))
-    )
-    return first, second
+        for k, (section, solid) in enumerate(zip(sections, solids, strict=True))
+    ]
 
 
 def interpolate(values: Float[Array, " node"], section: ToothSection, flank: Field) -> Field:

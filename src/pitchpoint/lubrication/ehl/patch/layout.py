@@ -170,7 +170,8 @@ def laid_out(contact: PatchContact, cells: int, film: float | None = None) -> La
     Args:
         contact: one, of values.
         cells: across it.
-        film: in the middle, where it is known better than by a law of long lines [m].
+        film: in the middle, where it is known better than by a law of long lines [m]; the grid then has the
+            room that a film takes which is thick against what the bodies yield.
 
     Raises:
         InputError: a line whose contact is wider than any grid, or that carries nowhere.
@@ -188,10 +189,10 @@ def _of_ellipse(contact: PatchContact, known: float | None) -> Layout:
     film, borders = _film_and_borders(contact, radius, half_width, pressure, known)
     longer, wider = _longer(contact, radius, film, half_width), _longer(contact, across, film, side)
     length, reach = half_width * longer, side * wider
-    flooded = _reach(borders.inlet, longer) * length
+    flooded = _reach(borders.inlet, _thick(longer, known)) * length
     ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     # Oil that comes in obliquely needs an inlet beside the contact too.
-    beside = _reach(borders.beside, wider)
+    beside = _reach(borders.beside, _thick(wider, known))
     before = max(beside, borders.inlet * _oblique(contact)) * reach
     units = length, pressure / (longer * wider), film, half_width, pressure
     unit = _unit_of_speed(contact, radius, length)
@@ -240,10 +241,11 @@ def _of_line(contact: PatchContact, cells: int, known: float | None) -> Layout:
     film, borders = _film_and_borders(contact, radius, half_width, pressure, known)
     longer = _longer(contact, radius, film, half_width)
     length = half_width * longer
-    part = high - low < WHOLE * face
-    if part:  # of a line that is crowned, say: oil leaks to the sides, as from an ellipse
-        low, high = _wetted(contact, low, high, film * _thick(longer))
-    flooded = (_reach(borders.inlet, longer) if part else borders.inlet) * length
+    # A line that is crowned, say, leaks to the sides as an ellipse does.
+    thick = _thick(longer, known) if high - low < WHOLE * face else 0.0
+    if thick > 0.0:
+        low, high = _wetted(contact, low, high, film * thick)
+    flooded = _reach(borders.inlet, thick) * length
     ends = -min(flooded, _begins(contact, length)), borders.outlet * length
     beyond = (borders.beside - 1.0) * 0.5 * (high - low) + (longer - 1.0) * half_width
     if contact.ends == "half_space":
@@ -278,14 +280,17 @@ def _roughness(contact: PatchContact) -> float:
     return 0.0 if contact.texture is None else float(contact.texture.rq)
 
 
-def _thick(longer: float) -> float:
-    """From zero, for films that hardly lengthen a contact, to one, for those that make all of its length."""
-    return float((1.0 - longer**-2) ** 8)
+def _thick(longer: float, known: float | None) -> float:
+    """From zero, for films that hardly lengthen a contact, to one, for those that make all of its length.
+
+    Zero for films that are guessed: laws of long lines do not tell how thick those are that leak.
+    """
+    return 0.0 if known is None else float((1.0 - longer**-2) ** 8)
 
 
-def _reach(border: float, longer: float) -> float:
+def _reach(border: float, thick: float) -> float:
     """How far a grid reaches, over the length of a contact with its film."""
-    return border + (ROOM_THICK - border) * _thick(longer)
+    return border + (ROOM_THICK - border) * thick
 
 
 def _wetted(contact: PatchContact, low: float, high: float, film: float) -> tuple[float, float]:
