@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from sound import PAIR
+from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film as solved
 from pitchpoint.analyses.film_contacts import states as states_of
@@ -149,20 +150,11 @@ def test_a_film_that_is_not_found_withholds_the_loss(
 def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
-    calls = []
+    def run() -> Any:
+        return running.run(case, folder=tmp_path)["default"].parts["film"]
 
-    def stop(built: Any, piece: Any, progress: Any) -> Any:
-        calls.append(piece["first"])
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return part(built, piece, progress)
-
-    part = solved.film_part
-    monkeypatch.setattr(solved, "film_part", stop)
-    with pytest.raises(KeyboardInterrupt):
-        running.run(case, folder=tmp_path)
-    again = running.run(case, folder=tmp_path)["default"].parts["film"]
-    assert calls == [0, 6, 6]
+    again, begins = stopped_and_gone_on(solved, run, monkeypatch)
+    assert begins == [0, 6, 6]
     for name in PHASES:
         assert np.array_equal(again[name], outcome.parts["film"][name], equal_nan=True)
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from sound import PAIR
+from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film_cycle, finite_film
 from pitchpoint.analyses.analysis import silent
@@ -260,20 +261,11 @@ def test_films_that_are_not_found_are_counted_and_withhold_the_loss(
 def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
-    calls = []
+    def run() -> Any:
+        return running.run(case, folder=tmp_path)["default"].parts["finite_film"]
 
-    def stop(built: Any, piece: Any, progress: Any) -> Any:
-        calls.append(piece["first"])
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return part(built, piece, progress)
-
-    part = finite_film.finite_part
-    monkeypatch.setattr(finite_film, "finite_part", stop)
-    with pytest.raises(KeyboardInterrupt):
-        running.run(case, folder=tmp_path)
-    again = running.run(case, folder=tmp_path)["default"].parts["finite_film"]
-    assert calls[:3] == [0, 2, 2]
+    again, begins = stopped_and_gone_on(finite_film, run, monkeypatch)
+    assert begins[:3] == [0, 2, 2]
     for name in ("film_loss", "minimum_film", "field_pressure", "near_ends", "kept_at"):
         assert np.array_equal(again[name], outcome.parts["finite_film"][name], equal_nan=True)
 
@@ -281,7 +273,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
 def test_progress_tells_contacts_and_steps(case: str) -> None:
     told: list[tuple[int, str]] = []
     built = load_case(case)
-    finite_film.finite_part(
+    finite_film.film_part(
         built, {"first": 0, "count": 1}, lambda done, doing="": told.append((done, doing))
     )
     assert any(one[1].startswith("contact 1 of ") and "Newton step 3" in one[1] for one in told)

@@ -59,44 +59,33 @@ def _endless(built: Built) -> str | None:
     return None if built.case.film.over_patch else Unasked("[film] asks for lines without ends")
 
 
+def _solver(built: Built) -> Any:
+    """What solves the films that a case asks for."""
+    if built.case.film is not None and built.case.film.over_patch:
+        from pitchpoint.analyses import finite_film
+
+        return finite_film
+    from pitchpoint.analyses import film
+
+    return film
+
+
 def _pieces(built: Built) -> Iterable[Piece]:
-    from pitchpoint.analyses.film import pieces
     from pitchpoint.analyses.film_series import check_series
 
     check_series(built)
-    return pieces(built)
+    found: Iterable[Piece] = _solver(built).pieces(built)
+    return found
 
 
 def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
-    from pitchpoint.analyses.film import film_part
-
-    return film_part(built, piece, progress)
+    found: xr.Dataset = _solver(built).film_part(built, piece, progress)
+    return found
 
 
 def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    from pitchpoint.analyses.film import joined
-
-    return joined(built, parts)
-
-
-def _finite_pieces(built: Built) -> Iterable[Piece]:
-    from pitchpoint.analyses.film_series import check_series
-    from pitchpoint.analyses.finite_film import pieces
-
-    check_series(built)
-    return pieces(built)
-
-
-def _finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
-    from pitchpoint.analyses.finite_film import finite_part
-
-    return finite_part(built, piece, progress)
-
-
-def _finite_joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    from pitchpoint.analyses.finite_film import joined
-
-    return joined(built, parts)
+    found: xr.Dataset = _solver(built).joined(built, parts)
+    return found
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -148,9 +137,9 @@ FINITE_FILM = Analysis(
     name="finite_film",
     title="films of finite contacts",
     lacks=_endless,
-    compute=_finite_part,
-    pieces=_finite_pieces,
-    joined=_finite_joined,
+    compute=_compute,
+    pieces=_pieces,
+    joined=_joined,
     main=_FINITE_MAIN,
     figures=_finite_figures,
 )

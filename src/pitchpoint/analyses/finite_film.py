@@ -24,7 +24,7 @@ from pitchpoint.lubrication.ehl.patch.layout import FEWEST
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 
-__all__ = ["finite_part", "joined", "pieces"]
+__all__ = ["film_part", "joined", "pieces"]
 
 TOGETHER = 2
 """Phases of a piece, so that little is lost when a run is stopped."""
@@ -80,7 +80,7 @@ def pieces(built: Built) -> Iterator[Piece]:
         yield {"first": first, "count": min(TOGETHER, every - first)}
 
 
-def finite_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+def film_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
     """Films of all contacts at some phases."""
     first, count = piece["first"], piece["count"]
     taken, given = slice(first, first + count), wholes(built)

@@ -83,13 +83,9 @@ class _Planned:
     @property
     def pieces(self) -> list[Piece]:
         """Ranges of points."""
-        count, alone = (
-            len(self.changes),
-            any(key.startswith("formulas.") for key in self.changes[0]),
-        )
-        size = (
-            1 if alone else PIECE
-        )  # formulas that take inputs of their own solve motions and films
+        count = len(self.changes)
+        # Formulas that take inputs of their own solve motions and films.
+        size = 1 if any(key.startswith("formulas.") for key in self.changes[0]) else PIECE
         return [{"first": n, "stop": min(n + size, count)} for n in range(0, count, size)]
 
     def compute(self, _: Ready, piece: Piece, progress: Progress) -> xr.Dataset:

@@ -15,15 +15,11 @@ from pitchpoint.lubrication.ehl.patch.films import PatchFilms
 from pitchpoint.lubrication.ehl.patch.transient import PatchMoment
 from pitchpoint.lubrication.ehl.solve import Ended, Films
 from pitchpoint.results.store import dataset, describe
-from pitchpoint.results.variable import Variable, deviation, length, percent
+from pitchpoint.results.variable import Variable, deviation, length, percent, pressure
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
 __all__ = ["film_dataset", "films_of_dataset", "march_dataset", "patch_dataset"]
-
-
-def _pressure(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "Pa", "MPa", "pressure")
 
 
 def _on_line(long_name: str, symbol: str) -> Variable:
@@ -52,18 +48,18 @@ def _number(long_name: str, symbol: str = "") -> Variable:
 
 _FILM: Final = {
     "x": length("place across the contact, along positive surface speeds", "x"),
-    "pressure": _pressure("pressure that oil and asperities carry together", "p"),
-    "asperity_pressure": _pressure("pressure that asperities carry", "p_a"),
+    "pressure": pressure("pressure that oil and asperities carry together", "p"),
+    "asperity_pressure": pressure("pressure that asperities carry", "p_a"),
     "gap": deviation("gap of the mean planes", "h"),
     "film": deviation("mean gap that is open to the oil", "h_T"),
     "filled": percent("part of that gap that oil fills", "θ"),
-    "shear_stress": _pressure("shear stress of the oil on member 0, half way across", "τ"),
+    "shear_stress": pressure("shear stress of the oil on member 0, half way across", "τ"),
     "central_film": deviation("film in the middle of the contact", "h_c"),
     "minimum_film": deviation("smallest film", "h_min"),
     "minimum_place": length("place of the smallest film", "x_min"),
     "mean_film": deviation("mean film over the width of the dry contact", "h_m"),
-    "largest_pressure": _pressure("largest pressure", "p_max"),
-    "spike_pressure": _pressure("height of the pressure spike", "p_s"),
+    "largest_pressure": pressure("largest pressure", "p_max"),
+    "spike_pressure": pressure("height of the pressure spike", "p_s"),
     "spike_place": length("place of the pressure spike", "x_s"),
     "asperity_share": percent("part of the load on asperities", "L_a"),
     "rolling": _on_line("rolling resistance of each surface", "F_r/l"),
@@ -75,7 +71,7 @@ _FILM: Final = {
     "damping": Variable("squeeze damping of the film, for a length", "c/l", "N s/m2"),
     "pumping_power": _power("heat of the flow under pressure", "P_p/l"),
     "half_width": length("half-width of the dry contact", "b"),
-    "hertz_pressure": _pressure("largest pressure of the dry contact", "p_H"),
+    "hertz_pressure": pressure("largest pressure of the dry contact", "p_H"),
 }
 _HEAT: Final = {
     "film": _rise("mean temperature of the film above the inlet", "ΔT"),
@@ -123,16 +119,16 @@ _PATCH: Final = {
             *("film_ratio", "half_width", "hertz_pressure"),
         )
     },
-    "dry_pressure": _pressure("pressure without oil", "p_d"),
+    "dry_pressure": pressure("pressure without oil", "p_d"),
     "deflection": deviation("deflection of both bodies together", "u"),
     "heights": deviation("heights of both surfaces that the cells see", "z"),
-    "shear_x": _pressure("shear stress of the oil on member 0 along x, half way across", "τ_x"),
-    "shear_y": _pressure("shear stress of the oil on member 0 along y, half way across", "τ_y"),
-    "traction_x": _pressure("stress of oil and asperities on member 0 along x", "t_x"),
-    "traction_y": _pressure("stress of oil and asperities on member 0 along y", "t_y"),
+    "shear_x": pressure("shear stress of the oil on member 0 along x, half way across", "τ_x"),
+    "shear_y": pressure("shear stress of the oil on member 0 along y, half way across", "τ_y"),
+    "traction_x": pressure("stress of oil and asperities on member 0 along x", "t_x"),
+    "traction_y": pressure("stress of oil and asperities on member 0 along y", "t_y"),
     "minimum_place": length("place of the smallest film", "x_min, y_min"),
     "largest_place": length("place of the largest pressure", "x_max, y_max"),
-    "near_ends": _pressure("largest pressure across, near the ends of the line", "p_e"),
+    "near_ends": pressure("largest pressure across, near the ends of the line", "p_e"),
     "shear_force": _force("shear of the oil on member 0", "F_s"),
     "boundary_force": _force("friction of asperities on member 0", "F_b"),
     "friction_magnitude": _number("integral of the magnitude of the traction over the load", "μ_t"),

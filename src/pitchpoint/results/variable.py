@@ -14,9 +14,11 @@ __all__ = [
     "length",
     "percent",
     "power",
+    "pressure",
     "speed",
     "stiffness",
     "torque",
+    "torsional_stiffness",
 ]
 
 End = Literal["driver", "loaded"]
@@ -63,6 +65,16 @@ def torque(long_name: str, symbol: str) -> Variable:
 def stiffness(long_name: str, symbol: str) -> Variable:
     """A stiffness along a line [N/m], shown in N/um."""
     return Variable(long_name, symbol, "N/m", "N/um", "stiffness")
+
+
+def torsional_stiffness(long_name: str, symbol: str) -> Variable:
+    """A stiffness against rotation [N m/rad], shown in kN m/rad."""
+    return Variable(long_name, symbol, "N m/rad", "kN m/rad", "torsional stiffness")
+
+
+def pressure(long_name: str, symbol: str) -> Variable:
+    """A pressure [Pa], shown in MPa."""
+    return Variable(long_name, symbol, "Pa", "MPa", "pressure")
 
 
 def deviation(long_name: str, symbol: str) -> Variable:

@@ -13,16 +13,14 @@ from pitchpoint.results.variable import (
     length,
     percent,
     power,
+    pressure,
     speed,
     stiffness,
     torque,
+    torsional_stiffness,
 )
 
 __all__ = ["VARIABLES", "variable_of"]
-
-
-def _pressure(long_name: str, symbol: str) -> Variable:
-    return Variable(long_name, symbol, "Pa", "MPa", "pressure")
 
 
 VARIABLES: dict[str, Variable] = {
@@ -67,7 +65,7 @@ VARIABLES: dict[str, Variable] = {
     "sliding_velocity": Variable("sliding velocity, signed", "v_s", "m/s", "m/s", "velocity"),
     "entrainment": Variable("entrainment velocity", "u", "m/s", "m/s", "velocity"),
     "slide_roll_ratio": Variable("slide-roll ratio", "SR", "1"),
-    "pressure": Variable("largest Hertz pressure", "p_H", "Pa", "MPa", "pressure"),
+    "pressure": pressure("largest Hertz pressure", "p_H"),
     "semi_axis_along": length("semi-axis of the contact in the rolling direction", "b"),
     "semi_axis_across": length("semi-axis of the contact across the rolling direction", "a"),
     "film_thickness": Variable("film thickness", "h", "m", "um", "length"),
@@ -78,17 +76,15 @@ VARIABLES: dict[str, Variable] = {
     ),
     "minimum_film": Variable("smallest film of the contact, solved", "h_min", "m", "um", "length"),
     "minimum_lambda": Variable("smallest film over composite Rq, solved", "Λ_min", "1"),
-    "film_pressure": Variable(
-        "largest pressure of the film, solved", "p_max", "Pa", "MPa", "pressure"
-    ),
+    "film_pressure": pressure("largest pressure of the film, solved", "p_max"),
     "asperity_share": percent("part of the load on asperities, solved", "L_a"),
     "mean_film": deviation("mean film of the contact, weighed by its dry pressure", "h_m"),
     "row_film": deviation("smallest film of the row in the middle of a line", "h_row"),
     "minimum_place": length("place of the smallest film, along and across", "x, y"),
     "largest_place": length("place of the largest pressure, along and across", "x, y"),
-    "near_ends": _pressure("largest pressure at a distance from the end of the line", "p_e"),
+    "near_ends": pressure("largest pressure at a distance from the end of the line", "p_e"),
     "distance": Variable("distance from the end of the line, in half-widths", "s/b", "1"),
-    "dry_pressure": _pressure("largest pressure of the dry contact, but for its ends", "p_H"),
+    "dry_pressure": pressure("largest pressure of the dry contact, but for its ends", "p_H"),
     "dry_half_width": length("half-width of the dry contact", "b"),
     "film_inlet": length("distance before the contact at which its oil begins", "x_in"),
     "film_defect": Variable("defect of the film, over the pressure of the dry contact", "", "1"),
@@ -102,14 +98,14 @@ VARIABLES: dict[str, Variable] = {
     "mean_line_loss": power("mean loss of the teeth by lines without ends", "P_line"),
     "kept_x": length("place along the contact", "x"),
     "kept_y": length("place across the contact", "y"),
-    "field_pressure": _pressure("pressure", "p"),
-    "field_asperity_pressure": _pressure("pressure that asperities carry", "p_a"),
-    "field_dry_pressure": _pressure("pressure without oil", "p_d"),
+    "field_pressure": pressure("pressure", "p"),
+    "field_asperity_pressure": pressure("pressure that asperities carry", "p_a"),
+    "field_dry_pressure": pressure("pressure without oil", "p_d"),
     "field_film": deviation("film", "h"),
     "coarse_central_film": deviation("film in the middle on a coarser grid", "h_c"),
     "coarse_minimum_film": deviation("smallest film on a coarser grid", "h_min"),
-    "coarse_largest_pressure": _pressure("largest pressure on a coarser grid", "p_max"),
-    "coarse_near_ends": _pressure("pressure near the ends on a coarser grid", "p_e"),
+    "coarse_largest_pressure": pressure("largest pressure on a coarser grid", "p_max"),
+    "coarse_near_ends": pressure("pressure near the ends on a coarser grid", "p_e"),
     "coarse_friction": Variable("friction coefficient on a coarser grid", "μ", "1"),
     "film_rise": Variable(
         "largest temperature of the film above its inlet, solved",
@@ -130,31 +126,21 @@ VARIABLES: dict[str, Variable] = {
     "rolling_resistance": force("rolling resistance of each surface, solved", "F_roll"),
     "film_sliding_loss": power("sliding loss of the pair by its film", "P_s"),
     "film_rolling_loss": power("rolling loss of the pair by its film", "P_r"),
-    "film_stiffness": Variable("stiffness of the film", "k_film", "N/m", "N/um", "stiffness"),
+    "film_stiffness": stiffness("stiffness of the film", "k_film"),
     "film_damping": Variable("squeeze damping of the film", "c_film", "N s/m"),
-    "film_torsional_stiffness": Variable(
-        "torsional stiffness of the films alone",
-        "K_film",
-        "N m/rad",
-        "kN m/rad",
-        "torsional stiffness",
+    "film_torsional_stiffness": torsional_stiffness(
+        "torsional stiffness of the films alone", "K_film"
     ),
-    "stiffness_without_films": Variable(
-        "torsional stiffness without films", "K", "N m/rad", "kN m/rad", "torsional stiffness"
-    ),
-    "stiffness_with_films": Variable(
-        "torsional stiffness, films in series", "K'", "N m/rad", "kN m/rad", "torsional stiffness"
-    ),
+    "stiffness_without_films": torsional_stiffness("torsional stiffness without films", "K"),
+    "stiffness_with_films": torsional_stiffness("torsional stiffness, films in series", "K'"),
     "film_status": Variable("status of the film", "", "1"),
     "film_by_law": Variable("film thickness by regression", "h", "m", "um", "length"),
     "film_loss": power("loss of the teeth by their films", "P_EHL"),
     "law_loss": power("loss of the teeth by the friction law", "P_law"),
     "profile_place": length("place across the contact", "x"),
     "profile_film": Variable("film across the contact", "h", "m", "um", "length"),
-    "profile_pressure": Variable("pressure across the contact", "p", "Pa", "MPa", "pressure"),
-    "profile_asperity_pressure": Variable(
-        "pressure that asperities carry", "p_a", "Pa", "MPa", "pressure"
-    ),
+    "profile_pressure": pressure("pressure across the contact", "p"),
+    "profile_asperity_pressure": pressure("pressure that asperities carry", "p_a"),
     "profile_half_width": length("half-width of the dry contact", "b"),
     "profile_rise": Variable(
         "mean temperature of the film above its inlet",
@@ -175,13 +161,11 @@ VARIABLES: dict[str, Variable] = {
     },
     "smallest_film": Variable("smallest film of the mesh cycle", "h_min", "m", "um", "length"),
     "smallest_central_film": deviation("smallest film in the middle of a contact", "h_c min"),
-    "largest_end_pressure": _pressure(
+    "largest_end_pressure": pressure(
         "largest pressure half a half-width from an end of a line", "p_0.5b"
     ),
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
-    "largest_film_pressure": Variable(
-        "largest pressure of the films", "p_max", "Pa", "MPa", "pressure"
-    ),
+    "largest_film_pressure": pressure("largest pressure of the films", "p_max"),
     "largest_asperity_share": percent("largest part of a contact's load on asperities", "L_a max"),
     "largest_film_rise": Variable(
         "largest temperature of the films above their inlet",
@@ -367,18 +351,10 @@ VARIABLES: dict[str, Variable] = {
     "kinematic_error_range": Variable(
         "kinematic error, peak to peak", "Δφ range", "rad", "arcsec", "angle"
     ),
-    "torsional_stiffness": Variable(
-        "torsional stiffness", "K", "N m/rad", "kN m/rad", "torsional stiffness"
-    ),
+    "torsional_stiffness": torsional_stiffness("torsional stiffness", "K"),
     "edge_share": percent("part of the load on edges of the teeth", "F_e/F"),
     "wind_up_part": Variable("part of the wind-up", "Δθ", "rad", "arcmin", "angle"),
-    "slope_stiffness": Variable(
-        "torsional stiffness of a part of the curve",
-        "K",
-        "N m/rad",
-        "kN m/rad",
-        "torsional stiffness",
-    ),
+    "slope_stiffness": torsional_stiffness("torsional stiffness of a part of the curve", "K"),
     "slope_torque": torque("torque at which a part of the curve ends", "T"),
     "catalogue_lost_motion": Variable(
         "lost motion at ±4 % of the rated torque", "Δθ_4%", "rad", "arcmin", "angle"
@@ -412,12 +388,8 @@ VARIABLES: dict[str, Variable] = {
         "arcsec",
         "angle",
     ),
-    "mesh_torsional_stiffness": Variable(
-        "torsional stiffness over the mesh cycle",
-        "K(φ)",
-        "N m/rad",
-        "kN m/rad",
-        "torsional stiffness",
+    "mesh_torsional_stiffness": torsional_stiffness(
+        "torsional stiffness over the mesh cycle", "K(φ)"
     ),
     "tooth_force": Variable("normal force of the tooth", "F", "N", "N", "force"),
     "loading_torque": torque("torque while the wind-up grows", "T"),
@@ -453,12 +425,8 @@ VARIABLES: dict[str, Variable] = {
     "stage_input_torque": torque("mean torque that drives the stage", "T_in"),
     "stage_speed": Variable("speed of the stage's driver", "n", "rad/s", "rpm", "rotational speed"),
     "stage_wind_up": Variable("wind-up at the output by the stage", "Δθ", "rad", "arcmin", "angle"),
-    "stage_torsional_stiffness": Variable(
-        "torsional stiffness of the stage, at the output",
-        "K",
-        "N m/rad",
-        "kN m/rad",
-        "torsional stiffness",
+    "stage_torsional_stiffness": torsional_stiffness(
+        "torsional stiffness of the stage, at the output", "K"
     ),
     "mean_friction": Variable("mean friction coefficient", "μ mean", "1"),
     "loss_factor_efficiency": percent("efficiency by loss factor, 1 - μ H_V", "1 - μ H_V"),

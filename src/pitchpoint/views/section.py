@@ -19,6 +19,7 @@ __all__ = [
     "Printed",
     "Section",
     "Table",
+    "by_variant",
     "reason",
     "said",
 ]
@@ -123,6 +124,16 @@ class Page:
         for position, (name, one) in enumerate(self.outcomes.items()):
             if name in there:
                 yield position, name if self.several else "", one
+
+
+def by_variant(
+    page: Page, part: str, show: Callable[[int, Outcome], Iterator[Block]]
+) -> Iterator[Block]:
+    """Blocks of every variant that has a part, under its title where there are several."""
+    for position, title, outcome in page.each(part):
+        if title:
+            yield Heading(title)
+        yield from show(position, outcome)
 
 
 def _has(outcome: Outcome, part: str) -> bool:

@@ -6,7 +6,17 @@ from pitchpoint.published import conjugate
 from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
 from pitchpoint.published.xu2021 import printed
 from pitchpoint.published.xu2021.table import ZoneFilms
-from pitchpoint.results.variable import Variable, angle, deviation, length, percent, speed, torque
+from pitchpoint.results.variable import (
+    Variable,
+    angle,
+    deviation,
+    length,
+    percent,
+    pressure,
+    speed,
+    stiffness,
+    torque,
+)
 
 __all__ = ["PUBLICATION"]
 
@@ -54,14 +64,6 @@ def _plain(long_name: str, symbol: str) -> Variable:
     return Variable(long_name, symbol, "1")
 
 
-def _stiffness(long_name: str) -> Variable:
-    return Variable(long_name, "k_oil", "N/m", "N/um", "stiffness")
-
-
-def _pressure(long_name: str) -> Variable:
-    return Variable(long_name, "p", "Pa", "MPa", "pressure")
-
-
 def _turning(long_name: str) -> Variable:
     return Variable(long_name, "n", "rad/s", "rpm", "rotational speed")
 
@@ -70,14 +72,14 @@ _COURSES = {
     "film_speed": {
         "film_ratio": _plain("mean film over roughness", "λ"),
         "asperity_share": percent("part of the load on asperities", "W"),
-        "film_stiffness": _stiffness("stiffness of the film"),
+        "film_stiffness": stiffness("stiffness of the film", "k_oil"),
     },
     "film_place": {
-        "ridge_pressure": _pressure("pressure along the face, highest across"),
+        "ridge_pressure": pressure("pressure along the face, highest across", "p"),
         "ridge_film": deviation("film along the face, on the contact line", "h"),
     },
     "film_cut": {
-        "cut_pressure": _pressure("pressure across the contact, middle of the face"),
+        "cut_pressure": pressure("pressure across the contact, middle of the face", "p"),
         "cut_film": deviation("film across the contact, middle of the face", "h"),
     },
 }
@@ -101,7 +103,7 @@ _OF_POINT = {
     ),
     "rated_film_ratio": _plain("mean film over roughness at the operating point", "λ"),
     "rated_asperity_share": percent("part of the load on asperities at the operating point", "W"),
-    "rated_film_stiffness": _stiffness("stiffness of the film at the operating point"),
+    "rated_film_stiffness": stiffness("stiffness of the film at the operating point", "k_oil"),
     "misprinted_film_ratio": _plain("the film ratio of the oil by eq. 12 as printed", "λ"),
     "end_pressure": _plain(
         "pressure a quarter of a half-width from the ends over that in the middle", "p/p"

@@ -34,7 +34,7 @@ from pitchpoint.views.film_courses import (
     solved_how,
 )
 from pitchpoint.views.lines import titled
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, by_variant
 
 __all__ = ["FILM", "film_answer", "profiles_panel"]
 
@@ -190,10 +190,7 @@ def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: Key) -> T
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    for position, title, outcome in page.each("film"):
-        if title:
-            yield Heading(title)
-        yield from _of_variant(position, outcome)
+    yield from by_variant(page, "film", _of_variant)
 
 
 def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:

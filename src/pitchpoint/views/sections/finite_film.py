@@ -40,7 +40,7 @@ from pitchpoint.views.film_courses import (
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table, by_variant
 
 __all__ = ["FINITE_FILM"]
 
@@ -337,10 +337,7 @@ _WHICH = ("carries most", "has the thinnest film")
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    for position, title, outcome in page.each("finite_film"):
-        if title:
-            yield Heading(title)
-        yield from _of_variant(position, outcome)
+    yield from by_variant(page, "finite_film", _of_variant)
 
 
 def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:

@@ -38,6 +38,7 @@ from pitchpoint.views.section import (
     Printed,
     Section,
     Table,
+    by_variant,
     reason,
 )
 
@@ -423,10 +424,7 @@ def start_panel(name: str, outcome: Outcome) -> Panel:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    for position, title, outcome in page.each("motion"):
-        if title:
-            yield Heading(title)
-        yield from _of_period(position, outcome)
+    yield from by_variant(page, "motion", _of_period)
     for position, title, outcome in page.each("motion_against_speed"):
         yield Heading(f"Against speed: {title}" if title else "Against speed")
         data = outcome.parts["motion_against_speed"]

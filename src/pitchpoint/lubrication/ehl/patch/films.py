@@ -404,7 +404,7 @@ def _check_senses(contact: PatchContact) -> None:
         )
 
 
-def _of_inlet(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
+def _of_room(contact: PatchContact, layout: Layout) -> Iterator[Doubt]:
     """Oil that begins nearer than it would take to flood the contact, and thick films that leak."""
     begins, asked = -layout.inlet, float(contact.inlet)
     if begins < layout.flooded * (1.0 - 1e-9):
@@ -440,7 +440,7 @@ def _warnings(
     if ended.code != Code.SOLVED:
         yield f"the film was not found: {ended.code.sentence}"
         return
-    yield from _of_inlet(contact, layout)
+    yield from _of_room(contact, layout)
     told = contact.fluid.outside(film.hertz_pressure)
     if told is not None:
         pressure = float(film.hertz_pressure)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 from typing import Any, Final, NamedTuple
 
 import equinox as eqx
@@ -109,6 +110,10 @@ class Found(NamedTuple):
     dry: NDArray[np.float64]
     state: State
 
+    def faster(self, problem: Problem) -> bool:
+        """Whether oil flows faster in it than in the problem, as where a grid shows no film that is thin."""
+        return float(self.problem.film) != float(problem.film)
+
 
 def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], Any]:
     """Dry pressure of bodies with a soft layer on them, and the level at which the mean film is as guessed.
@@ -197,14 +202,15 @@ class Earlier(NamedTuple):
     film: float
 
 
-def warm_start(earlier: Earlier, layout: Layout, problem: Problem) -> tuple[Any, Any]:
-    """Pressure and level of a start from a solution of a contact that is like this one."""
+def warm_start(
+    earlier: Earlier, layout: Layout, problem: Problem, dry: NDArray[np.float64]
+) -> tuple[Any, Any]:
+    """Pressure and level of a start from the dry pressure and a solution of a contact that is alike."""
     rows, nodes = np.shape(problem.apart)
     (x, y), (fine_x, fine_y) = (
         one.places(*shape[::-1])
         for one, shape in ((earlier.layout, earlier.added.shape), (layout, (rows, nodes)))
     )
-    dry = np.asarray(dry_under(problem).pressure)
     added = _between(y, fine_y) @ earlier.added @ _between(x, fine_x).T
     return _together(problem, dry, added, earlier.film * float(problem.film))
 
@@ -335,23 +341,21 @@ def solve(
     solver = _Solver(told)
     if earlier is not None:
         problem = problem_on(contact, layout, nodes, cells, cells)
-        start = warm_start(earlier, layout, problem)
+        dry = np.asarray(dry_under(problem).pressure)
+        start = warm_start(earlier, layout, problem, dry)
         state = solver.iterated(problem, start, WARM_TIME, CAREFUL)
-        film = _film_of(problem, np.asarray(dry_under(problem).pressure), state)
+        film = _film_of(problem, dry, state)
         if state.residual < ENOUGH and _roomier(contact, layout, cells, film) is None:
             return layout, problem, state
-    problem = problem_on(contact, layout, *grids[0], cells)
-    found = solver.on_grid(problem, None, last=len(grids) == 1)
-    for _ in range(0 if fixed else MOST_LAYOUTS):
-        if found is None or float(found.problem.film) != float(problem.film):
+    for layouts in count():
+        problem = problem_on(contact, layout, *grids[0], cells)
+        found = solver.on_grid(problem, None, last=len(grids) == 1)
+        if fixed or layouts == MOST_LAYOUTS or found is None or found.faster(problem):
             break
-        film = _film_of(problem, found.dry, found.state)
-        more = _roomier(contact, layout, cells, film)
+        more = _roomier(contact, layout, cells, _film_of(problem, found.dry, found.state))
         if more is None:
             break
         layout = more
-        problem = problem_on(contact, layout, *grids[0], cells)
-        found = solver.on_grid(problem, None, last=len(grids) == 1)
     for grid in grids[1:]:
         problem = problem_on(contact, layout, *grid, cells)
         found = solver.on_grid(problem, found, last=grid == grids[-1])
