@@ -1,5 +1,7 @@
 """Solver of contacts of finite length: its order, starts from other films, and what a process keeps."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.constants import pi
@@ -8,6 +10,7 @@ from pitchpoint import programs
 from pitchpoint.contact.end_profiles import crowned
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.line import LineContact
+from pitchpoint.lubrication.ehl.patch import newton
 from pitchpoint.lubrication.ehl.patch import solve as solving
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
@@ -88,6 +91,36 @@ def test_symmetric_contacts_have_symmetric_films():
         film = on(contact, 65).film
         assert np.allclose(film.gap, film.gap[::-1], rtol=1e-7)
         assert np.allclose(film.pressure, film.pressure[::-1], atol=1e-6 * film.hertz_pressure)
+
+
+def test_the_tips_of_an_ellipse_hold_their_film():
+    # With an arithmetic mean of the conductances across, the wide gap beside them emptied them on any grid.
+    oil = Fluid(viscosity=0.013, pressure_viscosity=2e-8)
+    contact = elliptic_contact(
+        load=165.0,
+        radius=4.88e-3,
+        transverse_radius=27.2e-3,
+        modulus=MODULUS,
+        fluid=oil,
+        speed_a=0.0707,
+        speed_b=0.0636,
+    )
+    coarse, fine = (on(contact, nodes).film for nodes in (65, 129))
+    assert abs(float(fine.minimum_place[1])) > 0.8 * fine.half_width * 2.98
+    least, finer = (float(one.minimum_film / one.central_film) for one in (coarse, fine))
+    assert least == pytest.approx(finer, rel=0.3)
+    assert finer > 0.3
+
+
+@pytest.mark.parametrize("made", [line, ball])
+def test_rows_that_are_images_of_each_other_are_inverted_once(
+    made: Callable[[], PatchContact], monkeypatch: pytest.MonkeyPatch
+):
+    half = on(made(), 33)
+    monkeypatch.setattr(newton, "_even", lambda problem: False)
+    every = on(made(), 33)
+    assert every.ended.steps == half.ended.steps
+    assert np.allclose(half.film.gap, every.film.gap, rtol=1e-6)
 
 
 def test_another_ellipse_needs_no_other_program():

@@ -17,6 +17,9 @@ __all__ = ["ACROSS", "ALONG", "Stencil", "Through", "balance", "stencil", "throu
 Field = Float[Arrays, "y x"]
 Inner = Float[Array, "y inner"]
 
+STEEP = 1.5
+"""Conductance between two rows over the geometric mean of theirs, at most."""
+
 ALONG, ACROSS = 4, 4
 """Nodes of a row, and rows, that a cell knows: from two before it to one behind."""
 
@@ -25,8 +28,9 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
     """What flows into each cell more than out of it, and what a pressure of one there takes out.
 
     Conductances along the faces between cells of a row: geometric mean ahead of the middle, arithmetic one
-    behind, as in a line. Across, where the pressure falls to the sides, the arithmetic one: with the other
-    one pressures beside an ellipse never settle. Oil leaves freely beyond the first and the last row.
+    behind, as in a line. Across, where the pressure falls to the sides, the arithmetic one, up to `STEEP`
+    times the other: with the other one alone pressures beside an ellipse never settle. Oil leaves freely
+    beyond the first and the last row.
 
     Args:
         problem: the contact.
@@ -118,8 +122,13 @@ def _widths(problem: Problem) -> tuple[Array, Array]:
 
 
 def _sides(ease: Array, width: Array, spacing: Array) -> Array:
-    """Conductances between rows, and to the free ends half a cell away, shape (y + 1, x)."""
-    between = (ease[1:] + ease[:-1]) / (width[1:] + width[:-1])[:, None]
+    """Conductances between rows, and to the free ends half a cell away, shape (y + 1, x).
+
+    Where the gap opens steeply, as at the tips of an ellipse, the thin film holds the oil back, however wide
+    the gap of the next row is: an arithmetic mean alone would empty the tips.
+    """
+    mean = jnp.minimum(0.5 * (ease[1:] + ease[:-1]), STEEP * jnp.sqrt(ease[1:] * ease[:-1]))
+    between = 2.0 * mean / (width[1:] + width[:-1])[:, None]
     ends = 2.0 * ease[:1] / width[0], 2.0 * ease[-1:] / width[-1]
     return jnp.concatenate((ends[0], between, ends[1])) * spacing
 

@@ -62,6 +62,9 @@ MOST: Final = 40
 PATIENCE: Final = 15
 """Steps over which the lowest residual has to fall in a careful attempt."""
 
+STUCK: Final = 3
+"""Steps in turn of which hardly anything is taken, after which an attempt is given up."""
+
 FALLING: Final = 0.5
 """Factor by which it has to."""
 
@@ -82,6 +85,9 @@ STEADY: Final = 1e-4
 
 INEXACT: Final = 1e-2
 """What a linear solve leaves of its right-hand side."""
+
+EVEN: Final = 1e-9
+"""Largest difference of rows that are images of each other, over the largest value in them."""
 
 DIRECTIONS: Final = 60
 """Directions of a linear solve after which its result is taken as it is."""
@@ -141,13 +147,14 @@ class Rows(NamedTuple):
     """Every row solved as if it stood alone, with the load they carry together.
 
     Attributes:
-        inverse: of the derivatives of a row to its own pressures, shape (y, inner, inner).
-        lifted: pressures by which rows answer to a level of one, shape (y, inner).
-        carried: load of these.
+        inverse: of the derivatives of a row to its own pressures, shape (row, inner, inner); of all rows, or
+            of those up to the middle where the others are their images.
+        lifted: pressures by which these rows answer to a level of one, shape (row, inner).
+        carried: load of these of all rows.
     """
 
-    inverse: Float[Array, "y inner inner"]
-    lifted: Float[Array, "y inner"]
+    inverse: Float[Array, "row inner inner"]
+    lifted: Float[Array, "row inner"]
     carried: Float[Array, ""]
 
 
@@ -236,17 +243,38 @@ def product(at: Linear, change: Array) -> Array:
     return jnp.append(rest, at.share @ jnp.sum(inner, axis=1))
 
 
-def rows(at: Linear) -> Rows:
-    """Rows inverted: what they do to themselves by flow and by deflection."""
-    bodies, inner = at.problem.bodies, at.rest.shape[1]
-    lines = at.problem.yielding * bodies.lines()
+def rows(at: Linear, even: bool = False) -> Rows:
+    """Rows inverted: what they do to themselves by flow and by deflection.
+
+    Args:
+        at: balances.
+        even: whether rows are images of each other about the middle of the grid; half of them do then.
+    """
+    inner = at.rest.shape[1]
+    some = slice(at.rest.shape[0] // 2 if even else None)
+    lines = at.problem.yielding * at.problem.bodies.lines()[some]
     reached = jnp.concatenate((lines[:, :1], lines), axis=1)[:, :, 1:-1]
-    matrix = sum(at.by_gap.along[k][:, :, None] * reached[:, k : k + inner] for k in range(ALONG))
+    by_gap, by_pressure = at.by_gap.along[:, some], at.by_pressure.along[:, some]
+    matrix = sum(by_gap[k][:, :, None] * reached[:, k : k + inner] for k in range(ALONG))
     row, column, which = _bands(inner)
-    found = jnp.asarray(matrix).at[:, row, column].add(at.by_pressure.along[which, :, row].T)
+    found = jnp.asarray(matrix).at[:, row, column].add(by_pressure[which, :, row].T)
     inverse = jnp.linalg.inv(found)
-    lifted = jnp.einsum("yij,yj->yi", inverse, at.by_level)
-    return Rows(inverse, lifted, at.share @ jnp.sum(lifted, axis=1))
+    lifted = jnp.einsum("yij,yj->yi", inverse, at.by_level[some])
+    return Rows(inverse, lifted, at.share @ jnp.sum(_with_images(lifted, at.share), axis=1))
+
+
+def _with_images(found: Array, share: Array) -> Array:
+    """Values of all rows, from those of all or of those up to the middle."""
+    every: Array = found if len(found) == len(share) else jnp.concatenate((found, found[::-1]))
+    return every
+
+
+def _even(problem: Problem) -> bool:
+    """Whether the rows of a contact are images of each other; cells across are even in number."""
+    across = [np.diff(problem.bodies.edges), problem.along, problem.apart, problem.before]
+    sizes = map(np.asarray, across)
+    alike = all(np.max(np.abs(one - one[::-1])) <= EVEN * np.max(np.abs(one)) for one in sizes)
+    return alike and float(problem.across) == 0.0
 
 
 def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.int_]]:
@@ -259,10 +287,18 @@ def _bands(inner: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.i
 
 def by_rows(alone: Rows, share: Array, rest: Array) -> Array:
     """Change that would mend what is left, if rows felt each other by the load alone."""
-    each = rest[:-1].reshape(alone.lifted.shape)
-    change = jnp.einsum("yij,yj->yi", alone.inverse, each)
+    each = rest[:-1].reshape(share.size, -1)
+    count = len(alone.inverse)
+    if count == share.size:
+        change = jnp.einsum("yij,yj->yi", alone.inverse, each)
+    else:
+        # A row and its image at once: so every inverse is read once.
+        both = jnp.einsum(
+            "yij,yjc->yic", alone.inverse, jnp.stack((each[:count], each[: count - 1 : -1]), -1)
+        )
+        change = jnp.concatenate((both[..., 0], both[::-1, :, 1]))
     level = (share @ jnp.sum(change, axis=1) - rest[-1]) / alone.carried
-    return jnp.append(change - alone.lifted * level, level)
+    return jnp.append(change - _with_images(alone.lifted, share) * level, level)
 
 
 def mended(at: Linear, alone: Rows, rest: Array) -> Array:
@@ -419,7 +455,9 @@ def iterated(
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
     lowest: list[float] = []
+    stuck = 0
     held = Manner(*map(array, manner))
+    even = _even(problem)
     for step in range(most + 1):
         at = _linear(problem, state.pressure, state.level, array(rate))
         residual = float(jnp.max(jnp.abs(at.rest)))
@@ -428,17 +466,18 @@ def iterated(
             told(step, residual)
         lowest.append(min([residual, *lowest[-1:]]))
         done = max(residual, abs(state.load)) < TOLERANCE and rate == 0.0
-        hopeless = manner.careful and _hopeless(lowest)
+        hopeless = stuck == STUCK or (manner.careful and _hopeless(lowest))
         if not np.isfinite(residual) or step == most or done or hopeless:
             break
         if alone is None or residual > NEAR or age >= AGE:
-            alone, age = _rows(at), 0
+            alone, age = _rows(at, even), 0
         age += 1
         rest = np.append(np.ravel(at.rest), float(at.load))
         change = _mended(at, alone, array(-rest))
         given = at, state.pressure, state.level, change, array(rate), held
         found = _moved(*given)
         state = state._replace(pressure=found.pressure, level=found.level)
+        stuck = stuck + 1 if float(found.part) <= SHORTEST else 0
         rate = _rate(rate, float(found.part), float(found.left), residual)
     return state
 

@@ -93,7 +93,7 @@ ATTEMPTS: Final = (
 BOLD: Final = Manner(False, 0.3)
 """Manner in which a film is looked for from another where careful steps do not find it."""
 
-MOST_ON_GRID: Final = 160
+MOST_ON_GRID: Final = 240
 """Steps on one grid after which it is given up."""
 
 
@@ -244,7 +244,9 @@ class _Solver:
     last: State | None = None
 
     def on_grid(self, problem: Problem, before: Found | None, *, last: bool) -> Found | None:
-        """Solution on one grid: from one on a coarser grid, else from dry contacts; None where none is found.
+        """Solution on one grid, None where none is found.
+
+        From one on a coarser grid, else from dry contacts, else from the coarser one in strides.
 
         Grids show no film that is much thinner than the gap that opens within a cell: on all but the last one
         oil flows faster.
@@ -252,12 +254,20 @@ class _Solver:
         self.left = MOST_ON_GRID
         shown = max(1.0, shown_film(problem) / float(problem.film))
         asked = 1.0 if last else shown
-        found = None if before is None else self.thinner(problem, asked, before)
+        found = None if before is None else self.onward(problem.thicker(asked), before)
         if found is None:
             found = self.from_dry(problem.thicker(shown))
             if found is not None and asked < shown:
                 found = self.thinner(problem, asked, found)
+        if found is None and before is not None:
+            found = self.thinner(problem, asked, before)
         return found
+
+    def onward(self, problem: Problem, found: Found) -> Found | None:
+        """Solution from that on a coarser grid."""
+        dry, _ = dry_start(problem)
+        state = self.iterated(problem, finer(found, problem, dry), FINER_TIME, CAREFUL)
+        return Found(problem, dry, state) if state.residual < ENOUGH else None
 
     def thinner(self, problem: Problem, asked: float, found: Found) -> Found | None:
         """Solution with a film so many times as thick as it is, by films that become thinner and thinner."""
@@ -360,5 +370,6 @@ def solve(
         problem = problem_on(contact, layout, *grid, cells)
         found = solver.on_grid(problem, found, last=grid == grids[-1])
     assert solver.last is not None
-    last = solver.last if found is not None else solver.last._replace(residual=np.inf)
-    return layout, problem, last
+    if found is None:
+        return layout, problem, solver.last._replace(residual=np.inf)
+    return layout, problem, found.state._replace(steps=solver.steps)
