@@ -18,6 +18,7 @@ __all__ = [
     "CAREFUL",
     "ENOUGH",
     "MOST",
+    "TOLERANCE",
     "Linear",
     "Manner",
     "Progress",
@@ -404,6 +405,7 @@ def iterated(
     told: Progress | None = None,
     manner: Manner = USUAL,
     most: int = MOST,
+    enough: float = TOLERANCE,
 ) -> State:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
 
@@ -415,6 +417,7 @@ def iterated(
         told: called with the number of steps and the residual after each of them.
         manner: in which steps are taken.
         most: steps after which an attempt is given up.
+        enough: residual at which the iteration ends.
     """
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
@@ -427,7 +430,7 @@ def iterated(
         if told is not None:
             told(step, residual)
         lowest.append(min([residual, *lowest[-1:]]))
-        done = max(residual, abs(state.load)) < TOLERANCE and rate == 0.0
+        done = rate == 0.0 and _done(max(residual, abs(state.load)), lowest, enough)
         hopeless = manner.careful and _hopeless(lowest)
         if not np.isfinite(residual) or step == most or done or hopeless:
             break
@@ -441,6 +444,12 @@ def iterated(
         state = state._replace(pressure=found.pressure, level=found.level)
         rate = _rate(rate, float(found.part), float(found.left), residual)
     return state
+
+
+def _done(worst: float, lowest: list[float], enough: float) -> bool:
+    """Whether balances are close enough, or nearly so and come no closer for rounding."""
+    stalls = len(lowest) > 1 and lowest[-1] > FALLING * lowest[-2]
+    return worst < enough or (worst < TOLERANCE and stalls)
 
 
 def _hopeless(lowest: list[float]) -> bool:
