@@ -29,10 +29,11 @@ from pitchpoint.lubrication.ehl.patch.heat import (
     defect,
     heated,
     rests_somewhere,
+    warmed,
 )
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, leaks, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
-from pitchpoint.lubrication.ehl.patch.response import polished, settled
+from pitchpoint.lubrication.ehl.patch.response import polished, polished_warm, settled
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
 from pitchpoint.lubrication.ehl.patch.solve import Earlier, dry_bodies, shown_film, solve
 from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
@@ -252,27 +253,37 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
         films: solved.
 
     Returns:
-        The same film, with the derivatives of the solution (implicit function theorem), first ones; every
-        cell stays full of oil, or not, as it is. The grid stays where it is, and what belongs to it: there
-        are no derivatives by the length of a line, nor of `half_width`, `hertz_pressure`, `separation`,
-        `stiffness` and `damping`.
+        The same film, with the derivatives of the solution (implicit function theorem, with heat of pressure
+        and temperature together), first ones; every cell stays full of oil, or not, as it is. The grid stays
+        where it is, and what belongs to it: there are no derivatives by the length of a line, nor of
+        `half_width`, `hertz_pressure`, `separation`, `stiffness` and `damping`.
 
     Raises:
-        InputError: the films were not solved, or with their temperatures.
+        InputError: the films were not solved, or without the temperatures that are asked for.
     """
     if not films.solved:
         raise InputError("films that were not solved have no derivatives", key="films")
-    if contact.conduction is not None:
-        raise InputError(
-            "films over a patch have no derivatives together with their temperatures; leave `conduction` out",
-            key="conduction",
-        )
     swapped = oriented(contact, films.turned)
     rows, nodes = films.pressure.shape
     problem = problem_on(swapped, films.layout, nodes, rows, rows)
-    pressure, level = polished(problem, array(films.pressure), array(films.level))
+    solution, heats = (array(films.pressure), array(films.level)), heated(swapped)
+    if heats is None:
+        pressure, level = polished(problem, *solution)
+    else:
+        warm = warmed(problem, array(_rise_of(films)))
+        problem, pressure, level = polished_warm(heats, warm, *solution)
     given = swapped, films.layout, problem, pressure, level, array(films.held), films.response
     return back(patch_film(*given), films.turned)
+
+
+def _rise_of(films: PatchFilms) -> NDArray[np.float64]:
+    """Rise of the temperature as the grid lies."""
+    if films.rise is None:
+        raise InputError(
+            "the films were solved without heat, and the contact has `conduction`: solve them with it",
+            key="films",
+        )
+    return films.rise
 
 
 def _earlier(films: PatchFilms | None) -> Earlier | None:

@@ -43,6 +43,7 @@ __all__ = [
     "heated",
     "next_turn",
     "rests_somewhere",
+    "risen",
     "temperatures",
     "warmed",
 ]
@@ -245,10 +246,16 @@ def next_turn(
     return Turn(rise, begin, change, past)
 
 
+def risen(heats: Heated, problem: Problem, pressure: Array, level: Array) -> Array:
+    """Rise of the film that its heat makes, shape (y, x) [K]."""
+    shared, rows = _rows(heats, problem, pressure, level)
+    found: Array = jax.lax.map(lambda row: by_heat(*shared.strip(row), shared.at)[0], rows)
+    return found
+
+
 def defect(heats: Heated, problem: Problem, pressure: Array, level: Array) -> Array:
     """Rise of the film against that by its heat, over the largest rise."""
-    shared, rows = _rows(heats, problem, pressure, level)
-    found = jax.lax.map(lambda row: by_heat(*shared.strip(row), shared.at)[0], rows)
+    found = risen(heats, problem, pressure, level)
     return change_of(problem.flow.temperature_rise, found)
 
 
