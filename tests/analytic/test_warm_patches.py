@@ -68,20 +68,26 @@ def rough() -> PatchFilms:
     return solved(ball(speed=0.5, texture=Rough(rq=0.3e-6, modulus=MODULUS)))
 
 
-def test_a_line_whose_rows_are_alike_is_one_without_ends() -> None:
-    """Bodies that end with the line at free faces press every row alike."""
+def test_the_middle_of_a_long_line_is_one_without_ends() -> None:
+    """In the middle of one that is pressed alike along its length, as bodies end with it at free faces."""
     common = {"radius": RADIUS, "modulus": MODULUS, "fluid": FLUID, "conduction": HEAT}
-    common |= speeds(5.0, 0.3)
+    common |= speeds(1.0, 0.6)
     contact = finite_line(load=line_load() * 5e-3, length=5e-3, ends="mirrored", **common)
     found = solved(contact, nodes=129)
     film, endless = found.film, solve_lines(LineContact(line_load=line_load(), **common)).film
     assert film.central_film == pytest.approx(float(endless.central_film), rel=0.01)
     assert film.friction == pytest.approx(float(endless.friction), rel=0.01)
-    for name in ("largest_film", "largest_a", "largest_b"):
-        rise = float(getattr(film.heat, name))
-        assert rise == pytest.approx(float(getattr(endless.heat, name)), rel=0.015)
-    assert film.heat.power_a == pytest.approx(5e-3 * float(endless.heat.power_a), rel=0.015)
-    assert np.ptp(film.heat.film, axis=0).max() < 1e-3 * film.heat.largest_film
+    for name in ("power_a", "power_b"):
+        power = 5e-3 * float(getattr(endless.heat, name))
+        assert getattr(film.heat, name) == pytest.approx(power, rel=0.015)
+    # Ahead of the spike, which few nodes show, and away from the ends, where oil leaks.
+    near = 0.55 * float(endless.half_width) * np.linspace(-1.0, 1.0, 23)
+    for name in ("film", "surface_a", "surface_b"):
+        row, beside = getattr(film.heat, name)[16], getattr(endless.heat, name)
+        expected = np.interp(near, endless.x, beside)
+        found_there = np.interp(near, film.x, row)
+        np.testing.assert_allclose(found_there, expected, rtol=0.012)
+        assert found_there.max() == pytest.approx(expected.max(), rel=0.01)
 
 
 @pytest.mark.parametrize("which", [sliding, rough])
@@ -145,26 +151,31 @@ def test_entrainment_along_the_other_axis_turns_the_temperatures() -> None:
 
 
 def test_rises_are_half_of_those_in_what_conducts_twice_as_well() -> None:
-    """Of an oil that temperature does not thin, whose film is that without heat."""
-    dull = {"fluid": Fluid(**OIL, viscosity_slope=0.0, density_law="incompressible")}
+    """Of an oil that temperature does not thin, whose film is nearly that without heat."""
+    dull = {"fluid": Fluid(**OIL, viscosity_slope=0.0), "slide": 0.02}
     better = Conductor(
         conductivity=2.0 * STEEL.conductivity, heat_capacity=2.0 * STEEL.heat_capacity
     )
     twice = Conduction(a=better, b=better, oil_conductivity=2.0 * OIL_CONDUCTS)
     once, half = (solved(ball(conduction=one, **dull)) for one in (HEAT, twice))
-    np.testing.assert_allclose(half.film.heat.film, 0.5 * once.film.heat.film, rtol=1e-5)
-    assert half.film.heat.largest_a == pytest.approx(0.5 * float(once.film.heat.largest_a))
+    largest = float(once.film.heat.largest_film)
+    close = {"rtol": 0.0, "atol": 0.005 * largest}
+    np.testing.assert_allclose(half.film.heat.film, 0.5 * once.film.heat.film, **close)
+    assert half.film.heat.largest_a == pytest.approx(
+        0.5 * float(once.film.heat.largest_a), rel=0.01
+    )
     cold = solved(ball(conduction=None, **dull)).film
-    assert once.film.central_film == pytest.approx(float(cold.central_film), rel=1e-7)
+    # Its density falls by 0.07 % for each kelvin.
+    assert once.film.central_film == pytest.approx(float(cold.central_film), rel=1e-3 * largest)
     assert cold.heat is None
     assert any("does not thin as it warms" in told for told in once.warnings)
 
 
 def test_without_sliding_there_is_little_heat_and_the_film_is_isothermal() -> None:
-    given = {"speed": 0.1, "slide": 0.0}
+    given = {"speed": 0.6, "slide": 0.0}
     warm, cold = (solved(ball(**given, conduction=one)).film for one in (HEAT, None))
-    assert warm.heat.largest_film < 0.1
-    assert warm.central_film == pytest.approx(float(cold.central_film), rel=1e-3)
+    assert warm.heat.largest_film < 0.5
+    assert warm.central_film == pytest.approx(float(cold.central_film), rel=0.01)
     assert warm.shear_force[0] == 0.0
 
 
@@ -219,12 +230,12 @@ def again(by: Any) -> Any:
     """Film of a contact nearby on the same grid, by steps from the solution until they stay."""
     found, contact = sliding(), changed(by)
     heats, (rows, nodes) = heated(contact), found.pressure.shape
-    problem = warmed(problem_on(contact, found.layout, nodes, rows, rows), found.rise)
-    solution = problem, found.pressure, jnp.asarray(found.level)
+    cold, rise = problem_on(contact, found.layout, nodes, rows, rows), jnp.asarray(found.rise)
+    solution = warmed(cold, rise), jnp.asarray(found.pressure), jnp.asarray(found.level)
     problem, pressure, level = jax.lax.fori_loop(
         0, 4, lambda _, one: polished_warm(heats, *one), solution
     )
-    lies = found.layout, problem, pressure, level, found.held, found.response
+    lies = found.layout, problem, pressure, level, jnp.asarray(found.held), found.response
     return patch_film(contact, *lies)
 
 
