@@ -34,6 +34,7 @@ OIL_CONDUCTS = 0.14
 HEAT = Conduction(a=STEEL, b=STEEL, oil_conductivity=OIL_CONDUCTS)
 OIL = {"viscosity": 0.04, "pressure_viscosity": 2.2e-8, "shear_law": "ree_eyring_1955"}
 FLUID = Fluid(**OIL, viscosity_slope=0.04)
+ROUGH = Rough(rq=0.4e-6, modulus=MODULUS)
 RADIUS = 0.01
 COARSE = {"nodes": 33, "cells": 32}
 
@@ -44,7 +45,7 @@ def speeds(speed: float, slide: float) -> dict[str, float]:
 
 def ball(speed: float = 4.0, slide: float = 0.4, ratio: float = 2.0, **more: Any) -> PatchContact:
     given = {"load": 50.0, "radius": RADIUS, "transverse_radius": ratio * RADIUS}
-    given |= {"modulus": MODULUS, "fluid": FLUID, "conduction": HEAT}
+    given |= {"modulus": MODULUS, "fluid": FLUID, "conduction": HEAT, "texture": ROUGH}
     return elliptic_contact(**{**given, **speeds(speed, slide), **more})
 
 
@@ -61,11 +62,6 @@ def solved(contact: PatchContact, **grid: Any) -> PatchFilms:
 @cache
 def sliding() -> PatchFilms:
     return solved(ball())
-
-
-@cache
-def rough() -> PatchFilms:
-    return solved(ball(speed=0.5, texture=Rough(rq=0.3e-6, modulus=MODULUS)))
 
 
 def test_the_middle_of_a_long_line_is_one_without_ends() -> None:
@@ -90,15 +86,14 @@ def test_the_middle_of_a_long_line_is_one_without_ends() -> None:
         assert found_there.max() == pytest.approx(expected.max(), rel=0.01)
 
 
-@pytest.mark.parametrize("which", [sliding, rough])
-def test_all_heat_that_is_made_goes_into_the_surfaces(which: Any) -> None:
-    film, ended = which().film, which().ended
+def test_all_heat_that_is_made_goes_into_the_surfaces() -> None:
+    film, ended = sliding().film, sliding().ended
+    assert film.asperity_share > 0.004
     heat = film.heat
     into = heat.power_a + heat.power_b
     assert into == pytest.approx(float(film.sliding_power + film.pumping_power), rel=1e-8)
     assert heat.flux_a + heat.flux_b == pytest.approx(heat.heat, rel=1e-8)
-    speed = 4.0 if which is sliding else 0.5
-    rolled = 2.0 * film.rolling[0] * speed
+    rolled = 2.0 * film.rolling[0] * 4.0
     done = film.sliding_power + rolled + heat.expansion_power
     assert into == pytest.approx(float(done), rel=1e-8)
     assert abs(heat.expansion_power) < 0.05 * into
@@ -114,9 +109,11 @@ def test_surfaces_and_film_are_as_warm_as_their_heat_makes_them() -> None:
     conducts = OIL_CONDUCTS / film.film
     apart = heat.surface_b - heat.surface_a
     assert heat.flux_a == pytest.approx(0.5 * heat.heat + conducts * apart, rel=1e-6)
-    mean = 0.5 * (heat.surface_a + heat.surface_b) + heat.heat / (12.0 * conducts)
-    assert heat.film == pytest.approx(mean, abs=1e-5 * float(heat.largest_film))
     own = ball()
+    rubbed = 0.1 * film.asperity_pressure * float(own.speed_a[0] - own.speed_b[0])
+    in_film = heat.heat - rubbed
+    mean = 0.5 * (heat.surface_a + heat.surface_b) + in_film / (12.0 * conducts)
+    assert heat.film == pytest.approx(mean, abs=1e-5 * float(heat.largest_film))
     for flux, rise, speed in (
         (heat.flux_a, heat.surface_a, own.speed_a[0]),
         (heat.flux_b, heat.surface_b, own.speed_b[0]),

@@ -151,7 +151,9 @@ def turned(contact: LineContact, problem: Problem, state: State, at: Grid) -> Wa
         return ~(warm.change < STEADY) & (warm.turns < MOST_TURNS) & ~lost
 
     cold = jnp.zeros_like(at.x)
-    begin = Warm(state, cold, jnp.asarray(jnp.inf), jnp.asarray(0), state.total, cold_past(cold))
+    begin = Warm(
+        state, cold, jnp.asarray(jnp.inf), jnp.asarray(0), state.total, cold_past(at.x.shape[0])
+    )
     found: Warm = jax.lax.while_loop(unfinished, onward, begin)
     return found
 

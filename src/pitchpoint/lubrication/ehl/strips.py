@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.grid import Along
@@ -269,9 +270,9 @@ class Past(NamedTuple):
     all_moved: Float[Array, "turn node"]
 
 
-def cold_past(rise: Array) -> Past:
-    """No turn yet, for rises of such a shape (node,)."""
-    cold, none = jnp.zeros_like(rise), jnp.zeros((REMEMBERED, *rise.shape))
+def cold_past(nodes: int) -> Past:
+    """No turn yet, for rises of so many nodes."""
+    cold, none = array(np.zeros(nodes)), array(np.zeros((REMEMBERED, nodes)))
     return Past(cold, cold, none, none)
 
 

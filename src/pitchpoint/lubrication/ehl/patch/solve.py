@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array
 from numpy.typing import NDArray
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import DryContact
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
@@ -363,7 +363,7 @@ class _Solver:
     def warm(self, heats: Heated, found: Found, steady: float = STEADY) -> Found | None:
         """A solution as warm as its heat makes it, by turns between pressure and temperature."""
         problem, state = found.problem, found.state
-        past = cold_past(jnp.ravel(problem.flow.temperature_rise))
+        past = cold_past(problem.flow.temperature_rise.size)
         change = array(np.inf)
         for _ in range(MOST_TURNS):
             turn = _next_turn(heats, problem, state.pressure, state.level, past, change)
