@@ -271,3 +271,6 @@ def test_what_is_not_solved_with_heat_is_told_in_one_sentence() -> None:
     with pytest.raises(InputError, match="a conductivity of member 1 of -1 W/m/K") as caught:
         solve_patch(ball(conduction=wrong), **COARSE)
     assert caught.value.key == "conductivity_1"
+    several = Conduction(a=STEEL, b=STEEL, oil_conductivity=np.array([0.14, 0.15]))
+    with pytest.raises(InputError, match="one contact has one oil_conductivity, not an array"):
+        solve_patch(ball(conduction=several), **COARSE)

@@ -178,7 +178,8 @@ def solve_patch(
 
     Raises:
         InputError: values that no contact has, numbers of nodes or cells that no grid has, a line that is
-            entrained along its length or in two senses, height maps that move or do not cover it.
+            entrained along its length or in two senses, height maps that move or do not cover it, conduction
+            between surfaces that move along both axes.
     """
     check(contact)
     check_standing(contact)
@@ -420,6 +421,8 @@ def _check_shapes(contact: PatchContact) -> None:
         single["length"] = contact.length
     else:
         single["transverse_radius"] = contact.bend
+    if contact.conduction is not None:
+        single |= {key: one[0] for key, one in of_conduction(contact.conduction).items()}
     for key, value in single.items():
         if np.ndim(value):
             raise InputError(
