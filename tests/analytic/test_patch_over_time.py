@@ -120,7 +120,8 @@ def test_what_leaves_the_film_flows_out_of_it():
 def steady_gap(contact: PatchContact, like: PatchMoment) -> float:
     """Smallest gap [m] of the steady film on the grid of a march."""
     layout = like.course.layout
-    _, problem, state = solve(contact, *GRID.values(), None, layout)
+    found = solve(contact, *GRID.values(), None, layout)
+    problem, state = found.problem, found.state
     return float(np.min(problem.gap(state.pressure, state.level)) * problem.flow.height)
 
 

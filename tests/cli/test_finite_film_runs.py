@@ -225,7 +225,47 @@ def test_the_heat_that_films_leave_out_is_told_with_what_takes_it_along(case: st
     run = {"pressure": 1e9, "radius": 0.01, "entrainment": 3.0, "sliding_velocity": 3.0}
     run |= {"friction": 0.1, "film_thickness": 1e-6}
     told = cold_warning(built, {name: np.array([value]) for name, value in run.items()})
-    assert "those over a patch do not yet" in told and "mean_film" not in told
+    assert 'thermal = "mean_film" in [film] takes the heat along' in told
+
+
+@pytest.fixture(scope="module")
+def warm(case: str) -> Outcome:
+    return running.run(case, settings={"film.thermal": "mean_film"})["default"]
+
+
+def test_films_with_their_heat_have_temperatures_beside_those_of_lines(
+    warm: Outcome, outcome: Outcome
+) -> None:
+    data, cold = warm.parts["finite_film"], outcome.parts["finite_film"]
+    loaded = data["load"].values > 0.0
+    assert int(data["solved_contacts"]) == loaded.sum()
+    rise, flash = (data[name].values[loaded] for name in ("film_rise", "flash_rise"))
+    slides = np.abs(data["sliding_velocity"].values[loaded])
+    assert (rise > 0.1).all() and (flash > 0.1).all()
+    assert rise[np.argmax(slides)] > 3.0 * rise[np.argmin(slides)]
+    # Rough flanks rub more where warm films let them closer.
+    assert (data["central_film"].values[loaded] < cold["central_film"].values[loaded]).all()
+    # Lines beside them have their heat too: both grids are as far apart as without.
+    warm_apart, cold_apart = (
+        float(one["mean_film_friction"] / one["mean_line_friction"]) for one in (data, cold)
+    )
+    assert warm_apart == pytest.approx(cold_apart, rel=0.02)
+    assert float(data["largest_film_rise"]) == pytest.approx(rise.max())
+    at = tuple(data["kept_at"].values[0])
+    assert data["field_rise"].values[0].max() == pytest.approx(data["film_rise"].values[at])
+    surfaces = [data[f"field_surface_rise_{body}"].values[0].max() for body in (1, 2)]
+    assert max(surfaces) == pytest.approx(data["flash_rise"].values[at])
+    assert "field_rise" not in cold and float(cold["largest_film_rise"]) == 0.0
+
+
+def test_a_report_has_the_temperatures_and_no_word_of_isothermal_films(warm: Outcome) -> None:
+    page = render({"default": warm})
+    assert "films are isothermal" not in page.lower() and "With heat (mean film)" in page
+    for words in ("Temperature above the inlet, in the warmest row", "patch0_0_rise"):
+        assert words in page
+    told = dict(SECTION.answer(warm))["Films of finite contacts"]
+    assert "warmer than their inlet" in told
+    assert figures(warm)["finite_film"]["largest_flash_rise"] > 0.0
 
 
 def test_films_that_are_not_found_are_counted_and_withhold_the_loss(
@@ -350,7 +390,7 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
         ({"nodes": 513}, "nodes", "allowed are 33, 65, 129 and 257"),
         ({"cells": 48}, "cells", "allowed are 32, 64, 128 and 256"),
         ({"solver": "line", "cells": 64}, "cells", 'take solver = "finite_line"'),
-        ({"thermal": "mean_film"}, "thermal", "films over a patch are isothermal"),
+        ({"thermal": "mean_fim"}, "thermal", "did you mean mean_film"),
         ({"pattern": 3.0}, "pattern", "oil flows both ways"),
         ({"ends": "free"}, "ends", "mirrored"),
         ({"end_length": "1 mm"}, "end_length", "without end_profile"),

@@ -297,15 +297,8 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
         return f"{COLD}."
     return (
         f"{COLD}; its friction would warm it by up to about {warmest:.2g} K, so that friction comes out too "
-        f"high and the film too thick; {_remedy(built)}."
+        'high and the film too thick; thermal = "mean_film" in [film] takes the heat along.'
     )
-
-
-def _remedy(built: Built) -> str:
-    """What takes the heat of films along."""
-    if built.case.film is not None and built.case.film.over_patch:
-        return "films of lines without ends take the heat along, those over a patch do not yet"
-    return 'thermal = "mean_film" in [film] takes the heat along'
 
 
 COLD = "The films are isothermal: the oil in a contact is as warm as that in its inlet"

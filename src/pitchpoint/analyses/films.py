@@ -13,13 +13,13 @@ from pitchpoint.contact.contacts import TOUCH
 
 __all__ = ["FILM", "FINITE_FILM"]
 
-_WARM = ("largest_film_rise", "largest_flash_rise")
 _MAIN = (
     "smallest_film",
     "smallest_lambda",
     "largest_film_pressure",
     "largest_asperity_share",
-    *_WARM,
+    "largest_film_rise",
+    "largest_flash_rise",
     "mean_film_friction",
     "mean_boundary_part",
     "mean_film_loss",
@@ -27,7 +27,6 @@ _MAIN = (
     "loaded_contacts",
     "solved_contacts",
 )
-_FINITE_MAIN = tuple(name for name in _MAIN if name not in _WARM)
 _BY_LINES = ("mean_line_friction", "mean_line_loss")
 _OF_FINITE = ("smallest_central_film", "largest_end_pressure")
 _IN_SERIES = ("film_torsional_stiffness", "stiffness_without_films", "stiffness_with_films")
@@ -95,7 +94,7 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
 def _finite_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("finite_film")
     beside = [name for name in (*_BY_LINES, *_OF_FINITE) if data is not None and name in data]
-    return {"finite_film": _figures_of(data, (*_FINITE_MAIN, *beside))}
+    return {"finite_film": _figures_of(data, (*_MAIN, *beside))}
 
 
 def _figures_of(data: xr.Dataset | None, names: Sequence[str]) -> dict[str, Any]:
@@ -140,6 +139,6 @@ FINITE_FILM = Analysis(
     compute=_compute,
     pieces=_pieces,
     joined=_joined,
-    main=_FINITE_MAIN,
+    main=_MAIN,
     figures=_finite_figures,
 )

@@ -10,16 +10,18 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.film import OF_LINES, films_of_lines, over_rough, values_of_lines
-from pitchpoint.analyses.film_contacts import alike, asked, states
+from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, states
 from pitchpoint.analyses.film_cycle import whole
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
+from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
@@ -47,8 +49,15 @@ _FIELDS = {
     "field_dry_pressure": "dry_pressure",
     "field_film": "gap",
 }
+_WARM_FIELDS = {
+    "field_rise": "film",
+    "field_surface_rise_1": "surface_a",
+    "field_surface_rise_2": "surface_b",
+}
+"""Fields of films that are solved with their heat."""
+
 _KEPT = {
-    **dict.fromkeys(_FIELDS, ("kept", "y", "x")),
+    **dict.fromkeys((*_FIELDS, *_WARM_FIELDS), ("kept", "y", "x")),
     "kept_x": ("kept", "x"),
     "kept_y": ("kept", "y"),
     "kept_at": ("kept", "axis"),
@@ -217,8 +226,11 @@ Friction is that of magnitudes, as friction laws and lines have it: sliding of a
 sense at the pitch line, and the force of the whole contact says little about heat and loss.
 """
 
+_OWN = ("rolling_resistance", "film_inlet", "film_rise", "flash_rise")
+"""Values of contacts that are made of several."""
+
 _SHAPES: dict[str, tuple[int, ...]] = {
-    **dict.fromkeys([*_NAMES, "rolling_resistance", "film_inlet"], ()),
+    **dict.fromkeys([*_NAMES, *_OWN], ()),
     "minimum_place": (2,),
     "largest_place": (2,),
     "near_ends": (2, END_DISTANCES.size),
@@ -234,8 +246,17 @@ def _of_film(films: PatchFilms, line: bool) -> dict[str, Any]:
     return found | {
         "rolling_resistance": np.hypot(*film.rolling),
         "film_inlet": -films.layout.inlet,
+        **_rises(film.heat),
         **({"row_film": _of_middle_row(film)} if line else {}),
     }
+
+
+def _rises(heat: PatchTemperatures | None) -> dict[str, float]:
+    """Largest rises of the film and of the warmer surface [K]; none of isothermal films."""
+    if heat is None:
+        return {"film_rise": 0.0, "flash_rise": 0.0}
+    flash = max(float(heat.largest_a), float(heat.largest_b))
+    return {"film_rise": float(heat.largest_film), "flash_rise": flash}
 
 
 def _of_middle_row(film: PatchFilm) -> float:
@@ -300,8 +321,9 @@ def _kept(
     film = values["minimum_film"]
     solved = np.isfinite(film)
     places = {"kept_x": nodes, "kept_y": cells}
+    names = _kept_fields(built)
     empty = {
-        **{name: np.full((len(KINDS), cells, nodes), np.nan) for name in _FIELDS},
+        **{name: np.full((len(KINDS), cells, nodes), np.nan) for name in names},
         **{name: np.full((len(KINDS), size), np.nan) for name, size in places.items()},
     }
     at = np.full((len(KINDS), lanes.ndim), -1)
@@ -311,9 +333,18 @@ def _kept(
             at[k] = np.unravel_index(np.argmax(rank), rank.shape)
             found = films[lanes[tuple(at[k])]]
             assert isinstance(found, PatchFilms)
+            solved_film, heat = found.film, found.film.heat
             for name, own in (*_FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
-                empty[name][k] = getattr(found.film, own)
+                empty[name][k] = getattr(solved_film, own)
+            for name, own in _WARM_FIELDS.items() if heat is not None else ():
+                empty[name][k] = getattr(heat, own)
     return {name: (_KEPT[name], one) for name, one in (empty | {"kept_at": at}).items()}
+
+
+def _kept_fields(built: Built) -> tuple[str, ...]:
+    """Names of the fields that are kept."""
+    cold = film_model_of(built).thermal == ISOTHERMAL
+    return (*_FIELDS,) if cold else (*_FIELDS, *_WARM_FIELDS)
 
 
 def _fields(
@@ -332,7 +363,7 @@ def _fields(
         chosen = int(np.argmax(ranks))
         at = parts[chosen]["kept_at"].values[k].copy()
         at[0] += firsts[chosen] if at[0] >= 0 else 0
-        for name in (*_FIELDS, "kept_x", "kept_y"):
+        for name in (*_kept_fields(built), "kept_x", "kept_y"):
             found.setdefault(name, []).append(parts[chosen][name].values[k])
         found.setdefault("kept_at", []).append(at)
     return {name: (_KEPT[name], np.stack(one)) for name, one in found.items()}

@@ -169,6 +169,7 @@ def one_contact(built: Built, numbers: np.ndarray) -> PatchContact:
         "inlet": model.inlet,
         "fluid": model.fluid(design.lubricant, float(built.operation.temperature)),
         "texture": model.texture(rq, modulus),
+        "conduction": model.conduction(design.lubricant),
     }
     if design.mesh.shape == "ellipse":
         load, radius, transverse, speed_a, speed_b = numbers

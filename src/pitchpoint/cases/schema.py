@@ -833,9 +833,6 @@ def _check_patch(table: FilmTable) -> None:
     if table.nodes is not None and table.nodes > MOST_NODES:
         told = f"{table.nodes:g} nodes along a patch; allowed are 33, 65, 129 and {MOST_NODES}"
         raise InputError(told, key="nodes")
-    if table.thermal not in (None, "isothermal"):
-        told = 'films over a patch are isothermal; leave it out, or take solver = "line"'
-        raise InputError(told, key="thermal")
     if table.pattern not in (None, 1.0):
         told = "over a patch oil flows both ways, and only the pattern 1 is the same for both"
         raise InputError(f"{table.pattern:g} was given; {told}", key="pattern")

@@ -10,8 +10,9 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.heat import Temperatures
-from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, FIELDS, VECTORS
+from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, FIELDS, VECTORS, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms
+from pitchpoint.lubrication.ehl.patch.heat import TEMPERATURES
 from pitchpoint.lubrication.ehl.patch.transient import PatchMoment
 from pitchpoint.lubrication.ehl.solve import Ended, Films
 from pitchpoint.results.store import dataset, describe
@@ -140,6 +141,12 @@ _PATCH: Final = {
     "stiffness": Variable("stiffness of the film, in series with the dry contact", "k", "N/m"),
     "damping": Variable("squeeze damping of the film", "c", "N s/m"),
 }
+_PATCH_HEAT: Final = {
+    **{f"heat_{name}": one for name, one in _HEAT.items()},
+    "heat_power_a": Variable("heat into member 0", "P_0", "W"),
+    "heat_power_b": Variable("heat into member 1", "P_1", "W"),
+    "heat_expansion_power": Variable("work of the oil as it expands", "P_e", "W"),
+}
 _MARCH: Final = {
     "time": Variable("time", "t", "s", "ms", "time"),
     "time_steps": _number("steps of time since the time before"),
@@ -193,8 +200,8 @@ def patch_dataset(films: PatchFilms) -> xr.Dataset:
 
     Returns:
         Dataset on (y, x) with these as coordinates [m], `direction` of forces and places, and `distance` from
-        the ends of a line [half-widths]. Every variable has `units` and `long_name`; the dataset has its
-        status and its warnings, as JSON.
+        the ends of a line [half-widths]; `heat_` before the names of temperatures where there are any.
+        Every variable has `units` and `long_name`; the dataset has its status and its warnings, as JSON.
     """
     return _over_patch([films], (), {}, "film over a patch")
 
@@ -236,9 +243,11 @@ def _over_patch(
     first = films[0].film
 
     def values(name: str) -> Any:
-        found = [np.asarray(getattr(one.film, name)) for one in films]
+        found = [np.asarray(_of_patch(one.film, name)) for one in films]
         return np.stack(found) if dims else found[0]
 
+    if first.heat is not None:
+        names += _PATCH_HEAT
     data = dataset(
         {name: ((*dims, *_patch_dims(name)), values(name)) for name in names},
         {
@@ -258,12 +267,19 @@ def _over_patch(
             )
         ),
     )
-    describe(data, _PATCH)
+    describe(data, _PATCH | _PATCH_HEAT)
     return data
 
 
+def _of_patch(film: PatchFilm, name: str) -> Any:
+    """What a film over a patch has by the name of a variable."""
+    if name.startswith("heat_"):
+        return getattr(film.heat, name.removeprefix("heat_"))
+    return getattr(film, name)
+
+
 def _patch_dims(name: str) -> tuple[str, ...]:
-    if name in FIELDS:
+    if name in FIELDS or name.removeprefix("heat_") in TEMPERATURES:
         return "y", "x"
     if name == "near_ends":
         return "end", "distance"

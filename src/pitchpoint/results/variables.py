@@ -102,6 +102,23 @@ VARIABLES: dict[str, Variable] = {
     "field_asperity_pressure": pressure("pressure that asperities carry", "p_a"),
     "field_dry_pressure": pressure("pressure without oil", "p_d"),
     "field_film": deviation("film", "h"),
+    "field_rise": Variable(
+        "mean temperature of the film above its inlet",
+        "ΔT_film",
+        "K",
+        "K",
+        "temperature difference",
+    ),
+    **{
+        f"field_surface_rise_{body}": Variable(
+            f"temperature of the surface of body {body} above the inlet of the film",
+            f"ΔT_{body}",
+            "K",
+            "K",
+            "temperature difference",
+        )
+        for body in (1, 2)
+    },
     "coarse_central_film": deviation("film in the middle on a coarser grid", "h_c"),
     "coarse_minimum_film": deviation("smallest film on a coarser grid", "h_min"),
     "coarse_largest_pressure": pressure("largest pressure on a coarser grid", "p_max"),

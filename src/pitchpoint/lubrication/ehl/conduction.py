@@ -26,7 +26,8 @@ class Conduction(eqx.Module):
     Heat is made evenly over the film and leaves it across: each surface takes half of it, and what the film
     conducts from the warmer surface to the colder one. Friction of asperities is heat at the surfaces, half
     of it at each. A surface warms as it passes the contact (`moving_strip`); one that stands still takes no
-    heat. Oil that flows takes none along, and compression makes none.
+    heat. Oil that flows takes none along, and compression makes none. Over a patch heat spreads into the
+    bodies and not to the sides, as Peclet numbers are large.
 
     Args:
         a: body of member 0.

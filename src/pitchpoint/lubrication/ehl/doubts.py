@@ -27,6 +27,8 @@ __all__ = [
     "extent_of",
     "flooded_inlet",
     "kind_of",
+    "of_conduction",
+    "of_heat",
     "starved",
     "warnings",
 ]
@@ -133,7 +135,7 @@ def check(contact: LineContact) -> None:
                 key="boundary_friction",
             )
     if contact.conduction is not None:
-        positive |= _of_conduction(contact.conduction)
+        positive |= of_conduction(contact.conduction)
     for key, (value, what, scale, unit) in positive.items():
         low = np.min(np.asarray(value))
         if not low > 0.0 and not np.isnan(low):
@@ -141,7 +143,7 @@ def check(contact: LineContact) -> None:
             raise InputError(f"{what} of {told}: it must be positive", key=key)
 
 
-def _of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
+def of_conduction(given: Conduction) -> dict[str, tuple[Any, str, float, str]]:
     """What of conduction has to be positive: value, what it is, scale and unit, by its key."""
     of_oil = given.oil_conductivity, "a conductivity of the oil", 1.0, "W/m/K"
     found: dict[str, tuple[Any, str, float, str]] = {"oil_conductivity": of_oil}
@@ -186,9 +188,8 @@ def warnings(
     if some.texture is not None:
         yield from _of_roughness(np.asarray(some.texture.rq), half_width)
     if found.heat is not None:
-        yield from _of_thinning(some)
         peclet = np.stack([found.heat.peclet_a, found.heat.peclet_b])
-        yield from _of_strips(peclet, np.stack([some.speed_a, some.speed_b]), half_width)
+        yield from of_heat(some.fluid, peclet, np.stack([some.speed_a, some.speed_b]), half_width)
 
 
 def _of_unsolved(code: NDArray[np.int_], every: int) -> Iterator[Doubt]:
@@ -292,6 +293,24 @@ def _of_roughness(rough: NDArray[np.float64], half_width: NDArray[np.float64]) -
         )
 
 
+def of_heat(
+    fluid: Fluid,
+    peclet: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    half_width: NDArray[np.float64],
+) -> Iterator[Doubt]:
+    """What to be wary of about temperatures.
+
+    Args:
+        fluid: the oil.
+        peclet: Peclet numbers of both surfaces, shape (2, b).
+        speed: of both [m/s].
+        half_width: of the contacts, shape (b,) [m].
+    """
+    yield from _of_thinning(fluid)
+    yield from _of_strips(peclet, speed, half_width)
+
+
 def _of_strips(
     peclet: NDArray[np.float64], speed: NDArray[np.float64], half_width: NDArray[np.float64]
 ) -> Iterator[Doubt]:
@@ -337,8 +356,8 @@ def _of_shear(contact: LineContact, film: LineFilm) -> Iterator[Doubt]:
         )
 
 
-def _of_thinning(contact: LineContact) -> Iterator[Doubt]:
-    if np.min(np.asarray(contact.fluid.viscosity_slope)) <= 0.0:
+def _of_thinning(fluid: Fluid) -> Iterator[Doubt]:
+    if np.min(np.asarray(fluid.viscosity_slope)) <= 0.0:
         yield Doubt(
             "the temperature of the film is solved for with an oil that does not thin as it warms: its "
             "`viscosity_slope` is 0 1/K",

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -13,7 +13,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 
-__all__ = ["ENDS", "Ends", "Grid", "fewer", "grid", "line_kernel", "prolongation"]
+__all__ = ["ENDS", "Along", "Ends", "Grid", "Row", "fewer", "grid", "line_kernel", "prolongation"]
 
 Ends = Literal["entrained", "squeezed"]
 
@@ -67,6 +67,17 @@ class Grid(eqx.Module):
     def middle(self) -> Int[Array, ""]:
         """Number of the node at zero."""
         return jnp.argmin(jnp.abs(jnp.asarray(self.x)))
+
+
+class Row(NamedTuple):
+    """Nodes along the entrainment, and what flows between them needs alone; attributes as of a grid."""
+
+    widths: Float[Array, " node"]
+    spacing: Float[Array, " face"]
+    ahead: Bool[Array, " face"]
+
+
+Along = Grid | Row
 
 
 @lru_cache(maxsize=16)

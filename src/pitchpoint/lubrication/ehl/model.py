@@ -112,7 +112,7 @@ class FilmModel:
             fluid=self.fluid(oil, temperature),
             texture=self.texture(roughness_rq, modulus),
             inlet=self.inlet if inlet is None else inlet,
-            conduction=self._conduction(oil),
+            conduction=self.conduction(oil),
         )
 
     def fluid(self, oil: Lubricant, temperature: ArrayLike) -> Fluid:
@@ -149,7 +149,15 @@ class FilmModel:
         smooth = self.asperities == SMOOTH or not np.any(np.asarray(roughness_rq) > 0.0)
         return None if smooth else self._rough(roughness_rq, modulus)
 
-    def _conduction(self, oil: Lubricant) -> Conduction | None:
+    def conduction(self, oil: Lubricant) -> Conduction | None:
+        """What conducts the heat of contacts; None of an isothermal film.
+
+        Args:
+            oil: between the bodies.
+
+        Raises:
+            InputError: there is no thermal effect of this name, or it lacks what `members` tells.
+        """
         if THERMAL[self.thermal].name == ISOTHERMAL:
             return None
         if self.members is None:

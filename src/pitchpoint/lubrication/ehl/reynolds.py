@@ -7,7 +7,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.grid import Along, Grid
 from pitchpoint.lubrication.ehl.texture import Texture
 from pitchpoint.materials.fluid import Fluid
 
@@ -80,7 +80,7 @@ class Flow(eqx.Module):
         return self.fluid.density_ratio(pressure, warmth)
 
     def mass_and_conductance(
-        self, film_pressure: Nodes, gap: Nodes, at: Grid
+        self, film_pressure: Nodes, gap: Nodes, at: Along
     ) -> tuple[Array, Array]:
         """Mass under each node, and flow through each face for a fall of pressure of one."""
         mass, yields = self.mass_and_ease(film_pressure, gap)

@@ -17,13 +17,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import check, warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import ENDS, Ends, Grid, fewer, grid, prolongation
-from pitchpoint.lubrication.ehl.heat import (
-    WARM_ENOUGH,
-    defect,
-    settled,
-    turned,
-    warmed,
-)
+from pitchpoint.lubrication.ehl.heat import defect, settled, turned, warmed
 from pitchpoint.lubrication.ehl.line import (
     LEAST,
     LineContact,
@@ -44,6 +38,7 @@ from pitchpoint.lubrication.ehl.response import (
     pushed_rest,
     stiffness_and_damping,
 )
+from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code
 

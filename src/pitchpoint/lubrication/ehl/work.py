@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import jnp
-from pitchpoint.lubrication.ehl.grid import Grid
+from pitchpoint.lubrication.ehl.grid import Along, Grid
 from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
 
 __all__ = [
@@ -54,7 +54,7 @@ def work_of_expansion(flow: Flow, oil: Array, gap: Array, at: Grid) -> Array:
     return -passing * jnp.sum(rise * specific_volume(flow, oil))
 
 
-def pressure_flow(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, Array]:
+def pressure_flow(flow: Flow, oil: Array, gap: Array, at: Along) -> tuple[Array, Array]:
     """Mass that pressure moves through each face, and the power that this turns into heat over its square."""
     _, conductance = flow.mass_and_conductance(oil, gap, at)
     # Oil that is all but solid lets nothing through, and makes no heat.
@@ -63,10 +63,17 @@ def pressure_flow(flow: Flow, oil: Array, gap: Array, at: Grid) -> tuple[Array, 
     )
 
 
-def specific_volume(flow: Flow, oil: Array) -> Array:
-    """Mean of one over the density from the pressure at a node to that at the next."""
+def specific_volume(flow: Flow, oil: Array, rise: Array | None = None) -> Array:
+    """Mean of one over the density from the pressure at a node to that at the next.
+
+    Args:
+        flow: of the oil.
+        oil: its pressure, neighbours along the first axis.
+        rise: of the temperature at the same nodes; that of the flow unless given [K].
+    """
+    warmth = flow.temperature_rise if rise is None else rise
     weighed = [
-        0.5 * w / flow.density(_between(oil, at), _between(flow.temperature_rise, at))
+        0.5 * w / flow.density(_between(oil, at), _between(warmth, at))
         for at, w in zip(*_GAUSS, strict=True)
     ]
     return jnp.sum(jnp.stack(weighed), axis=0)

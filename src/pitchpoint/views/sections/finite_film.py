@@ -1,7 +1,7 @@
 """Films over patches of finite contacts: maps of pressure and film, cuts, ends, courses of the cycle."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import xarray as xr
@@ -66,7 +66,7 @@ _CONTACTS = {"finite_line": "line contacts with their ends", "elliptic": "ellipt
 
 
 def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
-    """Pressure and film over the patch of a contact, and cuts through both."""
+    """Pressure, film and its temperature over the patch of a contact, and cuts through them."""
     figures = [
         _map(f"{name}_pressure", data, kept, "field_pressure", "YlOrRd"),
         _map(f"{name}_film", data, kept, "field_film", "Viridis"),
@@ -75,6 +75,9 @@ def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
         _ridge(f"{name}_ridge", data, kept),
         _valley(f"{name}_valley", data, kept),
     ]
+    if "field_rise" in data:
+        figures[2:2] = [_map(f"{name}_rise", data, kept, "field_rise", "Inferno")]
+        figures.append(_warmth_along(f"{name}_warmth", data, kept))
     return Panel("", figures)
 
 
@@ -91,22 +94,19 @@ def _middle_film(data: xr.Dataset, kept: int) -> float:
 
 def _map(name: str, data: xr.Dataset, kept: int, variable: str, colours: str) -> Figure:
     """A variable over the patch, with the edge of the dry contact."""
-    values, pressed = data[variable].values[kept], variable == "field_pressure"
-    low = 0.0 if pressed else min(float(np.nanmin(values)), 0.0)
-    high = _highest(values) if pressed else _THIN * _middle_film(data, kept)
+    values = data[variable].values[kept]
+    low, high = min(float(np.nanmin(values)), 0.0), _END_OF_COLOURS[variable](data, kept)
     shown = float(display(variable, low)), float(display(variable, max(high, low + 1e-12)))
     heat = {
         **_heat(data, kept, variable),
         "zmin": shown[0],
         "zmax": shown[1],
         "colorscale": colours,
-        "reversescale": pressed,
+        "reversescale": variable == "field_pressure",
     }
     unit = show.unit_of("kept_x")
     look = layout(f"x [{unit}]", f"y [{unit}]", xaxis={"range": _reach(data, kept)})
-    note = "" if pressed else f"Colours end at {_THIN:g} times the film in the middle."
-    if pressed and high < float(np.nanmax(values)):
-        note = f"Colours end at {_STEEP:g} times the largest pressure in the middle."
+    note = _CUT_COLOURS.get(variable, "") if high < float(np.nanmax(values)) else ""
     keys = (Key("edge of the dry contact", INK, "dot"),)
     traces = [heat, _outline(data, kept, heat)]
     return Figure(name, titled(variable), traces, look, note, keys, NONE)
@@ -159,10 +159,25 @@ def _cells(data: xr.Dataset, kept: int) -> tuple[np.ndarray, np.ndarray]:
     return rows, columns
 
 
-def _highest(pressure: np.ndarray) -> float:
+def _highest(data: xr.Dataset, kept: int) -> float:
     """Pressure at which colours end: ends of lines would take all of them."""
+    pressure = data["field_pressure"].values[kept]
     middle = float(np.max(pressure[pressure.shape[0] // 2]))
     return min(float(np.max(pressure)), _STEEP * middle)
+
+
+_END_OF_COLOURS: Mapping[str, Callable[[xr.Dataset, int], float]] = {
+    "field_pressure": _highest,
+    "field_film": lambda data, kept: _THIN * _middle_film(data, kept),
+    "field_rise": lambda data, kept: float(np.nanmax(data["field_rise"].values[kept])),
+}
+"""Value of a map at which its colours end."""
+
+_CUT_COLOURS = {
+    "field_pressure": f"Colours end at {_STEEP:g} times the largest pressure in the middle.",
+    "field_film": f"Colours end at {_THIN:g} times the film in the middle.",
+}
+"""Words under a map with values beyond that."""
 
 
 def _thinned(size: int) -> np.ndarray:
@@ -252,6 +267,27 @@ def _valley(name: str, data: xr.Dataset, kept: int) -> Figure:
     return Figure(
         name, "Film across the contact, where its dry rows carry", lines, look, "", keys, NONE
     )
+
+
+def _warmth_along(name: str, data: xr.Dataset, kept: int) -> Figure:
+    """Temperatures of film and surfaces above the inlet along x, in the row where the film is warmest."""
+    x, _ = _places(data, kept)
+    film = data["field_rise"].values[kept]
+    row = int(np.argmax(np.max(film, axis=1)))
+    keys = (
+        Key("film", INK),
+        Key("surface of body 1", PALETTE[0]),
+        Key("surface of body 2", PALETTE[1]),
+    )
+    names = ("field_rise", "field_surface_rise_1", "field_surface_rise_2")
+    lines = [
+        _line(key, "kept_x", x, "field_rise", data[one].values[kept][row])
+        for key, one in zip(keys, names, strict=True)
+    ]
+    more = {"xaxis": {"range": _reach(data, kept)}}
+    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_rise"), **more)
+    title = f"Temperature above the inlet, in the warmest row, {_at_row(data, kept, row)}"
+    return Figure(name, title, lines, look, "", keys, NONE)
 
 
 # ---- over the mesh cycle

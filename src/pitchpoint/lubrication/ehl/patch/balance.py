@@ -12,7 +12,18 @@ from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.lubrication.ehl.reynolds import at_faces, upwind
 from pitchpoint.lubrication.ehl.work import specific_volume
 
-__all__ = ["ACROSS", "ALONG", "Stencil", "Through", "balance", "stencil", "through", "work"]
+__all__ = [
+    "ACROSS",
+    "ALONG",
+    "Stencil",
+    "Through",
+    "Work",
+    "balance",
+    "heat_beside",
+    "stencil",
+    "through",
+    "work",
+]
 
 Field = Float[Arrays, "y x"]
 Inner = Float[Array, "y inner"]
@@ -90,24 +101,62 @@ def through(problem: Problem, oil: Field, gap: Field) -> Through:
     )
 
 
-def work(problem: Problem, oil: Field, gap: Field) -> tuple[Array, Array, Array]:
-    """Rolling resistance of each row, that across, and the heat of the flow under pressure.
+class Work(NamedTuple):
+    """What the oil does and turns into heat, in units of pressure, gap and length.
 
-    Half of the flow that a speed of one draws along times the rise of pressure; over a film that begins and
-    ends without pressure, twice the speeds times these are that heat, as in a line.
+    Attributes:
+        rows: rolling resistance of each row, shape (y,).
+        across: that across.
+        heat: of the flow under pressure, by a speed of one.
+        expansion: work of the flow as a whole, by a speed of one; none where the film is as warm as its inlet
+            and nothing approaches.
+    """
+
+    rows: Array
+    across: Array
+    heat: Array
+    expansion: Array
+
+
+def work(problem: Problem, oil: Field, gap: Field) -> Work:
+    """Work of the oil over the patch.
+
+    Rolling resistance: half of the flow that a speed of one draws along times the rise of pressure; over a
+    film that begins and ends without pressure, twice the speeds times these are the heat of the flow under
+    pressure, as in a line, less what the flow as a whole does as it expands.
     """
     flows = through(problem, oil, gap)
     width, _ = _widths(problem)
     rise, rise_beside = jnp.diff(oil, axis=1), jnp.diff(_walled(oil), axis=0)
-    volume = rise * specific_volume(problem.flow, oil.T).T
-    volume_beside = rise_beside * specific_volume(problem.flow, _walled(oil))
+    warmth = problem.flow.temperature_rise
+    volume = rise * specific_volume(problem.flow, oil.T, warmth.T).T
+    volume_beside = rise_beside * _volume_beside(problem, oil)
     row = 0.5 * jnp.sum(upwind(flows.mass.T).T * width * volume, axis=1)
     unit = jnp.where(problem.across == 0.0, 1.0, problem.across)
     column = 0.5 * jnp.sum(flows.carried * volume_beside) / unit
-    heat = jnp.sum(flows.conducts * rise * volume) + jnp.sum(
-        flows.sides * rise_beside * volume_beside
-    )
-    return row, column, heat
+    pressed = flows.conducts * rise, flows.sides * rise_beside
+    heat = jnp.sum(pressed[0] * volume) + jnp.sum(pressed[1] * volume_beside)
+    drawn = jnp.sum(flows.drawn * volume) + jnp.sum(flows.carried * volume_beside)
+    return Work(row, column, heat, heat - drawn)
+
+
+def heat_beside(problem: Problem, oil: Field, gap: Field) -> Array:
+    """Heat per area by flow under pressure from row to row, shape (y, x), by a speed of one.
+
+    Half of what a face makes belongs to each of the rows beside it, all that an end makes to its row.
+    """
+    rise = jnp.diff(_walled(oil), axis=0)
+    made = through(problem, oil, gap).sides * rise**2 * _volume_beside(problem, oil)
+    inner = made.at[0].multiply(2.0).at[-1].multiply(2.0)
+    return 0.5 * (inner[1:] + inner[:-1]) / jnp.asarray(problem.bodies.areas)[:, None]
+
+
+def _volume_beside(problem: Problem, oil: Array) -> Array:
+    """Mean of one over the density between rows, and between them and the ends, shape (y + 1, x)."""
+    rise = problem.flow.temperature_rise
+    if rise.ndim:
+        rise = jnp.pad(rise, ((1, 1), (0, 0)), mode="edge")
+    return specific_volume(problem.flow, _walled(oil), rise)
 
 
 def _walled(oil: Array) -> Array:

@@ -13,6 +13,7 @@ from pitchpoint.contact.gaps import missing_along
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
+from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.texture import Texture
@@ -50,6 +51,7 @@ class PatchContact(eqx.Module):
         fluid: the oil.
         texture: of the surfaces, below what the height maps show; None for smooth ones.
         heights: maps of what stands out of the surfaces, or of both together.
+        conduction: of heat, for the temperature of film and surfaces; None for isothermal films.
         ends: of the bodies in `contact.half_space.ENDS`; static.
     """
 
@@ -70,6 +72,7 @@ class PatchContact(eqx.Module):
     texture: Texture | None
     profile: tuple[Surface, ...]
     heights: tuple[HeightMap, ...]
+    conduction: Conduction | None
     ends: str = eqx.field(static=True)
 
     def along(self, values: Float[Arrays, " k"], y: Float[Arrays, " y"]) -> Float[Array, " y"]:
@@ -102,6 +105,7 @@ def finite_line(
     inlet: ArrayLike = FLOODED,
     texture: Texture | None = None,
     heights: Heights = (),
+    conduction: Conduction | None = None,
     ends: str = "half_space",
 ) -> PatchContact:
     """A line contact of finite length, such as that of a tooth along its face.
@@ -122,6 +126,7 @@ def finite_line(
             flooded unless given.
         texture: of the surfaces; None for smooth ones.
         heights: map of what stands out of the surfaces, or one for each; with a texture, that is below them.
+        conduction: of heat, for the temperature of film and surfaces; the film is isothermal unless given.
         ends: "half_space", or "mirrored" for bodies that both end with the line.
 
     Raises:
@@ -144,6 +149,7 @@ def finite_line(
         texture=texture,
         profile=profile,
         heights=_maps(heights),
+        conduction=conduction,
         ends=ends,
     )
 
@@ -162,6 +168,7 @@ def elliptic_contact(
     inlet: ArrayLike = FLOODED,
     texture: Texture | None = None,
     heights: Heights = (),
+    conduction: Conduction | None = None,
 ) -> PatchContact:
     """A contact of two bodies that touch in a point without load, and in an ellipse under it.
 
@@ -179,6 +186,7 @@ def elliptic_contact(
             flooded unless given.
         texture: of the surfaces; None for smooth ones.
         heights: map of what stands out of the surfaces, or one for each; with a texture, that is below them.
+        conduction: of heat, for the temperature of film and surfaces; the film is isothermal unless given.
     """
     one = jnp.ones(1)
     return PatchContact(
@@ -199,6 +207,7 @@ def elliptic_contact(
         texture=texture,
         profile=(),
         heights=_maps(heights),
+        conduction=conduction,
         ends="half_space",
     )
 

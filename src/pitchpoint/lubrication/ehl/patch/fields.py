@@ -12,7 +12,10 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.balance import work
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures, heated, temperatures
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem
+from pitchpoint.lubrication.ehl.reynolds import Flow
+from pitchpoint.lubrication.ehl.strips import warmer
 from pitchpoint.lubrication.ehl.work import filled, shear_stress
 
 __all__ = [
@@ -112,12 +115,14 @@ class PatchFilm(eqx.Module):
         separation: by which the bodies are further apart than without oil [m].
         stiffness: -dF/dh of the load by that separation, all else as it is: the film as a spring in series
             with the dry contact. It wavers as the edge of a narrow contact passes nodes: by 20 % of smooth
-            heavy ones at 129 nodes, by 1 % of wide rough ones; on coarser grids by more [N/m].
-        damping: dF/dV of the load by the speed V at which the bodies approach, with the separation held
-            [N s/m].
+            heavy ones at 129 nodes, by 1 % of wide rough ones; on coarser grids by more. The temperature of
+            the film is held where it is solved for [N/m].
+        damping: dF/dV of the load by the speed V at which the bodies approach, with the separation held, and
+            the temperature [N s/m].
         half_width: of the dry contact along x, of the rows that carry most [m].
         hertz_pressure: largest one of the dry contact, but for the ends of lines [Pa].
         film_ratio: smallest film over composite Rq; infinite for smooth surfaces.
+        heat: temperatures, where they were solved for; None of isothermal films.
     """
 
     x: Float[Arrays, " x"]
@@ -156,6 +161,7 @@ class PatchFilm(eqx.Module):
     half_width: One
     hertz_pressure: One
     film_ratio: One
+    heat: PatchTemperatures | None
 
     @property
     def traction_a(self) -> Float[Arrays, "2"]:
@@ -193,7 +199,7 @@ def patch_film(
     asperities = flow.asperity_pressure(gap)
     oil, room = pressure - asperities, flow.room(gap)
     x, y = jnp.asarray(bodies.x), jnp.asarray(bodies.y)
-    full = jax.vmap(lambda one, other: filled(flow, one, other))(oil, room)
+    full = _filled(flow, oil, room)
     sliding = _sliding(contact, y * length)
     fast = jnp.hypot(*sliding)
     still = jnp.where(fast == 0.0, 1.0, fast)
@@ -201,7 +207,7 @@ def patch_film(
     rubbing = flow.texture.boundary_friction * asperities * flow.pressure
     senses = [(one / still)[:, None] for one in sliding]
     shear, rubs = ([one * sense for sense in senses] for one in (stress, rubbing))
-    row, column, pumping = work(problem, oil, gap)
+    done = work(problem, oil, gap)
     rolls = flow.pressure * flow.height * length
     apart = _apart(contact, problem, level, response)
     low, high = jnp.argmin(gap), jnp.argmax(pressure)
@@ -240,16 +246,39 @@ def patch_film(
         friction=jnp.hypot(*(sheared + rubbed)) / contact.load,
         friction_magnitude=(dragged[0] + dragged[1]) / contact.load,
         boundary_magnitude=dragged[1] / contact.load,
-        rolling=jnp.stack([jnp.sum(row), column]) * rolls,
+        rolling=jnp.stack([jnp.sum(done.rows), done.across]) * rolls,
         sliding_power=bodies.load((stress + rubbing) * fast[:, None]) * length**2,
-        pumping_power=pumping * rolls * problem.speed,
+        pumping_power=done.heat * rolls * problem.speed,
         separation=apart[0],
         stiffness=apart[1],
         damping=apart[2],
         half_width=jnp.asarray(layout.half_width),
         hertz_pressure=jnp.asarray(layout.hertz_pressure),
         film_ratio=jnp.min(gap) * flow.height / rough,
+        heat=_heat(contact, problem, pressure, level, layout),
     )
+
+
+def _filled(flow: Flow, oil: Array, room: Array) -> Array:
+    """Part of the film that oil fills in every cell, row by row."""
+    rise = flow.temperature_rise
+
+    def of_row(row: tuple[Array, Array, Array]) -> Array:
+        one, other, warmth = row
+        return filled(warmer(flow, warmth), one, other)
+
+    given = oil, room, jnp.broadcast_to(rise, rise.shape or oil.shape[:1])
+    found: Array = jax.vmap(of_row)(given)
+    return found
+
+
+def _heat(
+    contact: PatchContact, problem: Problem, pressure: Array, level: Array, layout: Layout
+) -> PatchTemperatures | None:
+    heats = heated(contact)
+    if heats is None:
+        return None
+    return temperatures(heats, problem, pressure, level, jnp.asarray(layout.half_width))
 
 
 def _apart(

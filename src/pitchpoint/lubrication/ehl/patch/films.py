@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.subsurface import Stresses, below_row
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt, starved
+from pitchpoint.lubrication.ehl.doubts import WIDE, Doubt, of_conduction, of_heat, starved
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import (
     FIELDS,
@@ -22,11 +22,21 @@ from pitchpoint.lubrication.ehl.patch.fields import (
     Response,
     patch_film,
 )
+from pitchpoint.lubrication.ehl.patch.heat import (
+    TEMPERATURES,
+    PatchTemperatures,
+    check_heat,
+    defect,
+    heated,
+    rests_somewhere,
+    warmed,
+)
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, leaks, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
-from pitchpoint.lubrication.ehl.patch.response import polished, settled
+from pitchpoint.lubrication.ehl.patch.response import polished, polished_warm, settled
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
 from pitchpoint.lubrication.ehl.patch.solve import Earlier, dry_bodies, shown_film, solve
+from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -70,12 +80,16 @@ class PatchEnded:
         reynolds: largest defect of the balance of a cell, in units of the dry contact's pressure.
         load: defect of the load over it.
         steps: of Newton's method, on all grids.
+        temperature: defect of the temperature of the film over its largest rise; None of isothermal films.
+        turns: between pressure and temperature, on all grids; None of isothermal films.
     """
 
     code: Code
     reynolds: float
     load: float
     steps: int
+    temperature: float | None = None
+    turns: int | None = None
 
 
 @dataclass(frozen=True)
@@ -92,6 +106,7 @@ class PatchFilms:
         response: of the bodies, in those units.
         turned: how the grid lies.
         warnings: what to be wary of, in sentences.
+        rise: of the temperature of the film, as the grid lies, shape (y, x) [K]; None of isothermal films.
     """
 
     film: PatchFilm
@@ -103,6 +118,7 @@ class PatchFilms:
     response: Response
     turned: Turned
     warnings: tuple[str, ...]
+    rise: NDArray[np.float64] | None = None
 
     @property
     def solved(self) -> bool:
@@ -162,21 +178,28 @@ def solve_patch(
 
     Raises:
         InputError: values that no contact has, numbers of nodes or cells that no grid has, a line that is
-            entrained along its length or in two senses, height maps that move or do not cover it.
+            entrained along its length or in two senses, height maps that move or do not cover it, conduction
+            between surfaces that move along both axes.
     """
     check(contact)
     check_standing(contact)
     lies, own = turned(contact)
+    check_heat(own)
     code = before(own)
-    layout, problem, state = solve(own, nodes, cells, progress, earlier=_earlier(start))
+    layout, problem, state, turns = solve(own, nodes, cells, progress, earlier=_earlier(start))
     held, approach, by_load = dry_bodies(problem)
     end = _settled(problem, array(state.pressure), array(state.level))
     pressure: Any = np.asarray(end.pressure)
     response = Response(array(approach), array(by_load), end.by_load, end.by_approach)
     ended = PatchEnded(code, float(end.rest), float(abs(end.load)), state.steps)
+    heats = heated(own)
+    if heats is not None:
+        off = float(_defect(heats, problem, end.pressure, end.level))
+        ended = replace(ended, temperature=off, turns=turns)
     told = told_film(own, layout, problem, pressure, float(end.level), held, response, ended)
     found = back(told.film, lies), told.ended, layout, pressure, float(end.level)
-    return PatchFilms(*found, held, response, lies, told.warnings)
+    rise = None if heats is None else np.asarray(problem.flow.temperature_rise)
+    return PatchFilms(*found, held, response, lies, told.warnings, rise)
 
 
 class Told(NamedTuple):
@@ -208,9 +231,10 @@ def told_film(
     lies_at, plain = jax.tree.map(array, layout), replace(own, heights=())
     given = plain, lies_at, problem, array(pressure), array(level), array(held), response
     film = jax.tree.map(np.asarray, _film(*given))
+    warm = ended.temperature is None or ended.temperature < WARM_ENOUGH
     balanced = ended.reynolds < ENOUGH and ended.load < ENOUGH and np.all(np.isfinite(held))
     code = ended.code
-    if code == Code.SOLVED and not balanced:
+    if code == Code.SOLVED and not (balanced and warm):
         code = Code.NOT_CONVERGED
     # Smooth surfaces touch on a grid that is too coarse for their film.
     if code == Code.SOLVED and own.texture is None and np.any(film.asperity_pressure > 0.0):
@@ -230,22 +254,37 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
         films: solved.
 
     Returns:
-        The same film, with the derivatives of the solution (implicit function theorem), first ones; every
-        cell stays full of oil, or not, as it is. The grid stays where it is, and what belongs to it: there
-        are no derivatives by the length of a line, nor of `half_width`, `hertz_pressure`, `separation`,
-        `stiffness` and `damping`.
+        The same film, with the derivatives of the solution (implicit function theorem, with heat of pressure
+        and temperature together), first ones; every cell stays full of oil, or not, as it is. The grid stays
+        where it is, and what belongs to it: there are no derivatives by the length of a line, nor of
+        `half_width`, `hertz_pressure`, `separation`, `stiffness` and `damping`.
 
     Raises:
-        InputError: the films were not solved.
+        InputError: the films were not solved, or without the temperatures that are asked for.
     """
     if not films.solved:
         raise InputError("films that were not solved have no derivatives", key="films")
     swapped = oriented(contact, films.turned)
     rows, nodes = films.pressure.shape
     problem = problem_on(swapped, films.layout, nodes, rows, rows)
-    pressure, level = polished(problem, array(films.pressure), array(films.level))
+    solution, heats = (array(films.pressure), array(films.level)), heated(swapped)
+    if heats is None:
+        pressure, level = polished(problem, *solution)
+    else:
+        warm = warmed(problem, array(_rise_of(films)))
+        problem, pressure, level = polished_warm(heats, warm, *solution)
     given = swapped, films.layout, problem, pressure, level, array(films.held), films.response
     return back(patch_film(*given), films.turned)
+
+
+def _rise_of(films: PatchFilms) -> NDArray[np.float64]:
+    """Rise of the temperature as the grid lies."""
+    if films.rise is None:
+        raise InputError(
+            "the films were solved without heat, and the contact has `conduction`: solve them with it",
+            key="films",
+        )
+    return films.rise
 
 
 def _earlier(films: PatchFilms | None) -> Earlier | None:
@@ -253,11 +292,11 @@ def _earlier(films: PatchFilms | None) -> Earlier | None:
     if films is None or not films.solved:
         return None
     film = float(films.film.mean_film) / films.layout.film
-    return Earlier(films.layout, films.pressure - films.held, film)
+    return Earlier(films.layout, films.pressure - films.held, film, films.rise)
 
 
-# Both run once for a solution: it is quicker to compile them quickly.
-_settled, _film = program(settled), program(patch_film)
+# They run once for a solution: it is quicker to compile them quickly.
+_settled, _film, _defect = program(settled), program(patch_film), program(defect)
 
 
 # ---- how a contact lies
@@ -315,7 +354,16 @@ def back(film: PatchFilm, lies: Turned) -> PatchFilm:
         fields |= {"x": fields["y"], "y": fields["x"]}
         for one, other in STRESSES:
             fields |= {one: fields[other], other: fields[one]}
+    if film.heat is not None:
+        fields["heat"] = _heat_back(film.heat, lies)
     return replace(film, **fields)
+
+
+def _heat_back(heat: PatchTemperatures, lies: Turned) -> PatchTemperatures:
+    """Temperatures as the contact was given."""
+    rows, nodes = (slice(None, None, -1 if one else None) for one in (lies.across, lies.along))
+    fields = {name: getattr(heat, name)[rows, nodes] for name in TEMPERATURES}
+    return replace(heat, **{name: one.T if lies.swapped else one for name, one in fields.items()})
 
 
 # ---- what is wrong with an input, and what is doubtful about a result
@@ -326,7 +374,7 @@ def before(contact: PatchContact) -> Code:
     still = not np.any(np.asarray(contact.speed_a + contact.speed_b))
     if still and contact.texture is None and float(contact.approach) <= 0.0:
         return Code.NO_FILM
-    return Code.SOLVED
+    return Code.NO_STEADY_HEAT if rests_somewhere(contact) else Code.SOLVED
 
 
 def check(contact: PatchContact) -> None:
@@ -351,6 +399,9 @@ def check(contact: PatchContact) -> None:
         positive["length"] = (contact.length, "a length of the contact line", "m")
     if contact.texture is not None:
         positive["rq"] = (contact.texture.rq, "a composite roughness Rq", "m")
+    if contact.conduction is not None:
+        for key, (value, what, scale, unit) in of_conduction(contact.conduction).items():
+            positive[key] = (value * scale, what, unit)
     for key, (value, what, unit) in positive.items():
         low = float(np.min(np.asarray(value)))
         # Written so that NaN fails.
@@ -370,6 +421,8 @@ def _check_shapes(contact: PatchContact) -> None:
         single["length"] = contact.length
     else:
         single["transverse_radius"] = contact.bend
+    if contact.conduction is not None:
+        single |= {key: one[0] for key, one in of_conduction(contact.conduction).items()}
     for key, value in single.items():
         if np.ndim(value):
             raise InputError(
@@ -452,6 +505,10 @@ def _warnings(
             "grid",
             least / float(film.mean_film),
         )
+    if film.heat is not None:
+        peclet = np.array([[film.heat.peclet_a], [film.heat.peclet_b]])
+        slowest = [[np.min(np.abs(one))] for one in (contact.speed_a, contact.speed_b)]
+        yield from of_heat(contact.fluid, peclet, np.array(slowest), np.array([half_width]))
     yield from unseen(contact, layout, *film.pressure.shape[::-1])
     if contact.length is not None and np.max(film.pressure[[0, -1]]) > film.hertz_pressure:
         yield Doubt(

@@ -518,7 +518,7 @@ def problem_on(
         12.0 * fluid.viscosity * unit * radius**2 / (length**3 * pressure),
         jnp.ones(()),
         contact.approach * radius / (length * unit),
-        jnp.zeros(()),
+        array(np.zeros(() if contact.conduction is None else (cells, nodes))),
     )
     found: Any = (
         flow,

@@ -18,6 +18,7 @@ __all__ = [
     "CAREFUL",
     "ENOUGH",
     "MOST",
+    "TOLERANCE",
     "Linear",
     "Manner",
     "Progress",
@@ -440,6 +441,7 @@ def iterated(
     told: Progress | None = None,
     manner: Manner = USUAL,
     most: int = MOST,
+    enough: float = TOLERANCE,
 ) -> State:
     """Newton's iteration from a guess, with the time that oil has to flow growing as it goes.
 
@@ -451,6 +453,7 @@ def iterated(
         told: called with the number of steps and the residual after each of them.
         manner: in which steps are taken.
         most: steps after which an attempt is given up.
+        enough: residual at which the iteration ends.
     """
     state = State(pressure, level, np.inf, np.inf, 0)
     rate, alone, age = 1.0 / time, None, 0
@@ -465,7 +468,7 @@ def iterated(
         if told is not None:
             told(step, residual)
         lowest.append(min([residual, *lowest[-1:]]))
-        done = max(residual, abs(state.load)) < TOLERANCE and rate == 0.0
+        done = rate == 0.0 and _done(max(residual, abs(state.load)), lowest, enough)
         hopeless = stuck == STUCK or (manner.careful and _hopeless(lowest))
         if not np.isfinite(residual) or step == most or done or hopeless:
             break
@@ -480,6 +483,12 @@ def iterated(
         stuck = stuck + 1 if float(found.part) <= SHORTEST else 0
         rate = _rate(rate, float(found.part), float(found.left), residual)
     return state
+
+
+def _done(worst: float, lowest: list[float], enough: float) -> bool:
+    """Whether balances are close enough, or nearly so and come no closer for rounding."""
+    stalls = len(lowest) > 1 and lowest[-1] > FALLING * lowest[-2]
+    return worst < enough or (worst < TOLERANCE and stalls)
 
 
 def _hopeless(lowest: list[float]) -> bool:

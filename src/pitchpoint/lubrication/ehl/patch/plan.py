@@ -38,6 +38,11 @@ def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) ->
             "with arrays of the same shapes",
             key="contacts",
         )
+    if any(one.conduction is not None for one in contacts):
+        raise InputError(
+            "films over time are isothermal, temperatures those of steady films: leave `conduction` out",
+            key="conduction",
+        )
     if any(float(one.approach) for one in contacts[1:]):
         raise InputError(
             "the bodies of a march approach each other as the load asks: only the first film takes a speed "

@@ -10,10 +10,12 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.ehl.patch.balance import balance
+from pitchpoint.lubrication.ehl.patch.heat import Heated, risen, warmed
 from pitchpoint.lubrication.ehl.patch.layout import Problem
 from pitchpoint.lubrication.ehl.patch.newton import Linear, Rows, by_rows, linear, product, rows
+from pitchpoint.lubrication.ehl.strips import LEAST_RISE
 
-__all__ = ["Settled", "polished", "settled"]
+__all__ = ["Settled", "polished", "polished_warm", "settled"]
 
 Map = Callable[[Array], Array]
 
@@ -45,6 +47,47 @@ def polished(problem: Problem, pressure: Array, level: Array) -> tuple[Array, Ar
     return pressure.at[:, 1:-1].add(inner), level + change[-1]
 
 
+def polished_warm(
+    heats: Heated, problem: Problem, pressure: Array, level: Array
+) -> tuple[Problem, Array, Array]:
+    """Contact as warm as it is, pressure and level, with their derivatives to all that it is made of.
+
+    As `polished`, with pressure, level and temperature together.
+
+    Args:
+        heats: what decides about the heat.
+        problem: the contact, as warm as in the solution.
+        pressure: solution, shape (y, x).
+        level: of the surfaces.
+    """
+    rise = problem.flow.temperature_rise
+    frozen, still, pressure, level, rise = jax.lax.stop_gradient(
+        (problem, heats, pressure, level, rise)
+    )
+    at = linear(frozen, pressure, level, jnp.zeros(()))
+    alone, size, unit = rows(at), at.rest.size + 1, jnp.max(rise) + LEAST_RISE
+
+    def parts(change: Array) -> tuple[Array, Array, Array]:
+        inner = change[: size - 1].reshape(at.rest.shape)
+        there = pressure + jnp.pad(inner, ((0, 0), (1, 1))), level + change[size - 1]
+        return *there, rise + unit * change[size:].reshape(rise.shape)
+
+    def rest(heats: Heated, problem: Problem, change: Array) -> Array:
+        there, risen_to = parts(change)[:2], parts(change)[2]
+        warm = warmed(problem, risen_to)
+        off = (risen_to - risen(heats, warm, *there)) / unit
+        return jnp.append(_rest(warm, at, *there), jnp.ravel(off))
+
+    none = jnp.zeros(size + rise.size)
+    _, times = jax.linearize(lambda change: rest(still, frozen, change), none)
+
+    def nearly(one: Array) -> Array:
+        return jnp.append(by_rows(alone, at.share, one[:size]), one[size:])
+
+    pressure, level, rise = parts(inverted(times, nearly, -rest(heats, problem, none)))
+    return warmed(problem, rise), pressure, level
+
+
 def _rest(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
     """What is left of all balances, as those of the solution but for the problem, see `linear`."""
     gap = problem.gap(pressure, level)
@@ -56,8 +99,19 @@ def _rest(problem: Problem, at: Linear, pressure: Array, level: Array) -> Array:
 
 def answered(at: Linear, alone: Rows, rest: Array) -> Array:
     """Change of inner pressures, the level at last, for changes of all balances; can be differentiated."""
-    times = lambda change: product(at, change)  # noqa: E731
-    nearly = lambda one: by_rows(alone, at.share, one)  # noqa: E731
+    return inverted(
+        lambda change: product(at, change), lambda one: by_rows(alone, at.share, one), rest
+    )
+
+
+def inverted(times: Map, nearly: Map, rest: Array) -> Array:
+    """What a linear map takes to a rest; can be differentiated.
+
+    Args:
+        times: the map.
+        nearly: what almost takes it back.
+        rest: shape (unknown,).
+    """
     times_back = jax.linear_transpose(times, rest)
     nearly_back = jax.linear_transpose(nearly, rest)
     found: Array = jax.lax.custom_linear_solve(

@@ -15,6 +15,7 @@ from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import DryContact
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.heat import Heated, heated, next_turn, warmed
 from pitchpoint.lubrication.ehl.patch.layout import (
     Layout,
     Problem,
@@ -28,15 +29,27 @@ from pitchpoint.lubrication.ehl.patch.newton import (
     CAREFUL,
     ENOUGH,
     MOST,
+    TOLERANCE,
     Manner,
     Progress,
     State,
     iterated,
 )
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
+from pitchpoint.lubrication.ehl.strips import MOST_TURNS, STEADY, cold_past
 from pitchpoint.programs import fast_program
 
-__all__ = ["Found", "dry_bodies", "dry_start", "dry_under", "finer", "shown_film", "solve"]
+__all__ = [
+    "Earlier",
+    "Found",
+    "Solved",
+    "dry_bodies",
+    "dry_start",
+    "dry_under",
+    "finer",
+    "shown_film",
+    "solve",
+]
 
 FINER_TIME: Final = 2.0
 """Time over which the first step lets oil flow that starts from another film."""
@@ -89,6 +102,19 @@ ATTEMPTS: Final = (
     Attempt(BED, 1.0, Manner(False, 0.3)),
     Attempt(0.5, 2.0, Manner(False, 0.3)),
 )
+
+NEARLY_WARM: Final = 1e-2
+"""Change of the temperature in a turn, over the largest rise, at which turns end on all but the last grid."""
+
+LEAPS: Final = 0.1
+"""The same above which pressures are looked for with care after a turn."""
+
+EXACT: Final = 1e-6
+"""Residual of the pressure over the change of the temperature, at which a turn ends: the heat of a flow under
+the low pressures ahead of a contact is that of their slopes."""
+
+FINEST: Final = 1e-12
+"""Least such residual."""
 
 BOLD: Final = Manner(False, 0.3)
 """Manner in which a film is looked for from another where careful steps do not find it."""
@@ -195,24 +221,50 @@ class Earlier(NamedTuple):
         layout: where its grid lies.
         added: what the film adds to the dry pressure, in the units of that, shape (y, x).
         film: mean one over the guess of that.
+        rise: of the temperature of the film, shape (y, x) [K]; None of an isothermal one.
     """
 
     layout: Layout
     added: NDArray[np.float64]
     film: float
+    rise: NDArray[np.float64] | None
 
 
 def warm_start(
     earlier: Earlier, layout: Layout, problem: Problem, dry: NDArray[np.float64]
 ) -> tuple[Any, Any]:
     """Pressure and level of a start from the dry pressure and a solution of a contact that is alike."""
+    added = _as_laid(earlier, layout, problem, earlier.added)
+    return _together(problem, dry, added, earlier.film * float(problem.film))
+
+
+def as_warm(earlier: Earlier, layout: Layout, problem: Problem) -> Problem:
+    """The contact as warm as one that is alike, where both have temperatures."""
+    if earlier.rise is None or not problem.flow.temperature_rise.ndim:
+        return problem
+    return warmed(problem, array(_as_laid(earlier, layout, problem, earlier.rise)))
+
+
+def _as_laid(
+    earlier: Earlier, layout: Layout, problem: Problem, field: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """A field of an earlier solution on the grid of a contact."""
     rows, nodes = np.shape(problem.apart)
     (x, y), (fine_x, fine_y) = (
         one.places(*shape[::-1])
-        for one, shape in ((earlier.layout, earlier.added.shape), (layout, (rows, nodes)))
+        for one, shape in ((earlier.layout, field.shape), (layout, (rows, nodes)))
     )
-    added = _between(y, fine_y) @ earlier.added @ _between(x, fine_x).T
-    return _together(problem, dry, added, earlier.film * float(problem.film))
+    return _between(y, fine_y) @ field @ _between(x, fine_x).T
+
+
+def as_warm_as(coarse: Problem, fine: Problem) -> Problem:
+    """The contact on a finer grid, with temperatures of a coarse one."""
+    rise = np.asarray(coarse.flow.temperature_rise)
+    if not rise.ndim:
+        return fine
+    along = _between(np.asarray(coarse.bodies.x), np.asarray(fine.bodies.x))
+    across = _between(np.asarray(coarse.bodies.y), np.asarray(fine.bodies.y))
+    return warmed(fine, array(across @ rise @ along.T))
 
 
 def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -227,6 +279,25 @@ def shown_film(problem: Problem) -> float:
     return float(SHOWN * spacing**1.5)
 
 
+_next_turn = fast_program(next_turn)
+
+
+class Solved(NamedTuple):
+    """Where a solve ended.
+
+    Attributes:
+        layout: where the grid lies.
+        problem: the contact on the last grid of its ladder, as warm as it is.
+        state: the solution.
+        turns: between pressure and temperature, on all grids.
+    """
+
+    layout: Layout
+    problem: Problem
+    state: State
+    turns: int
+
+
 @dataclass
 class _Solver:
     """Newton's iterations on the grids of a ladder.
@@ -236,12 +307,14 @@ class _Solver:
         steps: of all iterations so far.
         left: steps that are left on a grid.
         last: where the last one ended.
+        turns: between pressure and temperature so far.
     """
 
     told: Progress | None
     steps: int = 0
     left: int = MOST_ON_GRID
     last: State | None = None
+    turns: int = 0
 
     def on_grid(self, problem: Problem, before: Found | None, *, last: bool) -> Found | None:
         """Solution on one grid, None where none is found.
@@ -297,6 +370,66 @@ class _Solver:
                 return Found(problem, dry, state)
         return None
 
+    def warm(self, heats: Heated, found: Found, steady: float = STEADY) -> Found | None:
+        """A solution as warm as its heat makes it, by turns between pressure and temperature."""
+        problem, state = found.problem, found.state
+        past = cold_past(problem.flow.temperature_rise.size)
+        change = array(np.inf)
+        for _ in range(MOST_TURNS):
+            turn = _next_turn(heats, problem, state.pressure, state.level, past, change)
+            past, change, self.turns = turn.past, turn.change, self.turns + 1
+            if float(change) < steady:
+                return found._replace(problem=warmed(problem, turn.rise), state=state)
+            problem = warmed(problem, turn.begin)
+            enough = max(FINEST, EXACT * min(float(change), 1.0))
+            state = self.after_turn(problem, state, float(change), enough)
+            if not state.residual < ENOUGH:
+                return None
+        return None
+
+    def settled(
+        self, heats: Heated | None, found: Found | None, steady: float = STEADY
+    ) -> Found | None:
+        """A solution as warm as it becomes, itself where it is isothermal; None where none is found."""
+        if heats is None or found is None:
+            return found
+        return self.warm(heats, found, steady)
+
+    def onto(
+        self, problem: Problem, heats: Heated | None, before: Found | None, *, last: bool
+    ) -> Found | None:
+        """Solution on a finer grid, about as warm as that before becomes."""
+        warm = self.settled(heats, before, NEARLY_WARM)
+        if warm is None or heats is None:
+            return self.on_grid(problem, before, last=last)
+        found = self.on_grid(as_warm_as(warm.problem, problem), warm, last=last)
+        return self.on_grid(problem, before, last=last) if found is None else found
+
+    def from_earlier(self, problem: Problem, earlier: Earlier, layout: Layout) -> Found | None:
+        """Solution from one of a contact that is alike."""
+        dry = np.asarray(dry_under(problem).pressure)
+        start = warm_start(earlier, layout, problem, dry)
+        state = self.iterated(problem, start, WARM_TIME, CAREFUL)
+        return Found(problem, dry, state) if state.residual < ENOUGH else None
+
+    def ended(self, layout: Layout, found: Found | None, last: Problem | None = None) -> Solved:
+        """Where the solve ended, without a solution as well."""
+        assert self.last is not None
+        if found is not None:
+            state = found.state._replace(steps=self.steps)
+            return Solved(layout, found.problem, state, self.turns)
+        assert last is not None
+        return Solved(layout, last, self.last._replace(residual=np.inf), self.turns)
+
+    def after_turn(self, problem: Problem, state: State, change: float, enough: float) -> State:
+        """Pressure of a film that became warmer or colder, from the one before."""
+        self.left, start = MOST_ON_GRID, (state.pressure, state.level)
+        time = WARM_TIME if change > LEAPS else np.inf
+        found = self.iterated(problem, start, time, CAREFUL, enough)
+        if not found.residual < ENOUGH:
+            found = self.iterated(problem, start, FINER_TIME, BOLD, enough)
+        return found
+
     def near(self, problem: Problem, start: tuple[Any, Any], *, boldly: bool) -> State:
         """Where iterations from another film end, in one manner, and the other where that is asked for."""
         state = self.iterated(problem, start, FINER_TIME, CAREFUL)
@@ -305,11 +438,16 @@ class _Solver:
         return state
 
     def iterated(
-        self, problem: Problem, start: tuple[Any, Any], time: float, manner: Manner
+        self,
+        problem: Problem,
+        start: tuple[Any, Any],
+        time: float,
+        manner: Manner,
+        enough: float = TOLERANCE,
     ) -> State:
         pressure, level = map(array, start)
         most = min(MOST, self.left)
-        state = iterated(problem, pressure, level, time, self.told, manner, most)
+        state = iterated(problem, pressure, level, time, self.told, manner, most, enough)
         self.steps += state.steps
         self.left -= state.steps
         self.last = state._replace(steps=self.steps)
@@ -339,7 +477,7 @@ def solve(
     told: Progress | None = None,
     layout: Layout | None = None,
     earlier: Earlier | None = None,
-) -> tuple[Layout, Problem, State]:
+) -> Solved:
     """Layout, unless one is given, problem and solution of a contact on the last grid of its ladder.
 
     Where the film on the coarsest grid is so much thicker than it was taken for that it needs more room, it
@@ -348,28 +486,28 @@ def solve(
     grids, fixed = ladder(nodes, cells), layout is not None
     layout = laid_out(contact, cells) if layout is None else layout
     check_maps_on(contact, layout, cells)
-    solver = _Solver(told)
+    solver, heats = _Solver(told), heated(contact)
     if earlier is not None:
         problem = problem_on(contact, layout, nodes, cells, cells)
-        dry = np.asarray(dry_under(problem).pressure)
-        start = warm_start(earlier, layout, problem, dry)
-        state = solver.iterated(problem, start, WARM_TIME, CAREFUL)
-        film = _film_of(problem, dry, state)
-        if state.residual < ENOUGH and _roomier(contact, layout, cells, film) is None:
-            return layout, problem, state
+        found = solver.from_earlier(as_warm(earlier, layout, problem), earlier, layout)
+        if found is not None and _roomier(contact, layout, cells, _film_of(*found)) is None:
+            found = solver.settled(heats, found)
+            if found is not None:
+                return solver.ended(layout, found)
     for layouts in count():
         problem = problem_on(contact, layout, *grids[0], cells)
         found = solver.on_grid(problem, None, last=len(grids) == 1)
         if fixed or layouts == MOST_LAYOUTS or found is None or found.faster(problem):
             break
-        more = _roomier(contact, layout, cells, _film_of(problem, found.dry, found.state))
+        more = _roomier(contact, layout, cells, _film_of(*found))
         if more is None:
             break
         layout = more
     for grid in grids[1:]:
         problem = problem_on(contact, layout, *grid, cells)
-        found = solver.on_grid(problem, found, last=grid == grids[-1])
-    assert solver.last is not None
-    if found is None:
-        return layout, problem, solver.last._replace(residual=np.inf)
-    return layout, problem, found.state._replace(steps=solver.steps)
+        found = solver.onto(problem, heats, found, last=grid == grids[-1])
+    warm = solver.settled(heats, found)
+    if heats is not None and warm is None and len(grids) > 1:
+        # From a film that is as warm as its inlet, should temperatures of coarse grids have led astray.
+        warm = solver.settled(heats, solver.on_grid(problem, None, last=True))
+    return solver.ended(layout, warm, problem)

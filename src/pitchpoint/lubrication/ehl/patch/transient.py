@@ -211,7 +211,7 @@ class _Stepper:
         plan = self.plan
         first = plan.contact(plan.times[0])
         first = replace(first, approach=plan.contacts[0].approach)
-        _, problem, state = solve(first, *plan.grid, self.told, plan.layout_of(0))
+        _, problem, state, _ = solve(first, *plan.grid, self.told, plan.layout_of(0))
         state = state._replace(pressure=np.asarray(state.pressure), level=float(state.level))
         mass = np.asarray(_mass(problem, array(state.pressure), array(state.level)))
         stands = state.pressure, state.level, (float(plan.times[0]),), (mass,), None
