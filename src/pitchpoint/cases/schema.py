@@ -94,6 +94,7 @@ STRESS = Quantity("pressure", 1e3, 1e10, "MPa")
 SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 PATTERN = Quantity("dimensionless", 1 / 9, 9.0)
 INLET = Quantity("length", 0.0, 10.0, "mm", open_low=True)
+FILM_MOMENTS = Quantity("dimensionless", 2, 400, whole=True)
 INSTANTS = Quantity("dimensionless", 2, 20_000, whole=True)
 ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 
@@ -706,7 +707,8 @@ class FilmTable(Table):
     """Films of the contacts solved over the mesh cycle; what is left out is as `FilmModel` has it.
 
     `phases` are the least number of states over a mesh cycle; `in_series` asks what the films take from the
-    torsional stiffness. The parameters are those of the shear law, and
+    torsional stiffness. With the `time` "squeeze" one pair is followed through its engagement as well, at no
+    more than `moments`. The parameters are those of the shear law, and
     of the profile of the ends.
     """
 
@@ -715,6 +717,8 @@ class FilmTable(Table):
     in_series: Annotated[bool, BeforeValidator(_flag)] = False
     nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
     cells: Annotated[float, FILM_CELLS, AfterValidator(_cells)] | None = None
+    time: Literal["steady", "squeeze"] | None = None
+    moments: Annotated[float, FILM_MOMENTS] | None = None
     ends: Literal["half_space", "mirrored"] | None = None
     end_profile: Annotated[str, BeforeValidator(named(_end_profiles, "end profile"))] | None = None
     end_length: Annotated[float, END_LENGTH] | None = None
@@ -757,6 +761,11 @@ class FilmTable(Table):
         return self.solver != "line"
 
     @property
+    def squeezes(self) -> bool:
+        """True if the film of a pair is followed through its engagement, with squeeze."""
+        return self.time == "squeeze"
+
+    @property
     def profile_parameters(self) -> dict[str, float]:
         """Parameters of the profile of the ends that were given, by the names that it has for them [SI]."""
         given = {name.removeprefix("end_"): getattr(self, name) for name in _OF_ENDS}
@@ -769,6 +778,9 @@ class FilmTable(Table):
                 raise InputError(f"was given; {why}", key=key)
         if self.over_patch:
             _check_patch(self)
+        if self.moments is not None and not self.squeezes:
+            told = 'was given without time = "squeeze", to which it belongs'
+            raise InputError(told, key="moments")
         return self
 
     @model_validator(mode="after")
@@ -816,9 +828,15 @@ _OF_ROUGH = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction"
 _OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
 
 _NO_ENDS = 'lines of this solver have no ends; take solver = "finite_line", or leave it out'
+_STEADY = (
+    'films of this solver are steady; take solver = "finite_line" or "elliptic", or leave it out'
+)
 _ELLIPSE = "an ellipse ends by itself; leave it out"
 _NOT_OF: Mapping[str, Mapping[str, str]] = {
-    "line": {key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
+    "line": {
+        **{key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
+        **dict.fromkeys(("time", "moments"), _STEADY),
+    },
     "finite_line": {},
     "elliptic": {key: _ELLIPSE for key in ("ends", "end_profile", *_OF_ENDS)},
 }

@@ -1,0 +1,172 @@
+"""The engagement of one pair: its contact from where it begins to carry to where it ends, over time."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from pitchpoint.analyses.film_contacts import asked
+from pitchpoint.analyses.whole_contacts import SPAN, Wholes, one_contact, wholes
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.films import course_grid, course_moments
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.patch.contact import PatchContact
+from pitchpoint.lubrication.ehl.patch.layout import laid_out
+
+__all__ = ["PairCourse", "check_course", "course_of"]
+
+KEY = "film.time"
+"""Of the case file, which asks for an engagement."""
+
+LIGHT = 0.1
+"""Load over the largest one of the engagement below which a contact is too narrow for the grid of all."""
+
+FEWEST = 2
+"""Moments that make an engagement."""
+
+APART = 1e-6
+"""Periods between moments that are told apart: both sides of an event are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairCourse:
+    """The contact of one pair at moments of its engagement.
+
+    Attributes:
+        times: from the first moment on, rising, shape (moment,) [s].
+        places: phase, pair and line in the mesh cycle that each moment is taken from, shape (moment, 3).
+        contacts: one at each moment.
+        told: what is left out of the engagement, in sentences.
+    """
+
+    times: np.ndarray
+    places: np.ndarray
+    contacts: tuple[PatchContact, ...]
+    told: tuple[str, ...]
+
+    def values(self, lanes: np.ndarray) -> np.ndarray:
+        """Values of contacts [phase, pair, line] at the moments [moment]."""
+        found: np.ndarray = lanes[tuple(self.places.T)]
+        return found
+
+
+def check_course(built: Built) -> None:
+    """InputError if the films of an engagement are asked for and cannot be had."""
+    if asked(built).squeezes:
+        course_of(built)
+
+
+@lru_cache(maxsize=2)
+def course_of(built: Built) -> PairCourse:
+    """The engagement of the pair of a case.
+
+    Pairs are alike but for where they are, and what one does now another does a period later: states of all
+    pairs over the mesh cycle are those of one pair over its engagement. Of zones that are alike the first
+    one counts, and of several lines of a pair that which carries most.
+
+    Raises:
+        InputError: nothing is loaded, contact lines that change their length all the time, no contact that a
+            grid takes.
+    """
+    given = wholes(built)
+    if not np.any(given.states["loaded"]):
+        raise InputError("nothing is loaded, and no film is squeezed; leave it out", key=KEY)
+    places, entered = _in_order(built, given)
+    load, most = _values(given, "load", places), np.argmax(_values(given, "load", places))
+    heavy, long = load >= LIGHT * load[most], _keeps_length(given, places, int(most))
+    kept = _around(heavy & long, int(most))
+    if kept.stop - kept.start < FEWEST:
+        raise InputError(
+            "the contact line of these gears changes its length all the time, and a film is squeezed on "
+            "lines that keep it; leave it out",
+            key=KEY,
+        )
+    told = [
+        text for text, taken in zip((_LIGHT, _SHORT), (heavy, long), strict=True) if not taken.all()
+    ]
+    places, entered = places[kept], entered[kept]
+    times = np.abs(entered - entered[0]) * _period(built)
+    some = _thinned(times.size, course_moments(asked(built)))
+    return _taken(built, given, times[some], places[some], told)
+
+
+_LIGHT = (
+    f"moments with less than {100.0 * LIGHT:.0f} % of the largest load are left out: the contact is narrow "
+    "there for the grid of the engagement"
+)
+_SHORT = (
+    "moments at which the contact line is shorter than where it carries most are left out: a film is "
+    "squeezed on lines that keep their length"
+)
+
+
+def _values(given: Wholes, name: str, places: np.ndarray) -> np.ndarray:
+    found: np.ndarray = given.states[name][tuple(places.T)]
+    return found
+
+
+def _keeps_length(given: Wholes, places: np.ndarray, most: int) -> np.ndarray:
+    """True for moments at which the contact line is as long as that which carries most."""
+    if "weight_of_line" not in given.states:
+        return np.ones(len(places), bool)
+    lengths = _values(given, "weight_of_line", places)
+    found: np.ndarray = np.abs(lengths - lengths[most]) <= SPAN * lengths[most]
+    return found
+
+
+def _period(built: Built) -> float:
+    """Time of a period of the mesh [s]."""
+    return float(built.nominal["period"]) / float(built.operation.speed)
+
+
+def _in_order(built: Built, given: Wholes) -> tuple[np.ndarray, np.ndarray]:
+    """Loaded contacts of one pair as they follow each other, and the periods that the pair has moved.
+
+    Pairs are numbered as they stand in the mesh, a period apart, and phases count on from pair to pair.
+    """
+    states = given.states
+    zones = int(built.way["zones"])
+    pairs = states["load"].shape[1] // zones
+    line = int(np.argmax(np.max(states["load"][:, :pairs], axis=(0, 1))))
+    phase, pair = np.nonzero(states["loaded"][:, :pairs, line])
+    entered = np.mod(states["phase"][phase], 1.0) + pair
+    order = np.argsort(float(built.nominal["onward"]) * entered, kind="stable")
+    ahead = np.abs(entered[order] - entered[order][0])
+    several = np.append(True, np.diff(ahead) > APART)
+    places = np.stack([phase, pair, np.full(phase.shape, line)], axis=-1)[order]
+    return places[several], ahead[several]
+
+
+def _around(taken: np.ndarray, middle: int) -> slice:
+    """The run of moments that are taken, without a gap, around one of them."""
+    gone = np.flatnonzero(~taken)
+    before, behind = gone[gone < middle], gone[gone > middle]
+    return slice(int(np.max(before, initial=-1)) + 1, int(np.min(behind, initial=taken.size)))
+
+
+def _thinned(size: int, most: int) -> np.ndarray:
+    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
+
+
+def _taken(
+    built: Built, given: Wholes, times: np.ndarray, places: np.ndarray, told: list[str]
+) -> PairCourse:
+    """Moments whose contacts have a grid, around that which carries most."""
+    cells = course_grid(asked(built))[1]
+    contacts: list[PatchContact | None] = []
+    for at in map(tuple, places):
+        try:
+            contact = one_contact(built, given.numbers[at])
+            laid_out(contact, cells)
+        except InputError as error:
+            told.append(f"a contact ends the engagement that no grid takes: {error.message}")
+            contacts.append(None)
+        else:
+            contacts.append(contact)
+    load = _values(given, "load", places)
+    has = np.array([one is not None for one in contacts])
+    if not has.any():
+        raise InputError(told[-1], key=KEY)
+    kept = _around(has, int(np.argmax(np.where(has, load, -1.0))))
+    found = tuple(one for one in contacts[kept] if one is not None)
+    return PairCourse(times[kept] - times[kept][0], places[kept], found, tuple(dict.fromkeys(told)))
