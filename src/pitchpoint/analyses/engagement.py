@@ -1,5 +1,6 @@
 """The engagement of one pair: its contact from where it begins to carry to where it ends, over time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -11,7 +12,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import course_grid, course_moments
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.layout import laid_out
+from pitchpoint.lubrication.ehl.patch.layout import Layout, laid_out
 
 __all__ = ["PairCourse", "check_course", "course_of"]
 
@@ -20,6 +21,9 @@ KEY = "film.time"
 
 LIGHT = 0.1
 """Load over the largest one of the engagement below which a contact is too narrow for the grid of all."""
+
+SHOWN = 1.5
+"""Nodes over the half-width of a contact that the grid of the engagement has to have."""
 
 FEWEST = 2
 """Moments that make an engagement."""
@@ -65,20 +69,20 @@ def course_of(built: Built) -> PairCourse:
     one counts, and of several lines of a pair that which carries most.
 
     Raises:
-        InputError: nothing is loaded, contact lines that change their length all the time, no contact that a
-            grid takes.
+        InputError: nothing is loaded, contact lines that move across the face all the time, no contacts that
+            one grid shows.
     """
     given = wholes(built)
     if not np.any(given.states["loaded"]):
         raise InputError("nothing is loaded, and no film is squeezed; leave it out", key=KEY)
     places, entered = _in_order(built, given)
     load, most = _values(given, "load", places), np.argmax(_values(given, "load", places))
-    heavy, long = load >= LIGHT * load[most], _keeps_length(given, places, int(most))
+    heavy, long = load >= LIGHT * load[most], _stays(given, places, int(most))
     kept = _around(heavy & long, int(most))
     if kept.stop - kept.start < FEWEST:
         raise InputError(
-            "the contact line of these gears changes its length all the time, and a film is squeezed on "
-            "lines that keep it; leave it out",
+            "the contact line of these gears grows, shrinks or moves across the face all the time, and a "
+            "film is squeezed on lines that stay as they are; leave it out",
             key=KEY,
         )
     told = [
@@ -91,12 +95,12 @@ def course_of(built: Built) -> PairCourse:
 
 
 _LIGHT = (
-    f"moments with less than {100.0 * LIGHT:.0f} % of the largest load are left out: the contact is narrow "
-    "there for the grid of the engagement"
+    f"moments with less than {100.0 * LIGHT:.0f} % of the largest load are left out, where the contact is "
+    "narrow for a grid that holds all"
 )
 _SHORT = (
-    "moments at which the contact line is shorter than where it carries most are left out: a film is "
-    "squeezed on lines that keep their length"
+    "moments are left out at which the contact line is shorter than where it carries most, or lies elsewhere "
+    "across: a film is squeezed on lines that stay on the face as they are"
 )
 
 
@@ -105,12 +109,11 @@ def _values(given: Wholes, name: str, places: np.ndarray) -> np.ndarray:
     return found
 
 
-def _keeps_length(given: Wholes, places: np.ndarray, most: int) -> np.ndarray:
-    """True for moments at which the contact line is as long as that which carries most."""
-    if "weight_of_line" not in given.states:
-        return np.ones(len(places), bool)
-    lengths = _values(given, "weight_of_line", places)
-    found: np.ndarray = np.abs(lengths - lengths[most]) <= SPAN * lengths[most]
+def _stays(given: Wholes, places: np.ndarray, most: int) -> np.ndarray:
+    """True for moments at which the contact lies across the face as that does which carries most."""
+    lengths, across = (_values(given, name, places) for name in ("weight_of_line", "across"))
+    off = np.maximum(np.abs(lengths - lengths[most]), np.abs(across - across[most]))
+    found: np.ndarray = off <= SPAN * lengths[most]
     return found
 
 
@@ -151,22 +154,47 @@ def _thinned(size: int, most: int) -> np.ndarray:
 def _taken(
     built: Built, given: Wholes, times: np.ndarray, places: np.ndarray, told: list[str]
 ) -> PairCourse:
-    """Moments whose contacts have a grid, around that which carries most."""
-    cells = course_grid(asked(built))[1]
-    contacts: list[PatchContact | None] = []
-    for at in map(tuple, places):
+    """Moments whose contacts one grid shows, as many as follow each other."""
+    nodes, cells = course_grid(asked(built))
+    contacts = [one_contact(built, given.numbers[at]) for at in map(tuple, places)]
+    layouts: list[Layout | None] = []
+    for contact in contacts:
         try:
-            contact = one_contact(built, given.numbers[at])
-            laid_out(contact, cells)
+            layouts.append(laid_out(contact, cells))
         except InputError as error:
+            layouts.append(None)
             told.append(f"a contact ends the engagement that no grid takes: {error.message}")
-            contacts.append(None)
-        else:
-            contacts.append(contact)
-    load = _values(given, "load", places)
-    has = np.array([one is not None for one in contacts])
-    if not has.any():
-        raise InputError(told[-1], key=KEY)
-    kept = _around(has, int(np.argmax(np.where(has, load, -1.0))))
-    found = tuple(one for one in contacts[kept] if one is not None)
-    return PairCourse(times[kept] - times[kept][0], places[kept], found, tuple(dict.fromkeys(told)))
+    kept = _shown(layouts, nodes)
+    if kept.stop - kept.start < FEWEST:
+        raise InputError(
+            "contacts of this pair differ so much that one grid shows no two of them that follow each other; "
+            "take more nodes, or leave it out",
+            key=KEY,
+        )
+    if kept.stop - kept.start < len(layouts) and None not in layouts:
+        told.append(_NARROW)
+    found = times[kept] - times[kept][0], places[kept], tuple(contacts[kept])
+    return PairCourse(*found, tuple(dict.fromkeys(told)))
+
+
+_NARROW = (
+    "moments are left out whose contacts are too narrow or too wide for one grid with the others: it shows "
+    f"all half-widths with {SHOWN:g} nodes at least"
+)
+
+
+def _shown(layouts: Sequence[Layout | None], nodes: int) -> slice:
+    """The longest run of contacts all of which one grid shows."""
+    best = slice(0, 0)
+    for first in range(len(layouts)):
+        begin, end, narrow = np.inf, -np.inf, np.inf
+        for number, one in enumerate(layouts[first:], first):
+            if one is None:
+                break
+            begin, end = min(begin, one.inlet), max(end, one.outlet)
+            narrow = min(narrow, one.half_width)
+            if narrow / (end - begin) * (nodes - 1) < SHOWN:
+                break
+            if number + 1 - first > best.stop - best.start:
+                best = slice(first, number + 1)
+    return best

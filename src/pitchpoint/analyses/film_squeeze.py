@@ -83,14 +83,19 @@ def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | 
     first = int(last.attrs["first"]) + last.sizes["point"]
     if first >= course_of(built).times.size:
         return None
-    return _some(built, first, _state_of(last), progress)
+    return _some(built, first, _state_of(last), progress, lost=bool(last.attrs["lost"]))
 
 
-def _some(built: Built, first: int, after: Course | None, progress: Progress) -> xr.Dataset:
-    """Films of some moments, from the first one or after a march that stands before it."""
+def _some(
+    built: Built, first: int, after: Course | None, progress: Progress, *, lost: bool = False
+) -> xr.Dataset:
+    """Films of some moments, from the first one or after a march that stands before it.
+
+    Steady films go on where the film with squeeze was lost.
+    """
     count = min(TOGETHER, course_of(built).times.size - first)
     told: list[str] = []
-    marched = [] if first and after is None else _marched(built, first, after, progress, told)
+    marched = [] if lost else _marched(built, first, after, progress, told)
     found = [one for one in marched if one.solved]
     stands = found[-1].course if found else after
     contacts = course_of(built).contacts[first : first + count]
@@ -106,18 +111,18 @@ def _some(built: Built, first: int, after: Course | None, progress: Progress) ->
         for k, (contact, one) in enumerate(zip(contacts, each, strict=True))
         if stands is not None
     ]
-    lost = [one.ended for one in marched if not one.solved]
-    values = _values(count, found, [*marched], steady)
-    alive = stands if len(found) == count else None
+    ended = [_why_lost(one.ended.code) for one in marched if not one.solved]
+    values = _values(count, found, marched, steady)
     return dataset(
         {
             **{name: (("point",), one) for name, one in values.items()},
             **_kept(built, first, found),
-            **({} if alive is None else _state(alive)),
+            **({} if stands is None else _state(stands)),
         },
         {},
         first=first,
-        warnings=[*told, *(_why_lost(one.code) for one in lost)],
+        lost=int(len(found) < count),
+        warnings=[*told, *ended],
         doubts=_doubts([*found, *steady]),
         grid=json.dumps(course_grid(asked(built))),
     )
@@ -171,8 +176,11 @@ def _why_lost(code: Code) -> str:
 
 def _doubts(moments: Sequence[PatchMoment]) -> list[tuple[str, float, str]]:
     """Kind, extent and words of what to be wary of, each once."""
-    texts = dict.fromkeys(text for one in moments for text in one.warnings)
-    return [(kind_of(text), extent_of(text), text) for text in texts if kind_of(text) != ENDS]
+    solved = [one for one in moments if one.solved]
+    texts = dict.fromkeys(text for one in solved for text in one.warnings)
+    told = [(kind_of(text), extent_of(text), text) for text in texts if kind_of(text) != ENDS]
+    lost = "some of the steady films beside were not found: there is no difference to tell there"
+    return [*told, *[("steady", 0.0, lost)] * (len(solved) < len(moments))]
 
 
 def _values(
@@ -257,7 +265,7 @@ def _state(course: Course) -> dict[str, tuple[tuple[str, ...], Any]]:
 
 
 def _state_of(piece: xr.Dataset) -> Course | None:
-    """The course that a piece ends with; None where its film was lost."""
+    """The last course of which a piece has a film; None without one."""
     if f"{_STATE}layout" not in piece:
         return None
     given = {name: piece[f"{_STATE}{name}"].values for name in Course._fields}
@@ -322,8 +330,13 @@ def _conditions(built: Built) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
 
 
 def _figures(values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Thinnest films, and how far squeeze takes the film in the middle from the steady one."""
-    change = values["central_film"] / values["steady_central_film"] - 1.0
+    """Thinnest films, and how far squeeze takes the film in the middle from the steady one.
+
+    Nothing is compared where mean planes overlap.
+    """
+    film, steady = values["central_film"], values["steady_central_film"]
+    apart = (film > 0.0) & (steady > 0.0)
+    change = np.where(apart, film, np.nan) / np.where(apart, steady, 1.0) - 1.0
     least = {
         "smallest_film": "minimum_film",
         "steady_smallest_film": "steady_minimum_film",

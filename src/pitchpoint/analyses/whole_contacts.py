@@ -142,12 +142,14 @@ def _summed(
     found |= {name: at_most(parts[name]) for name in _PICKED}
     length = np.sum(np.where(active, parts["weight_of_line"], 0.0), axis=-1)
     carried = np.where(found["load_by_law"] > 0.0, found["load_by_law"], 1.0)
+    across = np.sum(np.where(active, parts["weight_of_line"] * parts["width"], 0.0), axis=-1)
     rubbed = np.sum(parts["friction"] * parts["load_by_law"], axis=-1)
     return found | {
         "active": np.any(active, axis=-1),
         # Lines that just come or go have next to no length, whatever they carry for it.
         "loaded": np.any(parts["loaded"], axis=-1) & (found["load"] > LEAST * found["load"].max()),
         "weight_of_line": length,
+        "across": across / np.where(length > 0.0, length, 1.0),
         "line_load": found["load"] / np.where(length > 0.0, length, 1.0),
         "film_by_law": in_the_middle(middles, parts["film_by_law"]),
         "friction": np.where(found["load_by_law"] > 0.0, rubbed / carried, np.nan),

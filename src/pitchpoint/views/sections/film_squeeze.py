@@ -103,7 +103,8 @@ def _how(data: xr.Dataset) -> str:
 def _table(data: xr.Dataset) -> Table:
     """Thinnest films with squeeze and without."""
     rows = [(titled(name), told(data, name), told(data, one)) for name, one in _BESIDE.items()]
-    rows.append((titled("squeeze_change"), told(data, "squeeze_change"), ""))
+    if np.isfinite(float(data["squeeze_change"])):
+        rows.append((titled("squeeze_change"), told(data, "squeeze_change"), ""))
     return Table(["", "with squeeze", "if all were steady"], rows, compact=True)
 
 
@@ -134,7 +135,9 @@ _PRESSURES = {
 
 def _courses(name: str, data: xr.Dataset) -> Panel:
     """Films, pressures, load and entrainment over the engagement."""
-    change = data["central_film"].values / data["steady_central_film"].values - 1.0
+    film, steady = data["central_film"].values, data["steady_central_film"].values
+    apart = (film > 0.0) & (steady > 0.0)
+    change = np.where(apart, film, np.nan) / np.where(apart, steady, 1.0) - 1.0
     key = Key("film in the middle", INK)
     changes = [(key, _line(data, key, "squeeze_change", change))]
     return Panel(
@@ -201,6 +204,8 @@ def answer(data: xr.Dataset) -> str:
         f"{told(data, 'steady_smallest_film')} if every moment were steady; "
     )
     change = float(data["squeeze_change"])
+    if not np.isfinite(change):
+        return f"{words}the mean planes of the rough flanks overlap, and films are not compared"
     if abs(change) < _SMALL:
         return f"{words}squeeze changes nothing"
     sense = "thicker" if change > 0.0 else "thinner"
