@@ -156,7 +156,7 @@ def _taken(
 ) -> PairCourse:
     """Moments whose contacts one grid shows, as many as follow each other."""
     nodes, cells = course_grid(asked(built))
-    contacts = [one_contact(built, given.numbers[at]) for at in map(tuple, places)]
+    contacts = [one_contact(built, given.numbers[at], moving=True) for at in map(tuple, places)]
     layouts: list[Layout | None] = []
     for contact in contacts:
         try:

@@ -18,6 +18,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.patch.films import ENDS, Turned
 from pitchpoint.lubrication.ehl.patch.layout import Layout
+from pitchpoint.lubrication.ehl.patch.plan import placed
 from pitchpoint.lubrication.ehl.patch.transient import (
     Course,
     PatchMoment,
@@ -55,6 +56,7 @@ _FIELDS = {
     "field_asperity_pressure": "asperity_pressure",
     "field_dry_pressure": "dry_pressure",
     "field_film": "gap",
+    "field_heights": "heights",
 }
 _KEPT = {
     **dict.fromkeys(_FIELDS, ("kept", "y", "x")),
@@ -98,7 +100,8 @@ def _some(
     marched = [] if lost else _marched(built, first, after, progress, told)
     found = [one for one in marched if one.solved]
     stands = found[-1].course if found else after
-    contacts = course_of(built).contacts[first : first + count]
+    course = course_of(built)
+    contacts = placed(course.contacts, course.times)[first : first + count]
     each = [*found, *[None] * (count - len(found))]
     steady = [
         steady_beside(

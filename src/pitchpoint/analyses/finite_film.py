@@ -46,6 +46,7 @@ _FIELDS = {
     "field_asperity_pressure": "asperity_pressure",
     "field_dry_pressure": "dry_pressure",
     "field_film": "gap",
+    "field_heights": "heights",
 }
 _KEPT = {
     **dict.fromkeys(_FIELDS, ("kept", "y", "x")),

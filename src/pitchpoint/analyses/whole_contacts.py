@@ -12,6 +12,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.film_contacts import LEAST, asked, by_pairs, film_model_of, known, states
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import USUAL_ENDS, end_surfaces
+from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, missing
 from pitchpoint.efficiency.quasi_static import Design, Engagement
 from pitchpoint.errors import InputError
@@ -156,12 +157,13 @@ def _summed(
     }
 
 
-def one_contact(built: Built, numbers: np.ndarray) -> PatchContact:
+def one_contact(built: Built, numbers: np.ndarray, *, moving: bool = False) -> PatchContact:
     """A contact to solve.
 
     Args:
         built: the case.
         numbers: that tell it from others, as in `Wholes.numbers`.
+        moving: whether height maps move along with their surfaces.
     """
     design, model = built.design, film_model_of(built)
     rq = float(design.roughness.composite_rq)
@@ -171,6 +173,7 @@ def one_contact(built: Built, numbers: np.ndarray) -> PatchContact:
         "inlet": model.inlet,
         "fluid": model.fluid(design.lubricant, float(built.operation.temperature)),
         "texture": model.texture(rq, modulus),
+        "heights": height_maps(asked(built), moving=moving),
     }
     if design.mesh.shape == "ellipse":
         load, radius, transverse, speed_a, speed_b = numbers

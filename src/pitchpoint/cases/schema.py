@@ -95,6 +95,9 @@ SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 PATTERN = Quantity("dimensionless", 1 / 9, 9.0)
 INLET = Quantity("length", 0.0, 10.0, "mm", open_low=True)
 FILM_MOMENTS = Quantity("dimensionless", 2, 400, whole=True)
+MAP_STEP = Quantity("length", 0.0, 0.1, "um", open_low=True)
+MAP_UNIT = Quantity("length", 0.0, 1e-3, "um", open_low=True)
+MAP_PLACE = Quantity("length", -1.0, 1.0, "mm")
 INSTANTS = Quantity("dimensionless", 2, 20_000, whole=True)
 ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 
@@ -703,6 +706,30 @@ def _cells(value: float) -> float:
     return value
 
 
+class HeightTable(Table):
+    """Measured heights of a surface in a file: rows across the contact, columns along it.
+
+    `unit` is what a height of one in the file is. The middle of the map lies in that of the contact unless
+    `middle_along` and `middle_across` say otherwise.
+    """
+
+    file: Text
+    step_along: Annotated[float, MAP_STEP]
+    step_across: Annotated[float, MAP_STEP]
+    unit: Annotated[float, MAP_UNIT] = 1e-6
+    middle_along: Annotated[float, MAP_PLACE] = 0.0
+    middle_across: Annotated[float, MAP_PLACE] = 0.0
+    periodic: Annotated[bool, BeforeValidator(_flag)] = False
+
+
+class HeightTables(Table):
+    """Height maps of the surfaces in contact, or of both together, which stays where it is."""
+
+    gear_1: HeightTable | None = None
+    gear_2: HeightTable | None = None
+    both: HeightTable | None = None
+
+
 class FilmTable(Table):
     """Films of the contacts solved over the mesh cycle; what is left out is as `FilmModel` has it.
 
@@ -719,6 +746,7 @@ class FilmTable(Table):
     cells: Annotated[float, FILM_CELLS, AfterValidator(_cells)] | None = None
     time: Literal["steady", "squeeze"] | None = None
     moments: Annotated[float, FILM_MOMENTS] | None = None
+    heights: HeightTables | None = None
     ends: Literal["half_space", "mirrored"] | None = None
     end_profile: Annotated[str, BeforeValidator(named(_end_profiles, "end profile"))] | None = None
     end_length: Annotated[float, END_LENGTH] | None = None
@@ -831,11 +859,15 @@ _NO_ENDS = 'lines of this solver have no ends; take solver = "finite_line", or l
 _STEADY = (
     'films of this solver are steady; take solver = "finite_line" or "elliptic", or leave it out'
 )
+_EVEN = (
+    'lines of this solver have one profile all along; take solver = "finite_line", or leave it out'
+)
 _ELLIPSE = "an ellipse ends by itself; leave it out"
 _NOT_OF: Mapping[str, Mapping[str, str]] = {
     "line": {
         **{key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
         **dict.fromkeys(("time", "moments"), _STEADY),
+        "heights": _EVEN,
     },
     "finite_line": {},
     "elliptic": {key: _ELLIPSE for key in ("ends", "end_profile", *_OF_ENDS)},

@@ -102,6 +102,7 @@ VARIABLES: dict[str, Variable] = {
     "field_asperity_pressure": pressure("pressure that asperities carry", "p_a"),
     "field_dry_pressure": pressure("pressure without oil", "p_d"),
     "field_film": deviation("film", "h"),
+    "field_heights": deviation("heights of both surfaces that the cells see", "z"),
     "coarse_central_film": deviation("film in the middle on a coarser grid", "h_c"),
     "coarse_minimum_film": deviation("smallest film on a coarser grid", "h_min"),
     "coarse_largest_pressure": pressure("largest pressure on a coarser grid", "p_max"),

@@ -18,7 +18,7 @@ from pitchpoint.lubrication.ehl.patch.films import Turned, check, oriented, turn
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 
-__all__ = ["Plan", "all_lie", "check_times"]
+__all__ = ["Plan", "all_lie", "check_times", "placed"]
 
 
 def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> None:
@@ -122,16 +122,29 @@ class Plan:
         return self._placed(between, self.passed[number] + step * way)
 
     def _placed(self, contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
-        maps = tuple(
-            one.standing() if one.member is None else one.standing(*way[one.member])
-            for one in contact.heights
-        )
-        return replace(contact, heights=maps, approach=array(0.0))
+        return replace(_moved(contact, way), approach=array(0.0))
 
     def problem(self, time: float) -> Problem:
         """The contact at a time, in units of the common grid."""
         nodes, cells = self.grid
         return problem_on(self.contact(time), self.layout, nodes, cells, cells)
+
+
+def placed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> list[PatchContact]:
+    """Contacts of a march with their height maps where their surfaces have taken them until then."""
+    if not contacts[0].heights:
+        return list(contacts)
+    ways = _passed(contacts, times)
+    return [_moved(one, way) for one, way in zip(contacts, ways, strict=True)]
+
+
+def _moved(contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
+    """A contact whose surfaces have passed by some ways along and across, shape (2, 2) [m]."""
+    maps = tuple(
+        one.standing() if one.member is None else one.standing(*way[one.member])
+        for one in contact.heights
+    )
+    return replace(contact, heights=maps)
 
 
 def _between(one: Float[Arrays, "..."], other: Float[Arrays, "..."], part: float) -> Array:
