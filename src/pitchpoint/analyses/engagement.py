@@ -9,12 +9,14 @@ import numpy as np
 from pitchpoint.analyses.film_contacts import asked
 from pitchpoint.analyses.whole_contacts import SPAN, Wholes, one_contact, wholes
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.films import course_grid, course_moments
+from pitchpoint.cases.films import course_grid, course_moments, patch_grid
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, laid_out
+from pitchpoint.lubrication.ehl.patch.plan import passed, placed
+from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_maps_on
 
-__all__ = ["PairCourse", "check_course", "course_of"]
+__all__ = ["PairCourse", "check_course", "check_heights", "course_of"]
 
 KEY = "film.time"
 """Of the case file, which asks for an engagement."""
@@ -24,6 +26,9 @@ LIGHT = 0.1
 
 SHOWN = 1.5
 """Nodes over the half-width of a contact that the grid of the engagement has to have."""
+
+MOST_STEPS = 1000
+"""Steps of a height map that pass the contact: a film takes about a step of time for each."""
 
 FEWEST = 2
 """Moments that make an engagement."""
@@ -56,8 +61,45 @@ class PairCourse:
 
 def check_course(built: Built) -> None:
     """InputError if the films of an engagement are asked for and cannot be had."""
-    if asked(built).squeezes:
-        course_of(built)
+    course, cells = course_of(built), course_grid(asked(built))[1]
+    _check_travel(course)
+    for contact in placed(course.contacts, course.times):
+        _check_maps(contact, cells)
+
+
+def check_heights(built: Built) -> None:
+    """InputError for height maps that do not fit the contact that carries most."""
+    given = wholes(built)
+    loads = np.where(given.states["loaded"], given.states["load"], 0.0)
+    if asked(built).heights is not None and loads.any():
+        at = np.unravel_index(np.argmax(loads), loads.shape)
+        _check_maps(one_contact(built, given.numbers[at]), patch_grid(asked(built))[1])
+
+
+def _check_travel(course: PairCourse) -> None:
+    """InputError for height maps that take too many steps of time to pass."""
+    for one in course.contacts[0].heights:
+        if one.member is None:
+            continue
+        way = abs(float(passed(course.contacts, course.times)[-1, one.member, 0]))
+        step = float(np.min(np.diff(np.asarray(one.x))))
+        if way > MOST_STEPS * step:
+            raise InputError(
+                f"{1e3 * way:.4g} mm of the surface pass the contact in its engagement, in steps of "
+                f"{1e6 * step:.4g} um, and films follow at most {MOST_STEPS} of them; take a coarser map, or "
+                "one of both surfaces, which stays where it is",
+                key="film.heights",
+            )
+
+
+def _check_maps(contact: PatchContact, cells: int) -> None:
+    if not contact.heights:
+        return
+    try:
+        check_maps(contact)
+        check_maps_on(contact, laid_out(contact, cells), cells)
+    except InputError as error:
+        raise InputError(error.message, key="film.heights") from None
 
 
 @lru_cache(maxsize=2)

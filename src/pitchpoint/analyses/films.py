@@ -92,10 +92,12 @@ def _pieces(built: Built) -> Iterable[Piece]:
     from pitchpoint.analyses.film_series import check_series
 
     check_series(built)
-    if _steady(built) is None:
-        from pitchpoint.analyses.engagement import check_course
+    if _endless(built) is None:
+        from pitchpoint.analyses.engagement import check_course, check_heights
 
-        check_course(built)
+        check_heights(built)
+        if _steady(built) is None:
+            check_course(built)
     found: Iterable[Piece] = _solver(built).pieces(built)
     return found
 

@@ -18,7 +18,7 @@ from pitchpoint.lubrication.ehl.patch.films import Turned, check, oriented, turn
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 
-__all__ = ["Plan", "all_lie", "check_times", "placed"]
+__all__ = ["Plan", "all_lie", "check_times", "passed", "placed"]
 
 
 def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> None:
@@ -92,7 +92,7 @@ class Plan:
     ) -> None:
         self.times, self.lies, self.grid = times, lies, (nodes, cells)
         self.contacts = [oriented(one, lies) for one in contacts]
-        self.passed = _passed(self.contacts, times)
+        self.passed = passed(self.contacts, times)
         self.own = [laid_out(one, cells) for one in self.contacts]
         self.layout = layout or _common(self.own)
 
@@ -134,7 +134,7 @@ def placed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> list
     """Contacts of a march with their height maps where their surfaces have taken them until then."""
     if not contacts[0].heights:
         return list(contacts)
-    ways = _passed(contacts, times)
+    ways = passed(contacts, times)
     return [_moved(one, way) for one, way in zip(contacts, ways, strict=True)]
 
 
@@ -157,7 +157,7 @@ def _speeds(contact: PatchContact) -> NDArray[np.float64]:
     return np.array([along, [float(contact.across_a), float(contact.across_b)]]).T
 
 
-def _passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
     """Ways of both surfaces along and across at every time, shape (time, 2, 2) [m]."""
     speeds = np.stack([_speeds(one) for one in contacts])
     ways = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)[:, None, None]
