@@ -92,7 +92,7 @@ def timed(contact: PatchContact, grid: tuple[int, int]) -> tuple[float, State]:
     """Processor seconds of a solve, compiled before, and its solution."""
     solve(contact, *grid)
     begun = time.process_time()
-    _, _, state = solve(contact, *grid)
+    state = solve(contact, *grid).state
     return time.process_time() - begun, state
 
 

@@ -15,6 +15,7 @@ import typer
 from pitchpoint import cli
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import Document
+from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.schema import Target, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.store import dataset
@@ -23,8 +24,9 @@ from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-PAIR, MODIFIED, PLASTIC, MOTION, FILM, FINITE, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
-    text for kind, text in BLOCKS if kind == "toml"
+TOML = [text for kind, text in BLOCKS if kind == "toml"]
+PAIR, MODIFIED, PLASTIC, MOTION, FILM, FINITE, HEIGHTS, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
+    TOML
 )
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
 SET_UP = [
@@ -83,6 +85,18 @@ def test_a_case(name: str) -> None:
     assert ("finite_film" in made) == (name == "finite")
     assert ("running" in made) == (name in ("wave", "targets", "stages"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "targets"))
+
+
+def test_the_table_of_heights(tmp_path: Path) -> None:
+    given = merged(tree("finite"), tomllib.loads(HEIGHTS))
+    map_, file = given["film"]["heights"]["gear_1"], tmp_path / "flank.csv"
+    assert map_["file"] == file.name
+    file.write_text("0,0.1,0\n0,-0.1,0\n", "utf-8")
+    map_["file"] = str(file)
+    built = Variant(given, "README.md", "default").built({})
+    (found,) = height_maps(built.case.film)
+    assert found.periodic and found.heights.shape == (2, 3)
+    assert float(found.x[-1] - found.x[0]) == pytest.approx(10e-6)
 
 
 def test_the_involute_flexspline_of_the_text() -> None:

@@ -121,7 +121,7 @@ def main(count: int = 100, nodes: int = 129, seed: int = 13) -> int:
         begun = time.process_time()
         sentence = ""
         try:
-            _, problem, state = solve(one.contact, nodes, nodes - 1)
+            _, problem, state, _ = solve(one.contact, nodes, nodes - 1)
             touches = one.contact.texture is None and _touches(problem, state)
             found = state.residual < ENOUGH and not touches
             sentence = f"residual {state.residual:.0e} after {state.steps} steps"

@@ -11,7 +11,7 @@ from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import TOUCH
 
-__all__ = ["FILM", "FINITE_FILM"]
+__all__ = ["FILM", "FILM_SQUEEZE", "FINITE_FILM"]
 
 _MAIN = (
     "smallest_film",
@@ -30,6 +30,15 @@ _MAIN = (
 _BY_LINES = ("mean_line_friction", "mean_line_loss")
 _OF_FINITE = ("smallest_central_film", "largest_end_pressure")
 _IN_SERIES = ("film_torsional_stiffness", "stiffness_without_films", "stiffness_with_films")
+_SQUEEZE_MAIN = (
+    "smallest_film",
+    "steady_smallest_film",
+    "smallest_central_film",
+    "steady_smallest_central_film",
+    "squeeze_change",
+    "loaded_moments",
+    "solved_moments",
+)
 _BY_LAW = (
     "mean_law_friction",
     "mean_law_loss",
@@ -58,6 +67,15 @@ def _endless(built: Built) -> str | None:
     return None if built.case.film.over_patch else Unasked("[film] asks for lines without ends")
 
 
+def _steady(built: Built) -> str | None:
+    """Why a case has no film with squeeze: nobody asks for it."""
+    told = _endless(built)
+    if told is not None:
+        return told
+    assert built.case.film is not None
+    return None if built.case.film.squeezes else Unasked("[film] asks for steady films")
+
+
 def _solver(built: Built) -> Any:
     """What solves the films that a case asks for."""
     if built.case.film is not None and built.case.film.over_patch:
@@ -73,6 +91,12 @@ def _pieces(built: Built) -> Iterable[Piece]:
     from pitchpoint.analyses.film_series import check_series
 
     check_series(built)
+    if _endless(built) is None:
+        from pitchpoint.analyses.engagement import check_course, check_heights
+
+        check_heights(built)
+        if _steady(built) is None:
+            check_course(built)
     found: Iterable[Piece] = _solver(built).pieces(built)
     return found
 
@@ -85,6 +109,36 @@ def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
 def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     found: xr.Dataset = _solver(built).joined(built, parts)
     return found
+
+
+def _squeeze_pieces(built: Built) -> Iterable[Piece]:
+    from pitchpoint.analyses.film_squeeze import pieces
+
+    return pieces(built)
+
+
+def _squeeze(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    from pitchpoint.analyses.film_squeeze import squeeze_part
+
+    return squeeze_part(built, piece, progress)
+
+
+def _further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+    from pitchpoint.analyses.film_squeeze import further
+
+    return further(built, last, progress)
+
+
+def _whole(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    from pitchpoint.analyses.film_squeeze import joined
+
+    return joined(built, parts)
+
+
+def _squeeze_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("film_squeeze")
+    names = () if data is None else _SQUEEZE_MAIN
+    return {"film_squeeze": {name: numbers(parts["film_squeeze"][name].values) for name in names}}
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
@@ -141,4 +195,16 @@ FINITE_FILM = Analysis(
     joined=_joined,
     main=_MAIN,
     figures=_finite_figures,
+)
+
+FILM_SQUEEZE = Analysis(
+    name="film_squeeze",
+    title="squeeze of films over the engagement",
+    lacks=_steady,
+    compute=_squeeze,
+    pieces=_squeeze_pieces,
+    joined=_whole,
+    onward=_further,
+    main=_SQUEEZE_MAIN,
+    figures=_squeeze_figures,
 )

@@ -48,6 +48,7 @@ _FIELDS = {
     "field_asperity_pressure": "asperity_pressure",
     "field_dry_pressure": "dry_pressure",
     "field_film": "gap",
+    "field_heights": "heights",
 }
 _WARM_FIELDS = {
     "field_rise": "film",

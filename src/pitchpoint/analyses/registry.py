@@ -10,7 +10,7 @@ from pitchpoint.analyses.along_action import (
 )
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
-from pitchpoint.analyses.films import FILM, FINITE_FILM
+from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
 from pitchpoint.analyses.joint import JOINT
 from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.analyses.loss_map import LOSS_MAP
@@ -32,6 +32,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     LAWS_THERE,
     FILM,
     FINITE_FILM,
+    FILM_SQUEEZE,
     TORSION,
     KINEMATIC_ERROR,
     JOINT,

@@ -12,6 +12,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.film_contacts import LEAST, asked, by_pairs, film_model_of, known, states
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import USUAL_ENDS, end_surfaces
+from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, missing
 from pitchpoint.efficiency.quasi_static import Design, Engagement
 from pitchpoint.errors import InputError
@@ -142,24 +143,27 @@ def _summed(
     found |= {name: at_most(parts[name]) for name in _PICKED}
     length = np.sum(np.where(active, parts["weight_of_line"], 0.0), axis=-1)
     carried = np.where(found["load_by_law"] > 0.0, found["load_by_law"], 1.0)
+    across = np.sum(np.where(active, parts["weight_of_line"] * parts["width"], 0.0), axis=-1)
     rubbed = np.sum(parts["friction"] * parts["load_by_law"], axis=-1)
     return found | {
         "active": np.any(active, axis=-1),
         # Lines that just come or go have next to no length, whatever they carry for it.
         "loaded": np.any(parts["loaded"], axis=-1) & (found["load"] > LEAST * found["load"].max()),
         "weight_of_line": length,
+        "across": across / np.where(length > 0.0, length, 1.0),
         "line_load": found["load"] / np.where(length > 0.0, length, 1.0),
         "film_by_law": in_the_middle(middles, parts["film_by_law"]),
         "friction": np.where(found["load_by_law"] > 0.0, rubbed / carried, np.nan),
     }
 
 
-def one_contact(built: Built, numbers: np.ndarray) -> PatchContact:
+def one_contact(built: Built, numbers: np.ndarray, *, moving: bool = False) -> PatchContact:
     """A contact to solve.
 
     Args:
         built: the case.
         numbers: that tell it from others, as in `Wholes.numbers`.
+        moving: whether height maps move along with their surfaces.
     """
     design, model = built.design, film_model_of(built)
     rq = float(design.roughness.composite_rq)
@@ -170,6 +174,7 @@ def one_contact(built: Built, numbers: np.ndarray) -> PatchContact:
         "fluid": model.fluid(design.lubricant, float(built.operation.temperature)),
         "texture": model.texture(rq, modulus),
         "conduction": model.conduction(design.lubricant),
+        "heights": height_maps(asked(built), moving=moving),
     }
     if design.mesh.shape == "ellipse":
         load, radius, transverse, speed_a, speed_b = numbers

@@ -11,6 +11,7 @@ import numpy as np
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.films import film_model
+from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.schema import (
@@ -374,6 +375,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         _check_hardness(case, used)
         if case.film is not None:
             film_model(case.film, [one.record for one in used], None)
+            height_maps(case.film)
     except InputError as error:
         raise error.at(file=document.name) from None
     design = Design(

@@ -1,6 +1,7 @@
 """Case files as plain data: reading, variants, settings, and where each value comes from."""
 
 import copy
+import os
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -24,6 +25,9 @@ __all__ = [
     "setting",
     "strip",
 ]
+
+_WITH_FILES = ("film", "heights")
+"""Keys of the tables that name files."""
 
 MAX_BYTES = 1_000_000
 """Largest case file that is read; real ones have a few kilobytes."""
@@ -103,10 +107,29 @@ def read(path: Path) -> Tree:
         raise InputError(f"cannot be read: {error.strerror}", file=shorten(path.name)) from None
     demand_shallow(tree, path.name)
     try:
-        _overlays(tree)
+        overlays = _overlays(tree)
     except InputError as error:
         raise error.at(file=path.name) from None
+    for one in (tree, *overlays.values()):
+        _find_files(one, path.parent)
     return tree
+
+
+def _find_files(tree: Tree, folder: Path) -> None:
+    """Names of files become those from where the case file lies."""
+    node: Any = tree
+    for part in _WITH_FILES:
+        node = node.get(part) if isinstance(node, dict) else None
+    for one in node.values() if isinstance(node, dict) else ():
+        given = one.get("file") if isinstance(one, dict) else None
+        if isinstance(given, dict) and isinstance(given.get("value"), str):
+            given["value"] = _from(folder, given["value"])
+        elif isinstance(given, str):
+            one["file"] = _from(folder, given)
+
+
+def _from(folder: Path, name: str) -> str:
+    return name if not name or "\0" in name else os.path.realpath(folder / name)
 
 
 def _text(path: Path) -> str:

@@ -15,7 +15,16 @@ from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.rheology import SHEAR_STRESS
 from pitchpoint.materials.solids import SolidRecord
 
-__all__ = ["CHOICE_NOTES", "USUAL_ENDS", "end_surfaces", "film_choices", "film_model", "patch_grid"]
+__all__ = [
+    "CHOICE_NOTES",
+    "USUAL_ENDS",
+    "course_grid",
+    "course_moments",
+    "end_surfaces",
+    "film_choices",
+    "film_model",
+    "patch_grid",
+]
 
 PATCH_NODES: Final = 65
 """Usual nodes along a patch over a mesh cycle, with one cell less across: grids with twice as many take about
@@ -33,6 +42,18 @@ CHOICE_NOTES: Final[Mapping[str, str]] = {
 
 USUAL_ENDS: Final = "half_space"
 """Bodies on beyond the ends of a contact line, unless asked otherwise."""
+
+USUAL_TIME: Final = "steady"
+"""Films that take no notice of those before them, unless asked otherwise."""
+
+MOMENTS: Final = 40
+"""Usual number of moments of an engagement at most: all phases of most pairs."""
+
+MOST_ALONG: Final = 257
+"""Largest number of nodes along the grid of an engagement."""
+
+FEWEST_ACROSS: Final = 32
+"""Smallest number of cells across it."""
 
 _OF_ASPERITIES = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction")
 _LAWS = ("viscosity_law", "density_law", "shear_law")
@@ -71,6 +92,28 @@ def patch_grid(table: FilmTable) -> tuple[int, int]:
     """
     nodes = int(table.nodes or PATCH_NODES)
     return nodes, int(table.cells or nodes - 1)
+
+
+def course_grid(table: FilmTable) -> tuple[int, int]:
+    """Nodes along the one grid of all contacts of an engagement, and cells across it.
+
+    It reaches as far as the longest inlet of any of them, and has twice as many nodes along as grids of
+    single contacts, and half as many cells across.
+
+    Args:
+        table: as validated.
+    """
+    nodes, cells = patch_grid(table)
+    return min(2 * nodes - 1, max(nodes, MOST_ALONG)), max(cells // 2, FEWEST_ACROSS)
+
+
+def course_moments(table: FilmTable) -> int:
+    """Moments of an engagement at most.
+
+    Args:
+        table: as validated.
+    """
+    return int(table.moments or MOMENTS)
 
 
 def end_surfaces(table: FilmTable, width: float, modulus: float) -> tuple[Surface, ...]:
@@ -119,7 +162,9 @@ def _grid_choices(model: FilmModel, table: FilmTable | None) -> dict[str, Any]:
         return {"nodes": float(model.nodes)}
     nodes, cells = patch_grid(table)
     ends = {"ends": table.ends or USUAL_ENDS} if table.solver == "finite_line" else {}
-    return {"nodes": float(nodes), "cells": float(cells), **ends}
+    course = {"moments": float(course_moments(table))} if table.squeezes else {}
+    time = table.time or USUAL_TIME
+    return {"nodes": float(nodes), "cells": float(cells), "time": time, **course, **ends}
 
 
 def _members(solids: Sequence[SolidRecord]) -> tuple[Conductor, Conductor]:

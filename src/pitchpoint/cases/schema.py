@@ -94,6 +94,10 @@ STRESS = Quantity("pressure", 1e3, 1e10, "MPa")
 SUMMITS = Quantity("dimensionless", 0.0, 10.0, open_low=True)
 PATTERN = Quantity("dimensionless", 1 / 9, 9.0)
 INLET = Quantity("length", 0.0, 10.0, "mm", open_low=True)
+FILM_MOMENTS = Quantity("dimensionless", 2, 400, whole=True)
+MAP_STEP = Quantity("length", 0.0, 0.1, "um", open_low=True)
+MAP_UNIT = Quantity("length", 0.0, 1.0, "um", open_low=True)
+MAP_PLACE = Quantity("length", -1.0, 1.0, "mm")
 INSTANTS = Quantity("dimensionless", 2, 20_000, whole=True)
 ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 
@@ -702,11 +706,36 @@ def _cells(value: float) -> float:
     return value
 
 
+class HeightTable(Table):
+    """Measured heights of a surface in a file: rows across the contact, columns along it.
+
+    `unit` is what a height of one in the file is. The middle of the map lies in that of the contact unless
+    `middle_along` and `middle_across` say otherwise.
+    """
+
+    file: Text
+    step_along: Annotated[float, MAP_STEP]
+    step_across: Annotated[float, MAP_STEP]
+    unit: Annotated[float, MAP_UNIT] = 1e-6
+    middle_along: Annotated[float, MAP_PLACE] = 0.0
+    middle_across: Annotated[float, MAP_PLACE] = 0.0
+    periodic: Annotated[bool, BeforeValidator(_flag)] = False
+
+
+class HeightTables(Table):
+    """Height maps of the surfaces in contact, or of both together, which stays where it is."""
+
+    gear_1: HeightTable | None = None
+    gear_2: HeightTable | None = None
+    both: HeightTable | None = None
+
+
 class FilmTable(Table):
     """Films of the contacts solved over the mesh cycle; what is left out is as `FilmModel` has it.
 
     `phases` are the least number of states over a mesh cycle; `in_series` asks what the films take from the
-    torsional stiffness. The parameters are those of the shear law, and
+    torsional stiffness. With the `time` "squeeze" one pair is followed through its engagement as well, at no
+    more than `moments`. The parameters are those of the shear law, and
     of the profile of the ends.
     """
 
@@ -715,6 +744,9 @@ class FilmTable(Table):
     in_series: Annotated[bool, BeforeValidator(_flag)] = False
     nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
     cells: Annotated[float, FILM_CELLS, AfterValidator(_cells)] | None = None
+    time: Literal["steady", "squeeze"] | None = None
+    moments: Annotated[float, FILM_MOMENTS] | None = None
+    heights: HeightTables | None = None
     ends: Literal["half_space", "mirrored"] | None = None
     end_profile: Annotated[str, BeforeValidator(named(_end_profiles, "end profile"))] | None = None
     end_length: Annotated[float, END_LENGTH] | None = None
@@ -757,6 +789,11 @@ class FilmTable(Table):
         return self.solver != "line"
 
     @property
+    def squeezes(self) -> bool:
+        """True if the film of a pair is followed through its engagement, with squeeze."""
+        return self.time == "squeeze"
+
+    @property
     def profile_parameters(self) -> dict[str, float]:
         """Parameters of the profile of the ends that were given, by the names that it has for them [SI]."""
         given = {name.removeprefix("end_"): getattr(self, name) for name in _OF_ENDS}
@@ -769,6 +806,12 @@ class FilmTable(Table):
                 raise InputError(f"was given; {why}", key=key)
         if self.over_patch:
             _check_patch(self)
+        if self.squeezes and self.thermal not in (None, "isothermal"):
+            told = f'"{self.thermal}" was given; films with squeeze are isothermal: leave it or time out'
+            raise InputError(told, key="thermal")
+        if self.moments is not None and not self.squeezes:
+            told = 'was given without time = "squeeze", to which it belongs'
+            raise InputError(told, key="moments")
         return self
 
     @model_validator(mode="after")
@@ -816,9 +859,19 @@ _OF_ROUGH = ("eta_beta_sigma", "sigma_over_beta", "pattern", "boundary_friction"
 _OF_ENDS = ("end_length", "end_radius", "end_angle", "end_line_load", "end_drop")
 
 _NO_ENDS = 'lines of this solver have no ends; take solver = "finite_line", or leave it out'
+_STEADY = (
+    'films of this solver are steady; take solver = "finite_line" or "elliptic", or leave it out'
+)
+_EVEN = (
+    'lines of this solver have one profile all along; take solver = "finite_line", or leave it out'
+)
 _ELLIPSE = "an ellipse ends by itself; leave it out"
 _NOT_OF: Mapping[str, Mapping[str, str]] = {
-    "line": {key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
+    "line": {
+        **{key: _NO_ENDS for key in ("cells", "ends", "end_profile", *_OF_ENDS)},
+        **dict.fromkeys(("time", "moments"), _STEADY),
+        "heights": _EVEN,
+    },
     "finite_line": {},
     "elliptic": {key: _ELLIPSE for key in ("ends", "end_profile", *_OF_ENDS)},
 }

@@ -119,6 +119,7 @@ VARIABLES: dict[str, Variable] = {
         )
         for body in (1, 2)
     },
+    "field_heights": deviation("heights of both surfaces that the cells see", "z"),
     "coarse_central_film": deviation("film in the middle on a coarser grid", "h_c"),
     "coarse_minimum_film": deviation("smallest film on a coarser grid", "h_min"),
     "coarse_largest_pressure": pressure("largest pressure on a coarser grid", "p_max"),
@@ -212,6 +213,21 @@ VARIABLES: dict[str, Variable] = {
     "largest_film_deviation": percent("the same where it is largest", "Δh/h max"),
     "friction_deviation": percent("friction coefficient by law less that by films", "Δμ/μ"),
     "loss_deviation": percent("loss by law less that by films", "ΔP/P"),
+    "steady_central_film": deviation("steady film in the middle of the contact", "h_c0"),
+    "steady_minimum_film": deviation("smallest steady film of the contact", "h_min0"),
+    "steady_film_pressure": pressure("largest pressure of the steady film", "p_max0"),
+    "steady_smallest_film": deviation("smallest film if all were steady", "h_min0"),
+    "steady_smallest_central_film": deviation(
+        "smallest film in the middle of a contact if all were steady", "h_c0 min"
+    ),
+    "squeeze_change": percent(
+        "film in the middle with squeeze less the steady one, where it is largest", "Δh_c/h_c"
+    ),
+    "loaded_moments": Variable("moments of the engagement", "n_t", "1"),
+    "solved_moments": Variable("moments whose film was found", "n_ts", "1"),
+    "time_steps": Variable("steps of time since the moment before", "", "1"),
+    "newton_steps": Variable("steps of Newton's method since the moment before", "", "1"),
+    "kept_moment": Variable("number of the moment whose fields are kept", "", "1"),
     "loaded_contacts": Variable("loaded contacts of the mesh cycle", "n", "1"),
     "solved_contacts": Variable("loaded contacts whose film was found", "n_s", "1"),
     "sliding_loss": power("sliding loss of the pair", "P_s"),

@@ -40,7 +40,12 @@ def _asking(sample: str) -> list[Ready]:
     built = load_case(sample)
     assert isinstance(built, Built)
     solvers = FILM_SOLVERS[built.design.mesh.shape]
-    return [built, *(load_case(sample, settings={"film.solver": one}) for one in solvers)]
+    return [built, *(load_case(sample, settings=_films(one)) for one in solvers)]
+
+
+def _films(solver: str) -> dict[str, str]:
+    """Settings that ask a solver of films for all that it has."""
+    return {"film.solver": solver} | ({} if solver == "line" else {"film.time": "squeeze"})
 
 
 def _why_not(analysis: Analysis | Several, cases: Sequence[Ready]) -> str:

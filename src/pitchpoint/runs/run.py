@@ -21,6 +21,7 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, variants
 from pitchpoint.cases.failures import worst_first
+from pitchpoint.cases.height_maps import digest_of
 from pitchpoint.cases.library import as_text, find, names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
@@ -383,7 +384,13 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
     own = uuid4().hex if manifest["own"] else ""
-    return fingerprint(surroundings(), manifest["source"], given, job.name, own)
+    return fingerprint(surroundings(), manifest["source"], given, job.name, own, *_held(manifest))
+
+
+def _held(manifest: Mapping[str, Any]) -> list[str]:
+    """Digests of files that a case names: what they hold is part of its inputs."""
+    rows = (row for row in manifest["inputs"] if row["table"] == "film")
+    return [digest_of(row["value"]) for row in rows if row["key"].endswith(".file")]
 
 
 def _part(

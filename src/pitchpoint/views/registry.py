@@ -9,6 +9,7 @@ from pitchpoint.views.sections.compared import COMPARED
 from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.drive import DRIVE
 from pitchpoint.views.sections.film import FILM
+from pitchpoint.views.sections.film_squeeze import FILM_SQUEEZE
 from pitchpoint.views.sections.finite_film import FINITE_FILM
 from pitchpoint.views.sections.formulas import FORMULAS
 from pitchpoint.views.sections.inputs import INPUTS
@@ -41,6 +42,7 @@ SECTIONS: Registry[Section] = Registry(
     CYCLE,
     FILM,
     FINITE_FILM,
+    FILM_SQUEEZE,
     TORSION,
     KINEMATIC_ERROR,
     JOINT,

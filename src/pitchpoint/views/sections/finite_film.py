@@ -78,7 +78,49 @@ def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
     if "field_rise" in data:
         figures[2:2] = [_map(f"{name}_rise", data, kept, "field_rise", "Inferno")]
         figures.append(_warmth_along(f"{name}_warmth", data, kept))
+    if is_rough(data):
+        figures += [
+            _roughness(f"{name}_heights", data, kept),
+            _cut_heights(f"{name}_cut_heights", data, kept),
+        ]
     return Panel("", figures)
+
+
+def is_rough(data: xr.Dataset) -> bool:
+    """True if height maps lie on the contacts that are kept."""
+    known = "field_heights" in data
+    return known and bool(np.nanmax(np.abs(data["field_heights"].values), initial=0.0) > 0.0)
+
+
+def _roughness(name: str, data: xr.Dataset, kept: int) -> Figure:
+    """Heights of both surfaces as the cells of the grid see them."""
+    unit = show.unit_of("kept_x")
+    heat = {**_heat(data, kept, "field_heights"), "colorscale": "Greys"}
+    look = layout(f"x [{unit}]", f"y [{unit}]", xaxis={"range": _reach(data, kept)})
+    note = "Every cell sees the mean of the map over its area; what stands out is above zero."
+    keys = (Key("edge of the dry contact", INK, "dot"),)
+    return Figure(
+        name, "Roughness seen", [heat, _outline(data, kept, heat)], look, note, keys, NONE
+    )
+
+
+def _cut_heights(name: str, data: xr.Dataset, kept: int) -> Figure:
+    """Film and heights along the contact, in its middle row."""
+    x, _ = _places(data, kept)
+    row = data["field_film"].shape[1] // 2
+    keys = {"field_film": Key("film", INK), "field_heights": Key("heights", GREY, "dash")}
+    lines = [_line(key, "kept_x", x, one, data[one].values[kept, row]) for one, key in keys.items()]
+    ends = (
+        1.2 * float(np.min(data["field_heights"].values[kept])),
+        2.0 * _THIN * _middle_film(data, kept),
+    )
+    more = {
+        "xaxis": {"range": _reach(data, kept)},
+        "yaxis": {"range": [float(display("field_film", end)) for end in ends]},
+    }
+    look = layout(f"x [{show.unit_of('kept_x')}]", short_axis("field_film"), **more)
+    title = "Film and heights along the contact, in its middle"
+    return Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
 
 
 def _places(data: xr.Dataset, kept: int) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,7 @@ from pitchpoint.lubrication.ehl.patch.films import Turned, check, oriented, turn
 from pitchpoint.lubrication.ehl.patch.layout import Layout, Problem, ladder, laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 
-__all__ = ["Plan", "all_lie", "check_times"]
+__all__ = ["Plan", "all_lie", "check_times", "passed", "placed"]
 
 
 def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> None:
@@ -97,7 +97,7 @@ class Plan:
     ) -> None:
         self.times, self.lies, self.grid = times, lies, (nodes, cells)
         self.contacts = [oriented(one, lies) for one in contacts]
-        self.passed = _passed(self.contacts, times)
+        self.passed = passed(self.contacts, times)
         self.own = [laid_out(one, cells) for one in self.contacts]
         self.layout = layout or _common(self.own)
 
@@ -127,16 +127,29 @@ class Plan:
         return self._placed(between, self.passed[number] + step * way)
 
     def _placed(self, contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
-        maps = tuple(
-            one.standing() if one.member is None else one.standing(*way[one.member])
-            for one in contact.heights
-        )
-        return replace(contact, heights=maps, approach=array(0.0))
+        return replace(_moved(contact, way), approach=array(0.0))
 
     def problem(self, time: float) -> Problem:
         """The contact at a time, in units of the common grid."""
         nodes, cells = self.grid
         return problem_on(self.contact(time), self.layout, nodes, cells, cells)
+
+
+def placed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> list[PatchContact]:
+    """Contacts of a march with their height maps where their surfaces have taken them until then."""
+    if not contacts[0].heights:
+        return list(contacts)
+    ways = passed(contacts, times)
+    return [_moved(one, way) for one, way in zip(contacts, ways, strict=True)]
+
+
+def _moved(contact: PatchContact, way: NDArray[np.float64]) -> PatchContact:
+    """A contact whose surfaces have passed by some ways along and across, shape (2, 2) [m]."""
+    maps = tuple(
+        one.standing() if one.member is None else one.standing(*way[one.member])
+        for one in contact.heights
+    )
+    return replace(contact, heights=maps)
 
 
 def _between(one: Float[Arrays, "..."], other: Float[Arrays, "..."], part: float) -> Array:
@@ -149,7 +162,7 @@ def _speeds(contact: PatchContact) -> NDArray[np.float64]:
     return np.array([along, [float(contact.across_a), float(contact.across_b)]]).T
 
 
-def _passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
     """Ways of both surfaces along and across at every time, shape (time, 2, 2) [m]."""
     speeds = np.stack([_speeds(one) for one in contacts])
     ways = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)[:, None, None]

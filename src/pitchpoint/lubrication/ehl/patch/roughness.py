@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import Doubt
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import (
@@ -25,6 +26,9 @@ __all__ = ["check_maps", "check_maps_on", "check_standing", "unseen"]
 
 COARSEST: Final = 4
 """Steps of a map over the width of a contact, at least, along an axis on which heights change."""
+
+SAME: Final = 1e-9
+"""Part by which speeds along a line may differ that are one but for rounding."""
 
 SHOWN: Final = 0.85
 """Part of the Rq of a map that a grid has to show: of waves as long as four cells .9 are left."""
@@ -45,12 +49,16 @@ def check_maps(contact: PatchContact) -> None:
             if not np.all(np.diff(np.asarray(places)) > 0.0):
                 raise InputError(f"places {key} of a height map have to rise", key=key)
         _check_period(one)
-        if one.member is not None and np.unique(np.asarray(_speed(contact, one.member))).size > 1:
+        if one.member is not None and _uneven(_speed(contact, one.member)):
             raise InputError(
                 "a height map moves as a whole: the surface that takes it along needs one speed along the "
                 "contact line",
                 key="heights",
             )
+
+
+def _uneven(speed: NDArray[np.float64]) -> bool:
+    return bool(np.ptp(speed) > SAME * np.max(np.abs(speed)))
 
 
 def _check_period(one: HeightMap) -> None:
@@ -150,16 +158,20 @@ def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Ite
         seen = _seen(one, layout, patch, (nodes, cells), contact.ends)
         whole = _rq(one, patch)
         if seen < SHOWN * whole:
-            yield (
+            yield Doubt(
                 f"the grid shows Rq = {1e9 * seen:.3g} nm of a height map with {1e9 * whole:.3g} nm: waves "
-                "shorter than about four cells are lost; take more nodes, or take them as asperities"
+                "shorter than about four cells are lost; take more nodes, or take them as asperities",
+                "unseen",
+                1.0 - seen / whole,
             )
     if contact.heights:
         high, flat = _range(contact, layout, cells), layout.half_width**2 / (2.0 * layout.radius)
         if high > flat:
-            yield (
+            yield Doubt(
                 f"heights over {1e6 * high:.3g} um are larger than the {1e6 * flat:.3g} um by which the load "
-                "flattens the bodies: the contact is one of single summits, on a grid made for all of it"
+                "flattens the bodies: the contact is one of single summits, on a grid made for all of it",
+                "summits",
+                high / flat,
             )
 
 

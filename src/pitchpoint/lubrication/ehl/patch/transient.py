@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import Doubt
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, Response
 from pitchpoint.lubrication.ehl.patch.films import (
@@ -31,7 +32,7 @@ from pitchpoint.lubrication.ehl.patch.solve import dry_under, solve
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
-__all__ = ["STEPS", "Course", "PatchMoment", "march_patches"]
+__all__ = ["STEPS", "Course", "PatchMoment", "march_patches", "steady_beside"]
 
 STEPS: Final = ("given", "by_error")
 """Ways to choose steps of time: from each given time to the next, or by an estimate of the error."""
@@ -131,7 +132,7 @@ def march_patches(
     tolerance: float = TOLERANCE,
     nodes: int = NODES,
     cells: int = CELLS,
-    after: PatchMoment | None = None,
+    after: PatchMoment | Course | None = None,
     progress: Progress | None = None,
 ) -> Iterator[PatchMoment]:
     """Films of a contact whose load, speeds, form and oil change over time, one after the other.
@@ -151,7 +152,7 @@ def march_patches(
         tolerance: of a step by error: mean of the mass under a cell, weighed by pressure, over its mean.
         nodes: along x, one more than a power of two.
         cells: across, a power of two.
-        after: moment of the same contacts and times after which to go on, on its grid.
+        after: moment of the same contacts and times after which to go on, on its grid, or its course alone.
         progress: told the number of Newton's steps and the residual, after each of them.
 
     Yields:
@@ -166,21 +167,51 @@ def march_patches(
         raise InputError(f'there are no steps "{steps}"', key="steps", allowed=STEPS)
     if not 0.0 < tolerance < np.inf:  # written so that NaN fails
         raise InputError(f"a tolerance of {tolerance:.4g}: it must be positive", key="tolerance")
-    if after is not None and not after.solved:
+    if isinstance(after, PatchMoment) and not after.solved:
         raise InputError(
             "the film of this moment was not found, and nothing goes on after it; take one before",
             key="after",
         )
     at = np.asarray(times, float)
     check_times(contacts, at)
-    if after is None:
+    course = after.course if isinstance(after, PatchMoment) else after
+    if course is None:
         plan = Plan(contacts, at, all_lie(contacts), nodes, cells)
     else:
-        course = after.course
-        rows, places = course.pressure.shape
-        plan = Plan(contacts, at, course.lies, places, rows, course.layout)
+        plan = _plan_on(course, contacts, at)
     plan.check()
-    return _march(plan, _Stepper(plan, progress, tolerance if steps == "by_error" else None), after)
+    stepper = _Stepper(plan, progress, tolerance if steps == "by_error" else None)
+    return _march(plan, stepper, course)
+
+
+def steady_beside(
+    contact: PatchContact, course: Course, *, progress: Progress | None = None
+) -> PatchMoment:
+    """The steady film of a contact on the grid of a march, to set beside the one that is squeezed.
+
+    Films on one grid differ by squeeze alone, and not by what cells make of them.
+
+    Args:
+        contact: one of those of the march, with height maps that lie where they are.
+        course: where the march stands, best at the time of this contact: the search begins there.
+        progress: told the number of Newton's steps and the residual, after each of them.
+
+    Returns:
+        The film, at the time zero of a march of its own.
+    """
+    plan = _plan_on(course, [contact], np.zeros(1))
+    own, problem = plan.contact(0.0), plan.problem(0.0)
+    given = array(course.pressure), array(course.level)
+    state = iterated(problem, *given, TIED, progress, most=FEW)
+    if not state.residual < ENOUGH:
+        _, problem, state, _ = solve(own, *plan.grid, progress, plan.layout_of(0))
+    return _moment(plan, 0, problem, course, state, (0, state.steps))
+
+
+def _plan_on(course: Course, contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> Plan:
+    """Contacts at times on the grid of a course."""
+    rows, places = course.pressure.shape
+    return Plan(contacts, times, course.lies, places, rows, course.layout)
 
 
 # ---- one step after the other
@@ -342,18 +373,19 @@ def _parabola(times: Sequence[float], masses: Sequence[Field], time: float) -> F
     return found
 
 
-def _march(plan: Plan, stepper: _Stepper, after: PatchMoment | None) -> Iterator[PatchMoment]:
-    if after is None:
+def _march(plan: Plan, stepper: _Stepper, after: Course | None) -> Iterator[PatchMoment]:
+    course, solved = after, True
+    if course is None:
         course, problem, state = stepper.begun()
         moment = _moment(plan, 0, problem, course, state, (0, state.steps))
+        solved = moment.solved
         yield moment
-    else:
-        moment, course = after, after.course
     for number, time in enumerate(plan.times):
-        if time <= moment.time or not moment.solved:
+        if time <= course.times[0] or not solved:
             continue
         course, step, made, newton = stepper.to(course, float(time))
         moment = _moment(plan, number, step.problem, course, step.state, (made, newton))
+        solved = moment.solved
         yield moment
 
 
@@ -383,7 +415,9 @@ def _few(layout: Layout, nodes: int) -> Iterator[str]:
     """A sentence on contacts that are small on the grid of the largest one."""
     shown = layout.half_width / (layout.outlet - layout.inlet) * (nodes - 1)
     if shown < FEWEST_NODES:
-        yield (
+        yield Doubt(
             f"the grid of the largest contact of the march has {shown:.1f} nodes over the half-width of this "
-            "one: take more nodes"
+            "one: take more nodes",
+            "few nodes",
+            1.0 / shown,
         )

@@ -1,0 +1,370 @@
+"""Squeeze of films: the film of one pair over its engagement, beside the steady film of every moment."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.engagement import course_of
+from pitchpoint.analyses.film_contacts import asked
+from pitchpoint.analyses.whole_contacts import wholes
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.films import course_grid
+from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
+from pitchpoint.lubrication.ehl.patch.films import ENDS, Turned
+from pitchpoint.lubrication.ehl.patch.layout import Layout
+from pitchpoint.lubrication.ehl.patch.plan import placed
+from pitchpoint.lubrication.ehl.patch.transient import (
+    Course,
+    PatchMoment,
+    march_patches,
+    steady_beside,
+)
+from pitchpoint.results.store import dataset
+from pitchpoint.status import Code
+from pitchpoint.status import told as told_of
+
+__all__ = ["further", "joined", "pieces", "squeeze_part"]
+
+TOGETHER = 8
+"""Moments of a piece, so that little is lost when a run is stopped."""
+
+ERROR = 5e-3
+"""Error of a step of time, of the mass under the contact over the mean.
+
+Steps are chosen by it, as phases of a mesh cycle lie closer where nothing happens than where load comes on.
+"""
+
+_OF_FILM = {
+    "minimum_film": "minimum_film",
+    "central_film": "central_film",
+    "film_pressure": "largest_pressure",
+    "asperity_share": "asperity_share",
+}
+"""Values at every moment, and what they are of a film over a patch."""
+
+_STEADY = {name: f"steady_{name}" for name in ("minimum_film", "central_film", "film_pressure")}
+"""Those that stand beside the same of the steady film."""
+
+_FIELDS = {
+    "field_pressure": "pressure",
+    "field_asperity_pressure": "asperity_pressure",
+    "field_dry_pressure": "dry_pressure",
+    "field_film": "gap",
+    "field_heights": "heights",
+}
+_KEPT = {
+    **dict.fromkeys(_FIELDS, ("kept", "y", "x")),
+    "kept_x": ("kept", "x"),
+    "kept_y": ("kept", "y"),
+    "kept_moment": ("kept",),
+}
+"""Axes of what is kept of the moment with the thinnest film."""
+
+_STATE = "state_"
+"""Beginning of the names of what a march goes on from."""
+
+
+def pieces(built: Built) -> Iterator[Piece]:
+    """The first moments; a march makes the others."""
+    yield {"first": 0, "count": min(TOGETHER, course_of(built).times.size)}
+
+
+def squeeze_part(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    """Films of the first moments of the engagement."""
+    return _some(built, piece["first"], None, progress)
+
+
+def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+    """Films of the moments after those of the last piece; None at the end."""
+    first = int(last.attrs["first"]) + last.sizes["point"]
+    if first >= course_of(built).times.size:
+        return None
+    return _some(built, first, _state_of(last), progress, lost=bool(last.attrs["lost"]))
+
+
+def _some(
+    built: Built, first: int, after: Course | None, progress: Progress, *, lost: bool = False
+) -> xr.Dataset:
+    """Films of some moments, from the first one or after a march that stands before it.
+
+    Steady films go on where the film with squeeze was lost.
+    """
+    count = min(TOGETHER, course_of(built).times.size - first)
+    told: list[str] = []
+    marched = [] if lost else _marched(built, first, after, progress, told)
+    found = [one for one in marched if one.solved]
+    stands = found[-1].course if found else after
+    course = course_of(built)
+    contacts = placed(course.contacts, course.times)[first : first + count]
+    each = [*found, *[None] * (count - len(found))]
+    steady = [
+        steady_beside(
+            contact,
+            stands if one is None else one.course,
+            progress=_heard(
+                built, first + count, f"steady film of moment {first + k + 1}", progress
+            ),
+        )
+        for k, (contact, one) in enumerate(zip(contacts, each, strict=True))
+        if stands is not None
+    ]
+    ended = [_why_lost(one.ended.code) for one in marched if not one.solved]
+    values = _values(count, found, marched, steady)
+    return dataset(
+        {
+            **{name: (("point",), one) for name, one in values.items()},
+            **_kept(built, first, found),
+            **({} if stands is None else _state(stands)),
+        },
+        {},
+        first=first,
+        lost=int(len(found) < count),
+        warnings=[*told, *ended],
+        doubts=_doubts([*found, *steady]),
+        grid=json.dumps(course_grid(asked(built))),
+    )
+
+
+def _marched(
+    built: Built, first: int, after: Course | None, progress: Progress, told: list[str]
+) -> list[PatchMoment]:
+    """Moments of the march, up to one whose film is not found."""
+    course = course_of(built)
+    nodes, cells = course_grid(asked(built))
+    count = min(TOGETHER, course.times.size - first)
+    found: list[PatchMoment] = []
+
+    def step(number: int, residual: float) -> None:
+        done = first + len(found)
+        _heard(built, done, f"moment {done + 1}", progress)(number, residual)
+
+    try:
+        march = march_patches(
+            course.contacts,
+            course.times,
+            steps="by_error",
+            tolerance=ERROR,
+            nodes=nodes,
+            cells=cells,
+            after=after,
+            progress=step,
+        )
+        for one in islice(march, count):
+            found.append(one)
+            progress(first + len(found))
+    except InputError as error:
+        told.append(f"the engagement was not taken: {error.message}")
+    return found
+
+
+def _heard(built: Built, done: int, what: str, progress: Progress) -> Any:
+    """What tells the steps of Newton's method of a moment."""
+    every = course_of(built).times.size
+
+    def step(number: int, residual: float) -> None:
+        progress(done, f"{what} of {every}, Newton step {number}, residual {residual:.0e}")
+
+    return step
+
+
+def _why_lost(code: Code) -> str:
+    return f"the film of the engagement was lost ({code.sentence}), and nothing is told of what follows"
+
+
+def _doubts(moments: Sequence[PatchMoment]) -> list[tuple[str, float, str]]:
+    """Kind, extent and words of what to be wary of, each once."""
+    solved = [one for one in moments if one.solved]
+    texts = dict.fromkeys(text for one in solved for text in one.warnings)
+    told = [(kind_of(text), extent_of(text), text) for text in texts if kind_of(text) != ENDS]
+    lost = "some of the steady films beside were not found: there is no difference to tell there"
+    return [*told, *[("steady", 0.0, lost)] * (len(solved) < len(moments))]
+
+
+def _values(
+    count: int,
+    found: Sequence[PatchMoment],
+    marched: Sequence[PatchMoment],
+    steady: Sequence[PatchMoment],
+) -> dict[str, np.ndarray]:
+    """Values of every moment; not a number where there is no film."""
+
+    def filled(values: Sequence[Any]) -> np.ndarray:
+        every = np.full(count, np.nan)
+        every[: len(values)] = values
+        return every
+
+    codes = np.full(count, int(Code.FILM_LOST))
+    codes[: len(marched)] = [int(one.ended.code) for one in marched]
+    return {
+        **{
+            name: filled([getattr(one.film, own) for one in found])
+            for name, own in _OF_FILM.items()
+        },
+        **{
+            name: filled([getattr(one.film, _OF_FILM[own]) for one in steady])
+            for own, name in _STEADY.items()
+        },
+        "film_status": codes,
+        "film_defect": filled([one.ended.reynolds for one in marched]),
+        "time_steps": filled([one.time_steps for one in marched]),
+        "newton_steps": filled([one.ended.steps for one in marched]),
+    }
+
+
+# ---- the moment with the thinnest film
+
+
+def _kept(
+    built: Built, first: int, found: Sequence[PatchMoment]
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Fields of the moment with the thinnest film of some."""
+    nodes, cells = course_grid(asked(built))
+    fields = {name: np.full((1, cells, nodes), np.nan) for name in _FIELDS}
+    fields |= {"kept_x": np.full((1, nodes), np.nan), "kept_y": np.full((1, cells), np.nan)}
+    at = np.full(1, -1)
+    if found:
+        least = int(np.argmin([one.film.minimum_film for one in found]))
+        film = found[least].film
+        own = {**_FIELDS, "kept_x": "x", "kept_y": "y"}
+        fields = {name: np.asarray(getattr(film, one))[None] for name, one in own.items()}
+        at = np.array([first + least])
+    return {name: (_KEPT[name], one) for name, one in (fields | {"kept_moment": at}).items()}
+
+
+def _thinnest(
+    parts: Sequence[xr.Dataset], film: np.ndarray
+) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """Fields of the moment with the thinnest film of all."""
+    at = [int(part["kept_moment"].values[0]) for part in parts]
+    rank = [film[one] if one >= 0 else np.inf for one in at]
+    part = parts[int(np.argmin(rank))]
+    return {name: (dims, part[name].values) for name, dims in _KEPT.items()}
+
+
+# ---- what a march goes on from
+
+
+def _state(course: Course) -> dict[str, tuple[tuple[str, ...], Any]]:
+    """A course as variables."""
+    numbers = [np.nan if one is None else one for one in course.layout]
+    step = np.nan if course.step is None else course.step
+    lies = [course.lies.swapped, course.lies.along, course.lies.across]
+    given: dict[str, tuple[tuple[str, ...], Any]] = {
+        "layout": (("of_layout",), np.array(numbers)),
+        "lies": (("of_lies",), np.array(lies)),
+        "pressure": (("row", "column"), course.pressure),
+        "level": ((), course.level),
+        "times": (("before",), np.array(course.times)),
+        "masses": (("before", "row", "column"), np.stack(course.masses)),
+        "step": ((), step),
+    }
+    return {f"{_STATE}{name}": one for name, one in given.items()}
+
+
+def _state_of(piece: xr.Dataset) -> Course | None:
+    """The last course of which a piece has a film; None without one."""
+    if f"{_STATE}layout" not in piece:
+        return None
+    given = {name: piece[f"{_STATE}{name}"].values for name in Course._fields}
+    numbers = {name: float(v) for name, v in zip(Layout._fields, given["layout"], strict=True)}
+    layout = Layout(**numbers)
+    step = float(given["step"])
+    return Course(
+        layout=layout._replace(end=None) if np.isnan(numbers["end"]) else layout,
+        lies=Turned(*map(bool, given["lies"])),
+        pressure=given["pressure"],
+        level=float(given["level"]),
+        times=tuple(map(float, given["times"])),
+        masses=tuple(given["masses"]),
+        step=None if np.isnan(step) else step,
+    )
+
+
+# ---- the whole
+
+
+def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """The film of the engagement with squeeze, and the steady films beside it."""
+    course = course_of(built)
+    names = [str(name) for name, one in parts[0].items() if one.dims == ("point",)]
+    values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
+    codes, steps = values["film_status"], values["newton_steps"]
+    iterations = np.nan_to_num(steps).astype(int)
+    data = dataset(
+        {
+            **{name: (("moment",), one) for name, one in values.items()},
+            **_conditions(built),
+            **_thinnest(parts, values["minimum_film"]),
+            **{name: ((), one) for name, one in _figures(values).items()},
+        },
+        {"time": ("moment", course.times)},
+        title="squeeze of films over the engagement",
+        solver=asked(built).solver,
+        grid=parts[0].attrs["grid"],
+        tolerance=ERROR,
+        travels=built.travels,
+        warnings=[*_told(parts), *(f"Squeeze: {text}." for text in course.told)],
+        solve=told_of(codes, np.nan_to_num(values["film_defect"]), iterations),
+    )
+    data["path"].attrs.update(built.way)
+    return data
+
+
+def _conditions(built: Built) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """What the contact carries at every moment, how it moves, and where it is in the mesh cycle."""
+    course, states = course_of(built), wholes(built).states
+    named = {name: course.values(states[name]) for name in ("load", "radius", "path", "pressure")}
+    speeds = [course.values(states[name]) for name in ("speed_a", "speed_b")]
+    phase, pair, line = course.places.T
+    named |= {
+        "entrainment": np.abs(speeds[0] + speeds[1]) / 2.0,
+        "sliding_velocity": speeds[0] - speeds[1],
+        "phase": states["phase"][phase],
+        "pair": pair,
+        "line": line,
+    }
+    return {name: (("moment",), one) for name, one in named.items()}
+
+
+def _figures(values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Thinnest films, and how far squeeze takes the film in the middle from the steady one.
+
+    Nothing is compared where mean planes overlap.
+    """
+    film, steady = values["central_film"], values["steady_central_film"]
+    apart = (film > 0.0) & (steady > 0.0)
+    change = np.where(apart, film, np.nan) / np.where(apart, steady, 1.0) - 1.0
+    least = {
+        "smallest_film": "minimum_film",
+        "steady_smallest_film": "steady_minimum_film",
+        "smallest_central_film": "central_film",
+        "steady_smallest_central_film": "steady_central_film",
+    }
+    return {
+        **{name: _least(values[own]) for name, own in least.items()},
+        "squeeze_change": change[np.argmax(np.abs(np.nan_to_num(change)))],
+        "loaded_moments": np.array(change.size),
+        "solved_moments": np.sum(values["film_status"] == int(Code.SOLVED)),
+    }
+
+
+def _least(values: np.ndarray) -> np.ndarray:
+    known = values[np.isfinite(values)]
+    return np.array(known.min() if known.size else np.nan)
+
+
+def _told(parts: Sequence[xr.Dataset]) -> list[str]:
+    """Warnings of all pieces, each once: of a kind the worst one."""
+    worst: dict[str, tuple[float, str]] = {}
+    for kind, extent, text in (one for part in parts for one in json.loads(part.attrs["doubts"])):
+        if extent >= worst.get(kind, (-np.inf, ""))[0]:
+            worst[kind] = extent, text
+    lost = (text for part in parts for text in json.loads(part.attrs["warnings"]))
+    every = dict.fromkeys([*lost, *(text for _, text in worst.values())])
+    return [f"Squeeze: {text}." for text in every]

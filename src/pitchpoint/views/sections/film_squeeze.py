@@ -1,0 +1,238 @@
+"""Squeeze of films: the film of a pair over its engagement beside steady ones, with load and entrainment."""
+
+import json
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    GREY,
+    INK,
+    PALETTE,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    layout,
+    plain,
+    short_axis,
+)
+from pitchpoint.views.film_courses import NONE, told
+from pitchpoint.views.lines import titled
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    Table,
+    by_variant,
+)
+from pitchpoint.views.sections.finite_film import maps_panel
+from pitchpoint.views.way import place_of
+
+__all__ = ["FILM_SQUEEZE"]
+
+_SMALL = 1e-4
+"""Part of the film by which squeeze changes it from which on it is worth a number."""
+
+_HEADLINES = (
+    "smallest_film",
+    "steady_smallest_film",
+    "smallest_central_film",
+    "steady_smallest_central_film",
+    "squeeze_change",
+)
+_BESIDE = {
+    "smallest_film": "steady_smallest_film",
+    "smallest_central_film": "steady_smallest_central_film",
+}
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield from by_variant(page, "film_squeeze", _of_variant)
+
+
+def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
+    data, name = outcome.parts["film_squeeze"], f"squeeze{position}"
+    yield from _gone(data)
+    yield Paragraph(_how(data))
+    if not int(data["solved_moments"]):
+        return
+    yield _table(data)
+    yield Heading("Over the engagement")
+    yield _courses(name, data)
+    yield Heading("The moment with the thinnest film")
+    yield Paragraph(_thinnest(data), "note")
+    yield maps_panel(f"{name}_patch", data, 0)
+
+
+def _gone(data: xr.Dataset) -> Iterator[Paragraph]:
+    missing = int(data["loaded_moments"]) - int(data["solved_moments"])
+    if missing:
+        yield Paragraph(
+            f"The film of {missing} moments of the engagement was not found, and nothing is shown of it; "
+            "what follows a lost film is not known either.",
+            "warning",
+        )
+
+
+def _how(data: xr.Dataset) -> str:
+    """How the films were solved, in words."""
+    solve, (nodes, cells) = json.loads(data.attrs["solve"]), json.loads(data.attrs["grid"])
+    steps = int(np.nansum(data["time_steps"].values))
+    duration = show.quantity("time", float(data["time"][-1]))
+    return (
+        f"One pair is followed through its engagement, at {int(data['loaded_moments'])} moments in "
+        f"{duration}: oil stays where it was while load, speeds, radii and form change, by d(ρh)/dt in "
+        "the balance of every cell. The first film is steady; between moments everything changes evenly. "
+        f"{steps} steps of time, each with an error of {100.0 * float(data.attrs['tolerance']):g} % of the "
+        f"mass under the contact at most: {solve['sentence']}; largest defect {solve['residual']:.0e} of "
+        f"Hertz's pressure. One grid for all moments, {nodes} nodes along and {cells} cells across; the "
+        "steady films beside are solved on it too, so that squeeze alone makes the difference. Forces are "
+        "those of the balance: the inertia of the bodies is left out."
+    )
+
+
+def _table(data: xr.Dataset) -> Table:
+    """Thinnest films with squeeze and without."""
+    rows = [(titled(name), told(data, name), told(data, one)) for name, one in _BESIDE.items()]
+    if np.isfinite(float(data["squeeze_change"])):
+        rows.append((titled("squeeze_change"), told(data, "squeeze_change"), ""))
+    return Table(["", "with squeeze", "if all were steady"], rows, compact=True)
+
+
+# ---- over the engagement
+
+
+def _abscissa(data: xr.Dataset) -> tuple[np.ndarray, str]:
+    """Places along the way of the pair with the title of the axis; times where slices have several places."""
+    path = place_of(data)
+    ways = np.sign(np.diff(path))
+    if np.all(ways == ways[0]) and data["path"].attrs["title"]:
+        return path, str(data["path"].attrs["axis"])
+    return display("time", data["time"].values), f"time [{show.unit_of('time')}]"
+
+
+_FILMS = {
+    "central_film": Key("in the middle, with squeeze", INK),
+    "steady_central_film": Key("in the middle, steady", INK, "dash"),
+    "minimum_film": Key("smallest, with squeeze", PALETTE[0]),
+    "steady_minimum_film": Key("smallest, steady", PALETTE[0], "dash"),
+}
+_PRESSURES = {
+    "film_pressure": Key("largest, with squeeze", INK),
+    "steady_film_pressure": Key("largest, steady", INK, "dash"),
+    "pressure": Key("Hertz", GREY, "dot"),
+}
+
+
+def _courses(name: str, data: xr.Dataset) -> Panel:
+    """Films, pressures, load and entrainment over the engagement."""
+    film, steady = data["central_film"].values, data["steady_central_film"].values
+    apart = (film > 0.0) & (steady > 0.0)
+    change = np.where(apart, film, np.nan) / np.where(apart, steady, 1.0) - 1.0
+    key = Key("film in the middle", INK)
+    changes = [(key, _line(data, key, "squeeze_change", change))]
+    return Panel(
+        "",
+        [
+            _figure(f"{name}_films", "Film over the engagement", data, _FILMS),
+            _drawn(f"{name}_change", "Film with squeeze less the steady one", data, changes),
+            _figure(f"{name}_pressures", "Pressure over the engagement", data, _PRESSURES),
+            _figure(f"{name}_load", "Load of the pair", data, {"load": Key("load", INK)}),
+            _figure(
+                f"{name}_entrainment",
+                "Entrainment",
+                data,
+                {"entrainment": Key("mean surface speed", INK)},
+            ),
+        ],
+    )
+
+
+def _figure(name: str, title: str, data: xr.Dataset, keys: dict[str, Key]) -> Figure:
+    lines = [(key, _line(data, key, one, data[one].values)) for one, key in keys.items()]
+    return _drawn(name, title, data, lines, next(iter(keys)))
+
+
+def _line(data: xr.Dataset, key: Key, variable: str, values: np.ndarray) -> Trace:
+    x, _ = _abscissa(data)
+    return plain(key, x, display(variable, values, data), show.unit_of(variable, data))
+
+
+def _drawn(
+    name: str,
+    title: str,
+    data: xr.Dataset,
+    lines: list[tuple[Key, Trace]],
+    variable: str = "squeeze_change",
+) -> Figure:
+    _, axis = _abscissa(data)
+    zero = {} if variable == "squeeze_change" else {"yaxis": {"rangemode": "tozero"}}
+    look = layout(axis, short_axis(variable, data), **zero)
+    keys = tuple(key for key, _ in lines)
+    return Figure(name, title, [trace for _, trace in lines], look, "", keys, NONE)
+
+
+# ---- words
+
+
+def _thinnest(data: xr.Dataset) -> str:
+    """Where in the engagement the film is thinnest, in words."""
+    at = int(data["kept_moment"].values[0])
+    named = ("time", "load", "minimum_film", "steady_minimum_film")
+    time, load, film, steady = (show.quantity(one, float(data[one].values[at])) for one in named)
+    return (
+        f"At {time} after the first moment, under {load}: {film} with squeeze, {steady} if it were steady. "
+        "Oil enters from the left where the surfaces run to the right."
+    )
+
+
+def answer(data: xr.Dataset) -> str:
+    """Thinnest film of the engagement, and what squeeze makes of it, in words."""
+    if not int(data["solved_moments"]):
+        return "No film of the engagement was found."
+    words = (
+        f"{told(data, 'smallest_film')} at least over the engagement of a pair, "
+        f"{told(data, 'steady_smallest_film')} if every moment were steady; "
+    )
+    change = float(data["squeeze_change"])
+    if not np.isfinite(change):
+        return f"{words}the mean planes of the rough flanks overlap, and films are not compared"
+    if abs(change) < _SMALL:
+        return f"{words}squeeze changes nothing"
+    sense = "thicker" if change > 0.0 else "thinner"
+    part = show.number(100.0 * abs(change), 2)
+    return f"{words}squeeze makes the film in the middle up to {part} % {sense}"
+
+
+def screen(data: xr.Dataset) -> Iterator[Printed]:
+    """What the screen shows."""
+    row = {head(name, data): shown(name, float(data[name]), data) for name in _HEADLINES}
+    found, every = int(data["solved_moments"]), int(data["loaded_moments"])
+    yield Printed(
+        "Squeeze of films", [row], f"{found} of {every} moments have a film that was found."
+    )
+
+
+FILM_SQUEEZE = Section(
+    name="film_squeeze",
+    title="Squeeze of films over the engagement",
+    short="Squeeze",
+    order=232.0,
+    parts=("film_squeeze",),
+    blocks=_blocks,
+    answer=lambda one: (
+        [("Squeeze of films", answer(one.parts["film_squeeze"]))]
+        if "film_squeeze" in one.parts
+        else []
+    ),
+    screen=lambda one: screen(one.parts["film_squeeze"]) if "film_squeeze" in one.parts else (),
+)
