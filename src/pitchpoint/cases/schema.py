@@ -51,6 +51,8 @@ THERMAL_RESISTANCE = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
 AREA = Quantity("area", 1e-8, 1e4, "m2")
 MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
 HARDNESS = Quantity("pressure", 1e6, 1e11, "GPa")
+SOLID_CONDUCTIVITY = Quantity("thermal conductivity", 0.01, 1000.0, "W/m/K")
+SPECIFIC_HEAT = Quantity("specific heat", 50.0, 5000.0, "J/kg/K")
 POISSON = Quantity("dimensionless", 0.0, 0.5)
 DENSITY = Quantity("density", 100.0, 30_000.0, "kg/m3")
 SLOPE = Quantity("density slope", 0.0, 5.0, "kg/m3/K")
@@ -272,12 +274,17 @@ def _bases() -> list[str]:
 
 
 class SolidValues(Table):
-    """A material by value; a law that asks for the Vickers hardness of its flanks says so."""
+    """A material by value.
+
+    Laws that ask for the Vickers hardness of its flanks, or for what conducts the heat of a contact, say so.
+    """
 
     young: Annotated[float, MODULUS]
     poisson: Annotated[float, POISSON]
     density: Annotated[float, DENSITY] = 7830.0
     hardness: Annotated[float, HARDNESS] | None = None
+    conductivity: Annotated[float, SOLID_CONDUCTIVITY] | None = None
+    specific_heat: Annotated[float, SPECIFIC_HEAT] | None = None
 
 
 SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]

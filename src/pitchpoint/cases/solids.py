@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import cast, get_args
+from typing import Any, cast, get_args
 
 import numpy as np
 
@@ -215,19 +215,15 @@ def _in_use(record: SolidRecord, key: str, temperature: float) -> SolidInUse:
         raise error.at(key=f"materials.{key}") from None
 
 
+_BY_VALUE = ("young", "poisson", "density", "hardness", "conductivity", "specific_heat")
+
+
 def _record(given: SolidValues | str, key: str, document: Document) -> SolidRecord:
     if isinstance(given, str):
         return solids.find(given)
-    young, poisson, density = (
-        datum(getattr(given, name), f"materials.{key}.{name}", document)
-        for name in ("young", "poisson", "density")
-    )
-    hard = given.hardness
-    return SolidRecord(
-        name=f"material of gear {key[-1]}",
-        title=BY_VALUE,
-        young=young,
-        poisson=poisson,
-        density=density,
-        hardness=None if hard is None else datum(hard, f"materials.{key}.hardness", document),
-    )
+    values: dict[str, Any] = {
+        name: datum(value, f"materials.{key}.{name}", document)
+        for name in _BY_VALUE
+        if (value := getattr(given, name)) is not None
+    }
+    return SolidRecord(name=f"material of gear {key[-1]}", title=BY_VALUE, **values)

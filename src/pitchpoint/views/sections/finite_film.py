@@ -86,10 +86,14 @@ def maps_panel(name: str, data: xr.Dataset, kept: int) -> Panel:
     return Panel("", figures)
 
 
+FLAT = 1e-13
+"""Height below which cells see no map but rounding [m]."""
+
+
 def is_rough(data: xr.Dataset) -> bool:
     """True if height maps lie on the contacts that are kept."""
     known = "field_heights" in data
-    return known and bool(np.nanmax(np.abs(data["field_heights"].values), initial=0.0) > 0.0)
+    return known and bool(np.nanmax(np.abs(data["field_heights"].values), initial=0.0) > FLAT)
 
 
 def _roughness(name: str, data: xr.Dataset, kept: int) -> Figure:
