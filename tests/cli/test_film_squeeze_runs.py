@@ -1,6 +1,7 @@
 """Squeeze of the film of a pair over its engagement from a case file: steady films, resume, report."""
 
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -177,6 +178,7 @@ def test_report_screen_and_json_have_the_squeeze(outcome: Outcome) -> None:
         ({"film.time": "steady"}, "film.moments", "was given without time"),
         ({"film.time": "slow"}, "film.time", "slow"),
         ({"film.moments": 1}, "film.moments", "1"),
+        ({"film.thermal": "mean_film"}, "film.thermal", "films with squeeze are isothermal"),
     ],
 )
 def test_what_cannot_be_squeezed_is_told(
@@ -194,6 +196,10 @@ def test_lines_are_followed_while_they_keep_their_length(case: str) -> None:
     assert np.ptp(lengths) < 1e-6 * lengths.max()
     assert np.ptp(states["weight_of_line"][states["loaded"]]) > 0.1 * lengths.max()
     assert any("stay on the face as they are" in text for text in course.told)
+    first, last = map(
+        int, re.findall(r"from (\d+) to (\d+) % of its engagement", course.told[0])[0]
+    )
+    assert 0 < first < last < 100
     wide = {"gears.helix_angle": "30 deg", "gears.face_width": "30 mm"}
     with pytest.raises(InputError, match="grows, shrinks or moves across the face all the time"):
         course_of(load_case(case, settings=wide))
@@ -208,5 +214,15 @@ def test_the_run_around_a_moment_has_no_gap() -> None:
 def test_contacts_are_those_that_one_grid_shows(case: str) -> None:
     own = laid_out(course_of(load_case(case)).contacts[0], 32)
     narrow = own._replace(half_width=0.01 * own.half_width)
-    assert _shown([narrow, own, own, own, None, own], 65) == slice(1, 4)
-    assert _shown([None], 65) == slice(0, 0)
+    every = [narrow, own, own, own, None, own, own, own, own]
+    assert _shown(every, 65, 2) == slice(1, 4)
+    assert _shown(every, 65, 6) == slice(5, 9)
+    assert _shown([None], 65, 0) == slice(0, 0)
+
+
+@pytest.mark.parametrize("moments", [2, 3, 7])
+def test_the_moment_that_carries_most_is_among_few(case: str, moments: int) -> None:
+    built = load_case(case, settings={"film.moments": moments})
+    course, loads = course_of(built), wholes(built).states["load"]
+    assert course.times.size == moments
+    assert course.values(loads).max() == loads.max()

@@ -295,9 +295,11 @@ def cold_warning(built: Built, run: Mapping[str, np.ndarray]) -> str:
     warmest = np.nanmax(_rise(built, run), initial=0.0)
     if warmest < WARM:
         return f"{COLD}."
+    squeezes = built.case.film is not None and built.case.film.squeezes
     return (
         f"{COLD}; its friction would warm it by up to about {warmest:.2g} K, so that friction comes out too "
-        'high and the film too thick; thermal = "mean_film" in [film] takes the heat along.'
+        'high and the film too thick; thermal = "mean_film" in [film] takes the heat along'
+        + (", of steady films alone: leave time out for that." if squeezes else ".")
     )
 
 

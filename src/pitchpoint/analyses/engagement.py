@@ -130,10 +130,8 @@ def course_of(built: Built) -> PairCourse:
     told = [
         text for text, taken in zip((_LIGHT, _SHORT), (heavy, long), strict=True) if not taken.all()
     ]
-    places, entered = places[kept], entered[kept]
-    times = np.abs(entered - entered[0]) * _period(built)
-    some = _thinned(times.size, course_moments(asked(built)))
-    return _taken(built, given, times[some], places[some], told)
+    some = kept.start + _thinned(kept, int(most), course_moments(asked(built)))
+    return _taken(built, given, entered, places, some, told)
 
 
 _LIGHT = (
@@ -189,15 +187,34 @@ def _around(taken: np.ndarray, middle: int) -> slice:
     return slice(int(np.max(before, initial=-1)) + 1, int(np.min(behind, initial=taken.size)))
 
 
-def _thinned(size: int, most: int) -> np.ndarray:
-    return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(int))
+def _thinned(kept: slice, heaviest: int, most: int) -> np.ndarray:
+    """So many moments of a run, from its first one on, with the one that carries most among them."""
+    size = kept.stop - kept.start
+    found = np.linspace(0, size - 1, min(size, most)).round().astype(int)
+    found[np.argmin(np.abs(found - (heaviest - kept.start)))] = heaviest - kept.start
+    return np.unique(found)
 
 
 def _taken(
-    built: Built, given: Wholes, times: np.ndarray, places: np.ndarray, told: list[str]
+    built: Built,
+    given: Wholes,
+    entered: np.ndarray,
+    every: np.ndarray,
+    some: np.ndarray,
+    told: list[str],
 ) -> PairCourse:
-    """Moments whose contacts one grid shows, as many as follow each other."""
+    """Moments whose contacts one grid shows, as many as follow each other with the one that carries most.
+
+    Args:
+        built: the case.
+        given: contacts of its mesh cycle.
+        entered: periods that the pair has moved at each loaded moment, shape (moment,).
+        every: phase, pair and line of these, shape (moment, 3).
+        some: which of them are looked at.
+        told: what is left out already.
+    """
     nodes, cells = course_grid(asked(built))
+    places = every[some]
     contacts = [one_contact(built, given.numbers[at], moving=True) for at in map(tuple, places)]
     layouts: list[Layout | None] = []
     for contact in contacts:
@@ -206,16 +223,20 @@ def _taken(
         except InputError as error:
             layouts.append(None)
             told.append(f"a contact ends the engagement that no grid takes: {error.message}")
-    kept = _shown(layouts, nodes)
+    kept = _shown(layouts, nodes, int(np.argmax(_values(given, "load", places))))
     if kept.stop - kept.start < FEWEST:
         raise InputError(
-            "contacts of this pair differ so much that one grid shows no two of them that follow each other; "
-            "take more nodes, or leave it out",
+            "contacts of this pair differ so much that no grid shows the one that carries most together with "
+            "one before or behind it; take more nodes, or leave it out",
             key=KEY,
         )
     if kept.stop - kept.start < len(layouts) and None not in layouts:
         told.append(_NARROW)
-    found = times[kept] - times[kept][0], places[kept], tuple(contacts[kept])
+    moved = np.abs(entered[some][kept] - entered[some][kept][0])
+    if told:
+        first, last = (100.0 * float(entered[some][kept][k] / entered[-1]) for k in (0, -1))
+        told.insert(0, f"the pair is followed from {first:.0f} to {last:.0f} % of its engagement")
+    found = moved * _period(built), places[kept], tuple(contacts[kept])
     return PairCourse(*found, tuple(dict.fromkeys(told)))
 
 
@@ -225,10 +246,10 @@ _NARROW = (
 )
 
 
-def _shown(layouts: Sequence[Layout | None], nodes: int) -> slice:
-    """The longest run of contacts all of which one grid shows."""
+def _shown(layouts: Sequence[Layout | None], nodes: int, heaviest: int) -> slice:
+    """The longest run of contacts around the one that carries most, all of which one grid shows."""
     best = slice(0, 0)
-    for first in range(len(layouts)):
+    for first in range(heaviest + 1):
         begin, end, narrow = np.inf, -np.inf, np.inf
         for number, one in enumerate(layouts[first:], first):
             if one is None:
@@ -237,6 +258,6 @@ def _shown(layouts: Sequence[Layout | None], nodes: int) -> slice:
             narrow = min(narrow, one.half_width)
             if narrow / (end - begin) * (nodes - 1) < SHOWN:
                 break
-            if number + 1 - first > best.stop - best.start:
+            if number >= heaviest and number + 1 - first > best.stop - best.start:
                 best = slice(first, number + 1)
     return best

@@ -91,7 +91,8 @@ def _how(data: xr.Dataset) -> str:
     return (
         f"One pair is followed through its engagement, at {int(data['loaded_moments'])} moments in "
         f"{duration}: oil stays where it was while load, speeds, radii and form change, by d(ρh)/dt in "
-        "the balance of every cell. The first film is steady; between moments everything changes evenly. "
+        "the balance of every cell. Films are isothermal, and the first one is steady; between moments "
+        "everything changes evenly. "
         f"{steps} steps of time, each with an error of {100.0 * float(data.attrs['tolerance']):g} % of the "
         f"mass under the contact at most: {solve['sentence']}; largest defect {solve['residual']:.0e} of "
         f"Hertz's pressure. One grid for all moments, {nodes} nodes along and {cells} cells across; the "

@@ -176,7 +176,8 @@ def _sides(ease: Array, width: Array, spacing: Array) -> Array:
     Where the gap opens steeply, as at the tips of an ellipse, the thin film holds the oil back, however wide
     the gap of the next row is: an arithmetic mean alone would empty the tips.
     """
-    mean = jnp.minimum(0.5 * (ease[1:] + ease[:-1]), STEEP * jnp.sqrt(ease[1:] * ease[:-1]))
+    geometric = jnp.sqrt(jnp.maximum(ease[1:] * ease[:-1], 1e-300))
+    mean = jnp.minimum(0.5 * (ease[1:] + ease[:-1]), STEEP * geometric)
     between = 2.0 * mean / (width[1:] + width[:-1])[:, None]
     ends = 2.0 * ease[:1] / width[0], 2.0 * ease[-1:] / width[-1]
     return jnp.concatenate((ends[0], between, ends[1])) * spacing

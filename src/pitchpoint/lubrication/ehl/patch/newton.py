@@ -272,7 +272,8 @@ def _with_images(found: Array, share: Array) -> Array:
 
 def _even(problem: Problem) -> bool:
     """Whether the rows of a contact are images of each other; cells across are even in number."""
-    across = [np.diff(problem.bodies.edges), problem.along, problem.apart, problem.before]
+    warm = np.atleast_1d(problem.flow.temperature_rise)
+    across = [np.diff(problem.bodies.edges), problem.along, problem.apart, problem.before, warm]
     sizes = map(np.asarray, across)
     alike = all(np.max(np.abs(one - one[::-1])) <= EVEN * np.max(np.abs(one)) for one in sizes)
     return alike and float(problem.across) == 0.0
