@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sound import PAIR
 
-from pitchpoint.analyses.engagement import check_course, course_of
+from pitchpoint.analyses.engagement import course_of
 from pitchpoint.analyses.films import FILM_SQUEEZE, FINITE_FILM
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.whole_contacts import one_contact, wholes
@@ -140,7 +140,7 @@ def test_a_map_moves_with_its_surface_under_squeeze(
 def test_maps_that_take_too_long_to_pass_are_told(folder: Path) -> None:
     case = written(folder, table("gear_1", "waves.csv", "periodic = true\n"), "long.toml")
     with pytest.raises(InputError, match="mm of the surface pass") as caught:
-        check_course(load_case(case, settings={"film.time": "squeeze"}))
+        FILM_SQUEEZE.pieces(load_case(case, settings={"film.time": "squeeze"}))
     assert caught.value.key == "film.heights"
 
 
