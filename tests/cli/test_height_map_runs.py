@@ -1,5 +1,6 @@
 """Height maps from files that a case names: the same as maps given in Python, resume, report, refusals."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 from sound import PAIR
 
-from pitchpoint.analyses.engagement import check_course, course_of
+from pitchpoint.analyses.engagement import course_of
 from pitchpoint.analyses.films import FILM_SQUEEZE, FINITE_FILM
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.whole_contacts import one_contact, wholes
@@ -18,7 +19,7 @@ from pitchpoint.lubrication.ehl.patch.films import solve_patch
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.plan import placed
 from pitchpoint.runs import run as running
-from pitchpoint.runs.run import Outcome, load_case
+from pitchpoint.runs.run import Outcome, describe, load_case
 from pitchpoint.views.report import render
 
 BALL = (Path(__file__).parents[2] / "examples" / "ball_on_disc_film.toml").read_text("utf-8")
@@ -139,14 +140,17 @@ def test_a_map_moves_with_its_surface_under_squeeze(
 def test_maps_that_take_too_long_to_pass_are_told(folder: Path) -> None:
     case = written(folder, table("gear_1", "waves.csv", "periodic = true\n"), "long.toml")
     with pytest.raises(InputError, match="mm of the surface pass") as caught:
-        check_course(load_case(case, settings={"film.time": "squeeze"}))
+        FILM_SQUEEZE.pieces(load_case(case, settings={"film.time": "squeeze"}))
     assert caught.value.key == "film.heights"
 
 
 BAD = {
-    "missing.csv": (None, "is no file"),
+    "missing.csv": (None, "is no file in /.*: there"),
     "other.dat": ("1 2\n3 4\n", "those end in .csv, .txt or .npy"),
+    "empty.csv": ("", "holds no heights"),
+    "remarks.txt": ("# no more\n", "holds no heights"),
     "words.csv": ("1,2\n3,four\n", "no table of numbers"),
+    "comma.csv": ("1,2,\n3,4,\n", "none at the end of a row"),
     "ragged.csv": ("1,2\n3\n", "no table of numbers"),
     "row.csv": ("1,2,3\n", "at least two rows"),
     "nan.csv": ("1,nan\n2,3\n", "one height that is no finite number"),
@@ -163,6 +167,40 @@ def test_files_without_heights_are_told(name: str, folder: Path) -> None:
         load_case(written(folder, table("gear_1", name), "bad.toml"))
     assert caught.value.key == "film.heights.gear_1.file"
     assert f'"{name}"' in caught.value.message
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"film.heights.both.file": "waves.txt"},
+        {"film.heights.both": {"file": "waves.txt", "step_along": "1 um", "step_across": "1 um"}},
+    ],
+)
+def test_files_of_settings_lie_beside_the_case_file(settings: dict[str, Any], folder: Path) -> None:
+    case = written(folder, table("both", "waves.csv"), "set.toml")
+    film = load_case(case, settings=settings).case.film
+    assert film is not None and film.heights is not None and film.heights.both is not None
+    assert film.heights.both.file == str((folder / "waves.txt").resolve())
+
+
+def test_a_record_of_another_content_is_told(folder: Path, tmp_path: Path) -> None:
+    np.savetxt(folder / "kept.csv", WAVES, delimiter=",")
+    (described,) = describe(written(folder, table("both", "kept.csv"), "kept.toml"))
+    (row,) = [row for row in described["inputs"] if row["key"] == "heights.both.digest"]
+    assert row["status"] == "derived" and len(row["value"]) == 64
+    record = tmp_path / "manifest.json"
+    record.write_text(json.dumps(described), "utf-8")
+    words = 'The record was made with other heights than "kept.csv" holds now: numbers differ.'
+    assert words not in load_warnings(record)
+    np.savetxt(folder / "kept.csv", 0.5 * WAVES, delimiter=",")
+    assert words in load_warnings(record)
+    assert words not in load_warnings(record, {"film.heights.both.file": str(folder / "waves.csv")})
+
+
+def load_warnings(record: Path, settings: dict[str, Any] | None = None) -> list[str]:
+    (again,) = describe(str(record), settings=settings)
+    found: list[str] = again["warnings"]
+    return found
 
 
 def test_an_array_of_objects_is_not_read(folder: Path) -> None:

@@ -14,6 +14,7 @@ import typer
 
 from pitchpoint import cli
 from pitchpoint.analyses.comparison import compare
+from pitchpoint.analyses.engagement import check_heights
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.schema import Target, validate
@@ -91,12 +92,15 @@ def test_the_table_of_heights(tmp_path: Path) -> None:
     given = merged(tree("finite"), tomllib.loads(HEIGHTS))
     map_, file = given["film"]["heights"]["gear_1"], tmp_path / "flank.csv"
     assert map_["file"] == file.name
-    file.write_text("0,0.1,0\n0,-0.1,0\n", "utf-8")
+    x, y = 5.0 * np.arange(-200, 201), 20.0 * np.arange(-600, 601)
+    heights = 0.1 * np.cos(0.02 * x) * np.cos(0.005 * y[:, None])
+    np.savetxt(file, heights, "%.4f", delimiter=",")
     map_["file"] = str(file)
     built = Variant(given, "README.md", "default").built({})
     (found,) = height_maps(built.case.film)
-    assert found.periodic and found.heights.shape == (2, 3)
-    assert float(found.x[-1] - found.x[0]) == pytest.approx(10e-6)
+    assert not found.periodic and found.heights.shape == heights.shape
+    assert float(found.x[-1] - found.x[0]) == pytest.approx(2e-3)
+    check_heights(built)
 
 
 def test_the_involute_flexspline_of_the_text() -> None:

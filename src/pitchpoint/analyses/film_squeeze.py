@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, Progress
-from pitchpoint.analyses.engagement import course_of
+from pitchpoint.analyses.engagement import KEY, course_of
 from pitchpoint.analyses.film_contacts import asked
 from pitchpoint.analyses.whole_contacts import wholes
 from pitchpoint.cases.build import Built
@@ -159,6 +159,8 @@ def _marched(
             found.append(one)
             progress(first + len(found))
     except InputError as error:
+        if after is None and not found:  # wrong from the start: no film to show
+            raise InputError(error.message, key=KEY) from None
         told.append(f"the engagement was not taken: {error.message}")
     return found
 

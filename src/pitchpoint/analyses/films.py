@@ -92,13 +92,18 @@ def _pieces(built: Built) -> Iterable[Piece]:
 
     check_series(built)
     if _endless(built) is None:
-        from pitchpoint.analyses.engagement import check_course, check_heights
-
-        check_heights(built)
-        if _steady(built) is None:
-            check_course(built)
+        _check_contacts(built)
     found: Iterable[Piece] = _solver(built).pieces(built)
     return found
+
+
+def _check_contacts(built: Built) -> None:
+    """InputError for height maps that do not fit, and for an engagement that cannot be followed."""
+    from pitchpoint.analyses.engagement import check_course, check_heights
+
+    check_heights(built)
+    if _steady(built) is None:
+        check_course(built)
 
 
 def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
@@ -114,6 +119,7 @@ def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 def _squeeze_pieces(built: Built) -> Iterable[Piece]:
     from pitchpoint.analyses.film_squeeze import pieces
 
+    _check_contacts(built)
     return pieces(built)
 
 

@@ -119,13 +119,18 @@ def _find_files(tree: Tree, folder: Path) -> None:
     """Names of files become those from where the case file lies."""
     node: Any = tree
     for part in _WITH_FILES:
-        node = node.get(part) if isinstance(node, dict) else None
-    for one in node.values() if isinstance(node, dict) else ():
+        node = _bare(node.get(part)) if isinstance(node, dict) else None
+    for one in map(_bare, node.values()) if isinstance(node, dict) else ():
         given = one.get("file") if isinstance(one, dict) else None
         if isinstance(given, dict) and isinstance(given.get("value"), str):
             given["value"] = _from(folder, given["value"])
         elif isinstance(given, str):
             one["file"] = _from(folder, given)
+
+
+def _bare(value: Any) -> Any:
+    """A table without the marks that stand around it."""
+    return value["value"] if isinstance(value, dict) and _marked(value) else value
 
 
 def _from(folder: Path, name: str) -> str:
@@ -194,7 +199,12 @@ def check_name(name: str, key: str) -> None:
 
 
 def resolve(
-    tree: Tree, *, name: str, variant: str, settings: Mapping[str, Any] | None = None
+    tree: Tree,
+    *,
+    name: str,
+    variant: str,
+    settings: Mapping[str, Any] | None = None,
+    folder: Path | None = None,
 ) -> Document:
     """One variant of a case with settings applied, its marks separated from the values.
 
@@ -203,6 +213,7 @@ def resolve(
         name: of the file, for messages.
         variant: one of `variants(tree)`.
         settings: values by dotted key that replace those of the file.
+        folder: where files that settings name are looked for; None to take their names as they are.
 
     Raises:
         InputError: unknown variant, or a mark that is not one.
@@ -217,7 +228,10 @@ def resolve(
     base = {key: value for key, value in tree.items() if key != "variants"}
     merged = _merged(_numbered(base), _numbered(_overlays(tree).get(variant, {})))
     for key, value in (settings or {}).items():
-        merged = setting(merged, key, {"value": value, "status": "set"}, name=name)
+        mark = {"value": copy.deepcopy(value), "status": "set"}
+        merged = setting(merged, key, mark, name=name)
+    if settings and folder is not None:
+        _find_files(merged, folder)
     provenance: dict[str, Provenance] = {}
     return Document(name, strip(merged, provenance, name=name), provenance)
 

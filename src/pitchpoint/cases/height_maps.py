@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import warnings
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from pitchpoint.cases.schema import FilmTable, HeightTable
-from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.errors import LONGEST_PLACE, InputError, shorten, visible
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 
 __all__ = ["MEMBERS", "digest_of", "height_maps"]
@@ -71,7 +72,9 @@ def _stamp(file: str) -> tuple[int, int]:
     try:
         found = os.stat(file)
     except (OSError, ValueError):
-        raise InputError("is no file: there are no heights to read") from None
+        folder = os.path.dirname(file)
+        where = f" in {visible(shorten(folder, LONGEST_PLACE))}" if folder else ""
+        raise InputError(f"is no file{where}: there are no heights to read") from None
     if os.path.isdir(file):
         raise InputError("is a folder; give a file with heights")
     if found.st_size > MOST_BYTES:
@@ -90,6 +93,8 @@ def _read(file: str, stamp: tuple[int, int]) -> np.ndarray:
         heights = _text(file, _TEXTS[ending])
     else:
         raise InputError("is no file of heights; those end in .csv, .txt or .npy")
+    if not heights.size:
+        raise InputError("holds no heights")
     if heights.ndim != 2 or min(heights.shape) < 2:
         raise InputError(
             f"has the shape {heights.shape}; a height map has at least two rows, across the contact, and two "
@@ -114,13 +119,16 @@ def _array(file: str) -> np.ndarray:
 
 def _text(file: str, between: str | None) -> np.ndarray:
     try:
-        return np.loadtxt(file, delimiter=between, ndmin=2, encoding="utf-8-sig")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of a file without heights
+            return np.loadtxt(file, delimiter=between, ndmin=2, encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise InputError("is not UTF-8 text") from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}") from None
     except ValueError:
         rows = "commas" if between == _COMMA else "blanks"
+        ends = ", none at the end of a row" if between == _COMMA else ""
         raise InputError(
-            f"is no table of numbers: rows of equally many heights with {rows} between them"
+            f"is no table of numbers: rows of equally many heights with {rows} between them{ends}"
         ) from None

@@ -10,6 +10,7 @@ from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.films import CHOICE_NOTES, film_choices
+from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
@@ -113,6 +114,17 @@ def _of_mesh(built: Built, document: Document) -> Iterator[Row]:
     if built.case.film is None:
         for key, one in following["film"].items():
             yield _row("film", key, one.value, _kind(f"film.{key}", one.value), _mark(one))
+    yield from _digests(built)
+
+
+def _digests(built: Built) -> Iterator[Row]:
+    """What tells the content of files with heights from any other."""
+    heights = None if built.case.film is None else built.case.film.heights
+    for name in MEMBERS:
+        one = getattr(heights, name, None)
+        if one is not None:
+            mark = Provenance("derived", note="SHA-256 of what the file holds")
+            yield _row("film", f"heights.{name}.digest", digest_of(one.file), "", mark)
 
 
 def _of_films(built: Built) -> dict[str, Followed]:

@@ -717,7 +717,8 @@ class HeightTable(Table):
     """Measured heights of a surface in a file: rows across the contact, columns along it.
 
     `unit` is what a height of one in the file is. The middle of the map lies in that of the contact unless
-    `middle_along` and `middle_across` say otherwise.
+    `middle_along` and `middle_across` say otherwise. It has to cover the contact unless it is `periodic`: one
+    that repeats, whose last row and column are the first ones of the next period, with the same heights.
     """
 
     file: Text

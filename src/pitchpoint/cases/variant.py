@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 from pitchpoint.cases.document import Document, resolve
@@ -30,6 +31,7 @@ class Variant:
         own: friction law of the user's own.
         recorded: name of the case whose record the file is; empty where it is the case itself.
         warnings: about the record.
+        folder: of the case file, where files that settings name are looked for.
     """
 
     tree: Mapping[str, Any]
@@ -39,6 +41,7 @@ class Variant:
     own: FrictionLaw | None = None
     recorded: str = ""
     warnings: tuple[str, ...] = ()
+    folder: Path | None = None
 
     @property
     def label(self) -> str:
@@ -52,6 +55,7 @@ class Variant:
             name=self.name,
             variant=self.variant,
             settings={**self.settings, **changes},
+            folder=self.folder,
         )
 
     @cached_property

@@ -21,8 +21,8 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, variants
 from pitchpoint.cases.failures import worst_first
-from pitchpoint.cases.height_maps import digest_of
-from pitchpoint.cases.library import as_text, find, names
+from pitchpoint.cases.height_maps import MEMBERS, digest_of
+from pitchpoint.cases.library import as_text, find, names, path_of
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Loss, Study, validate
@@ -161,15 +161,15 @@ def _variants(
 ) -> list[Variant]:
     """Variants of a case, all or those that are named; of a record the one that it holds."""
     if is_record(case):
-        held = _recorded(Path(case), own)
+        held = _recorded(Path(case), own, settings or {})
     else:
         name, tree = find(case)
-        held = Variant(tree, name, "")
+        held = Variant(tree, name, "", folder=path_of(case).parent)
     chosen = only or variants(dict(held.tree))
     return [replace(held, variant=one, settings=dict(settings or {}), own=own) for one in chosen]
 
 
-def _recorded(path: Path, own: FrictionLaw | None) -> Variant:
+def _recorded(path: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
     """The variant that a record holds."""
     record, name = Manifest.read(path), visible(as_text(path.name))
     if record.own and own is None:
@@ -182,8 +182,23 @@ def _recorded(path: Path, own: FrictionLaw | None) -> Variant:
         tree = record.tree
     except InputError as error:
         raise error.at(file=name) from None
-    told = tuple(record.warning)
-    return Variant(tree, name, record.variant, recorded=record.case, warnings=told)
+    told = (*record.warning, *_other_heights(record, settings))
+    return Variant(
+        tree, name, record.variant, recorded=record.case, warnings=told, folder=path.parent
+    )
+
+
+def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
+    """That files hold other heights than when the record was made, those that settings replace left out."""
+    if any(key.split(".")[:2] in (["film"], ["film", "heights"]) for key in settings):
+        return
+    rows = {row.key: row.value for row in record.inputs if row.table == "film"}
+    for which in MEMBERS:
+        file, then = (rows.get(f"heights.{which}.{key}") for key in ("file", "digest"))
+        now = digest_of(file) if isinstance(file, str) and then else ""
+        if now and now != then:
+            name = visible(shorten(os.path.basename(str(file))))
+            yield f'The record was made with other heights than "{name}" holds now: numbers differ.'
 
 
 @contextmanager
@@ -390,7 +405,7 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
 def _held(manifest: Mapping[str, Any]) -> list[str]:
     """Digests of files that a case names: what they hold is part of its inputs."""
     rows = (row for row in manifest["inputs"] if row["table"] == "film")
-    return [digest_of(row["value"]) for row in rows if row["key"].endswith(".file")]
+    return [row["value"] for row in rows if row["key"].endswith(".digest")]
 
 
 def _part(
