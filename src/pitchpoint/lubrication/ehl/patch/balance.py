@@ -28,8 +28,8 @@ __all__ = [
 Field = Float[Arrays, "y x"]
 Inner = Float[Array, "y inner"]
 
-STEEP = 1.5
-"""Conductance between two rows over the geometric mean of theirs, at most."""
+STEEP = 2.0
+"""Conductance between two rows over the geometric mean of theirs, about, at most where gaps are steep."""
 
 ALONG, ACROSS = 4, 4
 """Nodes of a row, and rows, that a cell knows: from two before it to one behind."""
@@ -39,9 +39,9 @@ def balance(problem: Problem, oil: Field, gap: Field, rate: Array) -> tuple[Inne
     """What flows into each cell more than out of it, and what a pressure of one there takes out.
 
     Conductances along the faces between cells of a row: geometric mean ahead of the middle, arithmetic one
-    behind, as in a line. Across, where the pressure falls to the sides, the arithmetic one, up to `STEEP`
-    times the other: with the other one alone pressures beside an ellipse never settle. Oil leaves freely
-    beyond the first and the last row.
+    behind, as in a line. Across, where the pressure falls to the sides, the arithmetic one: with the other
+    one pressures beside an ellipse never settle. Where it would empty tips with thin films it is limited by
+    the other, see `Problem.steep`. Oil leaves freely beyond the first and the last row.
 
     Args:
         problem: the contact.
@@ -96,7 +96,7 @@ def through(problem: Problem, oil: Field, gap: Field) -> Through:
         mass,
         at_faces(ease.T, ahead).T * width / spacing,
         problem.along[:, None] * upwind(mass.T).T * width,
-        _sides(ease, width[:, 0], spacing),
+        _sides(ease, width[:, 0], spacing, problem.steep),
         problem.across * jnp.pad(upwind(mass), ((1, 1), (0, 0)), mode="edge") * spacing,
     )
 
@@ -170,14 +170,17 @@ def _widths(problem: Problem) -> tuple[Array, Array]:
     return jnp.diff(jnp.asarray(edges))[:, None], (x[-1] - x[0]) / (x.shape[0] - 1)
 
 
-def _sides(ease: Array, width: Array, spacing: Array) -> Array:
+def _sides(ease: Array, width: Array, spacing: Array, steep: Array) -> Array:
     """Conductances between rows, and to the free ends half a cell away, shape (y + 1, x).
 
-    Where the gap opens steeply, as at the tips of an ellipse, the thin film holds the oil back, however wide
-    the gap of the next row is: an arithmetic mean alone would empty the tips.
+    Where the gap opens steeply, as at the tips of an ellipse, a thin film there holds the oil back, however
+    wide the gap of the next row is: an arithmetic mean alone would empty the tips.
     """
-    geometric = jnp.sqrt(jnp.maximum(ease[1:] * ease[:-1], 1e-300))
-    mean = jnp.minimum(0.5 * (ease[1:] + ease[:-1]), STEEP * geometric)
+    mean = 0.5 * (ease[1:] + ease[:-1])
+    part = jnp.sqrt(jnp.maximum(ease[1:] * ease[:-1], 1e-300)) / jnp.maximum(mean, 1e-150)
+    # One of rows that are alike, smooth, and at most so many times the geometric mean.
+    limited = mean * part * jnp.sqrt((1.0 + STEEP**2) / (1.0 + STEEP**2 * part**2))
+    mean = jnp.where(steep > 0.0, limited, mean)
     between = 2.0 * mean / (width[1:] + width[:-1])[:, None]
     ends = 2.0 * ease[:1] / width[0], 2.0 * ease[-1:] / width[-1]
     return jnp.concatenate((ends[0], between, ends[1])) * spacing

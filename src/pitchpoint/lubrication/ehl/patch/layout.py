@@ -121,6 +121,7 @@ class Layout(NamedTuple):
         radius: relative radius along x that units are made of [m].
         speed: unit of speed [m/s].
         flooded: distance ahead of the middle from which on oil floods the contact [m].
+        steep: one where conductances across are limited, as for thin films at tips; else zero.
     """
 
     inlet: float
@@ -136,6 +137,7 @@ class Layout(NamedTuple):
     radius: float
     speed: float
     flooded: float
+    steep: float = 0.0
 
     def bodies(self, nodes: int, cells: int, finest: int, ends: str) -> HalfSpace:
         """Half spaces on a grid of so many nodes along and cells across, in units of length.
@@ -463,6 +465,7 @@ class Problem(eqx.Module):
         pace: one over the time, in units of length and speed, in which the mass under a cell went from the
             one before to what it is; zero for a steady film.
         before: mass under each cell from which it went, shape (y, x).
+        steep: one where conductances across are limited by the smaller one of two rows; else zero.
     """
 
     flow: Flow
@@ -477,6 +480,7 @@ class Problem(eqx.Module):
     length: Float[Arrays, ""]
     pace: Float[Arrays, ""]
     before: Float[Arrays, "y x"]
+    steep: Float[Arrays, ""]
 
     def gap(self, pressure: Field, level: Array) -> Array:
         """Gap of the mean planes in every cell, shape (y, x)."""
@@ -533,5 +537,6 @@ def problem_on(
         array(length),
         array(0.0),
         array(np.zeros((cells, nodes))),
+        array(layout.steep),
     )
     return Problem(*found)

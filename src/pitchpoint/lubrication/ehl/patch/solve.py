@@ -405,6 +405,19 @@ class _Solver:
         found = self.on_grid(as_warm_as(warm.problem, problem), warm, last=last)
         return self.on_grid(problem, before, last=last) if found is None else found
 
+    def held(self, found: Found) -> Found | None:
+        """Solution whose tips hold their film, where smooth surfaces touch in that which was found."""
+        problem, state = found.problem, found.state
+        if float(problem.flow.texture.rq) > 0.0:
+            return None
+        gap = _gap(problem, array(state.pressure), array(state.level))
+        if not np.any(np.asarray(problem.flow.asperity_pressure(gap)) > 0.0):
+            return None
+        limited: Problem = eqx.tree_at(lambda one: one.steep, problem, array(1.0))
+        self.left, start = MOST_ON_GRID, (state.pressure, state.level)
+        after = self.near(limited, start, boldly=True)
+        return found._replace(problem=limited, state=after) if after.residual < ENOUGH else None
+
     def from_earlier(self, problem: Problem, earlier: Earlier, layout: Layout) -> Found | None:
         """Solution from one of a contact that is alike."""
         dry = np.asarray(dry_under(problem).pressure)
@@ -506,6 +519,9 @@ def solve(
     for grid in grids[1:]:
         problem = problem_on(contact, layout, *grid, cells)
         found = solver.onto(problem, heats, found, last=grid == grids[-1])
+    held = None if found is None or fixed else solver.held(found)
+    if held is not None:
+        layout, found = layout._replace(steep=1.0), held
     warm = solver.settled(heats, found)
     if heats is not None and warm is None and len(grids) > 1:
         # From a film that is as warm as its inlet, should temperatures of coarse grids have led astray.
