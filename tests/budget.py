@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-PROGRAMS = 9500
+PROGRAMS = 9900
 """Programs of the whole suite that JAX is asked for, found in the cache on disk or not."""
 
 PROGRAMS_OF_A_FILE = 480

@@ -405,6 +405,11 @@ class _Solver:
         found = self.on_grid(as_warm_as(warm.problem, problem), warm, last=last)
         return self.on_grid(problem, before, last=last) if found is None else found
 
+    def with_tips(self, layout: Layout, found: Found | None) -> tuple[Layout, Found | None]:
+        """Layout and solution, with limited conductances across where tips would be emptied."""
+        held = None if found is None else self.held(found)
+        return (layout, found) if held is None else (layout._replace(steep=1.0), held)
+
     def held(self, found: Found) -> Found | None:
         """Solution whose tips hold their film, where smooth surfaces touch in that which was found."""
         problem, state = found.problem, found.state
@@ -504,9 +509,10 @@ def solve(
         problem = problem_on(contact, layout, nodes, cells, cells)
         found = solver.from_earlier(as_warm(earlier, layout, problem), earlier, layout)
         if found is not None and _roomier(contact, layout, cells, _film_of(*found)) is None:
+            own, found = solver.with_tips(layout, found)
             found = solver.settled(heats, found)
             if found is not None:
-                return solver.ended(layout, found)
+                return solver.ended(own, found)
     for layouts in count():
         problem = problem_on(contact, layout, *grids[0], cells)
         found = solver.on_grid(problem, None, last=len(grids) == 1)
@@ -519,9 +525,8 @@ def solve(
     for grid in grids[1:]:
         problem = problem_on(contact, layout, *grid, cells)
         found = solver.onto(problem, heats, found, last=grid == grids[-1])
-    held = None if found is None or fixed else solver.held(found)
-    if held is not None:
-        layout, found = layout._replace(steep=1.0), held
+    if not fixed:
+        layout, found = solver.with_tips(layout, found)
     warm = solver.settled(heats, found)
     if heats is not None and warm is None and len(grids) > 1:
         # From a film that is as warm as its inlet, should temperatures of coarse grids have led astray.
