@@ -25,9 +25,8 @@ import numpy as np
 from pitchpoint._jax import array
 from pitchpoint.contact.end_profiles import crowned, log_relieved
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
-from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
-from pitchpoint.lubrication.ehl.patch.newton import State
-from pitchpoint.lubrication.ehl.patch.solve import solve
+from pitchpoint.lubrication.ehl.patch.newton import ENOUGH
+from pitchpoint.lubrication.ehl.patch.solve import Solved, solve
 from pitchpoint.materials.fluid import Fluid
 
 MODULUS, OIL = 2.26e11, Fluid(viscosity=0.04, pressure_viscosity=2.2e-8)
@@ -88,18 +87,18 @@ CASES: dict[str, Callable[[], PatchContact]] = {
 }
 
 
-def timed(contact: PatchContact, grid: tuple[int, int]) -> tuple[float, State]:
+def timed(contact: PatchContact, grid: tuple[int, int]) -> tuple[float, Solved]:
     """Processor seconds of a solve, compiled before, and its solution."""
     solve(contact, *grid)
     begun = time.process_time()
-    state = solve(contact, *grid).state
-    return time.process_time() - begun, state
+    found = solve(contact, *grid)
+    return time.process_time() - begun, found
 
 
 def rows() -> Iterator[tuple[str, float]]:
     """Cases with their seconds, told as they come."""
     for name, made in CASES.items():
-        seconds, state = timed(made(), FINE)
+        seconds, (_, _, state, _) = timed(made(), FINE)
         print(
             f"{name}: {seconds:.2f} s, {state.steps} steps, residual {state.residual:.0e}",
             flush=True,
@@ -127,8 +126,8 @@ def beside_slippy(python: str | None) -> None:
     """Print the ball of the rival on three grids, and the rival."""
     contact, own = rivals_ball(), {}
     for nodes in (RIVALS_NODES, 129, 257):
-        own[nodes], state = timed(contact, (nodes, nodes - 1))
-        film = 1e9 * middle(contact, nodes, state)
+        own[nodes], found = timed(contact, (nodes, nodes - 1))
+        film = 1e9 * middle(found)
         print(f"ball of slippy, {nodes}: {own[nodes]:.2f} s, film {film:.0f} nm", flush=True)
     if python is None:
         print("slippy is left out: `--rival PYTHON` names the python of an environment with it")
@@ -148,13 +147,14 @@ def beside_slippy(python: str | None) -> None:
     )
 
 
-def middle(contact: PatchContact, nodes: int, state: State) -> float:
-    """Gap at the node next to the middle [m]."""
-    layout = laid_out(contact, nodes - 1)
-    problem = problem_on(contact, layout, nodes, nodes - 1, nodes - 1)
+def middle(found: Solved) -> float:
+    """Gap at the node next to the middle [m]; not a number where no film was found."""
+    _, problem, state, _ = found
+    if not state.residual < ENOUGH:
+        return np.nan
     gap = problem.gap(array(state.pressure), array(state.level)) * problem.flow.height
     node = int(np.argmin(np.abs(np.asarray(problem.bodies.x))))
-    return float(gap[nodes // 2, node])
+    return float(gap[len(gap) // 2, node])
 
 
 def main() -> int:
@@ -165,7 +165,7 @@ def main() -> int:
     seconds = dict(rows())
     print(f"median: {np.median(list(seconds.values())):.2f} s")
     first = next(iter(CASES))
-    finer, state = timed(CASES[first](), FINER)
+    finer, (_, _, state, _) = timed(CASES[first](), FINER)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     print(
         f"{first} on 257 x 256: {finer:.1f} s, {finer / seconds[first]:.1f} times, "

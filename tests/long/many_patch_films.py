@@ -23,9 +23,8 @@ from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
-from pitchpoint.lubrication.ehl.patch.layout import Problem
-from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, State
-from pitchpoint.lubrication.ehl.patch.solve import solve
+from pitchpoint.lubrication.ehl.patch.newton import ENOUGH
+from pitchpoint.lubrication.ehl.patch.solve import solve, touches
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials.fluid import Fluid
@@ -107,12 +106,6 @@ def _ellipse(
     return f"ellipse {ratio:.3g} times as long as wide", contact
 
 
-def _touches(problem: Problem, state: State) -> bool:
-    """Whether smooth surfaces carry load without oil."""
-    gap = problem.gap(state.pressure, state.level)
-    return bool(np.any(problem.flow.asperity_pressure(gap) > 0.0))
-
-
 def main(count: int = 100, nodes: int = 129, seed: int = 13) -> int:
     """Print the table; 1 where fewer than 97 of 100 are solved."""
     solved: dict[bool, list[bool]] = {True: [], False: []}
@@ -122,10 +115,10 @@ def main(count: int = 100, nodes: int = 129, seed: int = 13) -> int:
         sentence = ""
         try:
             _, problem, state, _ = solve(one.contact, nodes, nodes - 1)
-            touches = one.contact.texture is None and _touches(problem, state)
-            found = state.residual < ENOUGH and not touches
+            thin = touches(problem, state)
+            found = state.residual < ENOUGH and not thin
             sentence = f"residual {state.residual:.0e} after {state.steps} steps"
-            sentence += ", and the film is thinner than the grid can show" if touches else ""
+            sentence += ", and the film is thinner than the grid can show" if thin else ""
         except InputError as error:
             found, sentence = False, str(error)
         seconds.append(time.process_time() - begun)

@@ -62,6 +62,8 @@ class PairCourse:
 def check_course(built: Built) -> None:
     """InputError if the films of an engagement are asked for and cannot be had."""
     course, cells = course_of(built), course_grid(asked(built))[1]
+    if asked(built).heights is None:
+        return
     _check_travel(course)
     for contact in placed(course.contacts, course.times):
         _check_maps(contact, cells)
@@ -69,9 +71,11 @@ def check_course(built: Built) -> None:
 
 def check_heights(built: Built) -> None:
     """InputError for height maps that do not fit the contact that carries most."""
+    if asked(built).heights is None:
+        return
     given = wholes(built)
     loads = np.where(given.states["loaded"], given.states["load"], 0.0)
-    if asked(built).heights is not None and loads.any():
+    if loads.any():
         at = np.unravel_index(np.argmax(loads), loads.shape)
         _check_maps(one_contact(built, given.numbers[at]), patch_grid(asked(built))[1])
 
@@ -93,8 +97,6 @@ def _check_travel(course: PairCourse) -> None:
 
 
 def _check_maps(contact: PatchContact, cells: int) -> None:
-    if not contact.heights:
-        return
     try:
         check_maps(contact)
         check_maps_on(contact, laid_out(contact, cells), cells)
@@ -118,9 +120,10 @@ def course_of(built: Built) -> PairCourse:
     if not np.any(given.states["loaded"]):
         raise InputError("nothing is loaded, and no film is squeezed; leave it out", key=KEY)
     places, entered = _in_order(built, given)
-    load, most = _values(given, "load", places), np.argmax(_values(given, "load", places))
-    heavy, long = load >= LIGHT * load[most], _stays(given, places, int(most))
-    kept = _around(heavy & long, int(most))
+    load = _values(given, "load", places)
+    most = int(np.argmax(load))
+    heavy, long = load >= LIGHT * load[most], _stays(given, places, most)
+    kept = _around(heavy & long, most)
     if kept.stop - kept.start < FEWEST:
         raise InputError(
             "the contact line of these gears grows, shrinks or moves across the face all the time, and a "
@@ -130,7 +133,7 @@ def course_of(built: Built) -> PairCourse:
     told = [
         text for text, taken in zip((_LIGHT, _SHORT), (heavy, long), strict=True) if not taken.all()
     ]
-    some = kept.start + _thinned(kept, int(most), course_moments(asked(built)))
+    some = kept.start + _thinned(kept, most, course_moments(asked(built)))
     return _taken(built, given, entered, places, some, told)
 
 
@@ -232,11 +235,11 @@ def _taken(
         )
     if kept.stop - kept.start < len(layouts) and None not in layouts:
         told.append(_NARROW)
-    moved = np.abs(entered[some][kept] - entered[some][kept][0])
+    at = entered[some][kept]
     if told:
-        first, last = (100.0 * float(entered[some][kept][k] / entered[-1]) for k in (0, -1))
+        first, last = (100.0 * float(at[k] / entered[-1]) for k in (0, -1))
         told.insert(0, f"the pair is followed from {first:.0f} to {last:.0f} % of its engagement")
-    found = moved * _period(built), places[kept], tuple(contacts[kept])
+    found = (at - at[0]) * _period(built), places[kept], tuple(contacts[kept])
     return PairCourse(*found, tuple(dict.fromkeys(told)))
 
 

@@ -11,6 +11,7 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.engagement import KEY, course_of
 from pitchpoint.analyses.film_contacts import asked
+from pitchpoint.analyses.finite_film import FIELDS
 from pitchpoint.analyses.whole_contacts import wholes
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import course_grid
@@ -51,15 +52,8 @@ _OF_FILM = {
 _STEADY = {name: f"steady_{name}" for name in ("minimum_film", "central_film", "film_pressure")}
 """Those that stand beside the same of the steady film."""
 
-_FIELDS = {
-    "field_pressure": "pressure",
-    "field_asperity_pressure": "asperity_pressure",
-    "field_dry_pressure": "dry_pressure",
-    "field_film": "gap",
-    "field_heights": "heights",
-}
 _KEPT = {
-    **dict.fromkeys(_FIELDS, ("kept", "y", "x")),
+    **dict.fromkeys(FIELDS, ("kept", "y", "x")),
     "kept_x": ("kept", "x"),
     "kept_y": ("kept", "y"),
     "kept_moment": ("kept",),
@@ -227,13 +221,13 @@ def _kept(
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """Fields of the moment with the thinnest film of some."""
     nodes, cells = course_grid(asked(built))
-    fields = {name: np.full((1, cells, nodes), np.nan) for name in _FIELDS}
+    fields = {name: np.full((1, cells, nodes), np.nan) for name in FIELDS}
     fields |= {"kept_x": np.full((1, nodes), np.nan), "kept_y": np.full((1, cells), np.nan)}
     at = np.full(1, -1)
     if found:
         least = int(np.argmin([one.film.minimum_film for one in found]))
         film = found[least].film
-        own = {**_FIELDS, "kept_x": "x", "kept_y": "y"}
+        own = {**FIELDS, "kept_x": "x", "kept_y": "y"}
         fields = {name: np.asarray(getattr(film, one))[None] for name, one in own.items()}
         at = np.array([first + least])
     return {name: (_KEPT[name], one) for name, one in (fields | {"kept_moment": at}).items()}
@@ -296,6 +290,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     course = course_of(built)
     names = [str(name) for name, one in parts[0].items() if one.dims == ("point",)]
     values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
+    values["film_change"] = _change(values["central_film"], values["steady_central_film"])
     codes, steps = values["film_status"], values["newton_steps"]
     iterations = np.nan_to_num(steps).astype(int)
     data = dataset(
@@ -335,13 +330,8 @@ def _conditions(built: Built) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
 
 
 def _figures(values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Thinnest films, and how far squeeze takes the film in the middle from the steady one.
-
-    Nothing is compared where mean planes overlap.
-    """
-    film, steady = values["central_film"], values["steady_central_film"]
-    apart = (film > 0.0) & (steady > 0.0)
-    change = np.where(apart, film, np.nan) / np.where(apart, steady, 1.0) - 1.0
+    """Thinnest films, and how far squeeze takes the film in the middle from the steady one."""
+    change = values["film_change"]
     least = {
         "smallest_film": "minimum_film",
         "steady_smallest_film": "steady_minimum_film",
@@ -354,6 +344,12 @@ def _figures(values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "loaded_moments": np.array(change.size),
         "solved_moments": np.sum(values["film_status"] == int(Code.SOLVED)),
     }
+
+
+def _change(film: np.ndarray, steady: np.ndarray) -> np.ndarray:
+    """Part by which a film is thicker than the steady one; not a number where mean planes overlap."""
+    apart = (film > 0.0) & (steady > 0.0)
+    return np.where(apart, film, np.nan) / np.where(apart, steady, 1.0) - 1.0
 
 
 def _least(values: np.ndarray) -> np.ndarray:

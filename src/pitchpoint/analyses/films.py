@@ -143,8 +143,8 @@ def _whole(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def _squeeze_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("film_squeeze")
-    names = () if data is None else _SQUEEZE_MAIN
-    return {"film_squeeze": {name: numbers(parts["film_squeeze"][name].values) for name in names}}
+    every = {} if data is None else {name: numbers(data[name].values) for name in _SQUEEZE_MAIN}
+    return {"film_squeeze": every}
 
 
 def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:

@@ -26,7 +26,7 @@ from pitchpoint.lubrication.ehl.patch.layout import FEWEST
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 
-__all__ = ["film_part", "joined", "pieces"]
+__all__ = ["FIELDS", "film_part", "joined", "pieces"]
 
 TOGETHER = 2
 """Phases of a piece, so that little is lost when a run is stopped."""
@@ -43,13 +43,15 @@ _MORE = {
 }
 """Axes of values of a contact that are no single numbers."""
 
-_FIELDS = {
+FIELDS = {
     "field_pressure": "pressure",
     "field_asperity_pressure": "asperity_pressure",
     "field_dry_pressure": "dry_pressure",
     "field_film": "gap",
     "field_heights": "heights",
 }
+"""Fields that are kept of a contact, and what they are of a film over a patch."""
+
 _WARM_FIELDS = {
     "field_rise": "film",
     "field_surface_rise_1": "surface_a",
@@ -58,7 +60,7 @@ _WARM_FIELDS = {
 """Fields of films that are solved with their heat."""
 
 _KEPT = {
-    **dict.fromkeys((*_FIELDS, *_WARM_FIELDS), ("kept", "y", "x")),
+    **dict.fromkeys((*FIELDS, *_WARM_FIELDS), ("kept", "y", "x")),
     "kept_x": ("kept", "x"),
     "kept_y": ("kept", "y"),
     "kept_at": ("kept", "axis"),
@@ -335,7 +337,7 @@ def _kept(
             found = films[lanes[tuple(at[k])]]
             assert isinstance(found, PatchFilms)
             solved_film, heat = found.film, found.film.heat
-            for name, own in (*_FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
+            for name, own in (*FIELDS.items(), ("kept_x", "x"), ("kept_y", "y")):
                 empty[name][k] = getattr(solved_film, own)
             for name, own in _WARM_FIELDS.items() if heat is not None else ():
                 empty[name][k] = getattr(heat, own)
@@ -345,7 +347,7 @@ def _kept(
 def _kept_fields(built: Built) -> tuple[str, ...]:
     """Names of the fields that are kept."""
     cold = film_model_of(built).thermal == ISOTHERMAL
-    return (*_FIELDS,) if cold else (*_FIELDS, *_WARM_FIELDS)
+    return (*FIELDS,) if cold else (*FIELDS, *_WARM_FIELDS)
 
 
 def _fields(

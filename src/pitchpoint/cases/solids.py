@@ -215,15 +215,12 @@ def _in_use(record: SolidRecord, key: str, temperature: float) -> SolidInUse:
         raise error.at(key=f"materials.{key}") from None
 
 
-_BY_VALUE = ("young", "poisson", "density", "hardness", "conductivity", "specific_heat")
-
-
 def _record(given: SolidValues | str, key: str, document: Document) -> SolidRecord:
     if isinstance(given, str):
         return solids.find(given)
     values: dict[str, Any] = {
         name: datum(value, f"materials.{key}.{name}", document)
-        for name in _BY_VALUE
+        for name in SolidValues.model_fields
         if (value := getattr(given, name)) is not None
     }
     return SolidRecord(name=f"material of gear {key[-1]}", title=BY_VALUE, **values)

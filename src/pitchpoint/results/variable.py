@@ -17,6 +17,7 @@ __all__ = [
     "pressure",
     "speed",
     "stiffness",
+    "temperature_rise",
     "torque",
     "torsional_stiffness",
 ]
@@ -70,6 +71,11 @@ def stiffness(long_name: str, symbol: str) -> Variable:
 def torsional_stiffness(long_name: str, symbol: str) -> Variable:
     """A stiffness against rotation [N m/rad], shown in kN m/rad."""
     return Variable(long_name, symbol, "N m/rad", "kN m/rad", "torsional stiffness")
+
+
+def temperature_rise(long_name: str, symbol: str) -> Variable:
+    """A difference of temperatures [K]."""
+    return Variable(long_name, symbol, "K", "K", "temperature difference")
 
 
 def pressure(long_name: str, symbol: str) -> Variable:

@@ -16,6 +16,7 @@ from pitchpoint.results.variable import (
     pressure,
     speed,
     stiffness,
+    temperature_rise,
     torque,
     torsional_stiffness,
 )
@@ -102,20 +103,10 @@ VARIABLES: dict[str, Variable] = {
     "field_asperity_pressure": pressure("pressure that asperities carry", "p_a"),
     "field_dry_pressure": pressure("pressure without oil", "p_d"),
     "field_film": deviation("film", "h"),
-    "field_rise": Variable(
-        "mean temperature of the film above its inlet",
-        "ΔT_film",
-        "K",
-        "K",
-        "temperature difference",
-    ),
+    "field_rise": temperature_rise("mean temperature of the film above its inlet", "ΔT_film"),
     **{
-        f"field_surface_rise_{body}": Variable(
-            f"temperature of the surface of body {body} above the inlet of the film",
-            f"ΔT_{body}",
-            "K",
-            "K",
-            "temperature difference",
+        f"field_surface_rise_{body}": temperature_rise(
+            f"temperature of the surface of body {body} above the inlet of the film", f"ΔT_{body}"
         )
         for body in (1, 2)
     },
@@ -125,20 +116,10 @@ VARIABLES: dict[str, Variable] = {
     "coarse_largest_pressure": pressure("largest pressure on a coarser grid", "p_max"),
     "coarse_near_ends": pressure("pressure near the ends on a coarser grid", "p_e"),
     "coarse_friction": Variable("friction coefficient on a coarser grid", "μ", "1"),
-    "film_rise": Variable(
-        "largest temperature of the film above its inlet, solved",
-        "ΔT_film",
-        "K",
-        "K",
-        "temperature difference",
+    "film_rise": temperature_rise(
+        "largest temperature of the film above its inlet, solved", "ΔT_film"
     ),
-    "flash_rise": Variable(
-        "flash temperature of the warmer surface, solved",
-        "ΔT_flash",
-        "K",
-        "K",
-        "temperature difference",
-    ),
+    "flash_rise": temperature_rise("flash temperature of the warmer surface, solved", "ΔT_flash"),
     "film_friction": Variable("friction coefficient of the film, solved", "μ_EHL", "1"),
     "boundary_part": Variable("friction coefficient by asperities that touch, solved", "μ_b", "1"),
     "rolling_resistance": force("rolling resistance of each surface, solved", "F_roll"),
@@ -160,20 +141,10 @@ VARIABLES: dict[str, Variable] = {
     "profile_pressure": pressure("pressure across the contact", "p"),
     "profile_asperity_pressure": pressure("pressure that asperities carry", "p_a"),
     "profile_half_width": length("half-width of the dry contact", "b"),
-    "profile_rise": Variable(
-        "mean temperature of the film above its inlet",
-        "ΔT_film",
-        "K",
-        "K",
-        "temperature difference",
-    ),
+    "profile_rise": temperature_rise("mean temperature of the film above its inlet", "ΔT_film"),
     **{
-        f"profile_surface_rise_{body}": Variable(
-            f"temperature of the surface of body {body} above the inlet of the film",
-            f"ΔT_{body}",
-            "K",
-            "K",
-            "temperature difference",
+        f"profile_surface_rise_{body}": temperature_rise(
+            f"temperature of the surface of body {body} above the inlet of the film", f"ΔT_{body}"
         )
         for body in (1, 2)
     },
@@ -185,19 +156,11 @@ VARIABLES: dict[str, Variable] = {
     "smallest_lambda": Variable("smallest film over composite Rq", "Λ_min", "1"),
     "largest_film_pressure": pressure("largest pressure of the films", "p_max"),
     "largest_asperity_share": percent("largest part of a contact's load on asperities", "L_a max"),
-    "largest_film_rise": Variable(
-        "largest temperature of the films above their inlet",
-        "ΔT_film max",
-        "K",
-        "K",
-        "temperature difference",
+    "largest_film_rise": temperature_rise(
+        "largest temperature of the films above their inlet", "ΔT_film max"
     ),
-    "largest_flash_rise": Variable(
-        "largest flash temperature of the surfaces",
-        "ΔT_flash max",
-        "K",
-        "K",
-        "temperature difference",
+    "largest_flash_rise": temperature_rise(
+        "largest flash temperature of the surfaces", "ΔT_flash max"
     ),
     "mean_film_friction": Variable("mean friction coefficient by the films", "μ_EHL mean", "1"),
     "mean_boundary_part": Variable("of it by asperities that touch", "μ_b mean", "1"),
@@ -220,6 +183,7 @@ VARIABLES: dict[str, Variable] = {
     "steady_smallest_central_film": deviation(
         "smallest film in the middle of a contact if all were steady", "h_c0 min"
     ),
+    "film_change": percent("film in the middle with squeeze less the steady one", "Δh_c/h_c"),
     "squeeze_change": percent(
         "film in the middle with squeeze less the steady one, where it is largest", "Δh_c/h_c"
     ),

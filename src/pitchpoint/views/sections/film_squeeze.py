@@ -15,7 +15,6 @@ from pitchpoint.views.figures import (
     Figure,
     Key,
     Panel,
-    Trace,
     display,
     layout,
     plain,
@@ -136,16 +135,12 @@ _PRESSURES = {
 
 def _courses(name: str, data: xr.Dataset) -> Panel:
     """Films, pressures, load and entrainment over the engagement."""
-    film, steady = data["central_film"].values, data["steady_central_film"].values
-    apart = (film > 0.0) & (steady > 0.0)
-    change = np.where(apart, film, np.nan) / np.where(apart, steady, 1.0) - 1.0
-    key = Key("film in the middle", INK)
-    changes = [(key, _line(data, key, "squeeze_change", change))]
+    change = {"film_change": Key("film in the middle", INK)}
     return Panel(
         "",
         [
             _figure(f"{name}_films", "Film over the engagement", data, _FILMS),
-            _drawn(f"{name}_change", "Film with squeeze less the steady one", data, changes),
+            _figure(f"{name}_change", "Film with squeeze less the steady one", data, change),
             _figure(f"{name}_pressures", "Pressure over the engagement", data, _PRESSURES),
             _figure(f"{name}_load", "Load of the pair", data, {"load": Key("load", INK)}),
             _figure(
@@ -159,27 +154,15 @@ def _courses(name: str, data: xr.Dataset) -> Panel:
 
 
 def _figure(name: str, title: str, data: xr.Dataset, keys: dict[str, Key]) -> Figure:
-    lines = [(key, _line(data, key, one, data[one].values)) for one, key in keys.items()]
-    return _drawn(name, title, data, lines, next(iter(keys)))
-
-
-def _line(data: xr.Dataset, key: Key, variable: str, values: np.ndarray) -> Trace:
-    x, _ = _abscissa(data)
-    return plain(key, x, display(variable, values, data), show.unit_of(variable, data))
-
-
-def _drawn(
-    name: str,
-    title: str,
-    data: xr.Dataset,
-    lines: list[tuple[Key, Trace]],
-    variable: str = "squeeze_change",
-) -> Figure:
-    _, axis = _abscissa(data)
-    zero = {} if variable == "squeeze_change" else {"yaxis": {"rangemode": "tozero"}}
-    look = layout(axis, short_axis(variable, data), **zero)
-    keys = tuple(key for key, _ in lines)
-    return Figure(name, title, [trace for _, trace in lines], look, "", keys, NONE)
+    x, axis = _abscissa(data)
+    first = next(iter(keys))
+    lines = [
+        plain(key, x, display(one, data[one].values, data), show.unit_of(one, data))
+        for one, key in keys.items()
+    ]
+    zero = {} if first == "film_change" else {"yaxis": {"rangemode": "tozero"}}
+    look = layout(axis, short_axis(first, data), **zero)
+    return Figure(name, title, lines, look, "", tuple(keys.values()), NONE)
 
 
 # ---- words

@@ -49,6 +49,7 @@ __all__ = [
     "finer",
     "shown_film",
     "solve",
+    "touches",
 ]
 
 FINER_TIME: Final = 2.0
@@ -151,6 +152,14 @@ def dry_start(problem: Problem, bed: float = BED) -> tuple[NDArray[np.float64], 
     pressure = np.array(dry.pressure)
     pressure[:, [0, -1]] = 0.0
     return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
+
+
+def touches(problem: Problem, state: State) -> bool:
+    """Whether smooth surfaces carry load without oil, as where a grid is too coarse for their film."""
+    if float(problem.flow.texture.rq) > 0.0:
+        return False
+    gap = _gap(problem, array(state.pressure), array(state.level))
+    return bool(np.any(np.asarray(problem.flow.asperity_pressure(gap)) > 0.0))
 
 
 def dry_under(problem: Problem, part: float = 1.0) -> DryContact:
@@ -413,10 +422,7 @@ class _Solver:
     def held(self, found: Found) -> Found | None:
         """Solution whose tips hold their film, where smooth surfaces touch in that which was found."""
         problem, state = found.problem, found.state
-        if float(problem.flow.texture.rq) > 0.0:
-            return None
-        gap = _gap(problem, array(state.pressure), array(state.level))
-        if not np.any(np.asarray(problem.flow.asperity_pressure(gap)) > 0.0):
+        if not touches(problem, state):
             return None
         limited: Problem = eqx.tree_at(lambda one: one.steep, problem, array(1.0))
         self.left, start = MOST_ON_GRID, (state.pressure, state.level)
