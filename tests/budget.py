@@ -3,7 +3,8 @@
 Programs are the first measure: JAX asks for the same number of them on every machine, and each costs
 a trace, a lowering and a compilation. A test that exceeds a budget should share a program with
 another (the same static structure, padded lanes, a fixture of the session) before a budget is raised
-here. Seconds are of the processor, with room for a machine that is half as fast and shared.
+here. Seconds are of the processor. They differ threefold between a quiet machine and a shared one, so
+they are told and fail nothing.
 """
 
 import os
@@ -11,13 +12,13 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-PROGRAMS = 9900
+PROGRAMS = 10000
 """Programs of the whole suite that JAX is asked for, found in the cache on disk or not."""
 
 PROGRAMS_OF_A_FILE = 480
 
-SECONDS = 3400.0
-"""Processor time of the whole suite with an empty cache [s]; a quiet machine needs a third."""
+SECONDS = 2400.0
+"""Processor time of the whole suite with an empty cache on a quiet machine [s]."""
 
 SECONDS_OF_A_FILE = 250.0
 
@@ -84,19 +85,25 @@ def order(file: str) -> int:
 
 
 def exceeded(spent: Mapping[str, Spent]) -> list[str]:
-    """A sentence for each budget that the files have exceeded."""
+    """A sentence for each budget of programs that the files have exceeded."""
     return [
-        *_beyond("the suite", sum(spent.values(), Spent()), Spent(PROGRAMS, SECONDS)),
-        *(
-            told
-            for file, own in sorted(spent.items())
-            for told in _beyond(file, own, Spent(PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE))
-        ),
+        f"{name} asks for {own.programs} programs, {most.programs} are its budget"
+        for name, own, most in _judged(spent)
+        if own.programs > most.programs
     ]
 
 
-def _beyond(name: str, own: Spent, most: Spent) -> Iterable[str]:
-    if own.programs > most.programs:
-        yield f"{name} asks for {own.programs} programs, {most.programs} are its budget"
-    if own.seconds > most.seconds:
-        yield f"{name} takes {own.seconds:.0f} s of the processor, {most.seconds:.0f} s are its budget"
+def slow(spent: Mapping[str, Spent]) -> list[str]:
+    """A sentence for each file that takes longer than a quiet machine should need."""
+    return [
+        f"{name} takes {own.seconds:.0f} s of the processor, a quiet machine needs {most.seconds:.0f} s"
+        for name, own, most in _judged(spent)
+        if own.seconds > most.seconds
+    ]
+
+
+def _judged(spent: Mapping[str, Spent]) -> Iterable[tuple[str, Spent, Spent]]:
+    """The suite and each file: its name, what it spent, and its budget."""
+    yield "the suite", sum(spent.values(), Spent()), Spent(PROGRAMS, SECONDS)
+    for file, own in sorted(spent.items()):
+        yield file, own, Spent(PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE)

@@ -1,4 +1,4 @@
-"""Compiles quickly, gives compiled programs back, and holds the suite to its budget."""
+"""Compiles quickly, gives compiled programs back, and holds the suite to its budget of programs."""
 
 import gc
 import os
@@ -21,7 +21,7 @@ os.environ.setdefault("JAX_TRACEBACK_IN_LOCATIONS_LIMIT", "0")
 
 import jax  # noqa: E402
 import pytest  # noqa: E402
-from budget import Meter, Spent, exceeded, order  # noqa: E402
+from budget import Meter, Spent, exceeded, order, slow  # noqa: E402
 from shapes import install  # noqa: E402
 
 install()  # before anything of the package is imported
@@ -92,3 +92,5 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     )
     for told in exceeded(SPENT):
         terminalreporter.write_line(f"over budget: {told}; see tests/budget.py", red=True)
+    for told in slow(SPENT):
+        terminalreporter.write_line(f"slow here: {told}", yellow=True)
