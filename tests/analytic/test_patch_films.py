@@ -98,6 +98,21 @@ def test_a_ball_has_the_film_of_hamrock_and_dowson():
     assert found.film.central_film == pytest.approx(float(law), rel=0.05)
 
 
+def moderate_ball(load: float, viscosity: float, ratio: float = 1.0) -> PatchContact:
+    """A ball or barrel that rolls, by its load M and viscosity L, with Rx/Ry of `ratio`."""
+    speed = (viscosity / (2.2e-8 * MODULUS)) ** 4
+    own = 0.5 * speed * MODULUS * 0.01 / 0.04
+    return elliptic_contact(
+        load=load * speed**0.75 * MODULUS * 0.01**2,
+        radius=0.01,
+        transverse_radius=0.01 / ratio,
+        modulus=MODULUS,
+        speed_a=own,
+        speed_b=own,
+        fluid=OIL,
+    )
+
+
 def nijenbanning_1994(load: float, viscosity: float, ratio: float) -> float:
     """Central film over U^1/2 of Nijenbanning, Venner and Moes (1994), for Rx/Ry of `ratio`."""
     shape = 1.0 + 0.006 * log(ratio) + 0.63 * ratio ** (4 / 7)
@@ -121,21 +136,21 @@ def nijenbanning_1994(load: float, viscosity: float, ratio: float) -> float:
 )
 def test_ellipses_have_the_film_of_nijenbanning_venner_and_moes(load, viscosity, ratio):
     """By their load M and viscosity L; with an oil that cannot be compressed films are 10 to 20 % thicker."""
+    found = coarse(moderate_ball(load, viscosity, ratio))
     speed = (viscosity / (2.2e-8 * MODULUS)) ** 4  # U of the sum of both speeds
-    own = 0.5 * speed * MODULUS * 0.01 / 0.04
-    found = coarse(
-        elliptic_contact(
-            load=load * speed**0.75 * MODULUS * 0.01**2,
-            radius=0.01,
-            transverse_radius=0.01 / ratio,
-            modulus=MODULUS,
-            speed_a=own,
-            speed_b=own,
-            fluid=OIL,
-        )
-    )
     film = float(found.film.central_film) / (0.01 * speed**0.5)
     assert film == pytest.approx(nijenbanning_1994(load, viscosity, ratio), rel=0.08)
+
+
+def test_the_thinnest_film_converges_with_more_than_second_order():
+    """Film of a ball on grids that halve; the film in the middle follows with the second order from 65 on."""
+    contact = moderate_ball(20.0, 5.0)
+    films = [
+        solve_patch(contact, nodes=nodes, cells=nodes - 1).film.minimum_film
+        for nodes in (33, 65, 129)
+    ]
+    coarse_change, fine_change = abs(np.diff(films))
+    assert np.log2(coarse_change / fine_change) > 2.0
 
 
 def test_load_and_energy_are_in_balance():
