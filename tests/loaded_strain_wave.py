@@ -4,7 +4,7 @@ import equinox as eqx
 import numpy as np
 
 from pitchpoint._jax import jnp
-from pitchpoint.efficiency.quasi_static import Design, _contacts, coupling
+from pitchpoint.efficiency.quasi_static import Design, contacts_at, coupling
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wound_up
@@ -25,7 +25,7 @@ def design(mesh):
 def passing(mesh, phases):
     """Contacts and what couples them, in parts of so many phases; the last ones begin anew."""
     rows = np.resize(phases, (-(-len(phases) // NODES), NODES))
-    parts = [_contacts(mesh, jnp.asarray(row)) for row in rows]
+    parts = [contacts_at(mesh, jnp.asarray(row)) for row in rows]
     return [(part, coupling(design(mesh), part)) for part in parts]
 
 

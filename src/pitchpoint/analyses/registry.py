@@ -19,6 +19,7 @@ from pitchpoint.analyses.running import RUNNING
 from pitchpoint.analyses.studies import STUDIES
 from pitchpoint.analyses.teeth import TEETH
 from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.analyses.wear import WEAR
 from pitchpoint.registry import Registry
 from pitchpoint.results.variables import VARIABLES
 
@@ -33,6 +34,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     FILM,
     FINITE_FILM,
     FILM_SQUEEZE,
+    WEAR,
     TORSION,
     KINEMATIC_ERROR,
     JOINT,

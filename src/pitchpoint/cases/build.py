@@ -26,6 +26,7 @@ from pitchpoint.cases.schema import (
     Surface,
     bearings_of,
 )
+from pitchpoint.cases.wear import check_wear
 from pitchpoint.cases.solids import (
     SolidInUse,
     datum,
@@ -376,6 +377,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         if case.film is not None:
             film_model(case.film, [one.record for one in used], None)
             height_maps(case.film)
+        check_wear(case, mesh, used)
     except InputError as error:
         raise error.at(file=document.name) from None
     design = Design(

@@ -100,6 +100,17 @@ FILM_MOMENTS = Quantity("dimensionless", 2, 400, whole=True)
 MAP_STEP = Quantity("length", 0.0, 0.1, "um", open_low=True)
 MAP_UNIT = Quantity("length", 0.0, 1.0, "um", open_low=True)
 MAP_PLACE = Quantity("length", -1.0, 1.0, "mm")
+WEAR_TURNS = Quantity("dimensionless", 0.0, 1e15, open_low=True)
+WEAR_COEFFICIENT = Quantity("dimensionless", 0.0, 1.0)
+WEAR_RATE = Quantity("specific wear rate", 0.0, 1e-6, "mm3/(N m)")
+WEAR_DEPTH = Quantity("length", 1e-8, 0.1, "um")
+WEAR_CELLS = Quantity("dimensionless", 8, 400, whole=True)
+WEAR_PHASES = Quantity("dimensionless", 4, 400, whole=True)
+WEAR_ERROR = Quantity("dimensionless", 1e-8, 0.1)
+WEAR_PRESSURE = Quantity("dimensionless", 1.0, 1000.0, open_low=True)
+ADSORPTION_HEAT = Quantity("molar energy", 0.0, 1e6, "kJ/mol")
+MOLECULE = Quantity("length", 1e-11, 1e-7, "nm")
+VIBRATION = Quantity("time", 1e-15, 1e-6, "s")
 INSTANTS = Quantity("dimensionless", 2, 20_000, whole=True)
 ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 
@@ -210,6 +221,12 @@ def _heatings() -> list[str]:
     from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 
     return list(INLET_HEATING)
+
+
+def _wear_laws() -> list[str]:
+    from pitchpoint.wear.laws import WEAR_LAWS
+
+    return list(WEAR_LAWS)
 
 
 def _viscosities() -> list[str]:
@@ -1034,6 +1051,31 @@ Formulas = Annotated[
 _SOURCE_OF = {TorusFormulas: "liu_xiong_2017", ZoneFilms: "xu_2021"}
 """Bibliography entries of the papers whose equations take inputs of their own."""
 
+class WearTable(Table):
+    """Wear of the flanks at the operating point, over the life of the drive.
+
+    `cycles` are turns of the driver. A `profile` that is "updated" gives worn flanks back to load sharing,
+    pressure and film; one that is "kept" goes on as with new ones. The march ends before at a limit of the
+    depth, or of the largest pressure over that at the start. `cells` lie along each flank, `phases` are those
+    between two events of the mesh cycle, and `tolerance` is the error of a step over the largest depth.
+    """
+
+    law: Annotated[str, BeforeValidator(named(_wear_laws, "wear law"))]
+    cycles: Annotated[float, WEAR_TURNS]
+    coefficient: Annotated[tuple[float, float], Pair(WEAR_COEFFICIENT)] | None = None
+    hardness: Annotated[tuple[float, float], Pair(HARDNESS)] | None = None
+    rate: Annotated[tuple[float, float], Pair(WEAR_RATE)] | None = None
+    adsorption_heat: Annotated[float, ADSORPTION_HEAT] | None = None
+    molecule_diameter: Annotated[float, MOLECULE] | None = None
+    vibration_period: Annotated[float, VIBRATION] | None = None
+    profile: Literal["updated", "kept"] = "updated"
+    depth_limit: Annotated[float, WEAR_DEPTH] | None = None
+    pressure_limit: Annotated[float, WEAR_PRESSURE] | None = None
+    cells: Annotated[float, WEAR_CELLS] = 40.0
+    phases: Annotated[float, WEAR_PHASES] = 24.0
+    tolerance: Annotated[float, WEAR_ERROR] = 3e-4
+
+
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
 Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
@@ -1055,6 +1097,7 @@ class Case(Table):
     losses: Losses = Field(default_factory=dict)
     dynamics: Dynamics | None = None
     film: FilmTable | None = None
+    wear: WearTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
     formulas: Formulas | None = None

@@ -2,7 +2,7 @@
 
 import abc
 from dataclasses import replace
-from typing import Self
+from typing import ClassVar, Self
 
 import equinox as eqx
 from jaxtyping import Array, Float, Int
@@ -20,6 +20,7 @@ __all__ = [
     "Surfaces",
     "Waves",
     "missing",
+    "other_side",
     "with_surfaces",
 ]
 
@@ -61,7 +62,13 @@ class Flank(eqx.Module):
 
 
 class Surface(eqx.Module):
-    """One way in which flanks of a member differ from their design; those of a member add up."""
+    """One way in which flanks of a member differ from their design; those of a member add up.
+
+    Attributes:
+        both: of the class; True if the flanks on the other side of the teeth differ likewise.
+    """
+
+    both: ClassVar[bool] = True
 
     @abc.abstractmethod
     def missing(self, spot: Spot) -> Lanes:
@@ -127,6 +134,15 @@ def missing(surfaces: tuple[Surface, ...], spot: Spot) -> Lanes:
         spot: where on it.
     """
     return sum((one.missing(spot) for one in surfaces), jnp.zeros_like(spot.flank))
+
+
+def other_side(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
+    """Those that the flanks on the other side of the teeth have too.
+
+    Args:
+        surfaces: of a member.
+    """
+    return tuple(one for one in surfaces if one.both)
 
 
 def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spot]) -> Contacts:

@@ -39,6 +39,7 @@ __all__ = [
     "Operation",
     "State",
     "balanced",
+    "contacts_at",
     "coupling",
     "cycle",
     "cycle_nodes",
@@ -46,6 +47,7 @@ __all__ = [
     "engagement",
     "engagement_alone",
     "extremes",
+    "shares_at",
     "state",
 ]
 
@@ -299,18 +301,26 @@ def engagement(
     """
     if like is None:
         phase, weight = _nodes(design.mesh, models.sharing, nodes)
-        contacts = _contacts(design.mesh, phase)
+        contacts = contacts_at(design.mesh, phase)
         body = coupling(design, contacts) if models.sharing.by_stiffness else None
     else:
         phase, weight, contacts, body = like.phase, like.weight, like.contacts, like.body
-    share = _share(design, contacts, load, models, body)
+    share = shares_at(design, contacts, load, models, body)
     return Engagement(phase, weight, contacts, share, body, nodes)
 
 
-def _share(
+def shares_at(
     design: Design, contacts: Contacts, load: Each, models: Models, body: Coupling | None
 ) -> Lanes:
-    """Share of the load on each slice; that from stiffness by the program of the wind-up."""
+    """Share of the load on each slice; that from stiffness by the program of the wind-up.
+
+    Args:
+        design: mesh and materials.
+        contacts: of the mesh.
+        load: that the driven coordinate carries [N m or N].
+        models: sharing and compliance.
+        body: compliance of what is under the teeth, where it couples them.
+    """
     if models.sharing.function is from_stiffness:
         given = design.mesh, design.solids, models.compliance, jnp.asarray(load, float)
         return wound_up(*given, contacts, body).share
@@ -336,7 +346,8 @@ def _nodes(mesh: Mesh, sharing: LoadSharing, nodes: int) -> tuple[Array, Array]:
 
 
 @program
-def _contacts(mesh: Mesh, phase: Each) -> Contacts:
+def contacts_at(mesh: Mesh, phase: Each) -> Contacts:
+    """Contacts of a mesh at any phases [periods]; one program for all of a structure."""
     return mesh.contacts(phase)
 
 

@@ -2,7 +2,7 @@
 
 import abc
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import inf
 from typing import ClassVar, Literal, Self
 
@@ -12,7 +12,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
-from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
+from pitchpoint.contact.surface import Spot, Surface, Surfaces, with_surfaces
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.on_balls import Body
@@ -303,6 +303,24 @@ class Mesh(eqx.Module):
     def balls_elsewhere(self) -> "Mesh | None":
         """The same mesh while the balls under its teeth stand elsewhere; None without balls."""
         return None
+
+    @property
+    @abc.abstractmethod
+    def flanks_in_turn(self) -> Float[Array, "2"]:
+        """Flanks of each member among which the engagements of one period go round.
+
+        A flank takes part, in the mean, in one period over their number. Not a number where a member has no
+        such number.
+        """
+
+    def worn(self, wear: tuple[Surface, Surface]) -> Self:
+        """The same drive with worn flanks.
+
+        Args:
+            wear: of both members, beside the surfaces that they have.
+        """
+        first, second = ((*own, one) for own, one in zip(self.surfaces, wear, strict=True))
+        return replace(self, surfaces=(first, second))
 
     @abc.abstractmethod
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:

@@ -119,6 +119,7 @@ class Panel:
 
     Attributes:
         slides: True if the choices are places in order, for a slider in place of a menu.
+        at: number of the choice that the figures show at first.
     """
 
     title: str
@@ -128,6 +129,7 @@ class Panel:
     note: str = ""
     menu: str = ""
     slides: bool = False
+    at: int = 0
     block: ClassVar[str] = "panel"
 
 

@@ -27,6 +27,7 @@ from pitchpoint.views.sections.studies import STUDIES
 from pitchpoint.views.sections.teeth import TEETH
 from pitchpoint.views.sections.torsion import TORSION
 from pitchpoint.views.sections.vibration import VIBRATION
+from pitchpoint.views.sections.wear import WEAR
 
 __all__ = ["SECTIONS", "in_order", "register_section"]
 
@@ -43,6 +44,7 @@ SECTIONS: Registry[Section] = Registry(
     FILM,
     FINITE_FILM,
     FILM_SQUEEZE,
+    WEAR,
     TORSION,
     KINEMATIC_ERROR,
     JOINT,

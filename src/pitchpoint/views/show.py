@@ -29,6 +29,7 @@ _UNITS = {
     "degC": "°C",
     "deg": "°",
     "mm2/s": "mm²/s",
+    "mm3": "mm³",
     "kg/m3": "kg/m³",
     "kg/m3/K": "kg/(m³ K)",
     "N m": "N\u00a0m",

@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.rigs.rig import Rig
 
@@ -24,6 +25,7 @@ class BallOnDisc(Rig):
         track_radius: of the track on the disc [m].
         slide_roll_ratio: speed of the disc's surface less that of the ball's, over their mean; 2 for a
             ball at rest, above -2 since the disc drives.
+        surfaces: how disc and ball differ from their design.
     """
 
     shape: ClassVar[Shape] = "ellipse"
@@ -31,6 +33,7 @@ class BallOnDisc(Rig):
     radius: Float[Array, "2"]
     track_radius: Float[Array, ""]
     slide_roll_ratio: Float[Array, ""]
+    surfaces: Surfaces = ((), ())
 
     @property
     def motion(self) -> Float[Array, "3"]:

@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
-from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces
+from pitchpoint.contact.surface import Flank, Offset, Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.contact_lines import (
     PathOfContact,
@@ -513,9 +513,14 @@ class InvolutePair(Mesh):
     @property
     def other_flanks(self) -> Self:
         """The same gears on their other flanks, which lie back by the backlash."""
-        first, second = self.surfaces
+        first, second = (other_side(own) for own in self.surfaces)
         surfaces = ((*first, Offset(self.normal_backlash)), second)
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
+
+    @property
+    def flanks_in_turn(self) -> Float[Array, "2"]:
+        """Numbers of teeth."""
+        return jnp.abs(self.teeth)
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the line of action, against which both gears turn; teeth follow each other."""

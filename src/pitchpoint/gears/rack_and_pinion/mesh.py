@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.contact.surface import Offset, Spot, Surfaces
+from pitchpoint.contact.surface import Offset, Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.contact_lines import PathOfContact
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
@@ -279,9 +279,14 @@ class RackAndPinion(Mesh):
     @property
     def other_flanks(self) -> Self:
         """The same teeth on their other flanks, which lie back by the backlash."""
-        first, second = self.surfaces
+        first, second = (other_side(own) for own in self.surfaces)
         surfaces = ((*first, Offset(self.normal_backlash)), second)
         return dataclasses.replace(self, right_flank=~self.right_flank, surfaces=surfaces)
+
+    @property
+    def flanks_in_turn(self) -> Float[Array, "2"]:
+        """Teeth of the pinion; a rack has no number of them here."""
+        return jnp.stack([self.pinion.teeth, jnp.asarray(jnp.nan)])
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """The line of action stands still; the pinion turns on against it, the rack travels past it."""

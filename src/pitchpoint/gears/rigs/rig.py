@@ -65,6 +65,12 @@ class Rig(Mesh):
         """Nothing enters or leaves."""
         return jnp.zeros(1)
 
+    @property
+    def flanks_in_turn(self) -> Float[Array, "2"]:
+        """Ways that a body rolls in one period of body 0, over its circumference."""
+        rates = self.motion[:2]
+        return jnp.abs(rates[0] / jnp.where(rates == 0.0, jnp.nan, rates))
+
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Both bodies turn on under the contact."""
         lanes = contacts.path.shape

@@ -4,6 +4,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Surfaces
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.rigs.rig import Rig
 
@@ -17,11 +18,13 @@ class TwinDisc(Rig):
         radii: of both discs [m].
         length: of the contact line [m].
         speed_ratio: surface speed of disc 1 over that of disc 0; 1 rolls without sliding.
+        surfaces: how the discs differ from cylinders.
     """
 
     radii: Float[Array, "2"]
     length: Float[Array, ""]
     speed_ratio: Float[Array, ""]
+    surfaces: Surfaces = ((), ())
 
     @property
     def motion(self) -> Float[Array, "3"]:

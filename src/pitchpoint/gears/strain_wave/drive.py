@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float, Int, Shaped
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along
-from pitchpoint.contact.surface import Spot
+from pitchpoint.contact.surface import Spot, Surfaces, other_side
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
@@ -149,6 +149,7 @@ class StrainWave(Mesh):
         odd: True if the flexspline has an odd number of teeth: zones are half a pitch apart; static.
         lanes: places for pairs in each of both zones, see `lanes_for`; those beyond `held` stay empty;
             static.
+        surfaces: how the flanks of flexspline and circular spline differ from their design.
     """
 
     toothed: ClassVar[bool] = True
@@ -177,6 +178,7 @@ class StrainWave(Mesh):
     conjugate: bool = eqx.field(static=True)
     odd: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)
+    surfaces: Surfaces = ((), ())
 
     def completed(self) -> Self:
         """The drive with its groove as it follows from flank and motion, and what follows from both.
@@ -480,6 +482,17 @@ class StrainWave(Mesh):
             radial=-loads.radial,
             height=hypot(contacts.point[0], contacts.point[1]) - ring.radius,
         )
+
+    @property
+    def flanks_in_turn(self) -> Float[Array, "2"]:
+        """Numbers of teeth of both splines."""
+        return self.teeth
+
+    @property
+    def other_flanks(self) -> Self:
+        """The same drive but for what the flanks that carry alone have."""
+        first, second = (other_side(own) for own in self.surfaces)
+        return dataclasses.replace(self, surfaces=(first, second))
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """Angles are those of the teeth, which stand as they are while they touch.

@@ -1,0 +1,66 @@
+"""Wear of the flanks over the life of a drive; the march is imported when a case asks for it."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.figures import numbers
+from pitchpoint.cases.build import Built
+
+__all__ = ["WEAR"]
+
+_MAIN = (
+    "final_cycles",
+    "final_depth",
+    "life_hours",
+    "run_in_cycles",
+    "severe_cycles",
+    "pressure_change",
+    "wear_steps",
+)
+_EACH = ("deepest_wear", "fastest_wear", "worn_volume", "wear_error")
+
+
+def _unasked(built: Built) -> str | None:
+    """Why a case has no wear: nobody asks for it."""
+    return Unasked("the case has no [wear]") if built.case.wear is None else None
+
+
+def _compute(built: Built, piece: Piece, progress: Progress) -> xr.Dataset:
+    from pitchpoint.analyses.wear_course import wear_part
+
+    return wear_part(built, piece, progress)
+
+
+def _further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+    from pitchpoint.analyses.wear_course import further
+
+    return further(built, last, progress)
+
+
+def _joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    from pitchpoint.analyses.wear_course import joined
+
+    return joined(built, parts)
+
+
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("wear")
+    if data is None:
+        return {"wear": {}}
+    at_end = {name: numbers(data[name].values[-1]) for name in _EACH}
+    return {"wear": {name: numbers(data[name].values) for name in _MAIN} | at_end}
+
+
+WEAR = Analysis(
+    name="wear",
+    title="wear",
+    lacks=_unasked,
+    compute=_compute,
+    joined=_joined,
+    onward=_further,
+    main=_MAIN,
+    figures=_figures,
+)

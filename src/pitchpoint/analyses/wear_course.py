@@ -1,0 +1,256 @@
+"""Wear of the flanks over the life of a drive: the march, a step a piece, and the whole course."""
+
+import json
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint._jax import array
+from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.schema import WearTable
+from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.efficiency.quasi_static import contacts_at
+from pitchpoint.errors import InputError
+from pitchpoint.gears.coordinates import Coordinate
+from pitchpoint.results.store import dataset
+from pitchpoint.status import Code
+from pitchpoint.status import told as told_of
+from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
+from pitchpoint.wear.march import End, Rate, Reached, after
+from pitchpoint.wear.march import as_new as unworn
+from pitchpoint.wear.stages import run_in_end, severe_start
+
+__all__ = ["asked", "further", "joined", "wear_part"]
+
+HOLDS = 0.2
+"""Depth over the module up to which flanks wear along normals that stay where they are."""
+
+
+def asked(built: Built) -> WearTable:
+    """The table of the case that asks for wear."""
+    assert built.case.wear is not None
+    return built.case.wear
+
+
+class _Course(NamedTuple):
+    """What all steps of a march share."""
+
+    start: Start
+    cells: Cells
+    model: WearModel
+
+
+@lru_cache(maxsize=2)
+def _course(built: Built) -> _Course:
+    table, design = asked(built), built.design
+    if not bool(np.all(np.isfinite(np.asarray(design.mesh.flanks_in_turn)))):
+        raise InputError(
+            "was given; a rack has no number of teeth among which wear goes round, leave the table out",
+            key="wear",
+        )
+    roughness = float(design.roughness.ra_1), float(design.roughness.ra_2)
+    model = wear_model(built.case, built.solids, roughness)
+    parts, count = int(table.phases), int(table.cells)
+    try:
+        start, cells = as_new(design, built.operation, built.models[0], parts=parts, count=count)
+    except InputError as error:
+        raise InputError(error.message, key="wear") from None
+    return _Course(start, cells, model)
+
+
+def _rate(built: Built, depth: np.ndarray) -> Rate:
+    """What a turn does to flanks that have lost so much; those of a kept profile count as new."""
+    start, cells, model = _course(built)
+    seen = depth if asked(built).profile == "updated" else np.zeros_like(depth)
+    given = built.design, built.operation, built.models[0], model, cells, start
+    found: Turn = one_turn(*given, array(seen))
+    return Rate(
+        depth=np.asarray(found.depth),
+        pressure=float(found.pressure),
+        conforming=bool(found.conforming),
+        lost=bool(found.lost),
+    )
+
+
+def wear_part(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+    """Flanks as new."""
+    progress(0, "flanks as new")
+    cells = _course(built).cells
+    return _piece(unworn(lambda depth: _rate(built, depth), (2, cells.count, cells.strips)), None)
+
+
+def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
+    """Flanks one step after those of the last piece; None at the end."""
+    before = _reached(last)
+    if before.end:
+        return None
+    limit = limit_of(asked(built))
+    part = before.turns / limit.turns
+    progress(round(1e4 * part), f"{before.turns:.3g} of {limit.turns:.3g} turns")
+    reached = after(
+        before,
+        lambda depth: _rate(built, depth),
+        limit,
+        start=float(last.attrs["first_pressure"]),
+        tolerance=asked(built).tolerance,
+    )
+    return _piece(reached, float(last.attrs["first_pressure"]))
+
+
+def _piece(reached: Reached, start: float | None) -> xr.Dataset:
+    """A step of the march as a dataset of one step."""
+    cells = ("step", "member", "cell", "strip")
+    values = {
+        "cycles": (("step",), reached.turns),
+        "worn_depth": (cells, reached.depth),
+        "depth_per_turn": (cells, reached.rate.depth),
+        "wear_error": (("step", "member"), reached.error),
+        "wear_pressure": (("step",), reached.rate.pressure),
+        "conforming": (("step",), reached.rate.conforming),
+        "next_step": (("step",), reached.step),
+    }
+    return dataset(
+        {name: (dims, np.asarray(one)[None]) for name, (dims, one) in values.items()},
+        {},
+        end=reached.end,
+        lost=int(reached.rate.lost),
+        first_pressure=reached.rate.pressure if start is None else start,
+    )
+
+
+def _reached(piece: xr.Dataset) -> Reached:
+    """The state that a piece holds, to the last bit."""
+    given = {name: piece[name].values[0] for name in piece.data_vars}
+    end: End = piece.attrs["end"]
+    rate = Rate(
+        depth=given["depth_per_turn"],
+        pressure=float(given["wear_pressure"]),
+        conforming=bool(given["conforming"]),
+        lost=bool(piece.attrs["lost"]),
+    )
+    return Reached(
+        turns=float(given["cycles"]),
+        depth=given["worn_depth"],
+        rate=rate,
+        error=given["wear_error"],
+        step=float(given["next_step"]),
+        end=end,
+    )
+
+
+# ---- the whole
+
+
+def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+    """The course of wear over the cycles."""
+    course, end = _course(built), str(parts[-1].attrs["end"])
+    names = [str(name) for name in parts[0].data_vars if name != "next_step"]
+    values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
+    flank, across = (np.asarray(one) for one in course.cells.middles)
+    dims = {name: parts[0][name].dims for name in names}
+    deepest = values["worn_depth"].max(axis=(2, 3))
+    fastest = values["depth_per_turn"].max(axis=(2, 3))
+    volumes = [np.asarray(course.cells.volumes(array(one))) for one in values["worn_depth"]]
+    added = {
+        "deepest_wear": (("step", "member"), deepest),
+        "fastest_wear": (("step", "member"), fastest),
+        "worn_volume": (("step", "member"), np.stack(volumes)),
+        "flank_place": (("member", "cell"), flank),
+        "flank_radius": (("member", "cell"), _radii(built, flank)),
+        "across_place": (("strip",), across),
+        "flank_ends": (("member", "side"), np.asarray(course.cells.flank)),
+        "across_ends": (("side",), np.asarray(course.cells.across)),
+    }
+    figures = _figures(built, values, deepest, fastest)
+    codes = np.where(values["conforming"] >= 0, int(Code.SOLVED), 0)
+    if end == "lost":
+        codes[-1] = int(Code.NOT_CONVERGED)
+    bodies = [one.body for one in built.bodies if one.member is not None]
+    return dataset(
+        {
+            **{name: (dims[name], one) for name, one in values.items()},
+            **added,
+            **{name: ((), one) for name, one in figures.items()},
+        },
+        {},
+        title="wear",
+        law=asked(built).law,
+        profile=asked(built).profile,
+        end=end,
+        members=bodies,
+        driver=built.driver,
+        tolerance=asked(built).tolerance,
+        warnings=_warnings(built, values, deepest, end),
+        solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
+    )
+
+
+def _figures(
+    built: Built, values: Mapping[str, np.ndarray], deepest: np.ndarray, fastest: np.ndarray
+) -> dict[str, Any]:
+    """What of the course is asked for first."""
+    cycles, pressure = values["cycles"], values["wear_pressure"]
+    speed = float(built.operation.speed)
+    most = int(np.argmax(deepest[-1]))
+    course = fastest[:, most]
+    moves = bool(np.all(course > 0.0))
+    return {
+        "final_cycles": cycles[-1],
+        "final_depth": deepest[-1].max(),
+        "life_hours": cycles[-1] * 2.0 * np.pi / speed,
+        "pressure_change": pressure[-1] / pressure[0] - 1.0 if pressure[0] > 0.0 else np.nan,
+        "run_in_cycles": run_in_end(cycles, course) if moves else np.nan,
+        "severe_cycles": severe_start(cycles, course) if moves else np.nan,
+        "wear_steps": cycles.size - 1,
+    }
+
+
+def _warnings(
+    built: Built, values: Mapping[str, np.ndarray], deepest: np.ndarray, end: str
+) -> list[str]:
+    told = told_of_wear(built.case, _course(built).model)
+    if end == "lost":
+        told.append(
+            "Wear: the loads of flanks that are worn so far were not found, and the march ends there."
+        )
+    if end == "no wear":
+        told.append("Wear: nothing slides under load, or the law wears nothing off: depths stay zero.")
+    if np.any(values["conforming"]):
+        first = float(values["cycles"][int(np.argmax(values["conforming"]))])
+        told.append(
+            f"Wear: from {first:.3g} turns on worn flanks conform; their contacts are taken to keep a tenth "
+            "of the relative curvature they had, and pressures there are a guess."
+        )
+    module = built.dimensions.get("module")
+    if module is not None and deepest.max() > HOLDS * float(np.max(module)):
+        told.append(
+            f"Wear: depths exceed {HOLDS:g} modules, where flanks no longer touch where they did as new; "
+            "what follows is an extrapolation."
+        )
+    return told
+
+
+def _radii(built: Built, flank: np.ndarray) -> np.ndarray:
+    """Radius of each place of a flank about the axis of its member; not a number where it travels."""
+    mesh = built.design.mesh
+    contacts: Contacts = contacts_at(mesh, _course(built).start.phase)
+    found = np.full(flank.shape, np.nan)
+    for body in mesh.coordinates:
+        if body.member is not None and body.turns:
+            found[body.member] = _radius(body, contacts, flank[body.member])
+    return found
+
+
+def _radius(body: Coordinate, contacts: Contacts, flank: np.ndarray) -> np.ndarray:
+    active = np.asarray(contacts.active)
+    point = np.asarray(contacts.point)[:, active]
+    centre, axis = np.asarray(body.place), np.asarray(body.axis)
+    away = np.linalg.norm(np.cross((point - centre[:, None]).T, axis), axis=1)
+    along = np.broadcast_to(contacts.flank[body.member], active.shape)[active]
+    order = np.argsort(along)
+    return np.interp(flank, along[order], away[order])

@@ -1,0 +1,190 @@
+"""What a case says of its wear: the law with its constants, and where the march ends."""
+
+import inspect
+from collections.abc import Mapping, Sequence
+from math import inf
+
+from jaxtyping import Array
+
+from pitchpoint._jax import array
+from pitchpoint.cases.schema import Case, WearTable
+from pitchpoint.cases.solids import SolidInUse
+from pitchpoint.contact.contacts import KINDS, TOUCH
+from pitchpoint.errors import InputError
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
+from pitchpoint.lubrication.flash_temperature import Conductor
+from pitchpoint.wear.history import WearModel
+from pitchpoint.wear.laws import WEAR_LAWS, WearLaw
+from pitchpoint.wear.march import Limit
+
+__all__ = ["ASSUMED_COEFFICIENT", "check_wear", "limit_of", "told_of_wear", "wear_model"]
+
+ASSUMED_COEFFICIENT = 1e-5
+"""Coefficient of Archard where none is given: known ones of dry metals are 1e-6 to 1e-4."""
+
+_OWN = ("coefficient", "hardness", "rate")
+_DEFECT = ("adsorption_heat", "molecule_diameter", "vibration_period")
+
+Used = Sequence[SolidInUse]
+
+
+def limit_of(table: WearTable) -> Limit:
+    """Where the march of a case ends.
+
+    Args:
+        table: as validated.
+    """
+    depth = inf if table.depth_limit is None else table.depth_limit
+    pressure = inf if table.pressure_limit is None else table.pressure_limit
+    return Limit(table.cycles, depth, pressure)
+
+
+def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
+    """InputError for a wear that these gears or materials do not have.
+
+    Args:
+        case: whole.
+        mesh: of its gears.
+        used: solids of both.
+    """
+    table = case.wear
+    if table is None:
+        return
+    law = WEAR_LAWS[table.law]
+    if law.shape not in (None, mesh.shape):
+        raise InputError(
+            f"'{law.name}' holds for {KINDS[law.shape]}, and these gears touch {TOUCH[mesh.shape]}",
+            key="wear.law",
+        )
+    wanted = inspect.signature(law.function).parameters
+    _check_asked(table, law, wanted)
+    if "asperity_share" in wanted and case.models.asperity_load == "none":
+        known = ", ".join(name for name in ASPERITY_LOAD if name != "none")
+        raise InputError(
+            f"'{law.name}' asks for the load on asperities, which 'none' leaves out; choose {known}",
+            key="models.asperity_load",
+        )
+    _own(table, law, wanted, used)
+    if table.profile == "updated" and mesh.toothed and not _feels(case):
+        raise InputError(
+            f"worn flanks share the load by their clearances, and '{case.models.load_sharing}' knows of none; "
+            'set models.load_sharing = "from_stiffness", or wear.profile = "kept"',
+            key="wear.profile",
+        )
+
+
+def _feels(case: Case) -> bool:
+    return case.models.load_sharing == "from_stiffness"
+
+
+def _check_asked(table: WearTable, law: WearLaw, wanted: Mapping[str, object]) -> None:
+    """InputError for a constant that the law does not ask for."""
+    groups = {name: (name,) for name in _OWN} | {"film_defect": _DEFECT}
+    for asked, keys in groups.items():
+        for key in keys:
+            if asked not in wanted and getattr(table, key) is not None:
+                raise InputError(
+                    f"was given, and '{law.name}' does not ask for it; leave it out",
+                    key=f"wear.{key}",
+                )
+
+
+def _own(
+    table: WearTable, law: WearLaw, wanted: Mapping[str, object], used: Used
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Constants of the law that belong to each member."""
+    found: tuple[dict[str, Array], dict[str, Array]] = ({}, {})
+    for name in _OWN:
+        if name not in wanted:
+            continue
+        given = getattr(table, name)
+        for member, own in enumerate(found):
+            if given is not None:
+                own[name] = array(given[member])
+            elif name == "coefficient":
+                own[name] = array(ASSUMED_COEFFICIENT)
+            elif name == "hardness" and used[member].record.hardness is not None:
+                own[name] = array(used[member].record.hardness.value)
+            else:
+                raise InputError(_missing(law, name, member), key=f"wear.{name}")
+    return found
+
+
+def _missing(law: WearLaw, name: str, member: int) -> str:
+    if name == "rate":
+        return (
+            f"is missing: '{law.name}' asks for the specific wear rate of both gears; give it, as "
+            '["1e-6 mm3/(N m)", "0 1/Pa"]'
+        )
+    return (
+        f"is missing: '{law.name}' asks for the hardness of both gears, and that of gear {member + 1} is "
+        'not known; give both, as ["200 HV", "1.96 GPa"]'
+    )
+
+
+def wear_model(case: Case, used: Used, roughness: tuple[float, float]) -> WearModel:
+    """How flanks of a case wear.
+
+    Args:
+        case: with a table of wear that was checked.
+        used: solids of both gears.
+        roughness: mean Ra of both flanks [m].
+    """
+    table = case.wear
+    assert table is not None
+    law = WEAR_LAWS[table.law]
+    wanted = inspect.signature(law.function).parameters
+    own = _own(table, law, wanted, used)
+    if "ra_1" in wanted:
+        for one in own:
+            one.update(ra_1=array(roughness[0]), ra_2=array(roughness[1]))
+    defect = None
+    if "film_defect" in wanted:
+        given = {key: getattr(table, key) for key in _DEFECT}
+        defect = {key: array(value) for key, value in given.items() if value is not None}
+    return WearModel(
+        law=law.function,
+        own=own,
+        asperities=ASPERITY_LOAD[case.models.asperity_load],
+        defect=defect,
+        bodies=_conductors(used) if defect is not None else None,
+    )
+
+
+def _conductors(used: Used) -> tuple[Conductor, Conductor] | None:
+    """What conducts heat behind both flanks; None where that of a material is not known."""
+    try:
+        first, second = (Conductor.of(one.record) for one in used)
+    except InputError:
+        return None
+    return first, second
+
+
+def told_of_wear(case: Case, model: WearModel) -> list[str]:
+    """What to be wary of in the constants of a case.
+
+    Args:
+        case: with a table of wear.
+        model: of it.
+    """
+    table = case.wear
+    assert table is not None
+    found = [f"Wear: {WEAR_LAWS[table.law].note}"]
+    if table.coefficient is None and "coefficient" in model.own[0]:
+        found.append(
+            f"wear.coefficient was left out and is taken as {ASSUMED_COEFFICIENT:g}; those of dry metals are "
+            "1e-6 to 1e-4, and depths are in proportion to it."
+        )
+    if model.defect is not None:
+        if "adsorption_heat" not in model.defect:
+            found.append(
+                "wear.adsorption_heat was left out and is taken as 49 kJ/mol: 12 kJ/mol less make a hundred "
+                "times the wear."
+            )
+        if model.bodies is None:
+            found.append(
+                "The conductivity or specific heat of a material is not known: its contacts are taken to be as "
+                "warm as the oil."
+            )
+    return found

@@ -1,0 +1,61 @@
+"""Worn flanks: how deep material is gone, as a surface that contacts feel."""
+
+from itertools import product
+from typing import ClassVar
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.surface import Lanes, Spot, Surface
+
+__all__ = ["Worn"]
+
+
+class Worn(Surface):
+    """Depth of wear on all flanks of a member that carry, smoothed over two cells to either side.
+
+    Cubic B-splines on an even grid whose coefficients are the mean depths of the cells: they keep the volume,
+    never fall below zero, and have curvatures without jumps. Beyond the grid the depth is that at its end.
+
+    Attributes:
+        depth: mean depth of each cell along the flank and across the face [m].
+        flank: arc lengths at which the grid begins and ends [m].
+        across: places across the face at which it begins and ends [m].
+
+    Source: de Boor, A Practical Guide to Splines (2001), chapter 12, the Schoenberg approximation.
+    """
+
+    both: ClassVar[bool] = False
+
+    depth: Float[Array, "cell strip"]
+    flank: Float[Array, "2"]
+    across: Float[Array, "2"]
+
+    def missing(self, spot: Spot) -> Lanes:
+        """Depth at each place."""
+        along = _weights(spot.flank, self.flank, self.depth.shape[0])
+        aside = _weights(spot.across, self.across, self.depth.shape[1])
+        return sum(
+            (one * other * self.depth[k, j] for (k, one), (j, other) in product(along, aside)),
+            jnp.zeros_like(spot.flank),
+        )
+
+
+def _weights(place: Lanes, ends: Float[Array, "2"], cells: int) -> list[tuple[Array, Lanes]]:
+    """Cells that count at a place, and their weights, which sum to one."""
+    if cells == 1:
+        return [(jnp.zeros(jnp.shape(place), int), jnp.ones(jnp.shape(place)))]
+    at = (place - ends[0]) / (ends[1] - ends[0]) * cells - 0.5
+    at = jnp.clip(at, 0.0, cells - 1.0)
+    first = jax.lax.stop_gradient(jnp.clip(jnp.floor(at), 0.0, cells - 2.0))
+    t = at - first
+    values = (
+        (1.0 - t) ** 3 / 6.0,
+        (4.0 - 6.0 * t**2 + 3.0 * t**3) / 6.0,
+        (1.0 + 3.0 * t + 3.0 * t**2 - 3.0 * t**3) / 6.0,
+        t**3 / 6.0,
+    )
+    # Cells that would lie beyond an end take the depth of the last one.
+    numbers = [jnp.clip(first.astype(int) + k, 0, cells - 1) for k in (-1, 0, 1, 2)]
+    return list(zip(numbers, values, strict=True))

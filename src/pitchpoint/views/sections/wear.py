@@ -1,0 +1,313 @@
+"""Wear: the worn flanks over the cycles, how fast they wear, and what of it is taken from elsewhere."""
+
+import json
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import (
+    INK,
+    PALETTE,
+    Choice,
+    Figure,
+    Key,
+    Panel,
+    Trace,
+    display,
+    layout,
+    plain,
+    rounded,
+    short_axis,
+    verticals,
+)
+from pitchpoint.views.lines import titled
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    Table,
+    by_variant,
+)
+
+__all__ = ["WEAR"]
+
+_NONE = "No depth is known here."
+
+_ENDS = {
+    "turns": "as many as were asked for",
+    "depth": "where a flank reaches the limit of its depth",
+    "pressure": "where the largest pressure reaches its limit",
+    "lost": "where the loads of the worn flanks were not found",
+    "no wear": "where it begins: nothing wears",
+}
+"""Why a march ended, in words."""
+
+_FIGURES = ("final_cycles", "life_hours", "final_depth", "pressure_change")
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield from by_variant(page, "wear", _of_variant)
+
+
+def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
+    data, name = outcome.parts["wear"], f"wear{position}"
+    if data.attrs["end"] == "lost":
+        yield Paragraph(_said(data, "were not found"), "warning")
+    yield Paragraph(_how(data))
+    yield _whole(data)
+    yield _table(data)
+    if data.attrs["end"] == "no wear":
+        return
+    yield Heading("Worn flanks")
+    yield _flanks(name, data)
+    if data.sizes["strip"] > 1:
+        yield Heading("Over the face")
+        yield Panel("", [_map(f"{name}_map{k}", data, k) for k in range(2)])
+    yield Heading("Over the cycles")
+    yield _life(name, data)
+
+
+def _said(data: xr.Dataset, words: str) -> str:
+    """The warning of a result that has some words in it."""
+    told = [one for one in json.loads(data.attrs["warnings"]) if words in one]
+    return told[0] if told else ""
+
+
+def _how(data: xr.Dataset) -> str:
+    updated = data.attrs["profile"] == "updated"
+    feedback = (
+        "What is worn off opens the gaps and changes the curvatures of the flanks; loads, pressures and "
+        "films follow"
+        if updated
+        else "Loads, pressures and films stay those of flanks as new (wear.profile)"
+    )
+    return (
+        f"Every place of a flank wears by its line load times the sliding over the rolling speed of its "
+        f"contact, once for each engagement, times the specific wear rate of {data.attrs['law']}. "
+        f"{feedback}. All teeth of a gear wear alike, forces are those without friction, and contacts stay "
+        f"on the normals of the flanks as new. {int(data['wear_steps'])} steps of the march, each with an "
+        f"error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth at most; the estimated "
+        "errors are added up without their signs. Curvatures are those of the depths smoothed over two "
+        "cells to either side."
+    )
+
+
+def _whole(data: xr.Dataset) -> Table:
+    """Where the march ended, and its stages."""
+    rows = [(titled(name, data), _told(data, name)) for name in _FIGURES]
+    rows.append(("ended", _ENDS[str(data.attrs["end"])]))
+    for name in ("run_in_cycles", "severe_cycles"):
+        rows.append((titled(name, data), _told(data, name)))
+    return Table(["", ""], rows, compact=True)
+
+
+def _told(data: xr.Dataset, name: str) -> str:
+    value = float(data[name])
+    if name == "severe_cycles" and not np.isfinite(value):
+        return "not reached: 1.5 times the least rate"
+    if name == "run_in_cycles" and value == 0.0:
+        return "none: the rate is near its least from the start"
+    return show.quantity(name, value, of=data)
+
+
+_OF_MEMBER = ("deepest_wear", "wear_error", "fastest_wear", "worn_volume")
+
+
+def _members(data: xr.Dataset) -> list[str]:
+    return [str(name) for name in json.loads(data.attrs["members"])]
+
+
+def _table(data: xr.Dataset) -> Table:
+    """What each member has lost at the end, and where most."""
+    names = _members(data)
+    rows = [
+        (titled(name, data), *(show.quantity(name, float(v)) for v in data[name].values[-1]))
+        for name in _OF_MEMBER
+    ]
+    rows.insert(1, ("where", *(_where(data, k) for k in range(2))))
+    return Table(["at the end", *names], rows)
+
+
+def _where(data: xr.Dataset, member: int) -> str:
+    depth = data["worn_depth"].values[-1, member]
+    if depth.max() <= 0.0:
+        return "nowhere"
+    cell = int(np.argmax(depth.max(axis=1)))
+    name, places = _places(data, member)
+    return f"{titled(name, data)} {show.quantity(name, float(places[cell]))}"
+
+
+def _places(data: xr.Dataset, member: int) -> tuple[str, np.ndarray]:
+    """Radii of the cells of a flank, or their arc lengths on a member that travels."""
+    radius = data["flank_radius"].values[member]
+    if np.all(np.isfinite(radius)):
+        return "flank_radius", radius
+    return "flank_place", data["flank_place"].values[member]
+
+
+# ---- flanks
+
+
+def _flanks(name: str, data: xr.Dataset) -> Panel:
+    """Depth along both flanks, with the cycles to slide."""
+    figures = [_flank(f"{name}_flank{k}", data, k) for k in range(2)]
+    choices = [_choice(figures, data, step) for step in range(data.sizes["step"])]
+    note = "Depths are drawn far larger than the flank is long. The mean over the face, and the largest."
+    return Panel("", figures, choices=choices, menu="Turns", slides=True, note=note, at=len(choices) - 1)
+
+
+def _choice(figures: list[Figure], data: xr.Dataset, step: int) -> Choice:
+    turns = float(data["cycles"][step])
+    changes = {
+        figure.name: [{"y": [line["y"] for line in _lines(data, k, step)]}, {}]
+        for k, figure in enumerate(figures)
+    }
+    return Choice(f"{turns:.3g}", changes)
+
+
+def _flank(name: str, data: xr.Dataset, member: int) -> Figure:
+    place, _ = _places(data, member)
+    top = float(display("worn_depth", data["worn_depth"].values[:, member].max()))
+    look = layout(
+        f"{titled(place, data)} [{show.unit_of(place)}]",
+        short_axis("worn_depth", data),
+        yaxis={"range": [1.05 * top or 1.0, 0.0]},
+    )
+    title = f"Depth of wear, {_members(data)[member]}"
+    lines = _lines(data, member, data.sizes["step"] - 1)
+    return Figure(name, title, lines, look, "", _keys(data), _NONE)
+
+
+def _keys(data: xr.Dataset) -> tuple[Key, ...]:
+    if data.sizes["strip"] == 1:
+        return (Key("depth", INK),)
+    return Key("mean over the face", INK), Key("largest", PALETTE[1], "dash")
+
+
+def _lines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
+    depth, (place, x) = data["worn_depth"].values[step, member], _places(data, member)
+    unit = show.unit_of("worn_depth", data)
+    order = np.argsort(x)
+    each = zip(_keys(data), (depth.mean(axis=1), depth.max(axis=1)), strict=False)
+    return [
+        plain(key, display(place, x[order]), display("worn_depth", values[order]), unit)
+        for key, values in each
+    ]
+
+
+def _map(name: str, data: xr.Dataset, member: int) -> Figure:
+    """Depth over a flank at the end."""
+    place, x = _places(data, member)
+    order, unit = np.argsort(x), show.unit_of("worn_depth", data)
+    along, across = show.unit_of(place), show.unit_of("across_place")
+    heat = {
+        "type": "heatmap",
+        "x": rounded(display("across_place", data["across_place"].values)),
+        "y": rounded(display(place, x[order])),
+        "z": rounded(display("worn_depth", data["worn_depth"].values[-1, member][order]), 4),
+        "colorscale": "YlOrRd",
+        "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
+        "hovertemplate": f"%{{z:.4~g}} {unit}<br>y %{{x:.3~g}} {across}, r %{{y:.4~g}} {along}"
+        "<extra></extra>",
+    }
+    look = layout(f"y [{across}]", f"{titled(place, data)} [{along}]")
+    return Figure(name, f"Depth at the end, {_members(data)[member]}", [heat], look, "", (), _NONE)
+
+
+# ---- over the cycles
+
+
+def _life(name: str, data: xr.Dataset) -> Panel:
+    """Depth, rate and pressure over the cycles."""
+    return Panel(
+        "",
+        [
+            _course(f"{name}_depth", data, "deepest_wear"),
+            _course(f"{name}_rate", data, "fastest_wear"),
+            _pressure(f"{name}_pressure", data),
+        ],
+    )
+
+
+def _marks(data: xr.Dataset) -> dict[str, object]:
+    """Ends of the stages, as far as there are any."""
+    known = {"run-in ends": "run_in_cycles", "severe": "severe_cycles"}
+    each = [(words, float(data[name])) for words, name in known.items()]
+    return verticals([(words, at) for words, at in each if np.isfinite(at) and at > 0.0])
+
+
+def _course(name: str, data: xr.Dataset, variable: str) -> Figure:
+    x, unit = data["cycles"].values, show.unit_of(variable, data)
+    keys = tuple(Key(body, PALETTE[k]) for k, body in enumerate(_members(data)))
+    lines = [
+        plain(key, x, display(variable, data[variable].values[:, k]), unit)
+        for k, key in enumerate(keys)
+    ]
+    look = layout(
+        f"turns of {data.attrs['driver']}, N",
+        short_axis(variable, data),
+        yaxis={"rangemode": "tozero"},
+        **_marks(data),
+    )
+    return Figure(name, titled(variable, data).capitalize(), lines, look, "", keys, _NONE)
+
+
+def _pressure(name: str, data: xr.Dataset) -> Figure:
+    keys = (Key("largest Hertz pressure", INK),)
+    values = display("wear_pressure", data["wear_pressure"].values)
+    unit = show.unit_of("wear_pressure", data)
+    lines = [plain(keys[0], data["cycles"].values, values, unit)]
+    look = layout(
+        f"turns of {data.attrs['driver']}, N",
+        short_axis("wear_pressure", data),
+        yaxis={"rangemode": "tozero"},
+        **_marks(data),
+    )
+    title = titled("wear_pressure", data).capitalize()
+    return Figure(name, title, lines, look, "", keys, _NONE)
+
+
+# ---- words
+
+
+def _answer(data: xr.Dataset) -> str:
+    """Depth at the end of the march, in words."""
+    end = str(data.attrs["end"])
+    if end == "no wear":
+        return "nothing wears"
+    depth = data["deepest_wear"].values[-1]
+    most = int(np.argmax(depth))
+    turns, hours = (show.quantity(name, float(data[name])) for name in ("final_cycles", "life_hours"))
+    words = (
+        f"{show.quantity('deepest_wear', float(depth[most]))} at most, on {_members(data)[most]}, after "
+        f"{turns} turns of {data.attrs['driver']} ({hours})"
+    )
+    return words if end == "turns" else f"{words}: the march ended {_ENDS[end]}"
+
+
+def _screen(data: xr.Dataset) -> Iterator[Printed]:
+    row = {head(name, data): shown(name, float(data[name]), data) for name in _FIGURES}
+    for k, body in enumerate(_members(data)):
+        row[f"h max {body} [{show.unit_of('deepest_wear')}]"] = show.quantity(
+            "deepest_wear", float(data["deepest_wear"].values[-1, k]), with_unit=False
+        )
+    yield Printed("Wear", [row], f"The march ended {_ENDS[str(data.attrs['end'])]}.")
+
+
+WEAR = Section(
+    name="wear",
+    title="Wear",
+    short="Wear",
+    order=234.0,
+    parts=("wear",),
+    blocks=_blocks,
+    answer=lambda one: [("Wear", _answer(one.parts["wear"]))] if "wear" in one.parts else [],
+    screen=lambda one: _screen(one.parts["wear"]) if "wear" in one.parts else (),
+)

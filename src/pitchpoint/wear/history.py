@@ -1,0 +1,415 @@
+"""What one turn of the drive wears off the flanks: pressure and sliding of contacts that travel over them."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import equinox as eqx
+import numpy as np
+from jaxtyping import Array, Bool, Float
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.worn import Worn
+from pitchpoint.efficiency.quasi_static import (
+    Coupling,
+    Design,
+    Engagement,
+    Models,
+    Operation,
+    contacts_at,
+    coupling,
+    shares_at,
+    state,
+)
+from pitchpoint.errors import InputError
+from pitchpoint.factored import Arrays, as_array
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.period import edges
+from pitchpoint.lubrication.asperity_load import AsperityLoad
+from pitchpoint.lubrication.conditions import UNITS, Conditions, evaluate
+from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
+from pitchpoint.programs import program
+from pitchpoint.wear.film_defect import fractional_film_defect
+
+__all__ = ["Cells", "Start", "Turn", "WearModel", "as_new", "cells_on", "extents", "midpoints", "one_turn"]
+
+STRIPS_OF_ELLIPSE = 24
+"""Strips across the face where contacts are ellipses."""
+
+ROOM = 1.5
+"""Half-widths of the strips of ellipses, over the largest semi-axis."""
+
+FLATTEST = 0.1
+"""Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
+
+_SHORT = 1e-3  # of a cell: shorter ways count as that long
+
+Two = Float[Array, "2"]
+Each = Float[Arrays, "*#b"]
+Lanes = Float[Arrays, "pair slice *#b"]
+Depths = Float[Array, "2 cell strip"]
+
+
+class Cells(eqx.Module):
+    """Even grids on the flanks of both members.
+
+    Attributes:
+        flank: arc lengths at which they begin and end, of each member [m].
+        across: places across the face at which they begin and end [m].
+        count: along the flank; static.
+        strips: across the face; static.
+    """
+
+    flank: Float[Array, "2 2"]
+    across: Two
+    count: int = eqx.field(static=True)
+    strips: int = eqx.field(static=True)
+
+    @property
+    def lengths(self) -> Two:
+        """Length of a cell along the flank, of each member [m]."""
+        return (self.flank[:, 1] - self.flank[:, 0]) / self.count
+
+    @property
+    def width(self) -> Float[Array, ""]:
+        """Width of a strip [m]."""
+        return (self.across[1] - self.across[0]) / self.strips
+
+    @property
+    def middles(self) -> tuple[Float[Array, "2 cell"], Float[Array, " strip"]]:
+        """Arc lengths of each member and places across the face in the middle of the cells [m]."""
+        part = (jnp.arange(self.count) + 0.5) / self.count
+        aside = (jnp.arange(self.strips) + 0.5) / self.strips
+        start, end = self.flank[:, :1], self.flank[:, 1:]
+        return start + (end - start) * part, self.across[0] + (
+            self.across[1] - self.across[0]
+        ) * aside
+
+    def volumes(self, depth: Depths) -> Two:
+        """Volume that is gone from a flank of each member [m3]."""
+        return jnp.sum(depth, axis=(1, 2)) * self.lengths * self.width
+
+    def surfaces(self, depth: Depths) -> tuple[Worn, Worn]:
+        """Both members' flanks with so much gone."""
+        first, second = (
+            Worn(depth[k], self.flank[k], self.across) for k in range(2)
+        )
+        return first, second
+
+
+class WearModel(eqx.Module):
+    """How material goes where flanks rub.
+
+    Attributes:
+        law: specific wear rate [m3/(N m)] by arguments that are conditions, see `UNITS`, the member's own, or
+            `asperity_share` and `film_defect`; static.
+        own: arguments of the law that belong to a member, for each of them.
+        asperities: law of the load on asperities, for laws that ask for its share; static.
+        defect: parameters of the fractional film defect, for laws that ask for it.
+        bodies: what conducts the heat of friction behind both flanks; None where contacts stay as warm as the
+            oil.
+    """
+
+    law: Callable[..., Array] = eqx.field(static=True)
+    own: tuple[Mapping[str, Float[Array, ""]], Mapping[str, Float[Array, ""]]]
+    asperities: AsperityLoad | None = eqx.field(static=True, default=None)
+    defect: Mapping[str, Float[Array, ""]] | None = None
+    bodies: tuple[Conductor, Conductor] | None = None
+
+    def rates(self, at: Conditions, temperature: Each, friction: Lanes) -> tuple[Lanes, Lanes]:
+        """Specific wear rate of each member at every contact [m3/(N m)].
+
+        Args:
+            at: conditions at the contacts.
+            temperature: of the oil [K].
+            friction: coefficient of each contact.
+        """
+        wanted = inspect.signature(self.law).parameters
+        found = {name: getattr(at, name) for name in wanted if name in UNITS}
+        if "asperity_share" in wanted and self.asperities is not None:
+            found["asperity_share"] = evaluate(self.asperities, at)
+        if "film_defect" in wanted and self.defect is not None:
+            warm = temperature + self._flash(at, friction)
+            given = {"sliding": as_array(at.sliding), "temperature": warm}
+            found["film_defect"] = fractional_film_defect(**given, **self.defect)
+        first, second = (
+            jnp.broadcast_to(self.law(**{**found, **own}), at.load.shape) for own in self.own
+        )
+        return first, second
+
+    def _flash(self, at: Conditions, friction: Lanes) -> Lanes:
+        """Largest rise of the temperature of both flanks in the contact [K]; see `shared_flash`."""
+        if self.bodies is None:
+            return jnp.zeros_like(at.load)
+        if at.shape == "line":
+            half, area = at.half_width, 2.0 * at.half_width * at.contacts.weight
+        else:
+            half, area = at.semi_axis_along, jnp.pi * at.semi_axis_along * at.semi_axis_across
+        heat = friction * at.load * as_array(at.sliding) / area
+        speeds = as_array(at.speed_a), as_array(at.speed_b)
+        rubs = (at.load > 0.0) & (jnp.abs(speeds[0]) + jnp.abs(speeds[1]) > 0.0)
+        rise = shared_flash(
+            heat=jnp.where(rubs, heat, 0.0),
+            half_width=jnp.where(rubs, half, 1.0),
+            speed_a=jnp.where(rubs, speeds[0], 1.0),
+            speed_b=jnp.where(rubs, speeds[1], 1.0),
+            bodies=self.bodies,
+        )
+        return jnp.where(rubs, rise, 0.0)
+
+
+class Turn(eqx.Module):
+    """What one turn of the driver does to a flank of each member.
+
+    Attributes:
+        depth: worn off every cell [m].
+        volume: worn off a flank of each member, from force and sliding alone [m3].
+        pressure: largest one [Pa].
+        conforming: True where a loaded contact is flatter than it is taken for.
+        lost: True where the equilibrium of the contacts was not found.
+
+    Source: Archard (1953); Andersson (1975), single-point observation: each point of a flank slides against
+    the mate as long as the contact takes to pass it.
+    """
+
+    depth: Depths
+    volume: Two
+    pressure: Float[Array, ""]
+    conforming: Bool[Array, ""]
+    lost: Bool[Array, ""]
+
+
+def midpoints(
+    events: Float[Array, " event"], count: int
+) -> tuple[Float[Array, " node"], Float[Array, " node"]]:
+    """Phases in the middle of equal parts of each stretch between events, and the length of these parts.
+
+    Args:
+        events: of a mesh.
+        count: parts of each stretch.
+    """
+    ends = edges(events)
+    start, length = ends[:-1, None], jnp.diff(ends)[:, None]
+    part = (np.arange(count) + 0.5) / count
+    return (start + length * part).ravel(), jnp.repeat(length[:, 0] / count, count)
+
+
+class Start(eqx.Module):
+    """What stays as it was with flanks as new.
+
+    Attributes:
+        phase: at which contacts are looked at [periods].
+        weight: part of the period that each stands for.
+        curvature: relative curvature that contacts feel, in the rolling direction and across [1/m].
+        body: compliance of what is under the teeth; None where it does not couple them.
+    """
+
+    phase: Float[Array, " node"]
+    weight: Float[Array, " node"]
+    curvature: Float[Arrays, "2 pair slice node"]
+    body: Coupling | None
+
+
+def as_new(
+    design: Design, operation: Operation, models: Models, *, parts: int, count: int
+) -> tuple[Start, Cells]:
+    """What stays of a design with flanks as new, and cells on its flanks.
+
+    Args:
+        design: with flanks as new.
+        operation: one operating point.
+        models: sharing of the load.
+        parts: phases in each stretch between events.
+        count: of cells along each flank.
+
+    Raises:
+        InputError: a contact stands still on a flank.
+    """
+    phase, weight = _phases(design.mesh, parts)
+    contacts = contacts_at(design.mesh, phase)
+    body = coupling(design, contacts) if models.sharing.by_stiffness else None
+    share = shares_at(design, contacts, operation.load, models, body)
+    known = Engagement(phase, weight, contacts, share, None, 1)
+    at, ways = _travelled(design, operation, models.without_friction, known)
+    felt = np.stack([1.0 / contacts.radius, contacts.relative_curvature[1]])
+    start = Start(phase, weight, felt, body)
+    return start, cells_on(at, np.asarray(ways), count)
+
+
+@program
+def _travelled(
+    design: Design, operation: Operation, models: Models, known: Engagement
+) -> tuple[Conditions, Float[Array, "2 pair slice node"]]:
+    """Conditions at the contacts without friction, and their ways over both flanks."""
+    smooth = models.holding(jnp.zeros(()))
+    at = state(design, operation, known.phase, smooth, engaged=known).conditions
+    lasts = known.weight * design.mesh.period / at.speed
+    speeds = [jnp.broadcast_to(as_array(v), at.load.shape) for v in (at.speed_a, at.speed_b)]
+    return at, jnp.abs(jnp.stack(speeds)) * lasts
+
+
+@program
+def _phases(mesh: Mesh, parts: int) -> tuple[Array, Array]:
+    return midpoints(mesh.events(), parts)
+
+
+def cells_on(at: Conditions, way: Float[np.ndarray, "2 pair slice node"], count: int) -> Cells:
+    """Cells over all that touches of both flanks.
+
+    Args:
+        at: conditions at the contacts of a whole period under load.
+        way: of each contact over both flanks while it stands for others [m].
+        count: of cells along each flank.
+
+    Raises:
+        InputError: a contact stands still on a flank.
+    """
+    contacts = at.contacts
+    lanes, active = contacts.active.shape, np.asarray(contacts.active)
+    flank = np.broadcast_to(contacts.flank, (2, *lanes))[:, active]
+    half = 0.5 * way[:, active]
+    ends = np.stack([(flank - half).min(axis=1), (flank + half).max(axis=1)], axis=1)
+    if not np.all(np.diff(ends) > 0.0):
+        raise InputError(
+            "one flank stands still under its contact and has no depth per turn; it is for flanks that roll"
+        )
+    if at.shape == "line":
+        reach, strips = 0.5 * extents(contacts), lanes[1] if np.ptp(contacts.width) else 1
+    else:
+        reach, strips = ROOM * jnp.max(at.semi_axis_across), STRIPS_OF_ELLIPSE
+    width, reach = (np.broadcast_to(v, lanes)[active] for v in (contacts.width, reach))
+    across = np.array([np.min(width - reach), np.max(width + reach)])
+    return Cells(array(ends), array(across), count, strips)
+
+
+def extents(contacts: Contacts) -> Lanes:
+    """How far each slice of a contact line reaches across the face [m].
+
+    Args:
+        contacts: along lines.
+
+    From the direction of the line, at right angles to normal and tangent.
+    """
+    normal, tangent = contacts.direction, contacts.tangent
+    axial: Lanes = jnp.abs(normal[0] * tangent[1] - normal[1] * tangent[0])
+    return contacts.weight * axial
+
+
+def one_turn(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    wear: WearModel,
+    cells: Cells,
+    start: Start,
+    depth: Depths,
+) -> Turn:
+    """What one turn of the driver wears off flanks that have lost so much already.
+
+    Args:
+        design: with flanks as new.
+        operation: one operating point.
+        models: sharing of the load, and friction where it warms the contacts.
+        wear: how material goes.
+        cells: on both flanks.
+        start: of the design.
+        depth: worn off so far [m].
+    """
+    worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
+    contacts, flat = _no_flatter(contacts_at(worn.mesh, start.phase), start.curvature)
+    share = shares_at(worn, contacts, operation.load, models, start.body)
+    known = Engagement(start.phase, start.weight, contacts, share, None, 1).loaded()
+    found = _turn(worn, operation, models, wear, cells, known)
+    conforming = np.any(np.asarray(flat) & (np.asarray(share) > 0.0))
+    return replace(found, conforming=array(conforming))
+
+
+@program
+def _no_flatter(
+    contacts: Contacts, curvature: Float[Array, "2 pair slice node"]
+) -> tuple[Contacts, Bool[Array, "pair slice node"]]:
+    """Contacts whose relative curvatures keep a part of what they were, and where they had lost it."""
+    least, own = FLATTEST * curvature, 1.0 / contacts.radius
+    lacks = least[1] - contacts.relative_curvature[1]
+    kept = replace(
+        contacts,
+        felt=jnp.maximum(own, least[0]),
+        curvature=contacts.curvature.at[0, 1].add(jnp.maximum(lacks, 0.0)),
+    )
+    return kept, (own < least[0]) | (lacks > 0.0)
+
+
+@program
+def _turn(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    wear: WearModel,
+    cells: Cells,
+    known: Engagement,
+) -> Turn:
+    mesh = design.mesh
+    at, ways = _travelled(design, operation, models, known)
+    contacts = at.contacts
+    carries = contacts.active & (at.load > 0.0)
+    friction = jnp.zeros_like(at.load) if wear.bodies is None else models.coefficient(at)
+    rates = wear.rates(at, operation.temperature, friction)
+    # Per turn of the driver, and of each flank: engagements of a period go round among all flanks.
+    periods = 2.0 * jnp.pi / mesh.period
+    lasts = known.weight * mesh.period / at.speed
+    slid = jnp.where(carries, at.load * as_array(at.sliding), 0.0) * lasts
+    depth, volume = [], []
+    for member, (rate, way) in enumerate(zip(rates, ways, strict=True)):
+        gone = periods / mesh.flanks_in_turn[member] * rate * slid
+        depth.append(_laid(cells, member, at, way, gone))
+        volume.append(jnp.sum(gone))
+    return Turn(
+        depth=jnp.stack(depth),
+        volume=jnp.stack(volume),
+        pressure=jnp.max(jnp.where(carries, at.pressure, 0.0)),
+        conforming=jnp.zeros((), bool),
+        lost=~jnp.all(jnp.isfinite(at.load)),
+    )
+
+
+def _laid(
+    cells: Cells, member: int, at: Conditions, way: Lanes, gone: Lanes
+) -> Float[Array, "cell strip"]:
+    """Depth of each cell from volumes that contacts leave on their ways over a flank [m].
+
+    Each is spread evenly along the way, and across as far as the contact reaches.
+    """
+    contacts, lanes = at.contacts, gone.shape
+    low, high = cells.flank[member]
+    edges_along = low + (high - low) * jnp.arange(1, cells.count) / cells.count
+    start, end = cells.across
+    edges_across = start + (end - start) * jnp.arange(1, cells.strips) / cells.strips
+    flank = jnp.broadcast_to(contacts.flank[member], lanes)[..., None]
+    width = jnp.broadcast_to(contacts.width, lanes)[..., None]
+    if at.shape == "line":
+        extent = extents(contacts)
+        # A line that leans sweeps a strip of the face faster than it moves at right angles to itself.
+        along = way * contacts.weight / extent
+        if cells.strips > 1:
+            along = along + jnp.abs(jnp.gradient(flank[..., 0], axis=1))
+        across = jnp.clip((edges_across - width) / extent[..., None] + 0.5, 0.0, 1.0)
+    else:
+        along = way
+        place = jnp.clip((edges_across - width) / at.semi_axis_across[..., None], -1.0, 1.0)
+        across = 0.5 + 0.25 * (3.0 * place - place**3)
+    short = jnp.maximum(along, _SHORT * cells.lengths[member])[..., None]
+    passed = jnp.clip((edges_along - flank) / short + 0.5, 0.0, 1.0)
+    lies, reaches = _parts(passed), _parts(across)
+    lies, reaches = (
+        jnp.broadcast_to(part, (*lanes, part.shape[-1])).reshape(-1, part.shape[-1])
+        for part in (lies, reaches)
+    )
+    volumes = jnp.einsum("n,nc,ns->cs", gone.ravel(), lies, reaches)
+    return volumes / (cells.lengths[member] * cells.width)
+
+
+def _parts(passed: Float[Array, "*b edge"]) -> Float[Array, "*b cell"]:
+    """Parts of a whole in each cell, from what lies before each inner edge; the end cells take the rest."""
+    ends = (*passed.shape[:-1], 1)
+    return jnp.diff(jnp.concatenate([jnp.zeros(ends), passed, jnp.ones(ends)], axis=-1), axis=-1)

@@ -1,0 +1,186 @@
+"""The march of wear over the life of a drive: steps as long as their error allows, whatever the cycles."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import RK23
+from scipy.optimize import brentq
+
+__all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "after", "as_new"]
+
+Values = NDArray[np.float64]
+End = Literal["", "turns", "depth", "pressure", "lost", "no wear"]
+
+FIRST = 1e-9
+"""Depth that the first step takes off [m]; no less counts as depth when errors are judged."""
+
+
+@dataclass(frozen=True)
+class Rate:
+    """What a turn does to flanks in a state.
+
+    Attributes:
+        depth: worn off every cell by a turn [member, cell, strip] [m].
+        pressure: largest one [Pa].
+        conforming: True where flanks were flatter than contacts are taken for.
+        lost: True where the equilibrium of the contacts was not found.
+    """
+
+    depth: Values
+    pressure: float
+    conforming: bool
+    lost: bool
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Where a march ends.
+
+    Attributes:
+        turns: of the driver.
+        depth: on either member [m].
+        pressure: largest one over that with flanks as new.
+    """
+
+    turns: float
+    depth: float = inf
+    pressure: float = inf
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Flanks after a step of the march.
+
+    Attributes:
+        turns: of the driver, so far.
+        depth: worn off every cell [member, cell, strip] [m].
+        rate: what a turn does there.
+        error: of the deepest cells, estimated and added up over all steps, of each member [m].
+        step: turns of the next step, as its error is expected to allow.
+        end: what ended the march; empty as long as it goes on.
+    """
+
+    turns: float
+    depth: Values
+    rate: Rate
+    error: Values
+    step: float
+    end: End = ""
+
+    @property
+    def deepest(self) -> Values:
+        """Largest depth of each member [m]."""
+        found: Values = self.depth.max(axis=(1, 2))
+        return found
+
+
+def as_new(rate: Callable[[Values], Rate], shape: tuple[int, int, int]) -> Reached:
+    """Flanks from which nothing is gone.
+
+    Args:
+        rate: of flanks that have lost so much already.
+        shape: of depths.
+    """
+    none = np.zeros(shape)
+    first = rate(none)
+    largest = float(first.depth.max())
+    end: End = "lost" if first.lost else "" if largest > 0.0 else "no wear"
+    step = FIRST / largest if largest > 0.0 else inf
+    return Reached(0.0, none, first, np.zeros(2), step, end)
+
+
+def after(
+    before: Reached,
+    rate: Callable[[Values], Rate],
+    limit: Limit,
+    *,
+    start: float,
+    tolerance: float,
+) -> Reached:
+    """Flanks one step later, at a limit at the most.
+
+    The same state gives the same step to the last bit, whether it was computed or read.
+
+    Args:
+        before: a state that is not at an end.
+        rate: of flanks that have lost so much already.
+        limit: where the march ends.
+        start: largest pressure with flanks as new [Pa].
+        tolerance: error of a step, over the largest depth.
+
+    Source: Bogacki and Shampine (1989), by SciPy.
+    """
+    shape, seen = before.depth.shape, {before.depth.tobytes(): before.rate}
+
+    def seen_at(depth: Values) -> Rate:
+        key = depth.tobytes()
+        if key not in seen:
+            found = rate(depth.reshape(shape))
+            if found.lost:
+                raise _LostError
+            seen[key] = found
+        return seen[key]
+
+    deepest = max(float(before.depth.max()), FIRST)
+    try:
+        march = RK23(
+            lambda _, depth: seen_at(depth).depth.ravel(),
+            before.turns,
+            before.depth.ravel(),
+            limit.turns,
+            first_step=min(before.step, limit.turns - before.turns),
+            rtol=tolerance,
+            atol=tolerance * deepest,
+        )
+        march.step()
+        turns, end = _ends(march, limit, seen_at, start)
+    except _LostError:
+        return replace(before, end="lost")
+    depth = march.y if turns == march.t else march.dense_output()(turns)
+    error = march.step_size * np.abs(march.K.T @ march.E).reshape(shape).max(axis=(1, 2))
+    return Reached(
+        turns=turns,
+        depth=depth.reshape(shape),
+        rate=seen_at(depth),
+        error=before.error + error,
+        step=march.h_abs,
+        end=end,
+    )
+
+
+class _LostError(Exception):
+    """The equilibrium of the contacts was not found."""
+
+
+def _ends(
+    march: RK23, limit: Limit, rate: Callable[[Values], Rate], start: float
+) -> tuple[float, End]:
+    """Turns at the end of a step, or where a limit is passed within it, and which."""
+    inside = march.dense_output()
+
+    def beyond_depth(turns: float) -> float:
+        return float(inside(turns).max()) - limit.depth
+
+    def beyond_pressure(turns: float) -> float:
+        depth = march.y if turns == march.t else inside(turns)
+        return rate(depth).pressure / start - limit.pressure
+
+    found: list[tuple[float, End]] = []
+    if beyond_depth(march.t) >= 0.0:
+        found.append((brentq(beyond_depth, march.t_old, march.t), "depth"))
+    if beyond_pressure(march.t) >= 0.0:
+        found.append((_first(beyond_pressure, march.t_old, march.t), "pressure"))
+    if found:
+        return min(found)
+    return march.t, "turns" if march.status == "finished" else ""
+
+
+def _first(beyond: Callable[[float], float], low: float, high: float) -> float:
+    """Where a limit is passed between two places; the first one if it is passed there already."""
+    if beyond(low) >= 0.0:
+        return low
+    return float(brentq(beyond, low, high, xtol=1e-4 * (high - low)))
