@@ -35,6 +35,7 @@ __all__ = [
     "UnitError",
     "convert",
     "example",
+    "hardness_scale",
     "is_quotient",
     "kind_of",
     "kinds",
@@ -53,11 +54,12 @@ class UnitError(InputError):
 
 @dataclass(frozen=True)
 class _Kind:
-    """One quantity kind: its noun, an example to show, and pint's name for each unit."""
+    """One quantity kind: its noun, an example to show, pint's name for each unit, a remark on others."""
 
     noun: str
     example: str
     units: Mapping[str, str]
+    remark: str = ""
 
     @property
     def si(self) -> str:
@@ -147,6 +149,21 @@ _KINDS: dict[str, _Kind] = {
             "psi": "force_pound/inch**2",
             "ksi": "kip/inch**2",
         },
+    ),
+    "hardness": _Kind(
+        "a hardness",
+        "200 HV",
+        {
+            "Pa": "pascal",
+            "MPa": "megapascal",
+            "GPa": "gigapascal",
+            "N/mm2": "newton/millimeter**2",
+            "HV": "force_kilogram/millimeter**2",
+            "HB": "kilogram_force/millimeter**2",  # same as HV by another name: both scales are shown
+            "HBW": "kilogram_force/millimeter**2",
+            "HBS": "kilogram_force/millimeter**2",
+        },
+        "; numbers of Rockwell and other scales are not converted",
     ),
     "dynamic viscosity": _Kind(
         "a dynamic viscosity",
@@ -334,11 +351,32 @@ _KINDS: dict[str, _Kind] = {
     "frequency": _Kind(
         "a frequency", "50 Hz", {"Hz": "1/second", "kHz": "kilohertz", "1/s": "1/second"}
     ),
+    "specific wear rate": _Kind(
+        "a specific wear rate",
+        "1e-6 mm3/(N m)",
+        {
+            "1/Pa": "1/pascal",
+            "m3/(N m)": "meter**3/(newton*meter)",
+            "mm3/(N m)": "millimeter**3/(newton*meter)",
+            "mm3/(Nm)": "millimeter**3/(newton*meter)",
+            "mm3/N/m": "millimeter**3/(newton*meter)",
+            "mm3/Nm": "millimeter**3/(newton*meter)",
+            "m2/N": "meter**2/newton",
+            "mm2/N": "millimeter**2/newton",
+        },
+    ),
+    "molar energy": _Kind(
+        "an energy per mole",
+        "49 kJ/mol",
+        {"J/mol": "joule/mole", "kJ/mol": "kilojoule/mole"},
+    ),
     "dimensionless": _Kind(
         "a plain number", "0.3", {"": "dimensionless", "1": "dimensionless", "%": "percent"}
     ),
     "count": _Kind("a whole number", "20", {"": "dimensionless"}),
 }
+
+_SCALES = {"HV": "Vickers", "HB": "Brinell", "HBW": "Brinell", "HBS": "Brinell"}
 
 _NUMBER = re.compile(
     r"([+-]?(?:\d{1,40}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,3})?)(.*)", re.ASCII
@@ -351,7 +389,7 @@ _POWER = re.compile(r"(?<=[A-Za-z])\^(?=-?\d)")
 _FORCE, _LENGTH = "N|gf|lbf|ozf", "m|in|ft"
 _WORD = (
     rf"(?:da|[TGMkhdcmunp])?(?:(?:{_FORCE})[kdcmunp]?(?:{_LENGTH})|{_FORCE}|{_LENGTH}|kp|tf|g|lb|oz|t|l|L"
-    r"|Pa|bar|psi|ksi|kip|atm|s|min|h|d|Hz|rpm|rps|rev|turn|rad|deg[CFR]?|arcmin|arcsec|K|W|Wh|J|hp|P|St)"
+    r"|Pa|bar|psi|ksi|kip|atm|s|min|h|d|Hz|rpm|rps|rev|turn|rad|deg[CFR]?|arcmin|arcsec|K|W|Wh|J|hp|P|St|mol)"
 )
 _SOUND = re.compile(rf"(?:1/)?\(?{_WORD}-?[1-9]?(?:[ /(]+{_WORD}-?[1-9]?)*\)?", re.ASCII)
 
@@ -404,6 +442,23 @@ def kind_of(unit: str) -> str:
     if found is None:
         raise UnitError(f"{_quoted(unit)} is not a known unit", value=unit)
     return found
+
+
+def hardness_scale(text: object) -> str:
+    """Name of the scale on which a hardness is given; empty for a pressure or for no text.
+
+    A Vickers and a Brinell number both count the force over the area of their own indentation in
+    kgf/mm2, 9.80665 MPa. They are used as such: neither is converted to the other.
+
+    Example:
+        >>> hardness_scale("200 HBW")
+        'Brinell'
+        >>> hardness_scale("1.96 GPa")
+        ''
+    """
+    if not isinstance(text, str):
+        return ""
+    return _SCALES.get(_split(text, _KINDS["hardness"])[1], "")
 
 
 def is_quotient(kind: str, above: str, below: str) -> bool:
@@ -560,7 +615,7 @@ def _refuse_unit(text: str | float, number: str, unit: str, wanted: _Kind) -> No
     if other is not None:
         reason = f"is {_KINDS[other].noun}, but {wanted.noun} is needed"
     else:
-        reason = f"is not {wanted.noun}"
+        reason = f"is not {wanted.noun}{wanted.remark}"
     raise UnitError(
         f"{_quoted(text)} {reason}; {_advice(number, unit, other, wanted)}",
         value=text,

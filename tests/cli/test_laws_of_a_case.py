@@ -15,6 +15,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING
+from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)
 STEEL = {"young": "206 GPa", "poisson": 0.3}
@@ -110,3 +111,15 @@ def test_what_a_law_asks_of_a_material_is_told_with_its_key() -> None:
     assert float(built.design.solids[0].hardness) == 7e9
     rows = {row["key"]: row["value"] for row in resolved(built, given.document())}
     assert rows["gear_1.hardness"] == 7e9
+
+
+def test_a_hardness_on_a_scale_is_a_pressure_and_says_so() -> None:
+    given = variant(materials={"gear_1": {**STEEL, "hardness": "200 HB"}})
+    built = given.built({})
+    assert float(built.design.solids[0].hardness) == pytest.approx(1.96133e9, rel=1e-15)
+    rows = [one for one in resolved(built, given.document()) if one["key"] == "gear_1.hardness"]
+    assert rows[0]["note"] == (
+        "given as 200 HB; a Brinell number is kgf/mm2 over its own indentation, used as it is"
+    )
+    shown = {one["key"]: one["value"] for one in input_rows({"inputs": rows})}
+    assert shown["gear_1.hardness"] == "1.96133 GPa"

@@ -12,6 +12,7 @@ import pint
 import pytest
 
 from pitchpoint import units
+from pitchpoint.cases.schema import HARDNESS
 from pitchpoint.errors import InputError
 from pitchpoint.units import UnitError, convert, kind_of, kinds, parse, si_unit, units_of
 
@@ -48,6 +49,18 @@ GOOD = [
     ("206 GPa", "pressure", 206e9),
     ("1 psi", "pressure", 4.4482216152605 / 0.0254**2),
     ("2 N/mm2", "pressure", 2e6),
+    ("200 HV", "hardness", 200.0 * 9.80665e6),
+    ("200HV", "hardness", 200.0 * 9.80665e6),
+    ("200 HB", "hardness", 200.0 * 9.80665e6),
+    ("200 HBW", "hardness", 200.0 * 9.80665e6),
+    ("200 HBS", "hardness", 200.0 * 9.80665e6),
+    ("1.96 GPa", "hardness", 1.96e9),
+    ("1960 MPa", "hardness", 1.96e9),
+    ("1960 N/mm2", "hardness", 1.96e9),
+    ("1.03e-6 mm3/(N m)", "specific wear rate", 1.03e-15),
+    ("1.03e-6 mm3/Nm", "specific wear rate", 1.03e-15),
+    ("1.03e-15 m2/N", "specific wear rate", 1.03e-15),
+    ("36.9 kJ/mol", "molar energy", 36.9e3),
     ("1e-3 Pa s", "dynamic viscosity", 1e-3),
     ("10.6 mPa*s", "dynamic viscosity", 10.6e-3),
     ("10 cP", "dynamic viscosity", 10e-3),
@@ -100,6 +113,29 @@ MESSAGES = [
         "Pa, kPa, MPa, GPa, N/mm2, bar, psi, ksi",
     ),
     (
+        200,
+        "hardness",
+        '"200" has no unit where a hardness is needed; write "200 HV" or use one of '
+        "Pa, MPa, GPa, N/mm2, HV, HB",
+    ),
+    (
+        "58 HRC",
+        "hardness",
+        '"58 HRC" is not a hardness; numbers of Rockwell and other scales are not converted; '
+        "give a number with one of Pa, MPa, GPa, N/mm2, HV, HB",
+    ),
+    (
+        "200 HV",
+        "pressure",
+        '"200 HV" is a hardness, but a pressure is needed; give a number with one of '
+        "Pa, kPa, MPa, GPa, N/mm2, bar, psi, ksi",
+    ),
+    (
+        "inf HV",
+        "hardness",
+        '"inf HV" does not start with a plain finite number; write a hardness like "200 HV"',
+    ),
+    (
         "3,5 mm",
         "length",
         '"3,5 mm" does not start with a plain finite number; write the decimals after a point',
@@ -150,6 +186,8 @@ def suggested(text: str, kind: str) -> str | None:
     [
         ("3 MPA", "pressure", "MPa"),
         ("3 RPM", "rotational speed", "rpm"),
+        ("3 hv10", "hardness", "HV"),
+        ("3 HRC", "hardness", None),
         ("3 Nms", "torque", "Nm"),
         ("3 in-lb", "torque", "in lbf"),
         ("3 kgcm", "torque", "kgf cm"),
@@ -233,10 +271,27 @@ def test_convert_names_the_units_it_knows():
         convert(1.0, "s", "length")
 
 
+def test_scales_of_hardness():
+    told = {"200 HV": "Vickers", "200 HBW": "Brinell", "2 GPa": "", 2e9: "", "58 HRC": ""}
+    assert {text: units.hardness_scale(text) for text in told} == told
+
+
+@pytest.mark.parametrize(
+    "bad", ["0 HV", "-200 HB", "0 GPa", "nan HV", math.nan, math.inf, 200.0, True]
+)
+def test_a_hardness_that_is_none_is_refused_in_one_sentence(bad):
+    with pytest.raises(InputError) as caught:
+        HARDNESS.read(bad)
+    told = str(caught.value)
+    assert told.endswith("; allowed is 0.001 GPa to 100 GPa") and ". " not in told
+
+
 def test_kind_of():
-    assert (kind_of("N*m"), kind_of("mm^2/s"), kind_of("%")) == (
+    assert (kind_of("N*m"), kind_of("mm^2/s"), kind_of("GPa"), kind_of("1/Pa"), kind_of("%")) == (
         "torque",
         "kinematic viscosity",
+        "pressure",
+        "pressure-viscosity coefficient",
         "dimensionless",
     )
     with pytest.raises(UnitError, match='"furlong" is not a known unit'):

@@ -1,6 +1,7 @@
 """The inputs of a case as resolved: numbers in SI with kind, status and place; views make words of them."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.gears.family import Followed
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.units import hardness_scale
 
 __all__ = ["DIMENSIONS", "OIL", "SOLIDS", "STUDIES", "resolved"]
 
@@ -57,7 +59,7 @@ _DIMENSIONS = (
 """What follows from the gears and is asked for first."""
 
 _SOLID = {"young": "pressure", "poisson": "dimensionless", "density": "density"}
-_FLANK = {"hardness": "pressure"}
+_FLANK = {"hardness": "hardness"}
 _CONDUCTS = {"conductivity": "thermal conductivity", "specific_heat": "specific heat"}
 
 _OIL = {
@@ -258,7 +260,7 @@ def _rows(
         if value is None:
             continue
         if any(one == path or one.startswith(f"{path}.") for one in asked):
-            mark = document.provenance.get(path, Provenance())
+            mark = _scaled(document.provenance.get(path, Provenance()), path, asked.get(path))
             yield _row(table, key, value, _kind(path, _plain(value)), mark, given=True)
         else:
             mark = usual.get(key, _mark(found) if left is None else Provenance("default"))
@@ -268,6 +270,16 @@ def _rows(
         if value == {} or (usual and key == SET):
             mark = document.provenance.get(path, Provenance())
             yield _row(table, key, value, "", mark, given=True)
+
+
+def _scaled(mark: Provenance, path: str, given: Any) -> Provenance:
+    """The mark of a value, with the scale of a hardness that was given as a number of one."""
+    quantity = quantity_at(path)
+    scale = hardness_scale(given) if quantity is not None and quantity.kind == "hardness" else ""
+    if not scale:
+        return mark
+    told = f"given as {given}; a {scale} number is kgf/mm2 over its own indentation, used as it is"
+    return replace(mark, note="; ".join(filter(None, [mark.note, told])))
 
 
 def _followed(found: Any) -> Followed:

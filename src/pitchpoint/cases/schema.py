@@ -50,7 +50,7 @@ SLICES = Quantity("dimensionless", 1, 400, whole=True)
 THERMAL_RESISTANCE = Quantity("thermal resistance", 0.0, 10.0, "K m2/W")
 AREA = Quantity("area", 1e-8, 1e4, "m2")
 MODULUS = Quantity("pressure", 1e6, 1e13, "GPa")
-HARDNESS = Quantity("pressure", 1e6, 1e11, "GPa")
+HARDNESS = Quantity("hardness", 1e6, 1e11, "GPa")
 SOLID_CONDUCTIVITY = Quantity("thermal conductivity", 0.01, 1000.0, "W/m/K")
 SPECIFIC_HEAT = Quantity("specific heat", 50.0, 5000.0, "J/kg/K")
 POISSON = Quantity("dimensionless", 0.0, 0.5)
@@ -293,7 +293,7 @@ def _bases() -> list[str]:
 class SolidValues(Table):
     """A material by value.
 
-    Laws that ask for the Vickers hardness of its flanks, or for what conducts the heat of a contact, say so.
+    Laws that ask for the hardness of its flanks, or for what conducts the heat of a contact, say so.
     """
 
     young: Annotated[float, MODULUS]

@@ -406,8 +406,8 @@ def _function(law: Law | Callable[..., Any]) -> Callable[..., Any]:
 @lru_cache(maxsize=256)
 def _asked(function: Callable[..., Any]) -> Shape | None:
     """Shape that alone has what a law asks for; None if every contact has it."""
-    wanted, _ = arguments(function)
-    return next((_OF_SHAPE[name] for name in wanted if name in _OF_SHAPE), None)
+    asked = inspect.signature(function).parameters
+    return next((_OF_SHAPE[name] for name in asked if name in _OF_SHAPE), None)
 
 
 def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:

@@ -38,7 +38,8 @@ class Solid(eqx.Module):
         young: Young's modulus, shape (...) [Pa].
         poisson: Poisson's ratio, shape (...) [1].
         density: density, shape (...) [kg/m3].
-        hardness: Vickers hardness of the flanks, shape (...) [Pa]; not a number where it is not known.
+        hardness: of the flanks, shape (...) [Pa], force over the area of an indentation, which a Vickers or
+            Brinell number counts in kgf/mm2; not a number where it is not known.
 
     Example:
         >>> steel = Solid(young=206e9, poisson=0.3, density=7830.0)
@@ -123,7 +124,7 @@ class SolidRecord:
         melting: temperature at which it melts [K], of plastics.
         service_limit: temperature that it bears for long in air [K], of plastics.
         contact_limit: largest Hertz pressure that it bears, a few times only [Pa], if known.
-        hardness: Vickers hardness of its flanks [Pa], if known.
+        hardness: of its flanks, Vickers or Brinell [Pa], if known.
 
     Raises:
         InputError: a value is out of its physical range, or the table is not in order.

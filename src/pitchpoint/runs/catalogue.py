@@ -29,6 +29,7 @@ from pitchpoint.materials._leaves import Datum
 from pitchpoint.materials.rheology import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
+from pitchpoint.wear.laws import WEAR_LAWS
 
 __all__ = ["entries", "figures"]
 
@@ -49,6 +50,7 @@ def entries() -> list[dict[str, str]]:
         _entry("asperity_load", law, "; ".join([_shape(law), *_limits(law)]))
         for law in ASPERITY_LOAD.values()
     ]
+    rows += [_entry("wear_law", law, _shape(law)) for law in WEAR_LAWS.values()]
     rows += [
         _entry(kind, model, "")
         for kind, registry in (

@@ -42,6 +42,7 @@ _LABELS = {
 
 _UNITS = {
     "angle": "deg",
+    "hardness": "GPa",
     "kinematic viscosity": "mm2/s",
     "length": "mm",
     "pressure": "GPa",
