@@ -324,25 +324,6 @@ _KINDS: dict[str, _Kind] = {
             "h": "hour",
         },
     ),
-    "specific wear rate": _Kind(
-        "a specific wear rate",
-        "1e-6 mm3/(N m)",
-        {
-            "1/Pa": "1/pascal",
-            "m3/(N m)": "meter**3/(newton*meter)",
-            "m3/N/m": "meter**3/(newton*meter)",
-            "mm3/(N m)": "millimeter**3/(newton*meter)",
-            "mm3/(Nm)": "millimeter**3/(newton*meter)",
-            "mm3/N/m": "millimeter**3/(newton*meter)",
-            "m2/N": "meter**2/newton",
-            "1/MPa": "1/megapascal",
-        },
-    ),
-    "molar energy": _Kind(
-        "a molar energy",
-        "49 kJ/mol",
-        {"J/mol": "joule/mole", "kJ/mol": "kilojoule/mole", "kcal/mol": "kilocalorie/mole"},
-    ),
     "volume": _Kind(
         "a volume",
         "1 mm3",

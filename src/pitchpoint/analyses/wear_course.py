@@ -1,6 +1,5 @@
 """Wear of the flanks over the life of a drive: the march, a step a piece, and the whole course."""
 
-import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -152,7 +151,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     names = [str(name) for name in parts[0].data_vars if name != "next_step"]
     values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
     flank, across = (np.asarray(one) for one in course.cells.middles)
-    dims = {name: parts[0][name].dims for name in names}
+    dims = {name: tuple(map(str, parts[0][name].dims)) for name in names}
     deepest = values["worn_depth"].max(axis=(2, 3))
     fastest = values["depth_per_turn"].max(axis=(2, 3))
     volumes = [np.asarray(course.cells.volumes(array(one))) for one in values["worn_depth"]]
@@ -219,7 +218,9 @@ def _warnings(
             "Wear: the loads of flanks that are worn so far were not found, and the march ends there."
         )
     if end == "no wear":
-        told.append("Wear: nothing slides under load, or the law wears nothing off: depths stay zero.")
+        told.append(
+            "Wear: nothing slides under load, or the law wears nothing off: depths stay zero."
+        )
     if np.any(values["conforming"]):
         first = float(values["cycles"][int(np.argmax(values["conforming"]))])
         told.append(
@@ -253,4 +254,4 @@ def _radius(body: Coordinate, contacts: Contacts, flank: np.ndarray) -> np.ndarr
     away = np.linalg.norm(np.cross((point - centre[:, None]).T, axis), axis=1)
     along = np.broadcast_to(contacts.flank[body.member], active.shape)[active]
     order = np.argsort(along)
-    return np.interp(flank, along[order], away[order])
+    return np.asarray(np.interp(flank, along[order], away[order]))

@@ -26,7 +26,6 @@ from pitchpoint.cases.schema import (
     Surface,
     bearings_of,
 )
-from pitchpoint.cases.wear import check_wear
 from pitchpoint.cases.solids import (
     SolidInUse,
     datum,
@@ -36,6 +35,7 @@ from pitchpoint.cases.solids import (
     solids_in_use,
     surrounded,
 )
+from pitchpoint.cases.wear import check_wear
 from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces

@@ -1051,6 +1051,7 @@ Formulas = Annotated[
 _SOURCE_OF = {TorusFormulas: "liu_xiong_2017", ZoneFilms: "xu_2021"}
 """Bibliography entries of the papers whose equations take inputs of their own."""
 
+
 class WearTable(Table):
     """Wear of the flanks at the operating point, over the life of the drive.
 

@@ -68,7 +68,7 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
     _own(table, law, wanted, used)
     if table.profile == "updated" and mesh.toothed and not _feels(case):
         raise InputError(
-            f"worn flanks share the load by their clearances, and '{case.models.load_sharing}' knows of none; "
+            f"worn flanks share the load by their gaps, and '{case.models.load_sharing}' knows of none; "
             'set models.load_sharing = "from_stiffness", or wear.profile = "kept"',
             key="wear.profile",
         )
@@ -102,13 +102,19 @@ def _own(
         for member, own in enumerate(found):
             if given is not None:
                 own[name] = array(given[member])
-            elif name == "coefficient":
-                own[name] = array(ASSUMED_COEFFICIENT)
-            elif name == "hardness" and used[member].record.hardness is not None:
-                own[name] = array(used[member].record.hardness.value)
+            elif (usual := _usual(name, used[member])) is not None:
+                own[name] = array(usual)
             else:
                 raise InputError(_missing(law, name, member), key=f"wear.{name}")
     return found
+
+
+def _usual(name: str, used: SolidInUse) -> float | None:
+    """A constant that was left out, as far as one is known."""
+    if name == "coefficient":
+        return ASSUMED_COEFFICIENT
+    hardness = used.record.hardness if name == "hardness" else None
+    return None if hardness is None else hardness.value
 
 
 def _missing(law: WearLaw, name: str, member: int) -> str:
@@ -184,7 +190,7 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
             )
         if model.bodies is None:
             found.append(
-                "The conductivity or specific heat of a material is not known: its contacts are taken to be as "
+                "The conductivity or specific heat of a material is not known: contacts are taken to be as "
                 "warm as the oil."
             )
     return found

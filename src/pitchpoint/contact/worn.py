@@ -3,7 +3,6 @@
 from itertools import product
 from typing import ClassVar
 
-import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp

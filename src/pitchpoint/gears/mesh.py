@@ -4,7 +4,7 @@ import abc
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import inf
-from typing import ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self, cast
 
 import equinox as eqx
 import numpy as np
@@ -320,7 +320,8 @@ class Mesh(eqx.Module):
             wear: of both members, beside the surfaces that they have.
         """
         first, second = ((*own, one) for own, one in zip(self.surfaces, wear, strict=True))
-        return replace(self, surfaces=(first, second))
+        made: Any = self  # a field of every family, a property here
+        return cast(Self, replace(made, surfaces=(first, second)))
 
     @abc.abstractmethod
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:

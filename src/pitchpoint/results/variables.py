@@ -189,9 +189,13 @@ VARIABLES: dict[str, Variable] = {
     ),
     "cycles": Variable("turns of the driver", "N", "1"),
     "worn_depth": deviation("depth of wear", "h"),
-    "depth_per_turn": Variable("depth that a turn of the driver wears off", "dh/dN", "m", "nm", "length"),
+    "depth_per_turn": Variable(
+        "depth that a turn of the driver wears off", "dh/dN", "m", "nm", "length"
+    ),
     "deepest_wear": deviation("largest depth of wear", "h max"),
-    "fastest_wear": Variable("largest depth that a turn wears off", "dh/dN max", "m", "nm", "length"),
+    "fastest_wear": Variable(
+        "largest depth that a turn wears off", "dh/dN max", "m", "nm", "length"
+    ),
     "worn_volume": Variable("volume worn off a flank", "V", "m3", "mm3", "volume"),
     "wear_error": deviation("error of the depth, estimated", "Δh"),
     "wear_pressure": pressure("largest pressure of the mesh cycle", "p_H max"),
@@ -200,7 +204,9 @@ VARIABLES: dict[str, Variable] = {
     "flank_radius": length("radius of the place on the flank", "r"),
     "final_cycles": Variable("turns of the driver at the end of the march", "N end", "1"),
     "final_depth": deviation("largest depth of wear at the end", "h end"),
-    "pressure_change": percent("largest pressure at the end over that at the start, less one", "Δp/p"),
+    "pressure_change": percent(
+        "largest pressure at the end over that at the start, less one", "Δp/p"
+    ),
     "run_in_cycles": Variable("turns of the driver at which run-in ends", "N 1", "1"),
     "severe_cycles": Variable("turns of the driver at which severe wear begins", "N 2", "1"),
     "life_hours": Variable("time to the end of the march", "t end", "s", "h", "time"),

@@ -32,7 +32,17 @@ from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.programs import program
 from pitchpoint.wear.film_defect import fractional_film_defect
 
-__all__ = ["Cells", "Start", "Turn", "WearModel", "as_new", "cells_on", "extents", "midpoints", "one_turn"]
+__all__ = [
+    "Cells",
+    "Start",
+    "Turn",
+    "WearModel",
+    "as_new",
+    "cells_on",
+    "extents",
+    "midpoints",
+    "one_turn",
+]
 
 STRIPS_OF_ELLIPSE = 24
 """Strips across the face where contacts are ellipses."""
@@ -92,9 +102,7 @@ class Cells(eqx.Module):
 
     def surfaces(self, depth: Depths) -> tuple[Worn, Worn]:
         """Both members' flanks with so much gone."""
-        first, second = (
-            Worn(depth[k], self.flank[k], self.across) for k in range(2)
-        )
+        first, second = (Worn(depth[k], self.flank[k], self.across) for k in range(2))
         return first, second
 
 
@@ -207,7 +215,7 @@ class Start(eqx.Module):
 
     phase: Float[Array, " node"]
     weight: Float[Array, " node"]
-    curvature: Float[Arrays, "2 pair slice node"]
+    curvature: Float[Array, "2 pair slice node"]
     body: Coupling | None
 
 
@@ -233,7 +241,7 @@ def as_new(
     known = Engagement(phase, weight, contacts, share, None, 1)
     at, ways = _travelled(design, operation, models.without_friction, known)
     felt = np.stack([1.0 / contacts.radius, contacts.relative_curvature[1]])
-    start = Start(phase, weight, felt, body)
+    start = Start(phase, weight, array(felt), body)
     return start, cells_on(at, np.asarray(ways), count)
 
 
@@ -392,7 +400,8 @@ def _laid(
         # A line that leans sweeps a strip of the face faster than it moves at right angles to itself.
         along = way * contacts.weight / extent
         if cells.strips > 1:
-            along = along + jnp.abs(jnp.gradient(flank[..., 0], axis=1))
+            (leaning,) = jnp.gradient(flank[..., 0], axis=(1,))
+            along = along + jnp.abs(leaning)
         across = jnp.clip((edges_across - width) / extent[..., None] + 0.5, 0.0, 1.0)
     else:
         along = way

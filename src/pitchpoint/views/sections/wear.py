@@ -159,8 +159,8 @@ def _flanks(name: str, data: xr.Dataset) -> Panel:
     """Depth along both flanks, with the cycles to slide."""
     figures = [_flank(f"{name}_flank{k}", data, k) for k in range(2)]
     choices = [_choice(figures, data, step) for step in range(data.sizes["step"])]
-    note = "Depths are drawn far larger than the flank is long. The mean over the face, and the largest."
-    return Panel("", figures, choices=choices, menu="Turns", slides=True, note=note, at=len(choices) - 1)
+    last = len(choices) - 1
+    return Panel("", figures, choices=choices, menu="Turns", slides=True, at=last)
 
 
 def _choice(figures: list[Figure], data: xr.Dataset, step: int) -> Choice:
@@ -284,7 +284,9 @@ def _answer(data: xr.Dataset) -> str:
         return "nothing wears"
     depth = data["deepest_wear"].values[-1]
     most = int(np.argmax(depth))
-    turns, hours = (show.quantity(name, float(data[name])) for name in ("final_cycles", "life_hours"))
+    turns, hours = (
+        show.quantity(name, float(data[name])) for name in ("final_cycles", "life_hours")
+    )
     words = (
         f"{show.quantity('deepest_wear', float(depth[most]))} at most, on {_members(data)[most]}, after "
         f"{turns} turns of {data.attrs['driver']} ({hours})"
