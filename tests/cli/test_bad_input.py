@@ -11,6 +11,7 @@ import math
 import os
 import subprocess
 import sys
+import tempfile
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -18,14 +19,17 @@ from pathlib import Path
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
+import numpy as np
 import pytest
 from pydantic import BaseModel, BeforeValidator
 from sound import PAIR
 
 from pitchpoint import cli, units
 from pitchpoint.cases import schema
+from pitchpoint.cases.document import resolve
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
+from pitchpoint.cases.worn import gears_digest
 from pitchpoint.errors import InputError
 from pitchpoint.gears import table as every
 from pitchpoint.gears.ball_on_disc import table as ball_on_disc
@@ -38,6 +42,7 @@ from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.published.xu2021.table import ZoneFilms
+from pitchpoint.results.store import dataset, save
 from pitchpoint.runs.jobs import jobs
 
 BASE = tomllib.loads("""
@@ -130,6 +135,18 @@ sigma_over_beta = 0.01
 pattern = 1.0
 boundary_friction = 0.1
 inlet = "5 mm"
+
+[wear]
+law = "archard_1953"
+cycles = 1e6
+coefficient = 1e-6
+hardness = ["200 HV", "1.9 GPa"]
+profile = "kept"
+depth_limit = "20 um"
+pressure_limit = 2.0
+cells = 20
+phases = 8
+tolerance = 1e-3
 
 [studies.scan]
 title = "a sweep"
@@ -346,6 +363,36 @@ DRIVE |= {"operation": {k: v for k, v in BASE["operation"].items() if k != "driv
 DRIVE |= {"models": {"friction": "constant"}, "studies": {"cold": {"title": "cold"}}}
 DRIVE |= {"targets": [{**BASE["targets"][0], "study": "cold", "variable": "mean_loss"}]}
 
+WORN = {key: BASE[key] for key in ("lubricant", "roughness", "operation")}
+WORN |= {"gears": {"teeth": [23, 61], "module": "2 mm", "face_width": "20 mm"}}
+WORN |= {"models": {"friction": "constant", "load_sharing": "from_stiffness"}}
+
+
+def worn_file(gears: dict[str, Any]) -> str:
+    """A result with wear of some gears."""
+    document = resolve({**WORN, "gears": gears}, name="worn.toml", variant="default")
+    depth = np.zeros((2, 2, 8, 1))
+    depth[1, 0] = 1e-6
+    data = dataset(
+        {
+            "worn_depth": (("step", "member", "cell", "strip"), depth),
+            "cycles": (("step",), np.array([0.0, 1e6])),
+            "flank_ends": (("member", "side"), np.array([[0.5e-3, 3e-3], [2e-3, 6e-3]])),
+            "across_ends": (("side",), np.array([-0.01, 0.01])),
+        },
+        {},
+        title="wear",
+        gears=gears_digest(schema.validated(schema.Case, document).gears),
+        driver="gear 1",
+    )
+    path = Path(_FOLDER.name) / "wear.nc"
+    save(data, path)
+    return str(path)
+
+
+_FOLDER = tempfile.TemporaryDirectory()
+WORN |= {"worn": {"file": worn_file(WORN["gears"]), "cycles": 1e5}}
+
 BASES = {
     "cylindrical": BASE,
     "drive": DRIVE,
@@ -354,6 +401,7 @@ BASES = {
     "rack": GANTRY,
     "torus": TORUS,
     "rig": RIG,
+    "worn": WORN,
 }
 WALKS = [
     ("cylindrical", schema.Case, ()),
@@ -365,6 +413,7 @@ WALKS = [
     ("torus", torus.TorusGears, ("gears",)),
     ("rig", ball_on_disc.BallOnDiscRig, ("gears",)),
     ("rig", schema.HeightTables, ("film", "heights")),
+    ("worn", schema.WornTable, ("worn",)),
 ]
 """Sound case, table and its place: together every table of the schema."""
 

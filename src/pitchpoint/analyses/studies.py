@@ -43,6 +43,7 @@ SWEPT = (
     "roughness",
     "operation",
     "film",
+    "worn",
     "formulas",
 )
 """Tables whose values may be swept; rival models stand side by side as a list in [models]."""

@@ -24,7 +24,9 @@ _EACH = ("deepest_wear", "fastest_wear", "worn_volume", "wear_error")
 
 
 def _unasked(built: Built) -> str | None:
-    """Why a case has no wear: nobody asks for it."""
+    """Why a case has no wear: nobody asks for it, or a member has no end."""
+    if not built.design.mesh.goes_round:
+        return "a rack has no number of teeth among which wear goes round"
     return Unasked("the case has no [wear]") if built.case.wear is None else None
 
 

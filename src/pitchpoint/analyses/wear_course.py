@@ -12,6 +12,7 @@ from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
+from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.errors import InputError
@@ -47,11 +48,6 @@ class _Course(NamedTuple):
 @lru_cache(maxsize=2)
 def _course(built: Built) -> _Course:
     table, design = asked(built), built.design
-    if not bool(np.all(np.isfinite(np.asarray(design.mesh.flanks_in_turn)))):
-        raise InputError(
-            "was given; a rack has no number of teeth among which wear goes round, leave the table out",
-            key="wear",
-        )
     roughness = float(design.roughness.ra_1), float(design.roughness.ra_2)
     model = wear_model(built.case, built.solids, roughness)
     parts, count = int(table.phases), int(table.cells)
@@ -179,6 +175,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         {},
         title="wear",
         law=asked(built).law,
+        gears=gears_digest(built.case.gears),
         profile=asked(built).profile,
         end=end,
         members=bodies,

@@ -36,6 +36,7 @@ from pitchpoint.cases.solids import (
     surrounded,
 )
 from pitchpoint.cases.wear import check_wear
+from pitchpoint.cases.worn import with_wear
 from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
@@ -365,6 +366,12 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
         mesh, warnings = built_gears(case.gears, case.operation.driver, int(case.models.slices))
     except InputError as error:
         raise error.at(file=document.name, key=f"gears.{error.key or ''}".rstrip(".")) from None
+    if case.worn is not None:
+        try:
+            mesh, told_of_flanks = with_wear(mesh, case.gears, case.worn)
+            warnings = (*warnings, told_of_flanks)
+        except InputError as error:
+            raise error.at(file=document.name) from None
     used = solids_in_use(case.materials, document, case.operation.temperature)
     record = _lubricant(case.lubricant, document)
     _check_temperature(case.operation.temperature, record, document, "operation.temperature")

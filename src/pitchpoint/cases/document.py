@@ -26,8 +26,8 @@ __all__ = [
     "strip",
 ]
 
-_WITH_FILES = ("film", "heights")
-"""Keys of the tables that name files."""
+_NAMING_FILES = (("film", "heights", "*"), ("worn",))
+"""Places of the tables that name files; a star stands for every table there."""
 
 MAX_BYTES = 1_000_000
 """Largest case file that is read; real ones have a few kilobytes."""
@@ -117,15 +117,26 @@ def read(path: Path) -> Tree:
 
 def _find_files(tree: Tree, folder: Path) -> None:
     """Names of files become those from where the case file lies."""
-    node: Any = tree
-    for part in _WITH_FILES:
-        node = _bare(node.get(part)) if isinstance(node, dict) else None
-    for one in map(_bare, node.values()) if isinstance(node, dict) else ():
-        given = one.get("file") if isinstance(one, dict) else None
-        if isinstance(given, dict) and isinstance(given.get("value"), str):
-            given["value"] = _from(folder, given["value"])
-        elif isinstance(given, str):
-            one["file"] = _from(folder, given)
+    for place in _NAMING_FILES:
+        for one in _tables_at(tree, place):
+            given = one.get("file")
+            if isinstance(given, dict) and isinstance(given.get("value"), str):
+                given["value"] = _from(folder, given["value"])
+            elif isinstance(given, str):
+                one["file"] = _from(folder, given)
+
+
+def _tables_at(tree: Any, place: tuple[str, ...]) -> Iterator[Tree]:
+    """Tables at a place of a tree, as far as there are any."""
+    table = _bare(tree)
+    if not isinstance(table, dict):
+        return
+    if not place:
+        yield table
+        return
+    first, *others = place
+    for key in table if first == "*" else (first,):
+        yield from _tables_at(table.get(key), tuple(others))
 
 
 def _bare(value: Any) -> Any:

@@ -36,6 +36,8 @@ _TABLES = (
     "losses",
     "dynamics",
     "film",
+    "wear",
+    "worn",
     "loss_map",
     "formulas",
 )
@@ -120,13 +122,15 @@ def _of_mesh(built: Built, document: Document) -> Iterator[Row]:
 
 
 def _digests(built: Built) -> Iterator[Row]:
-    """What tells the content of files with heights from any other."""
+    """What tells the content of files with heights and with worn flanks from any other."""
+    held = Provenance("derived", note="SHA-256 of what the file holds")
+    if built.case.worn is not None:
+        yield _row("worn", "digest", digest_of(built.case.worn.file), "", held)
     heights = None if built.case.film is None else built.case.film.heights
     for name in MEMBERS:
         one = getattr(heights, name, None)
         if one is not None:
-            mark = Provenance("derived", note="SHA-256 of what the file holds")
-            yield _row("film", f"heights.{name}.digest", digest_of(one.file), "", mark)
+            yield _row("film", f"heights.{name}.digest", digest_of(one.file), "", held)
 
 
 def _of_films(built: Built) -> dict[str, Followed]:

@@ -101,6 +101,7 @@ MAP_STEP = Quantity("length", 0.0, 0.1, "um", open_low=True)
 MAP_UNIT = Quantity("length", 0.0, 1.0, "um", open_low=True)
 MAP_PLACE = Quantity("length", -1.0, 1.0, "mm")
 WEAR_TURNS = Quantity("dimensionless", 0.0, 1e15, open_low=True)
+WORN_TURNS = Quantity("dimensionless", 0.0, 1e15)
 WEAR_COEFFICIENT = Quantity("dimensionless", 0.0, 1.0)
 WEAR_RATE = Quantity("specific wear rate", 0.0, 1e-6, "mm3/(N m)")
 WEAR_DEPTH = Quantity("length", 1e-8, 0.1, "um")
@@ -1077,6 +1078,16 @@ class WearTable(Table):
     tolerance: Annotated[float, WEAR_ERROR] = 3e-4
 
 
+class WornTable(Table):
+    """Flanks that are worn, from a result with wear of the same gears.
+
+    `cycles` of the driver are those up to which they are worn; all that the result has by default.
+    """
+
+    file: Text
+    cycles: Annotated[float, WORN_TURNS] | None = None
+
+
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
 Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
@@ -1099,6 +1110,7 @@ class Case(Table):
     dynamics: Dynamics | None = None
     film: FilmTable | None = None
     wear: WearTable | None = None
+    worn: WornTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
     formulas: Formulas | None = None
@@ -1464,6 +1476,8 @@ _OF_ONE_MESH = {
     "gears": "was given with [[stages]]; gears belong to a stage, or are all that the file has",
     "dynamics": "vibration is computed for one mesh; give the stage a file of its own",
     "film": "films are solved for one mesh; give the stage a file of its own",
+    "wear": "wear is computed for one mesh; give the stage a file of its own",
+    "worn": "worn flanks belong to one mesh; give the stage a file of its own",
 }
 
 

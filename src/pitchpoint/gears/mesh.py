@@ -150,6 +150,7 @@ class Mesh(eqx.Module):
         along_action: of the class; True if it has a `line_of_action`.
         couples: of the class; True if bodies under the teeth couple them, see `body_compliance`.
         counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
+        goes_round: of the class; True if every flank of a member takes its turn, see `flanks_in_turn`.
         inner_bearing: of the class; the two bodies between which a bearing sits inside the drive, by name;
             empty without one.
     """
@@ -160,6 +161,7 @@ class Mesh(eqx.Module):
     along_action: ClassVar[bool] = False
     couples: ClassVar[bool] = False
     counts: ClassVar[Path] = "turn"
+    goes_round: ClassVar[bool] = True
     inner_bearing: ClassVar[frozenset[str]] = frozenset()
 
     def completed(self) -> Self:
@@ -309,8 +311,8 @@ class Mesh(eqx.Module):
     def flanks_in_turn(self) -> Float[Array, "2"]:
         """Flanks of each member among which the engagements of one period go round.
 
-        A flank takes part, in the mean, in one period over their number. Not a number where a member has no
-        such number.
+        A flank takes part, in the mean, in one period over their number. Of families that say so, see
+        `goes_round`.
         """
 
     def worn(self, wear: tuple[Surface, Surface]) -> Self:

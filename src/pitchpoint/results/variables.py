@@ -197,7 +197,7 @@ VARIABLES: dict[str, Variable] = {
         "largest depth that a turn wears off", "dh/dN max", "m", "nm", "length"
     ),
     "worn_volume": Variable("volume worn off a flank", "V", "m3", "mm3", "volume"),
-    "wear_error": deviation("error of the depth, estimated", "Δh"),
+    "wear_error": deviation("error of the depth by the steps of the march", "Δh"),
     "wear_pressure": pressure("largest pressure of the mesh cycle", "p_H max"),
     "flank_place": length("arc length on the flank", "s"),
     "across_place": length("place across the face from its middle", "y"),

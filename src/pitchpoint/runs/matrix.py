@@ -36,11 +36,16 @@ def matrix() -> list[dict[str, str]]:
 
 
 def _asking(sample: str) -> list[Ready]:
-    """The sample, and the same with every solver of films that its contacts have."""
+    """The sample, the same with every solver of films that its contacts have, and with wear."""
     built = load_case(sample)
     assert isinstance(built, Built)
     solvers = FILM_SOLVERS[built.design.mesh.shape]
-    return [built, *(load_case(sample, settings=_films(one)) for one in solvers)]
+    films = [load_case(sample, settings=_films(one)) for one in solvers]
+    return [built, *films, load_case(sample, settings=_WEAR)]
+
+
+_WEAR = {"wear.law": "vdi_2736", "wear.cycles": 1e6, "wear.rate": "1e-9 mm3/(N m)"}
+_WEAR |= {"wear.profile": "kept"}
 
 
 def _films(solver: str) -> dict[str, str]:

@@ -182,7 +182,7 @@ def _recorded(path: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) 
         tree = record.tree
     except InputError as error:
         raise error.at(file=name) from None
-    told = (*record.warning, *_other_heights(record, settings))
+    told = (*record.warning, *_other_heights(record, settings), *_other_wear(record, settings))
     return Variant(
         tree, name, record.variant, recorded=record.case, warnings=told, folder=path.parent
     )
@@ -199,6 +199,18 @@ def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[st
         if now and now != then:
             name = visible(shorten(os.path.basename(str(file))))
             yield f'The record was made with other heights than "{name}" holds now: numbers differ.'
+
+
+def _other_wear(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
+    """That a file holds other worn flanks than when the record was made, unless settings name one."""
+    if any(key.split(".")[0] == "worn" for key in settings):
+        return
+    rows = {row.key: row.value for row in record.inputs if row.table == "worn"}
+    file, then = rows.get("file"), rows.get("digest")
+    now = digest_of(file) if isinstance(file, str) and then else ""
+    if now and now != then:
+        name = visible(shorten(os.path.basename(str(file))))
+        yield f'The record was made with other worn flanks than "{name}" holds now: numbers differ.'
 
 
 @contextmanager

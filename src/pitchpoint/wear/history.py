@@ -250,7 +250,7 @@ def _travelled(
     design: Design, operation: Operation, models: Models, known: Engagement
 ) -> tuple[Conditions, Float[Array, "2 pair slice node"]]:
     """Conditions at the contacts without friction, and their ways over both flanks."""
-    smooth = models.holding(jnp.zeros(()))
+    smooth = models.holding(jnp.zeros((1, 1, 1)))
     at = state(design, operation, known.phase, smooth, engaged=known).conditions
     lasts = known.weight * design.mesh.period / at.speed
     speeds = [jnp.broadcast_to(as_array(v), at.load.shape) for v in (at.speed_a, at.speed_b)]
@@ -400,7 +400,7 @@ def _laid(
         # A line that leans sweeps a strip of the face faster than it moves at right angles to itself.
         along = way * contacts.weight / extent
         if cells.strips > 1:
-            (leaning,) = jnp.gradient(flank[..., 0], axis=(1,))
+            leaning = jnp.asarray(jnp.gradient(flank[..., 0], axis=1))
             along = along + jnp.abs(leaning)
         across = jnp.clip((edges_across - width) / extent[..., None] + 0.5, 0.0, 1.0)
     else:

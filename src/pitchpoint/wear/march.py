@@ -59,7 +59,7 @@ class Reached:
         turns: of the driver, so far.
         depth: worn off every cell [member, cell, strip] [m].
         rate: what a turn does there.
-        error: of the deepest cells, estimated and added up over all steps, of each member [m].
+        error: of the depth, of each member: what every step may be wrong by, added up [m].
         step: turns of the next step, as its error is expected to allow.
         end: what ended the march; empty as long as it goes on.
     """
@@ -141,12 +141,15 @@ def after(
     except _LostError:
         return replace(before, end="lost")
     depth = march.y if turns == march.t else march.dense_output()(turns)
-    error = march.step_size * np.abs(march.K.T @ march.E).reshape(shape).max(axis=(1, 2))
+    depth = depth.reshape(shape)
+    estimated = march.step_size * np.abs(march.K.T @ march.E).reshape(shape).max(axis=(1, 2))
+    # Where pairs come to carry within a long step the estimate is too small.
+    allowed = tolerance * depth.max(axis=(1, 2))
     return Reached(
         turns=turns,
-        depth=depth.reshape(shape),
+        depth=depth,
         rate=seen_at(depth),
-        error=before.error + error,
+        error=before.error + np.maximum(estimated, allowed),
         step=march.h_abs,
         end=end,
     )

@@ -107,6 +107,7 @@ class RackAndPinion(Mesh):
     pitch_point: ClassVar[bool] = True
     toothed: ClassVar[bool] = True
     along_action: ClassVar[bool] = True
+    goes_round: ClassVar[bool] = False
     counts: ClassVar[Path] = "action"
 
     pinion: InvoluteGear
@@ -285,8 +286,8 @@ class RackAndPinion(Mesh):
 
     @property
     def flanks_in_turn(self) -> Float[Array, "2"]:
-        """Teeth of the pinion; a rack has no number of them here."""
-        return jnp.stack([self.pinion.teeth, jnp.asarray(jnp.nan)])
+        """A rack has no number of teeth here."""
+        raise self._without("number of teeth among which engagements go round")
 
     def spots(self, contacts: Contacts, phase: Float[Arrays, "..."]) -> tuple[Spot, Spot]:
         """The line of action stands still; the pinion turns on against it, the rack travels past it."""

@@ -93,9 +93,8 @@ def _how(data: xr.Dataset) -> str:
         f"contact, once for each engagement, times the specific wear rate of {data.attrs['law']}. "
         f"{feedback}. All teeth of a gear wear alike, forces are those without friction, and contacts stay "
         f"on the normals of the flanks as new. {int(data['wear_steps'])} steps of the march, each with an "
-        f"error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth at most; the estimated "
-        "errors are added up without their signs. Curvatures are those of the depths smoothed over two "
-        "cells to either side."
+        f"error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth at most, which are "
+        "added up. Curvatures are those of the depths smoothed over two cells to either side."
     )
 
 

@@ -1,0 +1,72 @@
+"""Worn flanks of a case, from a result with wear of the same gears."""
+
+import hashlib
+import os
+from pathlib import Path
+
+import numpy as np
+
+from pitchpoint._jax import array
+from pitchpoint.cases.schema import WornTable
+from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.table import GearsTable
+from pitchpoint.results.store import load
+from pitchpoint.wear.history import Cells
+
+__all__ = ["gears_digest", "with_wear"]
+
+
+def gears_digest(gears: GearsTable) -> str:
+    """What tells gears from any others whose flanks wear elsewhere.
+
+    Args:
+        gears: as validated.
+    """
+    return hashlib.sha256(gears.model_dump_json().encode()).hexdigest()[:16]
+
+
+def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str]:
+    """A mesh with the flanks that a result has worn, and a sentence on them.
+
+    Depths between two steps of the march are interpolated over the cycles.
+
+    Args:
+        mesh: with flanks as new.
+        gears: of which it is.
+        worn: which result, and how many cycles of it.
+
+    Raises:
+        InputError: no result with wear, one of other gears, or of fewer cycles.
+    """
+    name = visible(shorten(os.path.basename(worn.file)))
+    try:
+        data = load(Path(worn.file))
+    except (InputError, OSError, ValueError):
+        raise _wrong(name, "cannot be read as a result; name the wear.nc of one") from None
+    if data.attrs.get("title") != "wear":
+        raise _wrong(name, "holds no wear; name the wear.nc of a result")
+    if data.attrs.get("gears") != gears_digest(gears):
+        raise _wrong(
+            name, "holds the wear of other gears: every key of [gears] has to be as it was there"
+        )
+    cycles = data["cycles"].values
+    turns = float(cycles[-1]) if worn.cycles is None else worn.cycles
+    if turns > cycles[-1]:
+        told = f"{turns:.6g} is beyond the {cycles[-1]:.6g} turns that {name} holds; give at most so many"
+        raise InputError(told, key="worn.cycles")
+    depth = data["worn_depth"].values
+    at = max(int(np.searchsorted(cycles, turns)), 1) if cycles.size > 1 else 0
+    part = 0.0 if at == 0 else (turns - cycles[at - 1]) / (cycles[at] - cycles[at - 1])
+    gone = (1.0 - part) * depth[at - 1] + part * depth[at] if at else depth[0]
+    ends = data["flank_ends"].values, data["across_ends"].values
+    cells = Cells(array(ends[0]), array(ends[1]), depth.shape[2], depth.shape[3])
+    deepest = " and ".join(f"{1e6 * float(one.max()):.3g} um" for one in gone)
+    told = (
+        f"Flanks are worn by {turns:.4g} turns of {data.attrs['driver']}: {deepest} deep at most."
+    )
+    return mesh.worn(cells.surfaces(array(gone))), told
+
+
+def _wrong(name: str, told: str) -> InputError:
+    return InputError(f'"{name}" {told}', key="worn.file")

@@ -1,0 +1,288 @@
+"""Wear of flanks: closed forms, volumes against the work of friction, VDI 2736, the march, worn surfaces."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.cases.build import Built
+from pitchpoint.contact.contacts import total
+from pitchpoint.contact.surface import Spot, missing
+from pitchpoint.contact.worn import Worn
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.gears.rigs.twin_disc import TwinDisc
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
+from pitchpoint.runs.run import load_case
+from pitchpoint.wear import vdi_2736
+from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
+from pitchpoint.wear.laws import archard_1953
+from pitchpoint.wear.march import Limit, Rate, Reached, after
+from pitchpoint.wear.march import as_new as unworn
+
+K = 1e-16
+OWN = {"coefficient": array(K * 2e9), "hardness": array(2e9)}
+WEAR = WearModel(archard_1953, (OWN, OWN))
+CELLS, PARTS = 32, 16
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@cache
+def pair(name: str = "from_stiffness") -> Built:
+    """The pair of 23 and 61 teeth, or another."""
+    return load_case(str(EXAMPLES / "pair_23_61.toml"), settings={"models.load_sharing": name})
+
+
+def begun(built: Built, cells: int = CELLS) -> tuple[Start, Cells]:
+    given = built.design, built.operation, built.models[0]
+    return as_new(*given, parts=PARTS, count=cells)
+
+
+def turn(built: Built, cells: int = CELLS, depth: np.ndarray | None = None) -> tuple[Turn, Cells]:
+    """What a turn wears off flanks as new, or off worn ones."""
+    start, grid = begun(built, cells)
+    gone = jnp.zeros((2, grid.count, grid.strips)) if depth is None else array(depth)
+    given = built.design, built.operation, built.models[0], WEAR
+    return jax.device_get(one_turn(*given, grid, start, gone)), grid
+
+
+@cache
+def of_pair(name: str = "from_stiffness", cells: int = CELLS) -> tuple[Turn, Cells]:
+    return turn(pair(name), cells)
+
+
+# ---- closed forms
+
+
+LOAD, LENGTH, RADII = 2e3, 0.01, (0.02, 0.05)
+
+
+def discs(ratio: float = 0.8) -> tuple[Design, Operation, Models]:
+    """Two discs whose contact is the same at all times."""
+    steel = solids.find("steel").build()
+    design = Design(
+        TwinDisc(array(RADII), array(LENGTH), array(ratio)),
+        (steel, steel),
+        lubricants.find("pao-vg-220").build(),
+        Roughness.from_composite_rq(0.4e-6),
+    )
+    models = Models(
+        friction=(),
+        choice=array(0),
+        parameters={},
+        sharing=LOAD_SHARING["equal"],
+        rolling=ROLLING_RESISTANCE["none"],
+    )
+    return design, Operation(array(LOAD), array(100.0), array(330.0)), models
+
+
+def test_discs_wear_by_their_line_load_and_sliding_over_rolling():
+    given, ratio = discs(), 0.8
+    start, cells = as_new(*given, parts=PARTS, count=CELLS)
+
+    def rate(depth: np.ndarray) -> Rate:
+        found = one_turn(*given, WEAR, cells, start, array(depth))
+        return Rate(np.asarray(found.depth), float(found.pressure), False, bool(found.lost))
+
+    reached = marched(rate, (2, CELLS, 1), 1e9)
+    # Disc 1 turns by the ratio of speeds and radii while disc 0 turns once.
+    sliding = 1.0 - ratio
+    each = np.array([sliding, sliding / ratio * ratio * RADII[0] / RADII[1]])
+    expected = 1e9 * K * LOAD / LENGTH * each
+    assert reached.depth.max(axis=(1, 2)) == pytest.approx(expected, rel=1e-10)
+    assert reached.depth.min(axis=(1, 2)) == pytest.approx(expected, rel=1e-10)
+
+
+def marched(
+    rate: Any, shape: tuple[int, int, int], turns: float, tolerance: float = 1e-3
+) -> Reached:
+    state = unworn(rate, shape)
+    start = state.rate.pressure
+    while not state.end:
+        state = after(state, rate, Limit(turns), start=start, tolerance=tolerance)
+    assert state.end == "turns"
+    assert state.turns == turns
+    return state
+
+
+def test_volume_is_that_of_the_work_of_friction():
+    """By Archard's law volume is K/H times force times sliding, as the loss is by its coefficient."""
+    found, cells = of_pair("equal")
+    of_cells = np.asarray(cells.volumes(array(found.depth)))
+    assert of_cells == pytest.approx(found.volume, rel=1e-12)
+    assert np.all(found.depth >= 0.0)
+    built = pair("equal")
+    slight = jnp.full((1, 1, 1), 1e-6)
+    cycle_of = jax.device_get(_sliding(built, slight))
+    per_turn = float(cycle_of) / 1e-6 * 2.0 * np.pi / float(built.operation.speed)
+    teeth = np.array([23.0, 61.0])
+    assert found.volume * teeth == pytest.approx([K * per_turn] * 2, rel=1e-3)
+
+
+def _sliding(built: Built, coefficient: jax.Array) -> jax.Array:
+    """Mean loss by sliding under a friction coefficient."""
+    models = built.models[0].without_friction.holding(coefficient)
+
+    @jax.jit
+    def loss() -> jax.Array:
+        found = cycle(built.design, built.operation, models)
+        return found.mean(total(found.state.sliding_loss))
+
+    return loss()
+
+
+def test_the_mean_depth_is_that_of_the_guideline_for_plastics():
+    found, _ = of_pair("equal")
+    built = pair("equal")
+    mesh = built.design.mesh
+    line, (_, tips) = mesh.line, jax.device_get((mesh.period, mesh.line.limits))
+    pitch, place = float(line.base_pitch), float(line.pitch_position)
+    parts = np.array([place - tips[0], tips[1] - place])
+    z1, z2 = (abs(float(z)) for z in mesh.teeth)
+    recess, approach = parts[1] / pitch, parts[0] / pitch
+    factor = vdi_2736.loss_factor(
+        teeth_1=z1, teeth_2=z2, contact_ratio_1=recess, contact_ratio_2=approach
+    )
+    torque = float(built.operation.load) * z1 / z2
+    ends = np.asarray(mesh.active_flanks)[0]
+    length = abs(ends[1] ** 2 - ends[0] ** 2) / (2.0 * float(mesh.base_radii[0]))
+    expected = vdi_2736.mean_wear_depth(
+        torque=torque,
+        turns=1.0,
+        loss_factor=factor,
+        rate=K,
+        face_width=float(mesh.face_width),
+        teeth=z1,
+        flank_length=length,
+    )
+    mean = found.volume[0] / (float(mesh.face_width) * length)
+    assert mean == pytest.approx(float(expected), rel=2e-3)
+
+
+def test_nothing_wears_where_the_flanks_roll():
+    """At the pitch point: what its cell loses is half as much in cells of half the length."""
+    least = []
+    for count in (CELLS // 2, CELLS, 2 * CELLS):
+        found, cells = of_pair("equal", count)
+        mesh = pair("equal").design.mesh
+        roll = float(mesh.line.pitch_position)
+        place = roll**2 / (2.0 * float(mesh.base_radii[0]))
+        edges = np.linspace(*np.asarray(cells.flank)[0], count + 1)
+        at = int(np.searchsorted(edges, place)) - 1
+        least.append(found.depth[0, at - 1 : at + 2, 0].mean() / found.depth[0].max())
+        inner = found.depth[0, 2:-2, 0]
+        assert abs(int(np.argmin(inner)) + 2 - at) <= 1
+    assert least[1] / least[0] == pytest.approx(0.5, abs=0.12)
+    assert least[2] / least[1] == pytest.approx(0.5, abs=0.12)
+
+
+# ---- the march
+
+
+def rate_of(built: Built, cells: int = CELLS) -> tuple[Any, tuple[int, int, int]]:
+    start, grid = begun(built, cells)
+    given = built.design, built.operation, built.models[0], WEAR, grid, start
+
+    def rate(depth: np.ndarray) -> Rate:
+        found = one_turn(*given, array(depth))
+        return Rate(np.asarray(found.depth), float(found.pressure), False, bool(found.lost))
+
+    return rate, (2, grid.count, grid.strips)
+
+
+def test_shorter_steps_change_the_depth_within_the_stated_error():
+    rate, shape = rate_of(pair())
+    coarse = marched(rate, shape, 3e6, tolerance=1e-2)
+    fine = marched(rate, shape, 3e6, tolerance=1e-4)
+    apart = np.abs(coarse.depth - fine.depth).max(axis=(1, 2))
+    assert np.all(apart <= coarse.error)
+    assert np.all(coarse.error < 0.1 * coarse.deepest)
+    assert np.all(np.diff([coarse.deepest.max(), fine.deepest.max()]) < 0.02 * fine.deepest.max())
+
+
+def test_worn_flanks_hand_the_load_to_those_that_are_less_worn():
+    """Double contact takes load off the deepest places: they wear more slowly, and volume stays."""
+    rate, shape = rate_of(pair())
+    new, worn = rate(np.zeros(shape)), marched(rate, shape, 3e6)
+    deepest = np.unravel_index(np.argmax(worn.depth), shape)
+    assert worn.rate.depth[deepest] < 0.9 * new.depth[deepest]
+    volumes = [one.depth.sum(axis=(1, 2)) for one in (new, worn.rate)]
+    assert volumes[1] == pytest.approx(volumes[0], rel=0.3)
+
+
+def test_the_number_of_steps_does_not_grow_with_the_cycles():
+    given = discs()
+    start, cells = as_new(*given, parts=PARTS, count=CELLS)
+
+    def steps(coefficient: float, turns: float) -> int:
+        asked: list[int] = []
+        slow = replace(WEAR, own=(dict(OWN, coefficient=array(coefficient)),) * 2)
+
+        def rate(depth: np.ndarray) -> Rate:
+            asked.append(1)
+            found = one_turn(*given, slow, cells, start, array(depth))
+            return Rate(np.asarray(found.depth), float(found.pressure), False, bool(found.lost))
+
+        marched(rate, (2, CELLS, 1), turns)
+        return len(asked)
+
+    assert steps(1e-4, 1e4) == steps(1e-10, 1e10) < 40
+
+
+def test_without_wear_nothing_changes():
+    rate, shape = rate_of(pair())
+    state = unworn(lambda depth: replace(rate(depth), depth=np.zeros(shape)), shape)
+    assert state.end == "no wear"
+    assert not state.depth.any()
+
+
+# ---- worn flanks
+
+
+def spot(flank: np.ndarray, across: np.ndarray) -> Spot:
+    none = np.zeros(flank.shape)
+    return Spot(*map(jnp.asarray, (flank, across, none, none.astype(int), none)))
+
+
+def test_smoothed_depths_keep_their_volume_and_stay_positive():
+    depth = np.zeros((30, 12))
+    depth[8:20, 4:9] = np.random.default_rng(3).random((12, 5))
+    surface = Worn(array(depth), array([1.0, 4.0]), array([-2.0, 2.0]))
+    s, y = np.meshgrid(np.linspace(1.0, 4.0, 1201), np.linspace(-2.0, 2.0, 961), indexing="ij")
+    height = np.asarray(missing((surface,), spot(s, y)))
+    assert height.min() >= 0.0
+    volume = np.trapezoid(np.trapezoid(height, y[0], axis=1), s[:, 0])
+    assert volume == pytest.approx(depth.sum() * (3.0 / 30) * (4.0 / 12), rel=1e-4)
+
+
+def test_curvatures_of_smoothed_depths_are_their_second_differences():
+    rng = np.random.default_rng(4)
+    surface = Worn(array(rng.random((20, 8))), array([0.0, 1.0]), array([-1.0, 1.0]))
+    s, y = rng.uniform(0.1, 0.9, 40), rng.uniform(-0.8, 0.8, 40)
+
+    def height(at: jax.Array) -> jax.Array:
+        return missing((surface,), replace(spot(s, y), flank=at))
+
+    ones, at = jnp.ones(40), jnp.asarray(s)
+    bend = jax.jvp(lambda v: jax.jvp(height, (v,), (ones,))[1], (at,), (ones,))[1]
+    step = 1e-4
+    differences = (height(at + step) - 2.0 * height(at) + height(at - step)) / step**2
+    assert np.asarray(bend) == pytest.approx(np.asarray(differences), rel=1e-2, abs=2.0)
+
+
+@pytest.mark.parametrize("name", ["torus", "helical_few_teeth_plastic"])
+def test_other_families_keep_their_volume(name):
+    sharing = {"models.load_sharing": "from_stiffness"}
+    built = load_case(str(EXAMPLES / f"{name}.toml"), settings=sharing)
+    found, cells = turn(built)
+    assert np.asarray(cells.volumes(array(found.depth))) == pytest.approx(found.volume, rel=1e-12)
+    assert cells.strips > 1
+    assert np.all(found.depth >= 0.0)
+    middle = found.depth[:, :, cells.strips // 2]
+    assert np.all(np.count_nonzero(middle, axis=1) > 0.8 * CELLS)

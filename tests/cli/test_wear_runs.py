@@ -1,0 +1,240 @@
+"""Wear from a case file: steps that survive a stop, worn gears in other analyses, report, refusals."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from sound import PAIR
+
+from pitchpoint.analyses import wear_course
+from pitchpoint.analyses.along_action import STIFFNESS
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.wear import WEAR
+from pitchpoint.errors import InputError
+from pitchpoint.results.store import load
+from pitchpoint.runs import run as running
+from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.run import Outcome, describe, load_case
+from pitchpoint.views.report import render
+from pitchpoint.views.sections.wear import WEAR as SECTION
+
+MODELS = """
+[models]
+load_sharing = "from_stiffness"
+friction = { name = "constant", coefficient = 0.05 }
+"""
+DRY = """
+[wear]
+law = "archard_1953"
+cycles = 3e6
+coefficient = 2e-7
+hardness = "2 GPa"
+cells = 16
+phases = 8
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def alone() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ANALYSES, "_entries", {"wear": WEAR, "stiffness": STIFFNESS})
+        yield
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("wear")
+
+
+def written(folder: Path, text: str, name: str = "wear.toml") -> str:
+    path = folder / name
+    path.write_text(PAIR + text, "utf-8")
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def case(folder: Path) -> str:
+    return written(folder, MODELS + DRY)
+
+
+@pytest.fixture(scope="module")
+def outcome(case: str, folder: Path) -> Outcome:
+    return running.run(case, folder=folder / "whole")["default"]
+
+
+def test_the_march_ends_where_it_is_asked_to(outcome: Outcome) -> None:
+    data = outcome.parts["wear"]
+    assert float(data["final_cycles"]) == 3e6
+    assert float(data["life_hours"]) == pytest.approx(3e6 / 1500.0 * 60.0)
+    assert np.all(np.diff(data["cycles"].values) > 0.0)
+    depth = data["deepest_wear"].values
+    assert np.all(np.diff(depth, axis=0) > 0.0)
+    assert data["wear_error"].values[-1] == pytest.approx(0.0, abs=2e-2 * depth[-1].max())
+    told = figures(outcome)["wear"]
+    assert told["final_depth"] == float(data["final_depth"]) == depth[-1].max()
+    # Gear 2 meets with every third turn of gear 1.
+    volumes = data["worn_volume"].values[-1]
+    assert volumes[0] / volumes[1] == pytest.approx(61.0 / 23.0, rel=1e-6)
+
+
+def test_a_march_that_is_stopped_at_every_step_ends_with_the_same_bits(
+    outcome: Outcome, case: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    further, stops = wear_course.further, []
+
+    def stopping(built: Any, last: xr.Dataset, progress: Any) -> xr.Dataset | None:
+        if len(stops) < 20 and len(done) == 1:
+            stops.append(float(last["cycles"][-1]))
+            raise KeyboardInterrupt
+        done.append(1)
+        return further(built, last, progress)
+
+    monkeypatch.setattr(wear_course, "further", stopping)
+    found: Outcome | None = None
+    while found is None:
+        done: list[int] = []
+        try:
+            found = running.run(case, folder=folder / "stopped")["default"]
+        except KeyboardInterrupt:
+            continue
+    assert len(stops) == outcome.parts["wear"].sizes["step"] - 1
+    xr.testing.assert_identical(found.parts["wear"], outcome.parts["wear"])
+    bits = [one.parts["wear"]["worn_depth"].values.tobytes() for one in (found, outcome)]
+    assert bits[0] == bits[1]
+
+
+def test_worn_gears_are_gears(outcome: Outcome, folder: Path) -> None:
+    kept = folder / "whole" / "default" / "wear.nc"
+    settings = {"worn.file": str(kept), "worn.cycles": 3e6}
+    case = written(folder, MODELS, "pair.toml")
+    errors = []
+    for more in ({}, {**settings, "worn.cycles": 0.0}, settings):
+        stiff = running.run(case, settings=more)["default"].parts["stiffness"]
+        errors.append(float(np.ptp(stiff["static_transmission_error"].values)))
+    assert errors[1] == pytest.approx(errors[0], rel=1e-6)
+    assert abs(errors[2] / errors[0] - 1.0) > 0.05
+    (record,) = describe(case, settings=settings)
+    assert any("worn by 3e+06 turns of gear 1" in told for told in record["warnings"])
+    assert {row["key"] for row in record["inputs"] if row["table"] == "worn"} == {
+        "file",
+        "cycles",
+        "digest",
+    }
+
+
+def test_a_kept_profile_wears_in_proportion_to_the_cycles(case: str) -> None:
+    both = [
+        running.run(case, settings={"wear.profile": "kept", "wear.cycles": turns})["default"]
+        for turns in (1e5, 1e9)
+    ]
+    short, long = (one.parts["wear"]["worn_depth"].values[-1] for one in both)
+    assert long == pytest.approx(1e4 * short, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("limit", "end"), [({"wear.depth_limit": "2 um"}, "depth"), ({"wear.cycles": 10.0}, "turns")]
+)
+def test_a_limit_ends_the_march(case: str, limit: dict[str, Any], end: str) -> None:
+    data = running.run(case, settings=limit)["default"].parts["wear"]
+    assert data.attrs["end"] == end
+    if end == "depth":
+        assert float(data["final_depth"]) == pytest.approx(2e-6, rel=1e-9)
+
+
+def test_mixed_lubrication_wears_less_than_dry_flanks(folder: Path) -> None:
+    dry = running.run(written(folder, MODELS + DRY), settings={"wear.cycles": 1.0})
+    mixed = running.run(
+        written(folder, MODELS + DRY, "mixed.toml"),
+        settings={
+            "wear.cycles": 1.0,
+            "wear.law": "masjedi_khonsari_2015",
+            "wear.adsorption_heat": "49 kJ/mol",
+            "models.asperity_load": "masjedi_khonsari_2012",
+            "materials.gear_1": {"young": "206 GPa", "poisson": 0.3, "hardness": "2 GPa"},
+            "materials.gear_2": {"young": "206 GPa", "poisson": 0.3, "hardness": "2 GPa"},
+        },
+    )
+    depths = [float(one["default"].parts["wear"]["final_depth"]) for one in (dry, mixed)]
+    assert 0.0 < depths[1] < 1e-2 * depths[0]
+
+
+def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
+    page = render({"default": outcome})
+    assert 'id="wear"' in page
+    assert "not reached: 1.5 times the least rate" in page
+    assert 'data-menu="wear0_flank0"' in page
+    ((name, words),) = SECTION.answer(outcome)
+    assert name == "Wear"
+    assert "after 3000000 turns of gear 1" in words
+    (printed,) = SECTION.screen(outcome)
+    assert printed.line == "The march ended as many as were asked for."
+
+
+REFUSED = {
+    "a table without its law": ({"wear.cycles": 1.0}, "law: is missing"),
+    "hardness without unit": (
+        {"wear.law": "archard_1953", "wear.cycles": 1.0, "wear.hardness": 200},
+        "has no unit",
+    ),
+    "no hardness": (
+        {"wear.law": "archard_1953", "wear.cycles": 1.0, "materials.gear_2": "PA66"},
+        "asks for the hardness of both gears, and that of gear 2 is not known",
+    ),
+    "zero hardness": (
+        {"wear.law": "archard_1953", "wear.cycles": 1.0, "wear.hardness": "0 HV"},
+        "out of range",
+    ),
+    "negative cycles": ({"wear.law": "archard_1953", "wear.cycles": -1.0}, "out of range"),
+    "no rate": ({"wear.law": "vdi_2736", "wear.cycles": 1.0}, "asks for the specific wear rate"),
+    "a constant of another law": (
+        {
+            "wear.law": "vdi_2736",
+            "wear.cycles": 1.0,
+            "wear.rate": "1e-15 1/Pa",
+            "wear.coefficient": 1.0,
+        },
+        "does not ask for it",
+    ),
+    "no load on asperities": (
+        {"wear.law": "masjedi_khonsari_2015", "wear.cycles": 1.0, "wear.hardness": "2 GPa"},
+        "asks for the load on asperities",
+    ),
+    "a sharing that knows no gaps": (
+        {
+            "wear.law": "archard_1953",
+            "wear.cycles": 1.0,
+            "wear.hardness": "2 GPa",
+            "models.load_sharing": "equal",
+        },
+        "knows of none",
+    ),
+    "no such result": ({"worn.file": "nowhere.nc"}, "cannot be read as a result"),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_cannot_be_is_one_sentence(what: str, folder: Path) -> None:
+    settings, words = REFUSED[what]
+    with pytest.raises(InputError) as caught:
+        load_case(written(folder, MODELS, "bare.toml"), settings=settings)
+    told = str(caught.value)
+    assert words in told
+    assert told.count("\n") == 0
+
+
+def test_worn_flanks_belong_to_their_gears(outcome: Outcome, folder: Path) -> None:
+    kept = folder / "whole" / "default" / "wear.nc"
+    bare = written(folder, MODELS, "bare.toml")
+    for settings, words in (
+        ({"worn.file": str(kept), "gears.face_width": "21 mm"}, "wear of other gears"),
+        ({"worn.file": str(kept), "worn.cycles": 4e6}, "is beyond the 3e+06 turns"),
+        ({"worn.file": str(kept.with_name("stiffness.nc"))}, "holds no wear"),
+        ({"worn.file": str(kept), "models.load_sharing": "equal"}, "have a gap"),
+    ):
+        with pytest.raises(InputError, match=words.replace("+", r"\+")):
+            load_case(bare, settings=settings)
+    assert json.loads(load(kept).attrs["members"]) == ["gear 1", "gear 2"]
