@@ -19,16 +19,15 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.schema import Target, validate
 from pitchpoint.cases.variant import Variant
-from pitchpoint.results.store import dataset
+from pitchpoint.results.store import dataset, save
 from pitchpoint.runs import run
 from pitchpoint.runs.jobs import jobs
 
 README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
 TOML = [text for kind, text in BLOCKS if kind == "toml"]
-PAIR, MODIFIED, PLASTIC, MOTION, FILM, FINITE, HEIGHTS, RACK, TORUS, WAVE, STAGES, BALL, TARGETS = (
-    TOML
-)
+PAIR, MODIFIED, PLASTIC, MOTION, FILM, FINITE, HEIGHTS, WEAR, WORN, *OTHERS = TOML
+RACK, TORUS, WAVE, STAGES, BALL, TARGETS = OTHERS
 SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
 SET_UP = [
     "sh bootstrap && .venv/bin/pitchpoint run tian2024",
@@ -40,6 +39,7 @@ CASES = {
     "plastic": (PAIR, PLASTIC),
     "motion": (PAIR, MOTION),
     "film": (PAIR, FILM),
+    "wear": (PAIR, WEAR),
     "finite": (PAIR, FINITE),
     "rack": (PAIR, RACK),
     "torus": (PAIR, TORUS),
@@ -83,9 +83,26 @@ def test_a_case(name: str) -> None:
     assert ("vibration" in made) == (name in ("plastic", "motion"))
     assert ("start_up" in made) == (name == "motion")
     assert ("film" in made) == (name == "film")
+    assert ("wear" in made) == (name == "wear")
     assert ("finite_film" in made) == (name == "finite")
     assert ("running" in made) == (name in ("wave", "targets", "stages"))
     assert ("kinematic_error" in made) == (name in ("modified", "wave", "targets"))
+
+
+def test_the_table_of_worn_flanks(tmp_path: Path) -> None:
+    """A march of few turns, and what goes on from it."""
+    case = merged(tree("wear"), {"wear": {"cycles": 10.0, "cells": 8, "phases": 4}})
+    (wear,) = (one for one in jobs(Variant(case, "README.md", "default"), {}) if one.name == "wear")
+    parts = [wear.compute(wear.pieces[0])]
+    while (further := wear.onward(parts[-1])) is not None:
+        parts.append(further)
+    save(wear.joined(parts), tmp_path / "wear.nc")
+    given = tomllib.loads(WORN)
+    assert given["worn"]["file"] == "wear.nc"
+    given["worn"] |= {"file": str(tmp_path / "wear.nc"), "cycles": 5.0}
+    models = {"models": {"load_sharing": "from_stiffness"}}
+    built = Variant(merged(merged(tree("pair"), models), given), "README.md", "default").built({})
+    assert any("worn by 5 turns" in told for told in built.told)
 
 
 def test_the_table_of_heights(tmp_path: Path) -> None:

@@ -171,7 +171,7 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     assert name == "Wear"
     assert "after 3000000 turns of gear 1" in words
     (printed,) = SECTION.screen(outcome)
-    assert printed.line == "The march ended as many as were asked for."
+    assert printed.line == "The march ended after as many turns as were asked for."
 
 
 REFUSED = {

@@ -24,7 +24,7 @@ from pitchpoint.views.figures import (
     verticals,
 )
 from pitchpoint.views.lines import titled
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head
 from pitchpoint.views.section import (
     Block,
     Heading,
@@ -41,7 +41,7 @@ __all__ = ["WEAR"]
 _NONE = "No depth is known here."
 
 _ENDS = {
-    "turns": "as many as were asked for",
+    "turns": "after as many turns as were asked for",
     "depth": "where a flank reaches the limit of its depth",
     "pressure": "where the largest pressure reaches its limit",
     "lost": "where the loads of the worn flanks were not found",
@@ -294,7 +294,10 @@ def _answer(data: xr.Dataset) -> str:
 
 
 def _screen(data: xr.Dataset) -> Iterator[Printed]:
-    row = {head(name, data): shown(name, float(data[name]), data) for name in _FIGURES}
+    row = {
+        head(name, data): show.quantity(name, float(data[name]), with_unit=False)
+        for name in _FIGURES
+    }
     for k, body in enumerate(_members(data)):
         row[f"h max {body} [{show.unit_of('deepest_wear')}]"] = show.quantity(
             "deepest_wear", float(data["deepest_wear"].values[-1, k]), with_unit=False
