@@ -370,7 +370,8 @@ def _turn(
     depth, volume = [], []
     for member, (rate, way) in enumerate(zip(rates, ways, strict=True)):
         gone = periods / mesh.flanks_in_turn[member] * rate * slid
-        depth.append(_laid(cells, member, at, way, gone))
+        moves = way / known.weight  # in one period
+        depth.append(_laid(cells, member, at, _spread(at, moves, known.weight), gone))
         volume.append(jnp.sum(gone))
     return Turn(
         depth=jnp.stack(depth),
@@ -379,6 +380,24 @@ def _turn(
         conforming=jnp.zeros((), bool),
         lost=~jnp.all(jnp.isfinite(at.load)),
     )
+
+
+def _spread(at: Conditions, moves: Lanes, weight: Float[Array, " node"]) -> Lanes:
+    """Length of flank over which a contact wears while it stands for others [m].
+
+    A place that a contact passes slides under all of it, whatever its width. One under which a contact stays
+    shares its wear with all that the contact covers.
+
+    Args:
+        at: conditions at the contacts.
+        moves: ways over the flank at the speed of each contact in one period [m].
+        weight: part of the period for which each contact stands.
+    """
+    half = at.half_width if at.shape == "line" else at.semi_axis_along
+    covers = 2.0 * jnp.where(at.load > 0.0, half, 0.0)
+    still = covers**2 + moves**2
+    stays = covers**2 / jnp.where(still > 0.0, still, 1.0)
+    return moves * weight + covers * stays
 
 
 def _laid(
