@@ -21,6 +21,7 @@ from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.runs.run import load_case
 from pitchpoint.wear import vdi_2736
+from pitchpoint.wear.gradients import depth_gradient, sensitivities
 from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, Reached, after
@@ -240,6 +241,30 @@ def test_without_wear_nothing_changes():
     state = unworn(lambda depth: replace(rate(depth), depth=np.zeros(shape)), shape)
     assert state.end == "no wear"
     assert not state.depth.any()
+
+
+def test_derivatives_equal_differences():
+    built = pair("equal")
+    _, cells = begun(built)
+    inputs = built.design, built.operation, WEAR
+    value, slopes = depth_gradient(inputs, built.models[0], cells, PARTS)
+    found = sensitivities(inputs, float(value), slopes)
+    assert float(value) == pytest.approx(of_pair("equal")[0].depth.max(), rel=1e-12)
+    # But for the width that contacts cover, which grows with the load.
+    assert found["load"] == pytest.approx(1.0, abs=1e-3)
+    assert found["speed"] == pytest.approx(0.0, abs=1e-9)
+    assert found["face width"] == pytest.approx(-1.0, abs=1e-3)
+    assert found["coefficient 1"] + found["coefficient 2"] == pytest.approx(1.0)
+
+    def wider(part: float) -> float:
+        module = built.design.mesh.module * (1.0 + part)
+        mesh = replace(built.design.mesh, module=module)
+        other = replace(built.design, mesh=mesh), *inputs[1:]
+        return float(depth_gradient(other, built.models[0], cells, PARTS)[0])
+
+    step = 1e-5
+    slope = (wider(step) - wider(-step)) / (2.0 * step) / float(value)
+    assert found["module"] == pytest.approx(slope, rel=1e-4)
 
 
 # ---- worn flanks

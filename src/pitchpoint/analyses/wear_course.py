@@ -20,6 +20,7 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
+from pitchpoint.wear.gradients import depth_gradient, sensitivities
 from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
 from pitchpoint.wear.march import End, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
@@ -181,6 +182,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         members=bodies,
         driver=built.driver,
         tolerance=asked(built).tolerance,
+        sensitivities=_sensitivities(built),
         warnings=_warnings(built, values, deepest, end),
         solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
     )
@@ -204,6 +206,22 @@ def _figures(
         "severe_cycles": severe_start(cycles, course) if moves else np.nan,
         "wear_steps": cycles.size - 1,
     }
+
+
+def _sensitivities(built: Built) -> dict[str, float]:
+    """Relative changes of the largest depth per turn with those of inputs, of flanks as new.
+
+    Not of bodies that couple their teeth, for which derivatives take minutes.
+    """
+    if built.design.mesh.couples:
+        return {}
+    course = _course(built)
+    inputs = built.design, built.operation, course.model
+    given = built.models[0], course.cells, int(asked(built).phases)
+    value, slopes = depth_gradient(inputs, *given)
+    if not float(value) > 0.0:
+        return {}
+    return sensitivities(inputs, float(value), slopes)
 
 
 def _warnings(

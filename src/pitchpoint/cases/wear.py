@@ -7,6 +7,7 @@ from math import inf
 from jaxtyping import Array
 
 from pitchpoint._jax import array
+from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import Case, WearTable
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import KINDS, TOUCH
@@ -154,8 +155,13 @@ def wear_model(case: Case, used: Used, roughness: tuple[float, float]) -> WearMo
         own=own,
         asperities=ASPERITY_LOAD[case.models.asperity_load],
         defect=defect,
-        bodies=_conductors(used) if defect is not None else None,
+        bodies=_conductors(used) if defect is not None and _by_formula(case) else None,
     )
+
+
+def _by_formula(case: Case) -> bool:
+    """True if the first friction law of a case is no solver of films."""
+    return FRICTION[case.models.friction[0].name].films is None
 
 
 def _conductors(used: Used) -> tuple[Conductor, Conductor] | None:
@@ -190,7 +196,7 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
             )
         if model.bodies is None:
             found.append(
-                "The conductivity or specific heat of a material is not known: contacts are taken to be as "
-                "warm as the oil."
+                "Wear: contacts are taken to be as warm as the oil: the conductivity or specific heat of a "
+                "material is not known, or the first friction law solves films."
             )
     return found

@@ -8,7 +8,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import array, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.worn import Worn
 from pitchpoint.efficiency.quasi_static import (
@@ -42,6 +42,9 @@ __all__ = [
     "extents",
     "midpoints",
     "one_turn",
+    "reached",
+    "travelled",
+    "wear_of",
 ]
 
 STRIPS_OF_ELLIPSE = 24
@@ -154,11 +157,11 @@ class WearModel(eqx.Module):
             half, area = at.half_width, 2.0 * at.half_width * at.contacts.weight
         else:
             half, area = at.semi_axis_along, jnp.pi * at.semi_axis_along * at.semi_axis_across
-        heat = friction * at.load * as_array(at.sliding) / area
+        power = friction * at.load * as_array(at.sliding)
         speeds = as_array(at.speed_a), as_array(at.speed_b)
         rubs = (at.load > 0.0) & (jnp.abs(speeds[0]) + jnp.abs(speeds[1]) > 0.0)
         rise = shared_flash(
-            heat=jnp.where(rubs, heat, 0.0),
+            heat=jnp.where(rubs, power, 0.0) / jnp.where(rubs, area, 1.0),
             half_width=jnp.where(rubs, half, 1.0),
             speed_a=jnp.where(rubs, speeds[0], 1.0),
             speed_b=jnp.where(rubs, speeds[1], 1.0),
@@ -239,17 +242,24 @@ def as_new(
     body = coupling(design, contacts) if models.sharing.by_stiffness else None
     share = shares_at(design, contacts, operation.load, models, body)
     known = Engagement(phase, weight, contacts, share, None, 1)
-    at, ways = _travelled(design, operation, models.without_friction, known)
+    at, ways = travelled(design, operation, models.without_friction, known)
     felt = np.stack([1.0 / contacts.radius, contacts.relative_curvature[1]])
     start = Start(phase, weight, array(felt), body)
-    return start, cells_on(at, np.asarray(ways), count)
+    return start, cells_on(at, ways, count)
 
 
 @program
-def _travelled(
+def travelled(
     design: Design, operation: Operation, models: Models, known: Engagement
 ) -> tuple[Conditions, Float[Array, "2 pair slice node"]]:
-    """Conditions at the contacts without friction, and their ways over both flanks."""
+    """Conditions at the contacts without friction, and the ways over both flanks for which each stands.
+
+    Args:
+        design: mesh and materials.
+        operation: one operating point.
+        models: any.
+        known: contacts of a period and what they carry.
+    """
     smooth = models.holding(jnp.zeros((1, 1, 1)))
     at = state(design, operation, known.phase, smooth, engaged=known).conditions
     lasts = known.weight * design.mesh.period / at.speed
@@ -262,33 +272,56 @@ def _phases(mesh: Mesh, parts: int) -> tuple[Array, Array]:
     return midpoints(mesh.events(), parts)
 
 
-def cells_on(at: Conditions, way: Float[np.ndarray, "2 pair slice node"], count: int) -> Cells:
+def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int) -> Cells:
     """Cells over all that touches of both flanks.
 
     Args:
         at: conditions at the contacts of a whole period under load.
-        way: of each contact over both flanks while it stands for others [m].
+        ways: of each contact over both flanks while it stands for others [m].
         count: of cells along each flank.
 
     Raises:
         InputError: a contact stands still on a flank.
     """
-    contacts = at.contacts
-    lanes, active = contacts.active.shape, np.asarray(contacts.active)
-    flank = np.broadcast_to(contacts.flank, (2, *lanes))[:, active]
-    half = 0.5 * way[:, active]
-    ends = np.stack([(flank - half).min(axis=1), (flank + half).max(axis=1)], axis=1)
-    if not np.all(np.diff(ends) > 0.0):
+    flank, across = jax.device_get(_ends(at, ways))
+    if not np.all(np.diff(flank) > 0.0):
         raise InputError(
             "one flank stands still under its contact and has no depth per turn; it is for flanks that roll"
         )
+    strips = STRIPS_OF_ELLIPSE
     if at.shape == "line":
-        reach, strips = 0.5 * extents(contacts), lanes[1] if np.ptp(contacts.width) else 1
-    else:
-        reach, strips = ROOM * jnp.max(at.semi_axis_across), STRIPS_OF_ELLIPSE
-    width, reach = (np.broadcast_to(v, lanes)[active] for v in (contacts.width, reach))
-    across = np.array([np.min(width - reach), np.max(width + reach)])
-    return Cells(array(ends), array(across), count, strips)
+        lanes = at.contacts.active.shape
+        width = np.broadcast_to(at.contacts.width, lanes)[np.asarray(at.contacts.active)]
+        strips = lanes[1] if np.ptp(width) else 1
+    return Cells(array(flank), array(across), count, strips)
+
+
+@program
+def _ends(
+    at: Conditions, ways: Float[Array, "2 pair slice node"]
+) -> tuple[Float[Array, "2 2"], Two]:
+    return reached(at, ways)
+
+
+def reached(
+    at: Conditions, ways: Float[Array, "2 pair slice node"]
+) -> tuple[Float[Array, "2 2"], Two]:
+    """First and last arc length of each flank, and place across the face, that contacts reach [m].
+
+    Args:
+        at: conditions at the contacts of a whole period under load.
+        ways: of each contact over both flanks while it stands for others [m].
+    """
+    contacts, active = at.contacts, at.contacts.active
+    line = at.shape == "line"
+    reach = 0.5 * extents(contacts) if line else ROOM * jnp.max(at.semi_axis_across)
+
+    def ends(places: Lanes, half: Each) -> Two:
+        low = jnp.min(jnp.where(active, places - half, jnp.inf))
+        return jnp.stack([low, jnp.max(jnp.where(active, places + half, -jnp.inf))])
+
+    flanks = [ends(own, 0.5 * way) for own, way in zip(contacts.flank, ways, strict=True)]
+    return jnp.stack(flanks), ends(contacts.width, reach)
 
 
 def extents(contacts: Contacts) -> Lanes:
@@ -328,7 +361,7 @@ def one_turn(
     contacts, flat = _no_flatter(contacts_at(worn.mesh, start.phase), start.curvature)
     share = shares_at(worn, contacts, operation.load, models, start.body)
     known = Engagement(start.phase, start.weight, contacts, share, None, 1).loaded()
-    found = _turn(worn, operation, models, wear, cells, known)
+    found = wear_of(worn, operation, models, wear, cells, known)
     conforming = np.any(np.asarray(flat) & (np.asarray(share) > 0.0))
     return replace(found, conforming=array(conforming))
 
@@ -349,7 +382,7 @@ def _no_flatter(
 
 
 @program
-def _turn(
+def wear_of(
     design: Design,
     operation: Operation,
     models: Models,
@@ -357,8 +390,18 @@ def _turn(
     cells: Cells,
     known: Engagement,
 ) -> Turn:
+    """What contacts that are known wear off in one turn of the driver.
+
+    Args:
+        design: as it is worn.
+        operation: one operating point.
+        models: friction, where it warms the contacts.
+        wear: how material goes.
+        cells: on both flanks.
+        known: contacts of a period and what they carry.
+    """
     mesh = design.mesh
-    at, ways = _travelled(design, operation, models, known)
+    at, ways = travelled(design, operation, models, known)
     contacts = at.contacts
     carries = contacts.active & (at.load > 0.0)
     friction = jnp.zeros_like(at.load) if wear.bodies is None else models.coefficient(at)
