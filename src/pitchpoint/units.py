@@ -296,6 +296,11 @@ _KINDS: dict[str, _Kind] = {
         "25 J",
         {"J": "joule", "mJ": "millijoule", "kJ": "kilojoule", "Wh": "watt*hour"},
     ),
+    "molar energy": _Kind(
+        "an energy per mole",
+        "49 kJ/mol",
+        {"J/mol": "joule/mole", "kJ/mol": "kilojoule/mole"},
+    ),
     "time": _Kind(
         "a time",
         "3 s",
