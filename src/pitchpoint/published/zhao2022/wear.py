@@ -181,7 +181,9 @@ def film_defect(
 
 # ------------------------------------------------------------------ flanks
 
-_Curve = Callable[[Array], tuple[Array, Array]]
+Places = NDArray[np.complex128]
+
+_Curve = Callable[[Array], tuple[Array, Places]]
 
 
 def _double_arc(flank: DoubleArcFlank) -> _Curve:
@@ -191,7 +193,7 @@ def _double_arc(flank: DoubleArcFlank) -> _Curve:
     upper, lower = complex(flank.convex_centre), complex(flank.concave_centre)
     arc, straight = convex * (theta_a - theta_b), float(flank.tangent_length)
 
-    def curve(way: Array) -> tuple[Array, Array]:
+    def curve(way: Array) -> tuple[Array, Places]:
         line = way - arc
         at_root = theta_b + np.maximum(line - straight, 0.0) / concave
         angle = np.where(line < 0.0, theta_a - way / convex, at_root)
@@ -211,7 +213,7 @@ def _involute(flank: InvoluteFlank) -> _Curve:
     half = float(flank.half_angle_at(flank.base_radius))
     tip = tan(acos(base / float(flank.tip_radius)))
 
-    def curve(way: Array) -> tuple[Array, Array]:
+    def curve(way: Array) -> tuple[Array, Places]:
         roll = np.sqrt(tip**2 - 2.0 * way / base)
         angle = roll - half
         return angle, base * np.exp(-1j * angle) * (1.0 + 1j * roll) - neutral
