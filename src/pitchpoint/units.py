@@ -313,6 +313,11 @@ _KINDS: dict[str, _Kind] = {
         "25 J",
         {"J": "joule", "mJ": "millijoule", "kJ": "kilojoule", "Wh": "watt*hour"},
     ),
+    "molar energy": _Kind(
+        "an energy per mole",
+        "49 kJ/mol",
+        {"J/mol": "joule/mole", "kJ/mol": "kilojoule/mole"},
+    ),
     "time": _Kind(
         "a time",
         "3 s",
@@ -345,11 +350,6 @@ _KINDS: dict[str, _Kind] = {
             "m2/N": "meter**2/newton",
             "mm2/N": "millimeter**2/newton",
         },
-    ),
-    "molar energy": _Kind(
-        "an energy per mole",
-        "49 kJ/mol",
-        {"J/mol": "joule/mole", "kJ/mol": "kilojoule/mole"},
     ),
     "dimensionless": _Kind(
         "a plain number", "0.3", {"": "dimensionless", "1": "dimensionless", "%": "percent"}

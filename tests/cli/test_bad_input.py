@@ -42,6 +42,7 @@ from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.published.xu2021.table import ZoneFilms
+from pitchpoint.published.zhao2022.table import FlankWear
 from pitchpoint.results.store import dataset, save
 from pitchpoint.runs.jobs import jobs
 
@@ -251,6 +252,20 @@ nodes = 33
 """)
 
 INVOLUTE = copy.deepcopy(STRAIN_WAVE)
+INVOLUTE["source"] = "zhao_2022"
+INVOLUTE["formulas"] = {
+    "form": "wear",
+    "coefficient": 8e-9,
+    "hardness": "1.96 GPa",
+    "cycles": 6.5e9,
+    "points": 20,
+    "flank_length": 1.4,
+    "severe_depth": 0.6,
+    "asperity_share": 1.0,
+    "adsorption_heat": "37 kJ/mol",
+    "molecule": "0.3 nm",
+    "vibration_period": "3e-12 s",
+}
 INVOLUTE["gears"]["clearance"] = 0.35
 INVOLUTE["gears"]["tooth"] = {"form": "involute", "profile_shift": 3.32}
 INVOLUTE["gears"]["circular_spline"] = {"form": "involute", "profile_shift": 3.6}
@@ -407,6 +422,7 @@ WALKS = [
     ("cylindrical", schema.Case, ()),
     ("strain wave", strain_wave.StrainWaveGears, ("gears",)),
     ("strain wave", ZoneFilms, ("formulas",)),
+    ("involute", FlankWear, ("formulas",)),
     ("involute", strain_wave.InvoluteTooth, ("gears", "tooth")),
     ("involute", strain_wave.InvoluteGroove, ("gears", "circular_spline")),
     ("rack", rack_and_pinion.RackAndPinionGears, ("gears",)),

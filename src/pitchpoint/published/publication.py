@@ -46,11 +46,13 @@ class Curves:
         title: of the figure.
         along: variable of the places that all of them run over.
         names: variables of the courses, in the order of the columns.
+        columns: what they are in words, where they are not those of the table beside them.
     """
 
     title: str
     along: str
     names: tuple[str, ...]
+    columns: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

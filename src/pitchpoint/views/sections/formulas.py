@@ -126,7 +126,8 @@ def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
 
 def _figure(name: str, one: Curves, data: xr.Dataset, beside: Beside) -> Figure:
     """Courses over each other at the first point."""
-    keys = [Key(column, PALETTE[k]) for k, column in enumerate(beside.columns)]
+    columns = one.columns or beside.columns
+    keys = [Key(column, PALETTE[k]) for k, column in enumerate(columns)]
     unit, places = show.unit_of(one.names[0]), display(one.along, data[one.along].values[0])
     traces = [
         plain(key, places, display(each, data[each].values[0]), unit, opacity=0.75)
@@ -136,7 +137,7 @@ def _figure(name: str, one: Curves, data: xr.Dataset, beside: Beside) -> Figure:
         trace["line"]["width"] = 1  # of vibrations that lie close
     axes = layout(show.axis_title(one.along), short_axis(one.names[0]))
     title = one.title[0].upper() + one.title[1:]
-    return Figure(name, title, traces, axes, keys=tuple(keys), missing="No motion was found.")
+    return Figure(name, title, traces, axes, keys=tuple(keys), missing="No numbers were found.")
 
 
 def _table(data: xr.Dataset, beside: Beside) -> Table:

@@ -1,0 +1,53 @@
+"""The table [formulas] of the case: what its wear takes beside gears, torque and speed."""
+
+from typing import Annotated, Literal
+
+from pitchpoint.input.quantities import Quantity
+from pitchpoint.input.tables import Table
+
+__all__ = ["FlankWear"]
+
+COEFFICIENT = Quantity("dimensionless", 0.0, 1.0, open_low=True)
+HARDNESS = Quantity("pressure", 1e7, 1e11, "MPa")
+CYCLES = Quantity("dimensionless", 1.0, 1e13)
+POINTS = Quantity("dimensionless", 4, 400, whole=True)
+LENGTH = Quantity("dimensionless", 0.1, 3.0)
+DEPTH = Quantity("dimensionless", 0.0, 3.0, open_low=True)
+SHARE = Quantity("dimensionless", 0.0, 1.0, open_low=True)
+HEAT = Quantity("molar energy", 0.0, 1e6, "kJ/mol")
+SIZE = Quantity("length", 1e-11, 1e-8, "nm")
+PERIOD = Quantity("time", 1e-15, 1e-9, "s")
+
+
+class FlankWear(Table):
+    """Wear of the flexspline's flank by the discrete model of eqs. 11 to 33.
+
+    Attributes:
+        form: "wear".
+        coefficient: K psi L_a / 100 of eq. 11, held through all cycles.
+        hardness: H.
+        cycles: after which depths are told.
+        points: of the flank, one pitch step apart in the paper.
+        flank_length: over which the points lie, from the tip [modules].
+        severe_depth: at which wear is severe unless the tip land is gone before [modules].
+        area: that carries the force of a point, its strip or all from the tip to it, eq. 26.
+        offset: of the mesh by the oval ring, eq. 28: the mean of both sides, or none.
+        asperity_share: L_a / 100.
+        adsorption_heat: E_a of eq. 10.
+        molecule: diameter alpha_x of an adsorbed molecule.
+        vibration_period: t_0 of it.
+    """
+
+    form: Literal["wear"] = "wear"
+    coefficient: Annotated[float, COEFFICIENT]
+    hardness: Annotated[float, HARDNESS]
+    cycles: Annotated[float, CYCLES]
+    points: Annotated[float, POINTS]
+    flank_length: Annotated[float, LENGTH]
+    severe_depth: Annotated[float, DEPTH]
+    area: Literal["strip", "cumulative"] = "strip"
+    offset: Literal["mean", "none"] = "mean"
+    asperity_share: Annotated[float, SHARE]
+    adsorption_heat: Annotated[float, HEAT]
+    molecule: Annotated[float, SIZE]
+    vibration_period: Annotated[float, PERIOD]

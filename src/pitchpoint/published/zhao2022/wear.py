@@ -1,0 +1,430 @@
+"""Wear of the flexspline's flank as Zhao et al. (2022) calculate it, eqs. 10 to 33.
+
+A discrete model, not the right physics: the force of a tooth is prescribed by a cosine over the zone,
+the step between two points of the flank stands for the sliding, and the coefficient does not follow
+the load. What is calibrated in it is data of the case.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import acos, log10, pi, tan
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pitchpoint._jax import jnp
+from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
+from pitchpoint.gears.strain_wave.table import StrainWaveGears
+from pitchpoint.published.publication import Point, Read
+from pitchpoint.published.zhao2022.printed import (
+    ENGAGED_HEIGHT,
+    HALF_ZONE,
+    deflection_offset,
+    largest_tangential_load,
+)
+from pitchpoint.published.zhao2022.table import FlankWear
+
+__all__ = ["LATER", "March", "Strips", "film_defect", "march", "marched", "readings", "severe"]
+
+Array = NDArray[np.float64]
+
+LATER = {"early": 2.56e9, "late": 6.28e9}
+"""Cycles after which section 4.4 shows worn profiles."""
+
+LONG = 2e10
+"""Cycles after which section 4.3 tells the step of the tip."""
+
+BLOCKS = 100
+"""Blocks of cycles of a march; four times as many change no depth by more than 0.1 %."""
+
+SEVERE_BLOCKS = 400
+"""Blocks of the cycles until severe wear, as long as the rate of wear of new flanks."""
+
+PLACES = 39
+"""Places from the first point to the last at which courses are kept: 20 points and their middles."""
+
+_PATIENCE = 3
+"""So many times the cycles that new flanks would need for a depth are tried."""
+
+GAS_CONSTANT = 8.314462618
+"""R_g [J/(mol K)]."""
+
+
+@dataclass(frozen=True)
+class Strips:
+    """Strips of a flank about its points, from the tip on, and what loads them.
+
+    Attributes:
+        angle: flank angle of the new flank, from the axis of the tooth to the tangent, shape (point) [rad].
+        place: new flank, across the tooth and outwards from its neutral line, shape (2, point) [m].
+        force: tangential, eq. 19 with its largest value at the tip, shape (point) [N].
+        turn: of the tooth where the point is in mesh, eq. 27; the tip enters first, shape (point) [rad].
+        step: between two points [m].
+        face_width: [m].
+        tip_land: s_ag [m].
+        cumulative: takes the area of all strips up to a point, eq. 26.
+    """
+
+    angle: Array
+    place: Array
+    force: Array
+    turn: Array
+    step: float
+    face_width: float
+    tip_land: float
+    cumulative: bool = False
+
+    def without_offset(self) -> "Strips":
+        """The same without the turn of the teeth."""
+        return replace(self, turn=np.zeros_like(self.turn))
+
+    def worn(self, depth: Array) -> tuple[Array, Array, Array]:
+        """Flank angle [rad], pressure [Pa] and step [m] of a flank worn to depths, shape (point) each.
+
+        Depth is carried on the normals of the new flank. Where it grows towards the tip the flank leans over;
+        points keep their height, so that their step grows with it.
+        """
+        angle = self.angle - np.arctan(np.gradient(depth, self.step))
+        step = self.step * np.cos(self.angle) / np.cos(angle)
+        area = self.face_width * (np.cumsum(step) if self.cumulative else step)
+        # Eqs. 20, 21 and 28: alpha there is the slope, and both signs of the offset are averaged.
+        shift = self.face_width * self.turn * self.tip_land / (2.0 * area)
+        return angle, self.force / np.cos(angle) / area / (1.0 - shift**2), step
+
+
+@dataclass(frozen=True)
+class March:
+    """A wear march at the ends of its blocks.
+
+    Attributes:
+        cycles: shape (time) [1].
+        depth, pressure, step: of each point, shape (time, point) [m, Pa, m].
+    """
+
+    cycles: Array
+    depth: Array
+    pressure: Array
+    step: Array
+
+    def cycles_to(self, depth: float) -> float:
+        """Cycles until the deepest point is so deep; NaN where the march ended before."""
+        deepest = np.max(self.depth, axis=1)
+        return float(np.interp(depth, deepest, self.cycles, right=np.nan))
+
+    def at(self, cycles: float, name: str) -> Array:
+        """One of the fields at so many cycles, shape (point); NaN beyond the end."""
+        values = getattr(self, name)
+        return np.array([np.interp(cycles, self.cycles, each, right=np.nan) for each in values.T])
+
+
+def march(
+    strips: Strips, *, rate: float, block: float, blocks: int, limit: float = np.inf
+) -> March:
+    """Depth block by block, eqs. 11 and 12, with the flank renewed after each, eqs. 32 and 33.
+
+    It ends before its last block where the depth passes the limit, or where the flank would lie flat.
+
+    Args:
+        strips: of the new flank.
+        rate: kappa = K psi L_a / (100 H) of dh = kappa p s dN [1/Pa].
+        block: cycles of a block.
+        blocks: their number.
+        limit: of the depth [m].
+    """
+    depth, kept = np.zeros_like(strips.angle), []
+    for done in range(blocks + 1):
+        angle, pressure, step = strips.worn(depth)
+        if not np.all(np.abs(angle) < pi / 2.0):
+            break
+        kept.append((done * block, depth, pressure, step))
+        if np.max(depth) > limit:
+            break
+        depth = depth + rate * pressure * step * block
+    cycles, *fields = (np.array(each) for each in zip(*kept, strict=True))
+    return March(cycles, *fields)
+
+
+def marched(strips: Strips, *, rate: float, cycles: float) -> March:
+    """March over a number of cycles in `BLOCKS` blocks."""
+    return march(strips, rate=rate, block=cycles / BLOCKS, blocks=BLOCKS)
+
+
+def severe(strips: Strips, *, rate: float, limit: float) -> March:
+    """March until the deepest point passes a limit [m], where the stage of severe wear begins."""
+    _, pressure, step = strips.worn(np.zeros_like(strips.angle))
+    block = limit / float(np.max(rate * pressure * step)) / SEVERE_BLOCKS
+    return march(strips, rate=rate, block=block, blocks=_PATIENCE * SEVERE_BLOCKS, limit=limit)
+
+
+def film_defect(
+    *,
+    sliding_speed: float,
+    temperature: float,
+    heat: float,
+    molecule: float,
+    vibration_period: float,
+) -> float:
+    """Part of a surface that adsorbed molecules leave bare, psi of eq. 10.
+
+    Args:
+        sliding_speed: u_s [m/s].
+        temperature: of the surface T_s [K].
+        heat: of adsorption E_a [J/mol].
+        molecule: diameter alpha_x [m].
+        vibration_period: t_0 [s].
+    """
+    staying = molecule / (sliding_speed * vibration_period)
+    return float(-np.expm1(-staying * np.exp(-heat / (GAS_CONSTANT * temperature))))
+
+
+# ------------------------------------------------------------------ flanks
+
+Places = NDArray[np.complex128]
+
+_Curve = Callable[[Array], tuple[Array, Places]]
+
+
+def _double_arc(flank: DoubleArcFlank) -> _Curve:
+    """Flank angle and place by the way from the tip, eqs. 1 to 4 with the signs that close them."""
+    convex, concave = float(flank.convex_radius), float(flank.concave_radius)
+    theta_a, theta_b = float(flank.tip_angle), float(flank.tangent_angle)
+    upper, lower = complex(flank.convex_centre), complex(flank.concave_centre)
+    arc, straight = convex * (theta_a - theta_b), float(flank.tangent_length)
+
+    def curve(way: Array) -> tuple[Array, Places]:
+        line = way - arc
+        at_root = theta_b + np.maximum(line - straight, 0.0) / concave
+        angle = np.where(line < 0.0, theta_a - way / convex, at_root)
+        along = -np.exp(-1j * theta_b) * np.minimum(line, straight)
+        tangent = upper + 1j * convex * np.exp(-1j * theta_b) + along
+        on_convex = upper + 1j * convex * np.exp(-1j * angle)
+        on_concave = lower - 1j * concave * np.exp(-1j * angle)
+        below = np.where(line < straight, tangent, on_concave)
+        return angle, np.where(line < 0.0, on_convex, below)
+
+    return curve
+
+
+def _involute(flank: InvoluteFlank) -> _Curve:
+    """Flank angle and place by the way from the tip."""
+    base, neutral = float(flank.base_radius), float(flank.neutral_radius)
+    half = float(flank.half_angle_at(flank.base_radius))
+    tip = tan(acos(base / float(flank.tip_radius)))
+
+    def curve(way: Array) -> tuple[Array, Places]:
+        roll = np.sqrt(tip**2 - 2.0 * way / base)
+        angle = roll - half
+        return angle, base * np.exp(-1j * angle) * (1.0 + 1j * roll) - neutral
+
+    return curve
+
+
+def counterpart(flank: DoubleArcFlank, gears: StrainWaveGears) -> InvoluteFlank:
+    """Involute flank of Table 1 with the module, teeth, rim and edges of another."""
+    module, teeth = gears.module, gears.teeth[0]
+    shift, addendum, dedendum = 3.32, 1.0, 1.35
+    half_rim = float(flank.pitch_height - flank.dedendum)
+    made = {
+        "teeth": teeth,
+        "module": module,
+        "pressure_angle": pi / 9.0,
+        "profile_shift": shift,
+        "addendum": addendum,
+        "dedendum": dedendum,
+        "neutral_radius": module * (teeth / 2.0 + shift - dedendum) - half_rim,
+    }
+    edges = {name: getattr(flank, name) for name in ("tip_rounding", "tip_relief", "relief_length")}
+    return InvoluteFlank(**{name: jnp.asarray(value) for name, value in made.items()}, **edges)
+
+
+def strips_of(point: Point, flank: Flank, neutral: float) -> Strips:
+    """Strips of a flank on a neutral line of a radius [m], at the torque of a point with its table."""
+    gears, given, mesh = point.gears, point.formulas, point.design.mesh
+    assert isinstance(gears, StrainWaveGears)
+    assert isinstance(given, FlankWear)
+    assert isinstance(mesh, StrainWave)
+    count, module = int(given.points), gears.module
+    assert isinstance(flank, DoubleArcFlank | InvoluteFlank)
+    curve = _double_arc(flank) if isinstance(flank, DoubleArcFlank) else _involute(flank)
+    step, middle = given.flank_length * module / count, np.arange(count, dtype=np.float64) + 0.5
+    angle, place = curve(step * middle)
+    diameter = module * (gears.teeth[0] - ENGAGED_HEIGHT)
+    load = largest_tangential_load(
+        torque=float(point.operation.load),
+        half_zone=HALF_ZONE,
+        diameter=diameter,
+        face_width=gears.face_width,
+    )
+    pitch = 2.0 * pi / gears.teeth[0]
+    made = Strips(
+        angle=angle,
+        place=np.stack([place.imag, place.real]),
+        force=gears.face_width * diameter / 2.0 * load * pitch * np.cos(pi / 2.0 * middle / count),
+        turn=deflection_offset(
+            angle=HALF_ZONE * (1.0 - middle / count),
+            radius=neutral,
+            deflection=float(mesh.line.deflection),
+        ),
+        step=step,
+        face_width=gears.face_width,
+        tip_land=float(flank.tip_land),
+        cumulative=given.area == "cumulative",
+    )
+    return made if given.offset == "mean" else made.without_offset()
+
+
+# ------------------------------------------------------------------ readings
+
+
+def readings(point: Point) -> Read:
+    """Wear of the flank with all that the paper tells and draws of it, for a case with its table."""
+    given, gears, mesh = point.formulas, point.gears, point.design.mesh
+    if not isinstance(given, FlankWear):
+        return {}
+    assert isinstance(gears, StrainWaveGears)
+    assert isinstance(mesh, StrainWave)
+    rate = given.coefficient / given.hardness
+    neutral = float(mesh.line.radius)
+    strips = strips_of(point, mesh.flank, neutral)
+    found: dict[str, Any] = {"wear_rate": rate}
+    found |= _depths(strips, rate, given)
+    found |= _stages(strips, rate, _limit(strips, given, gears.module))
+    found |= _dry(found, point, given)
+    found |= _flank_courses(strips, rate, neutral)
+    found["depth_growth"] = found["tip_depth_late"] / found["tip_depth_early"]
+    if isinstance(mesh.flank, DoubleArcFlank):
+        found |= _beside_involute(found["severe_cycles"], strips, point, rate)
+    return found
+
+
+def _limit(strips: Strips, given: FlankWear, module: float) -> float:
+    """Depth at which wear is severe [m]."""
+    return min(strips.tip_land, given.severe_depth * module)
+
+
+def _depths(strips: Strips, rate: float, given: FlankWear) -> dict[str, Any]:
+    """Depth with and without the offset over the cycles."""
+    cycles = np.linspace(0.0, given.cycles, BLOCKS + 1)
+    both = [
+        marched(one, rate=rate, cycles=given.cycles) for one in (strips, strips.without_offset())
+    ]
+    course = [_over(cycles, one.cycles, one.depth.max(axis=1)) for one in both]
+    return {
+        "wear_depth": float(course[0][-1]),
+        "wear_depth_without_offset": float(course[1][-1]),
+        "wear_from_offset": float(course[0][-1] - course[1][-1]),
+        "wear_pressure_new": float(both[0].pressure[0, 0]),
+        "wear_cycles": cycles,
+        "wear_course": course[0],
+        "wear_course_without_offset": course[1],
+        "wear_offset_error": course[0] - course[1],
+    }
+
+
+def _over(places: Array, known: Array, values: Array) -> Array:
+    """Values at places; NaN beyond those that are known."""
+    last = known[-1] * (1.0 + 1e-12)
+    return np.where(places <= last, np.interp(places, known, values), np.nan)
+
+
+def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
+    """Tip of the flank until wear is severe."""
+    whole = severe(strips, rate=rate, limit=limit)
+    end = whole.cycles_to(limit)
+    cycles = np.linspace(0.0, whole.cycles[-1] if np.isnan(end) else end, BLOCKS + 1)
+    return {
+        "severe_depth": limit,
+        "severe_cycles": end,
+        "severe_pressure": float(whole.at(end, "pressure")[0]),
+        "wear_long_step": float(whole.at(LONG, "step")[0]),
+        "severe_course": cycles,
+        "severe_tip_pressure": _over(cycles, whole.cycles, whole.pressure[:, 0]),
+        "severe_tip_step": _over(cycles, whole.cycles, whole.step[:, 0]),
+        "severe_tip_depth": _over(cycles, whole.cycles, whole.depth[:, 0]),
+    }
+
+
+def _dry(found: dict[str, Any], point: Point, given: FlankWear) -> dict[str, Any]:
+    """Lubricated over dry by eq. 10, with the sliding speed of new flanks at the tip."""
+    gears, mesh = point.gears, point.design.mesh
+    assert isinstance(gears, StrainWaveGears)
+    assert isinstance(mesh, StrainWave)
+    step = given.flank_length * gears.module / given.points
+    rate = abs(float(mesh.motion[1] - mesh.motion[0])) * float(point.operation.speed)
+    passing = 2.0 * pi / gears.teeth[0] / rate
+    defect = film_defect(
+        sliding_speed=step / passing,
+        temperature=float(point.operation.temperature),
+        heat=given.adsorption_heat,
+        molecule=given.molecule,
+        vibration_period=given.vibration_period,
+    )
+    wetted = defect * given.asperity_share
+    return {
+        "film_defect": defect,
+        "dry_coefficient": given.coefficient / wetted,
+        "dry_depth": found["wear_depth"] / wetted,
+        "dry_orders": -log10(wetted),
+        "wetted_share": wetted,
+    }
+
+
+def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any]:
+    """Fields of the flank when it is new and after the cycles of section 4.4."""
+    count = strips.angle.size
+    way, radius = (
+        strips.step * (np.arange(count, dtype=np.float64) + 0.5),
+        neutral + strips.place[1],
+    )
+    found: dict[str, Any] = {"flank_way": _spread(way), "flank_radius": _spread(radius)}
+    for name, cycles in {"new": 0.0, **LATER}.items():
+        last = marched(strips, rate=rate, cycles=cycles)
+        held = last.cycles[-1] >= cycles * (1.0 - 1e-12)
+        depth, pressure, step = (
+            each[-1] if held else np.full(count, np.nan)
+            for each in (last.depth, last.pressure, last.step)
+        )
+        found |= {
+            f"flank_pressure_{name}": _spread(pressure),
+            f"flank_step_{name}": _spread(step),
+            f"flank_depth_{name}": _spread(depth),
+            f"flank_profile_{name}": _spread(_profile(strips, depth)),
+            f"tip_pressure_{name}": float(pressure[0]),
+            f"tip_step_{name}": float(step[0]),
+            f"tip_depth_{name}": float(depth[0]),
+        }
+    return found
+
+
+def _spread(values: Array) -> Array:
+    """Values at points as a course, whatever their number."""
+    return np.interp(np.linspace(0.0, values.size - 1.0, PLACES), np.arange(values.size), values)
+
+
+def _profile(strips: Strips, depth: Array) -> Array:
+    """Half thickness of the worn tooth at the heights of the new points; NaN above what is left [m]."""
+    across, height = strips.place - depth * np.stack([np.cos(strips.angle), np.sin(strips.angle)])
+    new = strips.place[1]
+    return np.where(new <= height[0], np.interp(new, height[::-1], across[::-1]), np.nan)
+
+
+def _beside_involute(onset: float, strips: Strips, point: Point, rate: float) -> dict[str, Any]:
+    """Double arc over the involute flank of Table 1 with the same coefficient."""
+    mesh, gears, given = point.design.mesh, point.gears, point.formulas
+    assert isinstance(mesh, StrainWave)
+    assert isinstance(mesh.flank, DoubleArcFlank)
+    assert isinstance(gears, StrainWaveGears)
+    assert isinstance(given, FlankWear)
+    flank = counterpart(mesh.flank, gears)
+    involute = strips_of(point, flank, float(flank.neutral_radius))
+    limit = _limit(involute, given, gears.module)
+    ours, theirs = (
+        marched(one, rate=rate, cycles=given.cycles).at(given.cycles, "depth")
+        for one in (strips, involute)
+    )
+    return {
+        "onset_over_involute": onset / severe(involute, rate=rate, limit=limit).cycles_to(limit),
+        "depth_over_involute": float(np.max(ours / theirs)),
+    }
