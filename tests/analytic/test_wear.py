@@ -89,7 +89,7 @@ def test_discs_wear_by_their_line_load_and_sliding_over_rolling():
 
     def rate(depth: np.ndarray) -> Rate:
         found = one_turn(*given, WEAR, cells, start, array(depth))
-        return Rate(np.asarray(found.depth), float(found.pressure), False, bool(found.lost))
+        return Rate(np.asarray(found.depth), float(found.pressure), False, False, bool(found.lost))
 
     reached = marched(rate, (2, CELLS, 1), 1e9)
     # Disc 1 turns by the ratio of speeds and radii while disc 0 turns once.
@@ -192,7 +192,7 @@ def rate_of(built: Built, cells: int = CELLS) -> tuple[Any, tuple[int, int, int]
 
     def rate(depth: np.ndarray) -> Rate:
         found = one_turn(*given, array(depth))
-        return Rate(np.asarray(found.depth), float(found.pressure), False, bool(found.lost))
+        return Rate(np.asarray(found.depth), float(found.pressure), False, False, bool(found.lost))
 
     return rate, (2, grid.count, grid.strips)
 
@@ -228,7 +228,9 @@ def test_the_number_of_steps_does_not_grow_with_the_cycles():
         def rate(depth: np.ndarray) -> Rate:
             asked.append(1)
             found = one_turn(*given, slow, cells, start, array(depth))
-            return Rate(np.asarray(found.depth), float(found.pressure), False, bool(found.lost))
+            return Rate(
+                np.asarray(found.depth), float(found.pressure), False, False, bool(found.lost)
+            )
 
         marched(rate, (2, CELLS, 1), turns)
         return len(asked)

@@ -21,7 +21,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 from pitchpoint.wear.gradients import depth_gradient, sensitivities
-from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
+from pitchpoint.wear.history import ROOM, Cells, Start, Turn, WearModel, as_new, one_turn
 from pitchpoint.wear.march import End, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
@@ -69,6 +69,7 @@ def _rate(built: Built, depth: np.ndarray) -> Rate:
         depth=np.asarray(found.depth),
         pressure=float(found.pressure),
         conforming=bool(found.conforming),
+        outgrown=bool(found.outgrown),
         lost=bool(found.lost),
     )
 
@@ -85,7 +86,7 @@ def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | 
     before = _reached(last)
     if before.end:
         return None
-    limit = limit_of(asked(built))
+    limit = limit_of(asked(built), _deepest(built))
     part = before.turns / limit.turns
     progress(round(1e4 * part), f"{before.turns:.3g} of {limit.turns:.3g} turns")
     reached = after(
@@ -108,6 +109,7 @@ def _piece(reached: Reached, start: float | None) -> xr.Dataset:
         "wear_error": (("step", "member"), reached.error),
         "wear_pressure": (("step",), reached.rate.pressure),
         "conforming": (("step",), reached.rate.conforming),
+        "outgrown": (("step",), reached.rate.outgrown),
         "next_step": (("step",), reached.step),
     }
     return dataset(
@@ -127,6 +129,7 @@ def _reached(piece: xr.Dataset) -> Reached:
         depth=given["depth_per_turn"],
         pressure=float(given["wear_pressure"]),
         conforming=bool(given["conforming"]),
+        outgrown=bool(given["outgrown"]),
         lost=bool(piece.attrs["lost"]),
     )
     return Reached(
@@ -145,6 +148,11 @@ def _reached(piece: xr.Dataset) -> Reached:
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """The course of wear over the cycles."""
     course, end = _course(built), str(parts[-1].attrs["end"])
+    if end == "lost" and len(parts) > 1:
+        parts = parts[:-1]  # the state before, from which no step was found
+    deepest_of_all = float(parts[-1]["worn_depth"].max())
+    if end == "depth" and deepest_of_all >= (1.0 - 1e-9) * _deepest(built):
+        end = "module"
     names = [str(name) for name in parts[0].data_vars if name != "next_step"]
     values = {name: np.concatenate([part[name].values for part in parts]) for name in names}
     flank, across = (np.asarray(one) for one in course.cells.middles)
@@ -166,7 +174,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     codes = np.where(values["conforming"] >= 0, int(Code.SOLVED), 0)
     if end == "lost":
         codes[-1] = int(Code.NOT_CONVERGED)
-    bodies = [one.body for one in built.bodies if one.member is not None]
+    bodies = [next(one.body for one in built.bodies if one.member == member) for member in range(2)]
     return dataset(
         {
             **{name: (dims[name], one) for name, one in values.items()},
@@ -242,13 +250,23 @@ def _warnings(
             f"Wear: from {first:.3g} turns on worn flanks conform; their contacts are taken to keep a tenth "
             "of the relative curvature they had, and pressures there are a guess."
         )
-    module = built.dimensions.get("module")
-    if module is not None and deepest.max() > HOLDS * float(np.max(module)):
+    if end == "module":
         told.append(
-            f"Wear: depths exceed {HOLDS:g} modules, where flanks no longer touch where they did as new; "
-            "what follows is an extrapolation."
+            f"Wear: the march ends at {HOLDS:g} modules, beyond which flanks no longer touch where they did "
+            "as new."
+        )
+    if end == "outgrown":
+        told.append(
+            f"Wear: the march ends where contacts have grown to {ROOM:g} times the width that they had: they "
+            "conform, and Hertz's theory ends."
         )
     return told
+
+
+def _deepest(built: Built) -> float:
+    """Depth up to which contacts stay on the normals of flanks as new [m]; infinite without a module."""
+    module = built.dimensions.get("module")
+    return np.inf if module is None else HOLDS * float(np.max(module))
 
 
 def _radii(built: Built, flank: np.ndarray) -> np.ndarray:

@@ -30,13 +30,14 @@ _DEFECT = ("adsorption_heat", "molecule_diameter", "vibration_period")
 Used = Sequence[SolidInUse]
 
 
-def limit_of(table: WearTable) -> Limit:
+def limit_of(table: WearTable, deepest: float) -> Limit:
     """Where the march of a case ends.
 
     Args:
         table: as validated.
+        deepest: depth up to which the march holds [m].
     """
-    depth = inf if table.depth_limit is None else table.depth_limit
+    depth = deepest if table.depth_limit is None else min(table.depth_limit, deepest)
     pressure = inf if table.pressure_limit is None else table.pressure_limit
     return Limit(table.cycles, depth, pressure)
 
@@ -52,6 +53,13 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
     table = case.wear
     if table is None:
         return
+    if not mesh.goes_round:
+        told = "was given; a rack has no number of teeth among which wear goes round, leave the table out"
+        raise InputError(told, key="wear")
+    if case.worn is not None:
+        raise InputError(
+            "was given with [worn]: only flanks as new are worn; leave one out", key="wear"
+        )
     law = WEAR_LAWS[table.law]
     if law.shape not in (None, mesh.shape):
         raise InputError(

@@ -14,8 +14,9 @@ __all__ = ["Worn"]
 class Worn(Surface):
     """Depth of wear on all flanks of a member that carry, smoothed over two cells to either side.
 
-    Cubic B-splines on an even grid whose coefficients are the mean depths of the cells: they keep the volume,
-    never fall below zero, and have curvatures without jumps. Beyond the grid the depth is that at its end.
+    Cubic B-splines on an even grid whose coefficients are the mean depths of the cells: they keep the volume
+    but for the half cells at the ends, never fall below zero, and have curvatures without jumps. From the
+    middle of the last cell on the depth stays what it is there.
 
     Attributes:
         depth: mean depth of each cell along the flank and across the face [m].
@@ -49,12 +50,15 @@ def _weights(place: Lanes, ends: Float[Array, "2"], cells: int) -> list[tuple[Ar
     at = jnp.clip(at, 0.0, cells - 1.0)
     first = jax.lax.stop_gradient(jnp.clip(jnp.floor(at), 0.0, cells - 2.0))
     t = at - first
-    values = (
-        (1.0 - t) ** 3 / 6.0,
-        (4.0 - 6.0 * t**2 + 3.0 * t**3) / 6.0,
-        (1.0 + 3.0 * t + 3.0 * t**2 - 3.0 * t**3) / 6.0,
-        t**3 / 6.0,
-    )
-    # Cells that would lie beyond an end take the depth of the last one.
-    numbers = [jnp.clip(first.astype(int) + k, 0, cells - 1) for k in (-1, 0, 1, 2)]
-    return list(zip(numbers, values, strict=True))
+    before, after = (1.0 - t) ** 3 / 6.0, t**3 / 6.0
+    low, high = first == 0.0, first == cells - 2.0
+    number = first.astype(int)
+    # Cells that would lie beyond an end go straight on from the last two: no curvature comes from there.
+    return [
+        (jnp.maximum(number - 1, 0), jnp.where(low, 2.0 * before, before)),
+        (number + 1, jnp.where(low, -before, 0.0)),
+        (number, (4.0 - 6.0 * t**2 + 3.0 * t**3) / 6.0),
+        (number + 1, (1.0 + 3.0 * t + 3.0 * t**2 - 3.0 * t**3) / 6.0),
+        (number, jnp.where(high, -after, 0.0)),
+        (jnp.minimum(number + 2, cells - 1), jnp.where(high, 2.0 * after, after)),
+    ]

@@ -41,7 +41,8 @@ def _asking(sample: str) -> list[Ready]:
     assert isinstance(built, Built)
     solvers = FILM_SOLVERS[built.design.mesh.shape]
     films = [load_case(sample, settings=_films(one)) for one in solvers]
-    return [built, *films, load_case(sample, settings=_WEAR)]
+    worn = [load_case(sample, settings=_WEAR)] if built.design.mesh.goes_round else []
+    return [built, *films, *worn]
 
 
 _WEAR = {"wear.law": "vdi_2736", "wear.cycles": 1e6, "wear.rate": "1e-9 mm3/(N m)"}

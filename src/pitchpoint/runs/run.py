@@ -416,8 +416,8 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
 
 def _held(manifest: Mapping[str, Any]) -> list[str]:
     """Digests of files that a case names: what they hold is part of its inputs."""
-    rows = (row for row in manifest["inputs"] if row["table"] == "film")
-    return [row["value"] for row in rows if row["key"].endswith(".digest")]
+    rows = (row for row in manifest["inputs"] if row["table"] in ("film", "worn"))
+    return [row["value"] for row in rows if row["key"].endswith("digest")]
 
 
 def _part(

@@ -33,6 +33,7 @@ from pitchpoint.programs import program
 from pitchpoint.wear.film_defect import fractional_film_defect
 
 __all__ = [
+    "ROOM",
     "Cells",
     "Start",
     "Turn",
@@ -47,11 +48,11 @@ __all__ = [
     "wear_of",
 ]
 
-STRIPS_OF_ELLIPSE = 24
+STRIPS_OF_ELLIPSE = 32
 """Strips across the face where contacts are ellipses."""
 
-ROOM = 1.5
-"""Half-widths of the strips of ellipses, over the largest semi-axis."""
+ROOM = 2.5
+"""Half-width of the strips of ellipses together, over the largest semi-axis of flanks as new."""
 
 FLATTEST = 0.1
 """Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
@@ -137,6 +138,9 @@ class WearModel(eqx.Module):
             friction: coefficient of each contact.
         """
         wanted = inspect.signature(self.law).parameters
+        if "hardness" in wanted:
+            softer = jnp.minimum(*(own["hardness"] for own in self.own))
+            at = replace(at, hardness=jnp.asarray(softer))
         found = {name: getattr(at, name) for name in wanted if name in UNITS}
         if "asperity_share" in wanted and self.asperities is not None:
             found["asperity_share"] = evaluate(self.asperities, at)
@@ -178,6 +182,7 @@ class Turn(eqx.Module):
         volume: worn off a flank of each member, from force and sliding alone [m3].
         pressure: largest one [Pa].
         conforming: True where a loaded contact is flatter than it is taken for.
+        outgrown: True where an ellipse reaches beyond the cells across the face.
         lost: True where the equilibrium of the contacts was not found.
 
     Source: Archard (1953); Andersson (1975), single-point observation: each point of a flank slides against
@@ -188,6 +193,7 @@ class Turn(eqx.Module):
     volume: Two
     pressure: Float[Array, ""]
     conforming: Bool[Array, ""]
+    outgrown: Bool[Array, ""]
     lost: Bool[Array, ""]
 
 
@@ -252,7 +258,7 @@ def as_new(
 def travelled(
     design: Design, operation: Operation, models: Models, known: Engagement
 ) -> tuple[Conditions, Float[Array, "2 pair slice node"]]:
-    """Conditions at the contacts without friction, and the ways over both flanks for which each stands.
+    """Conditions at the contacts without friction, and the ways over both flanks for which each stands [m].
 
     Args:
         design: mesh and materials.
@@ -277,7 +283,7 @@ def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int
 
     Args:
         at: conditions at the contacts of a whole period under load.
-        ways: of each contact over both flanks while it stands for others [m].
+        ways: ways over both flanks for which each contact stands [m].
         count: of cells along each flank.
 
     Raises:
@@ -310,7 +316,7 @@ def reached(
 
     Args:
         at: conditions at the contacts of a whole period under load.
-        ways: of each contact over both flanks while it stands for others [m].
+        ways: ways over both flanks for which each contact stands [m].
     """
     contacts, active = at.contacts, at.contacts.active
     line = at.shape == "line"
@@ -413,19 +419,29 @@ def wear_of(
     depth, volume = [], []
     for member, (rate, way) in enumerate(zip(rates, ways, strict=True)):
         gone = periods / mesh.flanks_in_turn[member] * rate * slid
-        moves = way / known.weight  # in one period
-        depth.append(_laid(cells, member, at, _spread(at, moves, known.weight), gone))
+        depth.append(_laid(cells, member, at, _spread(at, way, known.weight), gone))
         volume.append(jnp.sum(gone))
+    depths = jnp.stack(depth)
     return Turn(
-        depth=jnp.stack(depth),
+        depth=depths,
         volume=jnp.stack(volume),
         pressure=jnp.max(jnp.where(carries, at.pressure, 0.0)),
         conforming=jnp.zeros((), bool),
-        lost=~jnp.all(jnp.isfinite(at.load)),
+        outgrown=jnp.any(carries & _beyond(cells, at)),
+        lost=~(jnp.all(jnp.isfinite(at.load)) & jnp.all(jnp.isfinite(depths))),
     )
 
 
-def _spread(at: Conditions, moves: Lanes, weight: Float[Array, " node"]) -> Lanes:
+def _beyond(cells: Cells, at: Conditions) -> Bool[Array, "pair slice *b"]:
+    """True for ellipses that reach beyond the cells across the face."""
+    if at.shape == "line":
+        return jnp.zeros(at.load.shape, bool)
+    low, high = cells.across
+    width, half = at.contacts.width, at.semi_axis_across
+    return jnp.broadcast_to((width - half < low) | (width + half > high), at.load.shape)
+
+
+def _spread(at: Conditions, way: Lanes, weight: Float[Array, " node"]) -> Lanes:
     """Length of flank over which a contact wears while it stands for others [m].
 
     A place that a contact passes slides under all of it, whatever its width. One under which a contact stays
@@ -433,14 +449,15 @@ def _spread(at: Conditions, moves: Lanes, weight: Float[Array, " node"]) -> Lane
 
     Args:
         at: conditions at the contacts.
-        moves: ways over the flank at the speed of each contact in one period [m].
+        way: over the flank for which each contact stands [m].
         weight: part of the period for which each contact stands.
     """
     half = at.half_width if at.shape == "line" else at.semi_axis_along
     covers = 2.0 * jnp.where(at.load > 0.0, half, 0.0)
+    moves = way / weight  # in one period at this speed
     still = covers**2 + moves**2
     stays = covers**2 / jnp.where(still > 0.0, still, 1.0)
-    return moves * weight + covers * stays
+    return way + covers * stays
 
 
 def _laid(
@@ -467,7 +484,9 @@ def _laid(
         across = jnp.clip((edges_across - width) / extent[..., None] + 0.5, 0.0, 1.0)
     else:
         along = way
-        place = jnp.clip((edges_across - width) / at.semi_axis_across[..., None], -1.0, 1.0)
+        semi = jnp.broadcast_to(at.semi_axis_across, lanes)[..., None]
+        semi = jnp.where(gone[..., None] > 0.0, semi, 1.0)
+        place = jnp.clip((edges_across - width) / semi, -1.0, 1.0)
         across = 0.5 + 0.25 * (3.0 * place - place**3)
     short = jnp.maximum(along, _SHORT * cells.lengths[member])[..., None]
     passed = jnp.clip((edges_along - flank) / short + 0.5, 0.0, 1.0)

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 __all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "after", "as_new"]
 
 Values = NDArray[np.float64]
-End = Literal["", "turns", "depth", "pressure", "lost", "no wear"]
+End = Literal["", "turns", "depth", "pressure", "outgrown", "lost", "no wear"]
 
 FIRST = 1e-9
 """Depth that the first step takes off [m]; no less counts as depth when errors are judged."""
@@ -27,12 +27,14 @@ class Rate:
         depth: worn off every cell by a turn [member, cell, strip] [m].
         pressure: largest one [Pa].
         conforming: True where flanks were flatter than contacts are taken for.
+        outgrown: True where contacts reach beyond the cells across the face.
         lost: True where the equilibrium of the contacts was not found.
     """
 
     depth: Values
     pressure: float
     conforming: bool
+    outgrown: bool
     lost: bool
 
 
@@ -137,10 +139,17 @@ def after(
             atol=tolerance * deepest,
         )
         march.step()
+        if march.status == "failed":
+            return replace(before, end="lost")
         turns, end = _ends(march, limit, seen_at, start)
     except _LostError:
         return replace(before, end="lost")
     depth = march.y if turns == march.t else march.dense_output()(turns)
+    depth = np.maximum(depth, before.depth.ravel())  # a polynomial between two states may fall
+    try:
+        found = seen_at(depth)
+    except _LostError:
+        return replace(before, end="lost")
     depth = depth.reshape(shape)
     estimated = march.step_size * np.abs(march.K.T @ march.E).reshape(shape).max(axis=(1, 2))
     # Where pairs come to carry within a long step the estimate is too small.
@@ -148,10 +157,10 @@ def after(
     return Reached(
         turns=turns,
         depth=depth,
-        rate=seen_at(depth),
+        rate=found,
         error=before.error + np.maximum(estimated, allowed),
         step=march.h_abs,
-        end=end,
+        end="outgrown" if found.outgrown and not end else end,
     )
 
 

@@ -46,6 +46,8 @@ _DEPENDS = 5e-4
 _ENDS = {
     "turns": "after as many turns as were asked for",
     "depth": "where a flank reaches the limit of its depth",
+    "module": "at 0.2 modules, beyond which contacts move off their places",
+    "outgrown": "where its contacts have outgrown Hertz's theory",
     "pressure": "where the largest pressure reaches its limit",
     "lost": "where the loads of the worn flanks were not found",
     "no wear": "where it begins: nothing wears",
@@ -107,7 +109,8 @@ def _how(data: xr.Dataset) -> str:
         f"{feedback}. All teeth of a gear wear alike, forces are those without friction, and contacts stay "
         f"on the normals of the flanks as new. {int(data['wear_steps'])} steps of the march, each with an "
         f"error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth at most, which are "
-        "added up. Curvatures are those of the depths smoothed over two cells to either side."
+        "added up. Curvatures are those of the depths smoothed over two cells to either side, so that "
+        "pressures depend on the number of cells: repeat with another one (wear.cells) where they matter."
     )
 
 
