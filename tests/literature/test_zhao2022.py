@@ -43,7 +43,7 @@ LOAD = largest_tangential_load(torque=16.0, **ZONE)
 KAPPA = 4.31e-18
 WEAR = (
     *("wear_rate", "wear_depth", "wear_pressure_new", "wear_long_step"),
-    *("severe_cycles", "onset_over_involute", "dry_orders", "depth_growth"),
+    *("severe_wear_cycles", "onset_over_involute", "dry_orders", "depth_growth"),
 )
 RING = {"radius": 29.425e-3, "deflection": 0.3e-3}
 
@@ -189,10 +189,10 @@ def missed_wear(changes):
         ({}, set()),
         (
             {"formulas.coefficient": 8.4532e-9 * 1.02},
-            {"wear_depth", "wear_rate", "severe_cycles"},
+            {"wear_depth", "wear_rate", "severe_wear_cycles"},
         ),
         ({"formulas.flank_length": 1.4 * 1.02}, {"wear_long_step", "wear_pressure_new"}),
-        ({"formulas.severe_depth": 0.6 * 1.02}, {"severe_cycles"}),
+        ({"formulas.severe_depth": 0.6 * 1.02}, {"severe_wear_cycles"}),
         ({"formulas.adsorption_heat": "49 kJ/mol"}, {"dry_orders"}),
         ({"gears.face_width": "12.1 mm"}, {"wear_depth", "wear_pressure_new"}),
         ({"formulas.points": 80}, {"wear_depth", "wear_long_step", "wear_pressure_new"}),
@@ -230,7 +230,7 @@ def test_severe_wear_begins_with_the_tip_land_or_the_stated_depth():
         assert whole.at(cycles, "depth").max() == pytest.approx(limit, rel=1e-9)
     # Without change of the flank it would begin later: leaning over speeds up the wear.
     _, pressure, step = strips().worn(np.zeros(20))
-    assert value("severe_cycles") < 0.18e-3 / (KAPPA * pressure * step).max()
+    assert value("severe_wear_cycles") < 0.18e-3 / (KAPPA * pressure * step).max()
 
 
 def test_depth_not_reached_has_no_cycles():

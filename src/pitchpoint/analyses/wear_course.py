@@ -171,7 +171,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         "across_ends": (("side",), np.asarray(course.cells.across)),
     }
     figures = _figures(built, values, deepest, fastest)
-    codes = np.where(values["conforming"] >= 0, int(Code.SOLVED), 0)
+    codes = np.full(len(parts), int(Code.SOLVED))
     if end == "lost":
         codes[-1] = int(Code.NOT_CONVERGED)
     bodies = [next(one.body for one in built.bodies if one.member == member) for member in range(2)]

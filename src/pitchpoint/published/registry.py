@@ -16,4 +16,6 @@ PUBLICATIONS: Registry[Publication] = Registry(
 )
 
 for _each in PUBLICATIONS.values():
+    if _taken := [key for key, one in _each.variables.items() if VARIABLES.get(key, one) != one]:
+        raise ValueError(f"{_each.name} calls others by names that are taken: {', '.join(_taken)}")
     VARIABLES.update(_each.variables)

@@ -57,13 +57,13 @@ _WEAR = {
     "wear_pressure_new": pressure("contact pressure at the tip of new flanks", "p"),
     "wear_long_step": length("sliding step at the tip after 2e10 cycles", "s"),
     "severe_depth": length("wear depth at which wear is severe", "h"),
-    "severe_cycles": _plain("cycles until severe wear", "N"),
+    "severe_wear_cycles": _plain("cycles until severe wear", "N"),
     "severe_pressure": pressure("contact pressure at the tip when wear becomes severe", "p"),
     "onset_over_involute": _plain("cycles until severe wear over those of involute teeth", "N/N"),
     "depth_over_involute": _plain(
         "largest wear depth over that of involute teeth at the same point", "h/h"
     ),
-    "film_defect": _plain("fractional film defect", "ψ"),
+    "adsorbed_film_defect": _plain("fractional film defect", "ψ"),
     "wetted_share": _plain("wear depth lubricated over dry", "h/h"),
     "dry_coefficient": _plain("wear coefficient of dry flanks", "K"),
     "dry_depth": length("largest wear depth of dry flanks", "h"),
@@ -86,7 +86,9 @@ _ALONG = {
         "flank_pressure": pressure("contact pressure along the flank", "p"),
         "flank_step": deviation("sliding step along the flank", "s"),
     },
-    "flank_radius": {"flank_profile": length("half thickness of the tooth over the radius", "x")},
+    "flexspline_radius": {
+        "flank_profile": length("half thickness of the tooth over the radius", "x")
+    },
 }
 
 _OVER_CYCLES = {
@@ -103,13 +105,13 @@ _UNTIL_SEVERE = {
 
 _PLACES = {
     "flank_way": length("way from the tip along the flank", "s"),
-    "flank_radius": length("radius of the flexspline", "r"),
+    "flexspline_radius": length("radius of the flexspline", "r"),
     "wear_cycles": _plain("cycles", "N"),
     "severe_course": _plain("cycles until severe wear", "N"),
 }
 
 _DIMENSIONS = {
-    **{"flank_way": "flank_point", "flank_radius": "flank_point"},
+    **{"flank_way": "flank_point", "flexspline_radius": "flank_point"},
     **{
         f"{name}_{state}": "flank_point"
         for one in _ALONG.values()

@@ -295,7 +295,7 @@ def readings(point: Point) -> Read:
     found |= _flank_courses(strips, rate, neutral)
     found["depth_growth"] = found["tip_depth_late"] / found["tip_depth_early"]
     if isinstance(mesh.flank, DoubleArcFlank):
-        found |= _beside_involute(found["severe_cycles"], strips, point, rate)
+        found |= _beside_involute(found["severe_wear_cycles"], strips, point, rate)
     return found
 
 
@@ -336,7 +336,7 @@ def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
     cycles = np.linspace(0.0, whole.cycles[-1] if np.isnan(end) else end, BLOCKS + 1)
     return {
         "severe_depth": limit,
-        "severe_cycles": end,
+        "severe_wear_cycles": end,
         "severe_pressure": float(whole.at(end, "pressure")[0]),
         "wear_long_step": float(whole.at(LONG, "step")[0]),
         "severe_course": cycles,
@@ -363,7 +363,7 @@ def _dry(found: dict[str, Any], point: Point, given: FlankWear) -> dict[str, Any
     )
     wetted = defect * given.asperity_share
     return {
-        "film_defect": defect,
+        "adsorbed_film_defect": defect,
         "dry_coefficient": given.coefficient / wetted,
         "dry_depth": found["wear_depth"] / wetted,
         "dry_orders": -log10(wetted),
@@ -378,7 +378,7 @@ def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any
         strips.step * (np.arange(count, dtype=np.float64) + 0.5),
         neutral + strips.place[1],
     )
-    found: dict[str, Any] = {"flank_way": _spread(way), "flank_radius": _spread(radius)}
+    found: dict[str, Any] = {"flank_way": _spread(way), "flexspline_radius": _spread(radius)}
     for name, cycles in {"new": 0.0, **LATER}.items():
         last = marched(strips, rate=rate, cycles=cycles)
         held = last.cycles[-1] >= cycles * (1.0 - 1e-12)

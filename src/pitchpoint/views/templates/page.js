@@ -326,7 +326,7 @@
   );
   document.querySelectorAll("[data-menu]").forEach((menu) => {
     menu.addEventListener("input", () => choose(menu));
-    menu.value = "0";
+    menu.value = menu.defaultValue || "0";
   });
   document.querySelectorAll(".mesh").forEach(animate);
   document.querySelectorAll(".drive").forEach(drive);
