@@ -88,8 +88,7 @@ def test_discs_wear_by_their_line_load_and_sliding_over_rolling():
     start, cells = as_new(*given, parts=PARTS, count=CELLS)
 
     def rate(depth: np.ndarray) -> Rate:
-        found = one_turn(*given, WEAR, cells, start, array(depth))
-        return Rate(np.asarray(found.depth), float(found.pressure), False, False, bool(found.lost))
+        return Rate.of(one_turn(*given, WEAR, cells, start, array(depth)))
 
     reached = marched(rate, (2, CELLS, 1), 1e9)
     # Disc 1 turns by the ratio of speeds and radii while disc 0 turns once.
@@ -191,8 +190,7 @@ def rate_of(built: Built, cells: int = CELLS) -> tuple[Any, tuple[int, int, int]
     given = built.design, built.operation, built.models[0], WEAR, grid, start
 
     def rate(depth: np.ndarray) -> Rate:
-        found = one_turn(*given, array(depth))
-        return Rate(np.asarray(found.depth), float(found.pressure), False, False, bool(found.lost))
+        return Rate.of(one_turn(*given, array(depth)))
 
     return rate, (2, grid.count, grid.strips)
 

@@ -21,7 +21,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 from pitchpoint.wear.gradients import depth_gradient, sensitivities
-from pitchpoint.wear.history import ROOM, Cells, Start, Turn, WearModel, as_new, one_turn
+from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_turn
 from pitchpoint.wear.march import End, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
@@ -64,14 +64,7 @@ def _rate(built: Built, depth: np.ndarray) -> Rate:
     start, cells, model = _course(built)
     seen = depth if asked(built).profile == "updated" else np.zeros_like(depth)
     given = built.design, built.operation, built.models[0], model, cells, start
-    found: Turn = one_turn(*given, array(seen))
-    return Rate(
-        depth=np.asarray(found.depth),
-        pressure=float(found.pressure),
-        conforming=bool(found.conforming),
-        outgrown=bool(found.outgrown),
-        lost=bool(found.lost),
-    )
+    return Rate.of(one_turn(*given, array(seen)))
 
 
 def wear_part(built: Built, _: Piece, progress: Progress) -> xr.Dataset:

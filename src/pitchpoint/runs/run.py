@@ -192,25 +192,24 @@ def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[st
     """That files hold other heights than when the record was made, those that settings replace left out."""
     if any(key.split(".")[:2] in (["film"], ["film", "heights"]) for key in settings):
         return
-    rows = {row.key: row.value for row in record.inputs if row.table == "film"}
     for which in MEMBERS:
-        file, then = (rows.get(f"heights.{which}.{key}") for key in ("file", "digest"))
-        now = digest_of(file) if isinstance(file, str) and then else ""
-        if now and now != then:
-            name = visible(shorten(os.path.basename(str(file))))
-            yield f'The record was made with other heights than "{name}" holds now: numbers differ.'
+        yield from _other_file(record, "film", f"heights.{which}.", "heights")
 
 
 def _other_wear(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
     """That a file holds other worn flanks than when the record was made, unless settings name one."""
-    if any(key.split(".")[0] == "worn" for key in settings):
-        return
-    rows = {row.key: row.value for row in record.inputs if row.table == "worn"}
-    file, then = rows.get("file"), rows.get("digest")
+    if not any(key.split(".")[0] == "worn" for key in settings):
+        yield from _other_file(record, "worn", "", "worn flanks")
+
+
+def _other_file(record: Manifest, table: str, place: str, what: str) -> Iterator[str]:
+    """That a file that a table names at a place holds something else than when the record was made."""
+    rows = {row.key: row.value for row in record.inputs if row.table == table}
+    file, then = (rows.get(f"{place}{key}") for key in ("file", "digest"))
     now = digest_of(file) if isinstance(file, str) and then else ""
     if now and now != then:
         name = visible(shorten(os.path.basename(str(file))))
-        yield f'The record was made with other worn flanks than "{name}" holds now: numbers differ.'
+        yield f'The record was made with other {what} than "{name}" holds now: numbers differ.'
 
 
 @contextmanager
@@ -416,8 +415,7 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
 
 def _held(manifest: Mapping[str, Any]) -> list[str]:
     """Digests of files that a case names: what they hold is part of its inputs."""
-    rows = (row for row in manifest["inputs"] if row["table"] in ("film", "worn"))
-    return [row["value"] for row in rows if row["key"].endswith("digest")]
+    return [row["value"] for row in manifest["inputs"] if row["key"].split(".")[-1] == "digest"]
 
 
 def _part(

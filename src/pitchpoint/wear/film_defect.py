@@ -1,18 +1,14 @@
 """How much of what touches is bare: defects of the film of molecules that a lubricant leaves on a flank."""
 
-from typing import Final
-
 from jaxtyping import Array, Float
+from scipy.constants import gas_constant
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers, as_array
 
-__all__ = ["GAS_CONSTANT", "fractional_film_defect"]
+__all__ = ["fractional_film_defect"]
 
 Each = Float[Numbers, "*#b"]
-
-GAS_CONSTANT: Final = 8.31446261815324
-"""Molar gas constant, exact since 2019 [J/mol/K]."""
 
 _ALL = 50.0  # 1 - exp(-50) is 1 in double precision
 
@@ -59,7 +55,7 @@ def fractional_film_defect(
     leaving = jnp.asarray(
         molecule_diameter
         / vibration_period
-        * jnp.exp(-adsorption_heat / (GAS_CONSTANT * jnp.asarray(temperature)))
+        * jnp.exp(-adsorption_heat / (gas_constant * jnp.asarray(temperature)))
     )
     gone = _ALL * speed <= leaving
     stay = jnp.where(gone, _ALL, leaving / jnp.where(gone, 1.0, speed))

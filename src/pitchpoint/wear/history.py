@@ -289,7 +289,7 @@ def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int
     Raises:
         InputError: a contact stands still on a flank.
     """
-    flank, across = jax.device_get(_ends(at, ways))
+    flank, across = jax.device_get(reached(at, ways))
     if not np.all(np.diff(flank) > 0.0):
         raise InputError(
             "one flank stands still under its contact and has no depth per turn; it is for flanks that roll"
@@ -303,12 +303,6 @@ def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int
 
 
 @program
-def _ends(
-    at: Conditions, ways: Float[Array, "2 pair slice node"]
-) -> tuple[Float[Array, "2 2"], Two]:
-    return reached(at, ways)
-
-
 def reached(
     at: Conditions, ways: Float[Array, "2 pair slice node"]
 ) -> tuple[Float[Array, "2 2"], Two]:

@@ -3,12 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import RK23
 from scipy.optimize import brentq
+
+from pitchpoint.wear.history import Turn
 
 __all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "after", "as_new"]
 
@@ -36,6 +38,17 @@ class Rate:
     conforming: bool
     outgrown: bool
     lost: bool
+
+    @classmethod
+    def of(cls, turn: Turn) -> Self:
+        """What a turn does, on the host."""
+        return cls(
+            depth=np.asarray(turn.depth),
+            pressure=float(turn.pressure),
+            conforming=bool(turn.conforming),
+            outgrown=bool(turn.outgrown),
+            lost=bool(turn.lost),
+        )
 
 
 @dataclass(frozen=True)
@@ -142,11 +155,8 @@ def after(
         if march.status == "failed":
             return replace(before, end="lost")
         turns, end = _ends(march, limit, seen_at, start)
-    except _LostError:
-        return replace(before, end="lost")
-    depth = march.y if turns == march.t else march.dense_output()(turns)
-    depth = np.maximum(depth, before.depth.ravel())  # a polynomial between two states may fall
-    try:
+        depth = march.y if turns == march.t else march.dense_output()(turns)
+        depth = np.maximum(depth, before.depth.ravel())  # a polynomial between two states may fall
         found = seen_at(depth)
     except _LostError:
         return replace(before, end="lost")

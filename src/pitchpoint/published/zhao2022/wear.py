@@ -25,8 +25,9 @@ from pitchpoint.published.zhao2022.printed import (
     largest_tangential_load,
 )
 from pitchpoint.published.zhao2022.table import FlankWear
+from pitchpoint.wear.film_defect import fractional_film_defect
 
-__all__ = ["LATER", "March", "Strips", "film_defect", "march", "marched", "readings", "severe"]
+__all__ = ["LATER", "March", "Strips", "march", "marched", "readings", "severe"]
 
 Array = NDArray[np.float64]
 
@@ -47,9 +48,6 @@ PLACES = 39
 
 _PATIENCE = 3
 """So many times the cycles that new flanks would need for a depth are tried."""
-
-GAS_CONSTANT = 8.314462618
-"""R_g [J/(mol K)]."""
 
 
 @dataclass(frozen=True)
@@ -156,27 +154,6 @@ def severe(strips: Strips, *, rate: float, limit: float) -> March:
     _, pressure, step = strips.worn(np.zeros_like(strips.angle))
     block = limit / float(np.max(rate * pressure * step)) / SEVERE_BLOCKS
     return march(strips, rate=rate, block=block, blocks=_PATIENCE * SEVERE_BLOCKS, limit=limit)
-
-
-def film_defect(
-    *,
-    sliding_speed: float,
-    temperature: float,
-    heat: float,
-    molecule: float,
-    vibration_period: float,
-) -> float:
-    """Part of a surface that adsorbed molecules leave bare, psi of eq. 10.
-
-    Args:
-        sliding_speed: u_s [m/s].
-        temperature: of the surface T_s [K].
-        heat: of adsorption E_a [J/mol].
-        molecule: diameter alpha_x [m].
-        vibration_period: t_0 [s].
-    """
-    staying = molecule / (sliding_speed * vibration_period)
-    return float(-np.expm1(-staying * np.exp(-heat / (GAS_CONSTANT * temperature))))
 
 
 # ------------------------------------------------------------------ flanks
@@ -354,12 +331,14 @@ def _dry(found: dict[str, Any], point: Point, given: FlankWear) -> dict[str, Any
     step = given.flank_length * gears.module / given.points
     rate = abs(float(mesh.motion[1] - mesh.motion[0])) * float(point.operation.speed)
     passing = 2.0 * pi / gears.teeth[0] / rate
-    defect = film_defect(
-        sliding_speed=step / passing,
-        temperature=float(point.operation.temperature),
-        heat=given.adsorption_heat,
-        molecule=given.molecule,
-        vibration_period=given.vibration_period,
+    defect = float(
+        fractional_film_defect(
+            sliding=jnp.asarray(step / passing),
+            temperature=jnp.asarray(point.operation.temperature),
+            adsorption_heat=given.adsorption_heat,
+            molecule_diameter=given.molecule,
+            vibration_period=given.vibration_period,
+        )
     )
     wetted = defect * given.asperity_share
     return {

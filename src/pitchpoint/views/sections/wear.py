@@ -35,6 +35,7 @@ from pitchpoint.views.section import (
     Table,
     by_variant,
 )
+from pitchpoint.wear.stages import SEVERE
 
 __all__ = ["WEAR"]
 
@@ -126,7 +127,7 @@ def _whole(data: xr.Dataset) -> Table:
 def _told(data: xr.Dataset, name: str) -> str:
     value = float(data[name])
     if name == "severe_cycles" and not np.isfinite(value):
-        return "not reached: 1.5 times the least rate"
+        return f"not reached: {SEVERE:g} times the least rate"
     if name == "run_in_cycles" and value == 0.0:
         return "none: the rate is near its least from the start"
     return show.quantity(name, value, of=data)
@@ -241,12 +242,14 @@ def _map(name: str, data: xr.Dataset, member: int) -> Figure:
 
 def _life(name: str, data: xr.Dataset) -> Panel:
     """Depth, rate and pressure over the cycles."""
+    members = tuple(Key(body, PALETTE[k]) for k, body in enumerate(_members(data)))
+    pressure = (Key("largest Hertz pressure", INK),)
     return Panel(
         "",
         [
-            _course(f"{name}_depth", data, "deepest_wear"),
-            _course(f"{name}_rate", data, "fastest_wear"),
-            _pressure(f"{name}_pressure", data),
+            _course(f"{name}_depth", data, "deepest_wear", members),
+            _course(f"{name}_rate", data, "fastest_wear", members),
+            _course(f"{name}_pressure", data, "wear_pressure", pressure),
         ],
     )
 
@@ -258,13 +261,11 @@ def _marks(data: xr.Dataset) -> dict[str, object]:
     return verticals([(words, at) for words, at in each if np.isfinite(at) and at > 0.0])
 
 
-def _course(name: str, data: xr.Dataset, variable: str) -> Figure:
+def _course(name: str, data: xr.Dataset, variable: str, keys: tuple[Key, ...]) -> Figure:
+    """A variable over the cycles, a line for each key."""
     x, unit = data["cycles"].values, show.unit_of(variable, data)
-    keys = tuple(Key(body, PALETTE[k]) for k, body in enumerate(_members(data)))
-    lines = [
-        plain(key, x, display(variable, data[variable].values[:, k]), unit)
-        for k, key in enumerate(keys)
-    ]
+    courses = display(variable, data[variable].values).reshape(x.size, -1).T
+    lines = [plain(key, x, one, unit) for key, one in zip(keys, courses, strict=True)]
     look = layout(
         f"turns of {data.attrs['driver']}, N",
         short_axis(variable, data),
@@ -272,21 +273,6 @@ def _course(name: str, data: xr.Dataset, variable: str) -> Figure:
         **_marks(data),
     )
     return Figure(name, titled(variable, data).capitalize(), lines, look, "", keys, _NONE)
-
-
-def _pressure(name: str, data: xr.Dataset) -> Figure:
-    keys = (Key("largest Hertz pressure", INK),)
-    values = display("wear_pressure", data["wear_pressure"].values)
-    unit = show.unit_of("wear_pressure", data)
-    lines = [plain(keys[0], data["cycles"].values, values, unit)]
-    look = layout(
-        f"turns of {data.attrs['driver']}, N",
-        short_axis("wear_pressure", data),
-        yaxis={"rangemode": "tozero"},
-        **_marks(data),
-    )
-    title = titled("wear_pressure", data).capitalize()
-    return Figure(name, title, lines, look, "", keys, _NONE)
 
 
 def _sensitive(data: xr.Dataset) -> list[tuple[str, str]]:
