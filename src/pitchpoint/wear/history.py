@@ -10,6 +10,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Spot, with_surfaces
 from pitchpoint.contact.worn import Worn
 from pitchpoint.efficiency.quasi_static import (
     Coupling,
@@ -17,7 +18,6 @@ from pitchpoint.efficiency.quasi_static import (
     Engagement,
     Models,
     Operation,
-    contacts_at,
     coupling,
     shares_at,
     state,
@@ -46,6 +46,7 @@ __all__ = [
     "reached",
     "travelled",
     "wear_of",
+    "worn_contacts",
 ]
 
 STRIPS_OF_ELLIPSE = 32
@@ -218,13 +219,15 @@ class Start(eqx.Module):
     Attributes:
         phase: at which contacts are looked at [periods].
         weight: part of the period that each stands for.
-        curvature: relative curvature that contacts feel, in the rolling direction and across [1/m].
+        contacts: of flanks as new.
+        spots: where they lie on both members.
         body: compliance of what is under the teeth; None where it does not couple them.
     """
 
     phase: Float[Array, " node"]
     weight: Float[Array, " node"]
-    curvature: Float[Array, "2 pair slice node"]
+    contacts: Contacts
+    spots: tuple[Spot, Spot]
     body: Coupling | None
 
 
@@ -243,15 +246,12 @@ def as_new(
     Raises:
         InputError: a contact stands still on a flank.
     """
-    phase, weight = _phases(design.mesh, parts)
-    contacts = contacts_at(design.mesh, phase)
+    phase, weight, contacts, spots = _begun(design.mesh, parts)
     body = coupling(design, contacts) if models.sharing.by_stiffness else None
     share = shares_at(design, contacts, operation.load, models, body)
     known = Engagement(phase, weight, contacts, share, None, 1)
     at, ways = travelled(design, operation, models.without_friction, known)
-    felt = np.stack([1.0 / contacts.radius, contacts.relative_curvature[1]])
-    start = Start(phase, weight, array(felt), body)
-    return start, cells_on(at, ways, count)
+    return Start(phase, weight, contacts, spots, body), cells_on(at, ways, count)
 
 
 @program
@@ -274,8 +274,10 @@ def travelled(
 
 
 @program
-def _phases(mesh: Mesh, parts: int) -> tuple[Array, Array]:
-    return midpoints(mesh.events(), parts)
+def _begun(mesh: Mesh, parts: int) -> tuple[Array, Array, Contacts, tuple[Spot, Spot]]:
+    phase, weight = midpoints(mesh.events(), parts)
+    contacts = mesh.contacts(phase)
+    return phase, weight, contacts, mesh.spots(contacts, phase)
 
 
 def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int) -> Cells:
@@ -357,21 +359,35 @@ def one_turn(
         start: of the design.
         depth: worn off so far [m].
     """
+    contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
-    contacts, flat = _no_flatter(contacts_at(worn.mesh, start.phase), start.curvature)
     share = shares_at(worn, contacts, operation.load, models, start.body)
     known = Engagement(start.phase, start.weight, contacts, share, None, 1).loaded()
-    found = wear_of(worn, operation, models, wear, cells, known)
+    found = wear_of(design, operation, models, wear, cells, known)
     conforming = np.any(np.asarray(flat) & (np.asarray(share) > 0.0))
     return replace(found, conforming=array(conforming))
 
 
 @program
-def _no_flatter(
-    contacts: Contacts, curvature: Float[Array, "2 pair slice node"]
+def worn_contacts(
+    cells: Cells, start: Start, depth: Depths
 ) -> tuple[Contacts, Bool[Array, "pair slice node"]]:
-    """Contacts whose relative curvatures keep a part of what they were, and where they had lost it."""
-    least, own = FLATTEST * curvature, 1.0 / contacts.radius
+    """Contacts of worn flanks, and where they would have become flatter than they are taken for.
+
+    Args:
+        cells: on both flanks.
+        start: with flanks as new.
+        depth: worn off so far [m].
+
+    They stay on the normals of flanks as new, and keep a part of their relative curvatures.
+    """
+    first, second = cells.surfaces(depth)
+    new = start.contacts
+    contacts = with_surfaces(new, ((first,), (second,)), start.spots)
+    least, own = (
+        (FLATTEST / new.radius, FLATTEST * new.relative_curvature[1]),
+        1.0 / contacts.radius,
+    )
     lacks = least[1] - contacts.relative_curvature[1]
     kept = replace(
         contacts,
@@ -393,7 +409,7 @@ def wear_of(
     """What contacts that are known wear off in one turn of the driver.
 
     Args:
-        design: as it is worn.
+        design: mesh and materials.
         operation: one operating point.
         models: friction, where it warms the contacts.
         wear: how material goes.
