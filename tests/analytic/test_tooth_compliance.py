@@ -26,6 +26,7 @@ from pitchpoint.loading.tooth_compliance import (
     TOOTH_COMPLIANCE,
     beam_compliance,
     interpolate,
+    teeth_at,
     unit_stiffness,
 )
 from pitchpoint.materials.solids import Solid
@@ -73,7 +74,12 @@ def section_of(one, rim_ratio=number(RIM_RATIO)):  # noqa: B008
 beam = eqx.filter_jit(beam_compliance)
 foundation = eqx.filter_jit(foundation_compliance)
 at = eqx.filter_jit(interpolate)
-stiffness = eqx.filter_jit(unit_stiffness)
+
+
+@eqx.filter_jit
+def stiffness(contacts, sections, solids, terms, load):
+    teeth = teeth_at(contacts, sections, solids, terms)
+    return unit_stiffness(contacts, teeth, solids, terms, load)
 
 
 @dataclass
@@ -469,7 +475,7 @@ def test_gradients_with_respect_to_shifts_and_load(pairs, model):
         )
         entry = TOOTH_COMPLIANCE[model].terms
         return 1e-9 * jnp.mean(
-            unit_stiffness(contacts, sections, (STEEL, PA66), entry, 1e4 * (1.0 + values[2]))
+            stiffness(contacts, sections, (STEEL, PA66), entry, 1e4 * (1.0 + values[2]))
         )
 
     run, step, zero = jax.jit(jax.value_and_grad(mean)), 1e-5, jnp.zeros(3)

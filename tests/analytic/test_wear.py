@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import equinox as eqx
 import numpy as np
 import pytest
 
@@ -26,6 +27,7 @@ from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_t
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
+from pitchpoint.wear.together import worn_together
 
 K = 1e-16
 OWN = {"coefficient": array(K * 2e9), "hardness": array(2e9)}
@@ -97,6 +99,25 @@ def test_discs_wear_by_their_line_load_and_sliding_over_rolling():
     expected = 1e9 * K * LOAD / LENGTH * each
     assert reached.depth.max(axis=(1, 2)) == pytest.approx(expected, rel=1e-10)
     assert reached.depth.min(axis=(1, 2)) == pytest.approx(expected, rel=1e-10)
+
+
+def test_many_discs_together_wear_as_each_of_them():
+    given, cells = discs(), as_new(*discs(), parts=PARTS, count=CELLS)[1]
+    loads, turns = np.array([1.0, 2.0, 0.5]) * LOAD, np.array([1e9, 1e6, 1e9])
+    limit = np.array([np.inf, np.inf, 1e-5])
+
+    def many(leaf: Any) -> Any:
+        return jnp.broadcast_to(leaf, (3, *jnp.shape(leaf))) if eqx.is_array(leaf) else leaf
+
+    inputs = jax.tree.map(many, (*given[:2], WEAR))
+    inputs = eqx.tree_at(lambda one: one[1].load, inputs, array(loads))
+    limits = array(turns), array(limit), array(1e-3)
+    found = jax.device_get(worn_together(inputs, given[2], cells, PARTS, *limits))
+    assert np.all(found.found)
+    assert found.turns[:2] == pytest.approx(turns[:2])
+    expected = K * loads / LENGTH * 0.2 * found.turns
+    assert found.depth[:, 0].max(axis=(1, 2)) == pytest.approx(expected, rel=1e-10, abs=0.0)
+    assert found.depth[2].max() == pytest.approx(1e-5, rel=1e-6, abs=0.0)
 
 
 def marched(

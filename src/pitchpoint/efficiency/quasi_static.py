@@ -21,7 +21,7 @@ from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
 from pitchpoint.loading.balance import Drag as TorqueOnBodies
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.sharing import LoadSharing, from_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, TeethAt, Terms
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -216,7 +216,12 @@ class Models(eqx.Module):
         return chosen
 
     def share(
-        self, design: Design, contacts: Contacts, load: Each, body: Coupling | None = None
+        self,
+        design: Design,
+        contacts: Contacts,
+        load: Each,
+        body: Coupling | None = None,
+        teeth: TeethAt | None = None,
     ) -> Lanes:
         """Share of the load on each slice.
 
@@ -225,10 +230,12 @@ class Models(eqx.Module):
             contacts: of the mesh.
             load: that the driven coordinate carries [N m or N].
             body: compliance of what is under the teeth, where it is known already.
+            teeth: where the contacts lie on them, likewise.
         """
         mesh, yields = design.mesh, None
         if self.sharing.by_stiffness:
-            yields = compliance(mesh, contacts, design.solids, self.compliance, load, body)
+            given = mesh, contacts, design.solids, self.compliance
+            yields = compliance(*given, load, body, teeth)
         return self.sharing.function(contacts, mesh, yields)
 
 

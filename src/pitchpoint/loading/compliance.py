@@ -7,7 +7,7 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, along, total
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, opened
-from pitchpoint.loading.tooth_compliance import Terms, unit_stiffness
+from pitchpoint.loading.tooth_compliance import TeethAt, Terms, teeth_at, unit_stiffness
 from pitchpoint.materials.solids import Solid
 
 __all__ = ["Compliance", "compliance", "mean_line_load", "slice_stiffness"]
@@ -52,6 +52,7 @@ def compliance(
     terms: Terms,
     load: Float[Array, "*#b"],
     body: Body | None = None,
+    teeth: TeethAt | None = None,
 ) -> Compliance:
     """How the contacts of a mesh yield under a load.
 
@@ -62,11 +63,12 @@ def compliance(
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
         body: see `Mesh.body_compliance`, where it is known already.
+        teeth: where the contacts lie on them, where that is known already.
     """
     if body is None and mesh.couples:
         body = mesh.body_compliance(contacts, solids)
     return Compliance(
-        stiffness=slice_stiffness(mesh, contacts, solids, terms, load), body=body, load=load
+        stiffness=slice_stiffness(mesh, contacts, solids, terms, load, teeth), body=body, load=load
     )
 
 
@@ -92,6 +94,7 @@ def slice_stiffness(
     solids: tuple[Solid, Solid],
     terms: Terms,
     load: Float[Array, "*#b"],
+    teeth: TeethAt | None = None,
 ) -> Float[Array, "pair slice *#b"]:
     """Stiffness of every slice per length of contact line [N/m2]; the contact's at the mean line load.
 
@@ -101,6 +104,9 @@ def slice_stiffness(
         solids: material of each member.
         terms: of the model of tooth compliance.
         load: that the driven coordinate carries [N m or N].
+        teeth: where the contacts lie on them, where that is known already.
     """
+    if teeth is None:
+        teeth = teeth_at(contacts, mesh.sections, solids, terms)
     line_load = mean_line_load(mesh, contacts, load)
-    return unit_stiffness(contacts, mesh.sections, solids, terms, line_load)
+    return unit_stiffness(contacts, teeth, solids, terms, line_load)

@@ -21,11 +21,13 @@ from pitchpoint.registry import Registry
 
 __all__ = [
     "TOOTH_COMPLIANCE",
+    "TeethAt",
     "Terms",
     "ToothCompliance",
     "beam_compliance",
     "bending",
     "interpolate",
+    "teeth_at",
     "tooth_compliance",
     "unit_stiffness",
 ]
@@ -144,9 +146,41 @@ def tooth_compliance(section: ToothSection, solid: Solid, terms: Terms) -> Float
     return (shape + terms.foundation * foundation_compliance(section)) / solid.young
 
 
+class TeethAt(eqx.Module):
+    """Both teeth at the contacts, whatever these carry and however their flanks are worn.
+
+    Attributes:
+        bending: compliance of each tooth per length of contact line [m2/N], or of a whole ellipse [m/N].
+        depth: from the flank to the tooth's axis along the load [m].
+    """
+
+    bending: tuple[Field, Field]
+    depth: tuple[Field, Field]
+
+
+def teeth_at(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms) -> TeethAt:
+    """Teeth where contacts lie on them.
+
+    Args:
+        contacts: of a mesh of two gears.
+        sections: the tooth of each member.
+        solids: the material of each member.
+        terms: of an entry of `TOOTH_COMPLIANCE`.
+    """
+    bent = _bending(contacts, sections, _moduli(solids, terms), terms)
+    if contacts.shape == "ellipse":
+        over = zip(bent, sections, strict=True)
+        bent = [one if at.width is None else one / at.width for one, at in over]
+    depth = [
+        interpolate(_depth(section), section, contacts.flank[k])
+        for k, section in enumerate(sections)
+    ]
+    return TeethAt((bent[0], bent[1]), (depth[0], depth[1]))
+
+
 def unit_stiffness(
     contacts: Contacts,
-    sections: Sections,
+    teeth: TeethAt,
     solids: Solids,
     terms: Terms,
     line_load: Float[Array, "..."],
@@ -158,7 +192,7 @@ def unit_stiffness(
 
     Args:
         contacts: of a mesh of two gears.
-        sections: the tooth of each member.
+        teeth: where the contacts lie on them.
         solids: the material of each member.
         terms: of an entry of `TOOTH_COMPLIANCE`.
         line_load: load per length [N/m], or on an ellipse [N], broadcast over the contacts; only contacts
@@ -169,17 +203,11 @@ def unit_stiffness(
 
     Source: Atanasiu et al. (2011), eq. 16: deflections of both teeth and of the contact add up.
     """
-    yielding = _moduli(solids, terms)
-    teeth = _bending(contacts, sections, yielding, terms)
-    given = (contacts, sections, yielding, line_load)
+    yielding, both = _moduli(solids, terms), teeth.bending[0] + teeth.bending[1]
     if contacts.shape == "ellipse":
-        over = [
-            one if at.width is None else one / at.width
-            for one, at in zip(teeth, sections, strict=True)
-        ]
-        return 1.0 / (over[0] + over[1] + _hertz(*given))
-    flattening = jnp.where(terms.weber, _weber(*given), _linear(*given))
-    return 1.0 / (teeth[0] + teeth[1] + flattening)
+        return 1.0 / (both + _hertz(contacts, yielding, line_load))
+    weber = _weber(contacts, teeth, yielding, line_load)
+    return 1.0 / (both + jnp.where(terms.weber, weber, _linear(yielding)))
 
 
 def bending(contacts: Contacts, sections: Sections, solids: Solids, terms: Terms) -> Field:
@@ -230,17 +258,13 @@ def _moduli(solids: Solids, terms: Terms) -> Solids:
     return one, two
 
 
-def _linear(
-    contacts: Contacts, sections: Sections, solids: Solids, line_load: Float[Array, "..."]
-) -> Float[Array, "*b"]:
+def _linear(solids: Solids) -> Float[Array, ""]:
     young = jnp.stack([solid.young for solid in solids])
     poisson = jnp.stack([solid.poisson for solid in solids])
     return yang_sun_1985(young=young, poisson=poisson)
 
 
-def _hertz(
-    contacts: Contacts, sections: Sections, solids: Solids, load: Float[Array, "..."]
-) -> Field:
+def _hertz(contacts: Contacts, solids: Solids, load: Float[Array, "..."]) -> Field:
     first, second = (solid.plane_strain_modulus for solid in solids)
     pressed = jnp.maximum(load, _LEAST_LINE_LOAD)
     found = hertz_1881(
@@ -253,7 +277,7 @@ def _hertz(
 
 
 def _weber(
-    contacts: Contacts, sections: Sections, solids: Solids, line_load: Float[Array, "..."]
+    contacts: Contacts, teeth: TeethAt, solids: Solids, line_load: Float[Array, "..."]
 ) -> Field:
     first, second = (solid.plane_strain_modulus for solid in solids)
     half_width = line_half_width(
@@ -265,10 +289,10 @@ def _weber(
         line_compression(
             young=solid.young,
             poisson=solid.poisson,
-            depth=interpolate(_depth(section), section, contacts.flank[k]),
+            depth=depth,
             half_width=half_width,
         )
-        for k, (section, solid) in enumerate(zip(sections, solids, strict=True))
+        for depth, solid in zip(teeth.depth, solids, strict=True)
     ]
     return parts[0] + parts[1]
 

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Self
 
 import equinox as eqx
 import numpy as np
@@ -18,14 +19,13 @@ from pitchpoint.efficiency.quasi_static import (
     Engagement,
     Models,
     Operation,
-    coupling,
     shares_at,
     state,
 )
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, as_array
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges
+from pitchpoint.loading.tooth_compliance import TeethAt, teeth_at
 from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.conditions import UNITS, Conditions, evaluate
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
@@ -45,6 +45,7 @@ __all__ = [
     "one_turn",
     "reached",
     "travelled",
+    "turn_alone",
     "wear_of",
     "worn_contacts",
 ]
@@ -222,6 +223,7 @@ class Start(eqx.Module):
         contacts: of flanks as new.
         spots: where they lie on both members.
         body: compliance of what is under the teeth; None where it does not couple them.
+        teeth: where the contacts lie on them; None where the sharing of the load does not ask how they yield.
     """
 
     phase: Float[Array, " node"]
@@ -229,6 +231,35 @@ class Start(eqx.Module):
     contacts: Contacts
     spots: tuple[Spot, Spot]
     body: Coupling | None
+    teeth: TeethAt | None
+
+    @classmethod
+    def of(cls, design: Design, models: Models, parts: int) -> Self:
+        """That of a design.
+
+        Args:
+            design: with flanks as new.
+            models: sharing of the load.
+            parts: phases in each stretch between events.
+        """
+        mesh, body, teeth = design.mesh, None, None
+        phase, weight = midpoints(mesh.events(), parts)
+        contacts = mesh.contacts(phase)
+        if models.sharing.by_stiffness:
+            given = mesh.sections, design.solids, models.compliance
+            teeth = teeth_at(contacts, *given)
+            body = mesh.body_compliance(contacts, design.solids) if mesh.couples else None
+        return cls(phase, weight, contacts, mesh.spots(contacts, phase), body, teeth)
+
+    def engaged(self, share: Lanes, contacts: Contacts | None = None) -> Engagement:
+        """Contacts over the period, as new or as they are worn, and what they carry.
+
+        Args:
+            share: of the load on each slice.
+            contacts: as they are worn.
+        """
+        felt = self.contacts if contacts is None else contacts
+        return Engagement(self.phase, self.weight, felt, share, None, 1)
 
 
 def as_new(
@@ -246,12 +277,15 @@ def as_new(
     Raises:
         InputError: a contact stands still on a flank.
     """
-    phase, weight, contacts, spots = _begun(design.mesh, parts)
-    body = coupling(design, contacts) if models.sharing.by_stiffness else None
-    share = shares_at(design, contacts, operation.load, models, body)
-    known = Engagement(phase, weight, contacts, share, None, 1)
-    at, ways = travelled(design, operation, models.without_friction, known)
-    return Start(phase, weight, contacts, spots, body), cells_on(at, ways, count)
+    start = _begun(design, models.without_friction, parts)
+    share = shares_at(design, start.contacts, operation.load, models, start.body)
+    at, ways = travelled(design, operation, models.without_friction, start.engaged(share))
+    return start, cells_on(at, ways, count)
+
+
+@program
+def _begun(design: Design, models: Models, parts: int) -> Start:
+    return Start.of(design, models, parts)
 
 
 @program
@@ -271,13 +305,6 @@ def travelled(
     lasts = known.weight * design.mesh.period / at.speed
     speeds = [jnp.broadcast_to(as_array(v), at.load.shape) for v in (at.speed_a, at.speed_b)]
     return at, jnp.abs(jnp.stack(speeds)) * lasts
-
-
-@program
-def _begun(mesh: Mesh, parts: int) -> tuple[Array, Array, Contacts, tuple[Spot, Spot]]:
-    phase, weight = midpoints(mesh.events(), parts)
-    contacts = mesh.contacts(phase)
-    return phase, weight, contacts, mesh.spots(contacts, phase)
 
 
 def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int) -> Cells:
@@ -359,13 +386,37 @@ def one_turn(
         start: of the design.
         depth: worn off so far [m].
     """
+    if not design.mesh.couples:
+        return _turn_alone(design, operation, models, wear, cells, start, depth)
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
     share = shares_at(worn, contacts, operation.load, models, start.body)
-    known = Engagement(start.phase, start.weight, contacts, share, None, 1).loaded()
-    found = wear_of(design, operation, models, wear, cells, known)
+    found = wear_of(design, operation, models, wear, cells, start.engaged(share, contacts).loaded())
     conforming = np.any(np.asarray(flat) & (np.asarray(share) > 0.0))
     return replace(found, conforming=array(conforming))
+
+
+def turn_alone(
+    design: Design,
+    operation: Operation,
+    models: Models,
+    wear: WearModel,
+    cells: Cells,
+    start: Start,
+    depth: Depths,
+) -> Turn:
+    """`one_turn`, all traced together: for meshes with few contacts, and for many drives.
+
+    Arguments as there.
+    """
+    contacts, flat = worn_contacts(cells, start, depth)
+    worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
+    share = models.share(worn, contacts, operation.load, start.body, start.teeth)
+    found = wear_of(design, operation, models, wear, cells, start.engaged(share, contacts))
+    return replace(found, conforming=jnp.any(flat & (share > 0.0)))
+
+
+_turn_alone = program(turn_alone)
 
 
 @program
@@ -426,15 +477,13 @@ def wear_of(
     periods = 2.0 * jnp.pi / mesh.period
     lasts = known.weight * mesh.period / at.speed
     slid = jnp.where(carries, at.load * as_array(at.sliding), 0.0) * lasts
-    depth, volume = [], []
-    for member, (rate, way) in enumerate(zip(rates, ways, strict=True)):
-        gone = periods / mesh.flanks_in_turn[member] * rate * slid
-        depth.append(_laid(cells, member, at, _spread(at, way, known.weight), gone))
-        volume.append(jnp.sum(gone))
-    depths = jnp.stack(depth)
+    turns = periods / mesh.flanks_in_turn
+    gone = jnp.stack([turns[k] * rate * slid for k, rate in enumerate(rates)])
+    along = jnp.stack([_spread(at, way, known.weight) for way in ways])
+    depths = _laid(cells, at, along, gone)
     return Turn(
         depth=depths,
-        volume=jnp.stack(volume),
+        volume=jnp.sum(gone, axis=(1, 2, 3)),
         pressure=jnp.max(jnp.where(carries, at.pressure, 0.0)),
         conforming=jnp.zeros((), bool),
         outgrown=jnp.any(carries & _beyond(cells, at)),
@@ -471,42 +520,55 @@ def _spread(at: Conditions, way: Lanes, weight: Float[Array, " node"]) -> Lanes:
 
 
 def _laid(
-    cells: Cells, member: int, at: Conditions, way: Lanes, gone: Lanes
-) -> Float[Array, "cell strip"]:
-    """Depth of each cell from volumes that contacts leave on their ways over a flank [m].
+    cells: Cells,
+    at: Conditions,
+    ways: Float[Array, "2 pair slice node"],
+    gone: Float[Array, "2 pair slice node"],
+) -> Depths:
+    """Depth of each cell from volumes that contacts leave on their ways over both flanks [m].
 
     Each is spread evenly along the way, and across as far as the contact reaches.
     """
-    contacts, lanes = at.contacts, gone.shape
-    low, high = cells.flank[member]
-    edges_along = low + (high - low) * jnp.arange(1, cells.count) / cells.count
-    start, end = cells.across
-    edges_across = start + (end - start) * jnp.arange(1, cells.strips) / cells.strips
-    flank = jnp.broadcast_to(contacts.flank[member], lanes)[..., None]
-    width = jnp.broadcast_to(contacts.width, lanes)[..., None]
+    contacts = at.contacts
+    flank = jnp.broadcast_to(contacts.flank, gone.shape)
+    reaches = _reaches(cells, at, jnp.any(gone > 0.0, axis=0))
     if at.shape == "line":
         extent = extents(contacts)
         # A line that leans sweeps a strip of the face faster than it moves at right angles to itself.
-        along = way * contacts.weight / extent
+        ways = ways * contacts.weight / extent
         if cells.strips > 1:
-            leaning = jnp.asarray(jnp.gradient(flank[..., 0], axis=1))
-            along = along + jnp.abs(leaning)
-        across = jnp.clip((edges_across - width) / extent[..., None] + 0.5, 0.0, 1.0)
+            ways = ways + jnp.abs(jnp.asarray(jnp.gradient(flank, axis=2)))
+    inner = jnp.arange(1, cells.count) / cells.count
+
+    def of(member: tuple[Array, ...]) -> Float[Array, "cell strip"]:
+        ends, length, place, way, volume = member
+        short = jnp.maximum(way, _SHORT * length)[..., None]
+        edge = ends[0] + (ends[1] - ends[0]) * inner
+        along = jnp.clip((edge - place[..., None]) / short + 0.5, 0.0, 1.0)
+        volumes = jnp.einsum("...,...c,...s->cs", volume, _parts(along), reaches)
+        return volumes / (length * cells.width)
+
+    # By a loop over the members: fused with what made them, ways would be computed again for every cell.
+    found: Depths = jax.lax.map(of, (cells.flank, cells.lengths, flank, ways, gone))
+    return found
+
+
+def _reaches(
+    cells: Cells, at: Conditions, wears: Bool[Array, "pair slice node"]
+) -> Float[Array, "pair slice node strip"]:
+    """Part of what each contact leaves that lies on each strip across the face."""
+    contacts, lanes = at.contacts, wears.shape
+    start, end = cells.across
+    edges_across = start + (end - start) * jnp.arange(1, cells.strips) / cells.strips
+    width = jnp.broadcast_to(contacts.width, lanes)[..., None]
+    if at.shape == "line":
+        across = jnp.clip((edges_across - width) / extents(contacts)[..., None] + 0.5, 0.0, 1.0)
     else:
-        along = way
-        semi = jnp.broadcast_to(at.semi_axis_across, lanes)[..., None]
-        semi = jnp.where(gone[..., None] > 0.0, semi, 1.0)
+        semi = jnp.broadcast_to(at.semi_axis_across, lanes)
+        semi = jnp.where(wears, semi, 1.0)[..., None]
         place = jnp.clip((edges_across - width) / semi, -1.0, 1.0)
         across = 0.5 + 0.25 * (3.0 * place - place**3)
-    short = jnp.maximum(along, _SHORT * cells.lengths[member])[..., None]
-    passed = jnp.clip((edges_along - flank) / short + 0.5, 0.0, 1.0)
-    lies, reaches = _parts(passed), _parts(across)
-    lies, reaches = (
-        jnp.broadcast_to(part, (*lanes, part.shape[-1])).reshape(-1, part.shape[-1])
-        for part in (lies, reaches)
-    )
-    volumes = jnp.einsum("n,nc,ns->cs", gone.ravel(), lies, reaches)
-    return volumes / (cells.lengths[member] * cells.width)
+    return _parts(jnp.broadcast_to(across, (*lanes, cells.strips - 1)))
 
 
 def _parts(passed: Float[Array, "*b edge"]) -> Float[Array, "*b cell"]:

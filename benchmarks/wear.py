@@ -1,0 +1,179 @@
+"""March of wear: one life curve and many drives together, beside a NumPy loop, on one thread.
+
+    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/wear.py
+
+Spur pairs of 23 and 61 teeth that differ in module, width and torque wear dry by Archard's law for
+three million turns; their load is shared by stiffness, and worn flanks change gaps, curvatures and
+loads. The rival marches by the same method over the same contacts and cells to the same tolerance,
+with splines and springs that it is given or computes once for each pair. Seconds are of the
+processor; compile time is told apart. Both find the same depths.
+"""
+
+import argparse
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+sys.path.insert(0, str(Path(__file__).parent / "rivals"))
+
+import equinox as eqx
+import jax
+import numpy as np
+import wear_numpy as rival
+
+from pitchpoint._jax import array, jnp
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
+from pitchpoint.loading.compliance import compliance
+from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
+from pitchpoint.wear.history import WearModel, as_new, one_turn
+from pitchpoint.wear.laws import archard_1953
+from pitchpoint.wear.march import Limit, Rate, after
+from pitchpoint.wear.march import as_new as unworn
+from pitchpoint.wear.together import worn_together
+
+TEETH, TURNS, TOLERANCE = (23, 61), 3e6, 3e-4
+CELLS, PARTS = 40, 24
+COEFFICIENT, HARDNESS = 2e-7, 2e9
+MODELS = Models(
+    friction=(),
+    choice=array(0),
+    parameters={},
+    sharing=LOAD_SHARING["from_stiffness"],
+    rolling=ROLLING_RESISTANCE["none"],
+    compliance=TOOTH_COMPLIANCE["beam_foundation_hertz"].terms,
+)
+Given = tuple[Design, Operation, WearModel]
+
+
+def drives(count: int) -> Given:
+    """Designs, operating points and how material goes, with an axis of drives in front."""
+    rng = np.random.default_rng(0)
+    module, width = rng.uniform(2e-3, 3e-3, count), rng.uniform(15e-3, 25e-3, count)
+    common = {"teeth": TEETH, "pressure_angle": np.radians(20.0)}
+    made = build_cylindrical_pairs(**common, module=module, face_width=width)
+    (group,) = made.groups
+    assert made.good.all()
+    one = {"coefficient": array(COEFFICIENT), "hardness": array(HARDNESS)}
+    steel, oil = solids.find("steel").build(), lubricants.find("pao-vg-220").build()
+    rest = (steel, steel), oil, Roughness.from_composite_rq(0.4e-6), (one, one)
+
+    def many(values: Any) -> Any:
+        return jnp.broadcast_to(values, (count, *jnp.shape(values)))
+
+    both, oil, rough, own = jax.tree.map(many, rest)
+    point = rng.uniform(30.0, 90.0, count), np.full(count, 157.0), np.full(count, 330.0)
+    return (
+        Design(jax.tree.map(jnp.asarray, group.mesh), both, oil, rough),
+        Operation(*map(jnp.asarray, point)),
+        WearModel(archard_1953, own),
+    )
+
+
+def of(given: Given, number: int) -> Given:
+    """One of the drives."""
+    found: Given = jax.tree.map(lambda leaf: leaf[number] if eqx.is_array(leaf) else leaf, given)
+    return found
+
+
+def as_rival(given: Given) -> rival.Pair:
+    """A drive as plain numbers."""
+    design, operation, _ = given
+    start, cells = as_new(design, operation, MODELS, parts=PARTS, count=CELLS)
+    mesh, contacts = design.mesh, start.contacts
+    terms = MODELS.compliance
+    springs = compliance(mesh, contacts, design.solids, terms, operation.load).of_teeth(contacts)
+    speed = np.einsum("kdpsn,d->kpn", contacts.surface, mesh.motion)
+    arm = float(np.abs(np.einsum("dpsn,d->psn", contacts.normal, mesh.loaded)).max())
+    return rival.Pair(
+        weight=np.asarray(start.weight),
+        active=np.asarray(contacts.active[:, 0]),
+        flank=np.broadcast_to(contacts.flank, (2, *contacts.path.shape))[:, :, 0],
+        speed=speed,
+        curvature=np.asarray(contacts.relative_curvature[0][:, 0]),
+        springs=np.asarray(springs[:, 0]),
+        width=float(mesh.face_width),
+        force=float(operation.load) / arm,
+        modulus=float(design.modulus),
+        teeth=TEETH,
+        rate=(COEFFICIENT / HARDNESS,) * 2,
+        ends=np.asarray(cells.flank),
+        cells=CELLS,
+    )
+
+
+def curve(given: Given) -> np.ndarray:
+    """Depths of one drive over its life, step by step as a case does."""
+    design, operation, wear = given
+    start, cells = as_new(design, operation, MODELS, parts=PARTS, count=CELLS)
+
+    def rate(depth: np.ndarray) -> Rate:
+        return Rate.of(one_turn(design, operation, MODELS, wear, cells, start, array(depth)))
+
+    state = unworn(rate, (2, cells.count, cells.strips))
+    first = state.rate.pressure
+    while not state.end:
+        state = after(state, rate, Limit(TURNS), start=first, tolerance=TOLERANCE)
+    return state.depth[..., 0]
+
+
+def seconds(work: Callable[[], object]) -> float:
+    start = time.process_time()
+    jax.block_until_ready(work())
+    return time.process_time() - start
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--drives", type=int, default=1000)
+    parser.add_argument("--repeats", type=int, default=3)
+    asked = parser.parse_args()
+    count = asked.drives
+    given = drives(count)
+    pairs = [as_rival(of(given, number)) for number in range(count)]
+    _, cells = as_new(*of(given, 0)[:2], MODELS, parts=PARTS, count=CELLS)
+    limits = jnp.full(count, TURNS), jnp.full(count, jnp.inf), array(TOLERANCE)
+
+    def together() -> Any:
+        return worn_together(given, MODELS, cells, PARTS, *limits)
+
+    def loop(number: int) -> list[rival.Course]:
+        return rival.march_all(pairs[:number], turns=TURNS, tolerance=TOLERANCE)
+
+    work = {
+        "one life curve": (lambda: curve(of(given, 0)), lambda: loop(1), 1),
+        f"{count} drives": (together, lambda: loop(count), count),
+    }
+    for name, (own, *_) in work.items():
+        print(f"{name}: first call with compilation {seconds(own):.1f} s")
+    found, theirs = together(), loop(count)
+    depth = np.stack([one.depth for one in theirs])
+    apart = np.abs(np.asarray(found.depth[..., 0]) - depth).max(axis=(1, 2)) / depth.max(
+        axis=(1, 2)
+    )
+    steps = np.array([one.steps for one in theirs])
+    print(
+        f"agreement: depths {apart.max():.1e} of the largest, steps {steps.min()} to {steps.max()}"
+    )
+    print(
+        f"steps together {found.steps.min()} to {found.steps.max()}, all found {bool(found.found.all())}"
+    )
+    for name, (own, other, number) in work.items():
+        both = [(seconds(own), seconds(other)) for _ in range(asked.repeats)]
+        ours, loops = (1e3 * statistics.median(one) / number for one in zip(*both, strict=True))
+        print(
+            f"{name}: {ours:.2f} ms each, NumPy {loops:.2f} ms, ratio {loops / ours:.1f} (goal 20)"
+        )
+
+
+if __name__ == "__main__":
+    main()
