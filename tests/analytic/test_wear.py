@@ -273,11 +273,11 @@ def test_derivatives_equal_differences():
 def test_the_march_ends_where_a_measure_of_the_teeth_does():
     shape = (2, 4, 1)
     depth = np.array([2e-12, 1e-12])[:, None, None] * np.ones(shape)
-    state = unworn(lambda _: Rate(depth, 1e9, False, False, False), shape)
-    play = 3e-6
+    rate, play = Rate(depth, 1e9, False, False, False), 3e-6
+    state = unworn(lambda _: rate, shape)
     limit = Limit(1e9, teeth=(("backlash", lambda one: one[:, 0, 0].sum() - play),))
     while not state.end:
-        state = after(state, lambda _: state.rate, limit, start=1e9, tolerance=1e-3)
+        state = after(state, lambda _: rate, limit, start=1e9, tolerance=1e-3)
     assert state.end == "backlash"
     assert state.turns == pytest.approx(1e6, rel=1e-3)
     assert state.depth.sum(axis=0)[0, 0] == pytest.approx(play, rel=1e-3)
@@ -320,7 +320,6 @@ def test_films_tell_the_load_on_asperities(monkeypatch):
     dry, _ = of_pair("equal")
     low, high = share[load > 0.0].min(), share.max()
     assert np.all((found.volume > low * dry.volume) & (found.volume < high * dry.volume))
-    # The place where flanks roll has the thickest film of all: no more wears there than without.
     assert not bool(found.lost)
 
 
