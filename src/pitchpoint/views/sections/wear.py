@@ -111,9 +111,10 @@ def _how(data: xr.Dataset) -> str:
         f"contact, once for each engagement, times the specific wear rate of {data.attrs['law']}"
         f"{_by_films(data)}. {feedback}. All teeth of a gear wear alike, forces are those without friction, "
         f"and contacts stay on the normals of the flanks as new. {int(data['wear_steps'])} steps of the "
-        f"march, each with an error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth at most, which are "
-        "added up. Curvatures are those of the depths smoothed over two cells to either side, so that "
-        "pressures depend on the number of cells: repeat with another one (wear.cells) where they matter."
+        f"march, each with an error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth "
+        "at most, which are added up. Curvatures are those of the depths smoothed over two cells to either "
+        "side, so that pressures depend on the number of cells: repeat with another one (wear.cells) where "
+        "they matter."
     )
 
 
