@@ -26,6 +26,7 @@ from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, describe, load_case
 from pitchpoint.views.report import render
 from pitchpoint.views.sections.wear import WEAR as SECTION
+from pitchpoint.wear import history
 
 MODELS = """
 [models]
@@ -81,6 +82,7 @@ def test_the_march_ends_where_it_is_asked_to(outcome: Outcome) -> None:
     assert data["wear_error"].values[-1] == pytest.approx(0.0, abs=2e-2 * depth[-1].max())
     told = figures(outcome)["wear"]
     assert told["final_depth"] == float(data["final_depth"]) == depth[-1].max()
+    assert 0.0 < told["backlash_growth"] < depth[-1].sum()
     # Gear 2 meets with every third turn of gear 1.
     volumes = data["worn_volume"].values[-1]
     assert volumes[0] / volumes[1] == pytest.approx(61.0 / 23.0, rel=1e-6)
@@ -266,6 +268,19 @@ def test_the_load_on_asperities_by_films(folder: Path) -> None:
     assert {"wear.load_ratio", "film.nodes", "film.asperities"} <= rows
 
 
+def test_a_film_that_is_not_solved_ends_the_march(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lost = lambda model, at, oil, temperature: np.full(at.load.shape, np.nan)  # noqa: E731
+    monkeypatch.setattr(history, "asperity_share", lost)
+    films = {**MIXED, "wear.load_ratio": "film"}
+    outcome = running.run(written(folder, MODELS + DRY, "lost.toml"), settings=films)["default"]
+    data = outcome.parts["wear"]
+    assert data.attrs["end"] == "lost" and data.sizes["step"] == 1
+    told = "the loads, or films, of flanks that are worn so far were not found"
+    assert told in render({"default": outcome})
+
+
 def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     page = render({"default": outcome})
     assert 'id="wear"' in page
@@ -277,6 +292,9 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     assert "after 3000000 turns of gear 1" in words
     (printed,) = SECTION.screen(outcome)
     assert printed.line == "The march ended after as many turns as were asked for."
+    severe = outcome.parts["wear"].assign(severe_cycles=((), 1e6))
+    ((_, words),) = SECTION.answer(Outcome(outcome.manifest, {"wear": severe}))
+    assert "; severe wear (1.5 times the least rate) begins at 1000000" in words
 
 
 REFUSED = {
