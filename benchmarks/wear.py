@@ -21,7 +21,6 @@ from typing import Any
 os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 sys.path.insert(0, str(Path(__file__).parent / "rivals"))
 
-import equinox as eqx
 import jax
 import numpy as np
 import wear_numpy as rival
@@ -29,6 +28,7 @@ import wear_numpy as rival
 from pitchpoint._jax import array, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
+from pitchpoint.gears.designs import rows
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
@@ -81,7 +81,7 @@ def drives(count: int) -> Given:
 
 def of(given: Given, number: int) -> Given:
     """One of the drives."""
-    found: Given = jax.tree.map(lambda leaf: leaf[number] if eqx.is_array(leaf) else leaf, given)
+    found: Given = jax.tree.map(array, rows(given, number))
     return found
 
 

@@ -17,16 +17,19 @@ from pitchpoint.contact.worn import Worn
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.lubrication.conditions import Conditions
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.runs.run import load_case
-from pitchpoint.wear import vdi_2736
+from pitchpoint.wear import film_share, vdi_2736
 from pitchpoint.wear.gradients import depth_gradient, sensitivities
 from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
+from pitchpoint.wear.teeth import backlash_growth, tips_of
 from pitchpoint.wear.together import worn_together
 
 K = 1e-16
@@ -286,6 +289,108 @@ def test_derivatives_equal_differences():
     step = 1e-5
     slope = (wider(step) - wider(-step)) / (2.0 * step) / float(value)
     assert found["module"] == pytest.approx(slope, rel=1e-4)
+
+
+def test_the_march_ends_where_a_measure_of_the_teeth_does():
+    shape = (2, 4, 1)
+    depth = np.array([2e-12, 1e-12])[:, None, None] * np.ones(shape)
+    rate, play = Rate(depth, 1e9, False, False, False), 3e-6
+    state = unworn(lambda _: rate, shape)
+    limit = Limit(1e9, teeth=(("backlash", lambda one: one[:, 0, 0].sum() - play),))
+    while not state.end:
+        state = after(state, lambda _: rate, limit, start=1e9, tolerance=1e-3)
+    assert state.end == "backlash"
+    assert state.turns == pytest.approx(1e6, rel=1e-3)
+    assert state.depth.sum(axis=0)[0, 0] == pytest.approx(play, rel=1e-3)
+
+
+# ---- the load on asperities
+
+
+def by_share(*, coefficient: Any, hardness: Any, asperity_share: Any) -> Any:
+    return coefficient / hardness * asperity_share
+
+
+FILMS = WearModel(by_share, (OWN, OWN), films=FilmModel(nodes=33))
+
+
+def test_films_tell_the_load_on_asperities(monkeypatch):
+    built = pair("equal")
+    given, seen = (built.design, built.operation, built.models[0]), []
+    start, cells = begun(built)
+    own = film_share.asperity_share
+
+    def told(model: FilmModel, at: Conditions, *oil: Any) -> np.ndarray:
+        seen.append((at, own(model, at, *oil)))
+        return seen[-1][1]
+
+    monkeypatch.setattr("pitchpoint.wear.history.asperity_share", told)
+    none = jnp.zeros((2, cells.count, cells.strips))
+    found = one_turn(*given, FILMS, cells, start, none)
+    ((at, share),) = seen
+    load = np.asarray(at.load)
+    assert not share[load == 0.0].any()
+    assert np.all((share[load > 0.0] > 0.0) & (share[load > 0.0] < 1.0))
+    # Each as if it were alone.
+    lane = np.unravel_index(np.argmax(share), share.shape)
+    names = ("line_load", "radius", "speed_a", "speed_b", "modulus", "roughness_rq")
+    values = {name: np.broadcast_to(getattr(at, name), load.shape)[lane] for name in names}
+    oil = {"oil": built.design.lubricant, "temperature": built.operation.temperature}
+    alone = film_share.solve_lines(FILMS.films.contacts(**values, **oil), nodes=33)
+    assert float(alone.film.asperity_share) == pytest.approx(share[lane], rel=1e-6)
+    dry, _ = of_pair("equal")
+    low, high = share[load > 0.0].min(), share.max()
+    assert np.all((found.volume > low * dry.volume) & (found.volume < high * dry.volume))
+    assert not bool(found.lost)
+
+
+def test_a_film_that_is_not_solved_is_never_a_result(monkeypatch):
+    own = film_share.solve_lines
+
+    def but_one(*given: Any, **options: Any) -> Any:
+        films = own(*given, **options)
+        films.ended.code[3] = 1
+        assert not films.solved[3]
+        return films
+
+    monkeypatch.setattr(film_share, "solve_lines", but_one)
+    built = pair("equal")
+    start, cells = begun(built)
+    none = jnp.zeros((2, cells.count, cells.strips))
+    given = built.design, built.operation, built.models[0], FILMS
+    assert bool(one_turn(*given, cells, start, none).lost)
+
+
+# ---- worn teeth
+
+
+def test_tips_lose_what_the_flank_loses_over_the_cosine_of_its_angle():
+    built = pair("equal")
+    _, cells = begun(built)
+    mesh, tips = built.design.mesh, tips_of(built.design.mesh, cells)
+    arc = np.asarray(mesh.dimensions()["tip_thickness"])
+    radius, base = np.asarray(mesh.tip_radii), np.asarray(mesh.base_radii)
+    half = arc / (2.0 * radius)
+    assert tips.width == pytest.approx(2.0 * radius * np.sin(half), rel=1e-6)
+    assert tips.taken == pytest.approx(1.0 / np.cos(np.arccos(base / radius) - half), rel=1e-6)
+    depth = np.zeros((2, cells.count, cells.strips))
+    depth[:, -1] = 1e-5
+    assert tips.left(depth) == pytest.approx(tips.width - 1e-5 * tips.taken, rel=1e-12)
+    depth[:, -1], depth[:, 0] = 0.0, 1e-5
+    assert tips.left(depth) == pytest.approx(tips.width, rel=1e-12)
+
+
+def test_even_wear_of_both_flanks_adds_both_depths_to_the_backlash():
+    built = pair("equal")
+    start, cells = begun(built)
+    depth = np.full((2, cells.count, cells.strips), 1e-5)
+    grown = backlash_growth(built.design.mesh, cells, start, depth)
+    assert grown == pytest.approx(2e-5, rel=1e-9)
+    depth[1] = 0.0
+    # A pair that is not worn there touches first.
+    depth[0, : cells.count // 2] = 0.0
+    less = backlash_growth(built.design.mesh, cells, start, depth)
+    assert 0.0 < less <= 1e-5 * (1.0 + 1e-9)
 
 
 # ---- worn flanks

@@ -18,6 +18,7 @@ from pitchpoint.wear.laws import (
     UNITS,
     WEAR_LAWS,
 )
+from pitchpoint.wear.stages import run_in_end, severe_start
 
 GAS = 8.31446261815324
 HARDNESS = 200.0 * 9.80665e6
@@ -253,3 +254,20 @@ def test_the_guideline_is_the_mean_of_the_local_law():
         flank_length=length,
     )
     assert float(depth) == pytest.approx(volume / (width * float(length)), rel=1e-10)
+
+
+def test_stages_by_the_rate_and_by_the_pressure():
+    cycles = np.array([0.0, 1.0, 2.0, 3.0])
+    rate, pressure = np.array([2.0, 1.0, 1.2, 1.8]), np.array([1.0, 0.8, 1.2, 1.8])
+    assert run_in_end(cycles, rate) == pytest.approx(0.9)
+    # 1.5 times the least rate, and the first pressure.
+    assert severe_start(cycles, rate) == pytest.approx(2.5)
+    assert severe_start(cycles, pressure, "pressure") == pytest.approx(2.5)
+    assert severe_start(cycles, pressure) == pytest.approx(2.0)
+    assert math.isnan(severe_start(cycles[:3], pressure[:3], "pressure"))
+
+
+def test_no_range_is_known_of_the_regression():
+    """The limits of its tests are in none of its sources at hand: the law says so, and nothing is cut."""
+    law = WEAR_LAWS["janakiraman_2013"]
+    assert not law.ranges and "nothing can say where it is left" in law.note

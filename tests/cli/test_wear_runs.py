@@ -1,6 +1,9 @@
 """Wear from a case file: steps that survive a stop, worn gears in other analyses, report, refusals."""
 
+import errno
 import json
+import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,17 +13,20 @@ import pytest
 import xarray as xr
 from sound import PAIR
 
+from pitchpoint import cli
 from pitchpoint.analyses import wear_course
 from pitchpoint.analyses.along_action import STIFFNESS
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.wear import WEAR
 from pitchpoint.errors import InputError
+from pitchpoint.results import store
 from pitchpoint.results.store import load
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, describe, load_case
 from pitchpoint.views.report import render
 from pitchpoint.views.sections.wear import WEAR as SECTION
+from pitchpoint.wear import history
 
 MODELS = """
 [models]
@@ -76,6 +82,7 @@ def test_the_march_ends_where_it_is_asked_to(outcome: Outcome) -> None:
     assert data["wear_error"].values[-1] == pytest.approx(0.0, abs=2e-2 * depth[-1].max())
     told = figures(outcome)["wear"]
     assert told["final_depth"] == float(data["final_depth"]) == depth[-1].max()
+    assert 0.0 < told["backlash_growth"] < depth[-1].sum()
     # Gear 2 meets with every third turn of gear 1.
     volumes = data["worn_volume"].values[-1]
     assert volumes[0] / volumes[1] == pytest.approx(61.0 / 23.0, rel=1e-6)
@@ -105,6 +112,41 @@ def test_a_march_that_is_stopped_at_every_step_ends_with_the_same_bits(
     xr.testing.assert_identical(found.parts["wear"], outcome.parts["wear"])
     bits = [one.parts["wear"]["worn_depth"].values.tobytes() for one in (found, outcome)]
     assert bits[0] == bits[1]
+
+
+def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
+    outcome: Outcome,
+    case: str,
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    out, sync = folder / "full", os.fsync
+    pieces = lambda: sorted(out.glob("default/wear.0*.nc"))  # noqa: E731
+    monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder: None)
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "run", case, "-o", str(out)])
+
+    def full(handle: int) -> None:
+        if len(pieces()) == 2:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        sync(handle)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(store.os, "fsync", full)
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+    assert caught.value.code == 1
+    *_, told = capsys.readouterr().err.splitlines()
+    assert told.startswith("error: ")
+    assert "No space left on device; what was finished before is kept and found again" in told
+    kept = {path: path.stat().st_mtime_ns for path in pieces()}
+    assert len(kept) == 2
+    assert not [*out.glob("default/.*")]
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert not caught.value.code
+    whole = load(out / "default" / "wear.nc")
+    xr.testing.assert_identical(whole, outcome.parts["wear"])
 
 
 def test_worn_gears_are_gears(outcome: Outcome, folder: Path) -> None:
@@ -163,43 +205,96 @@ def test_a_ball_that_conforms_ends_the_march(folder: Path) -> None:
     assert 'id="wear"' in render({"default": outcome})
 
 
-@pytest.mark.parametrize(
-    ("limit", "end"), [({"wear.depth_limit": "2 um"}, "depth"), ({"wear.cycles": 10.0}, "turns")]
-)
-def test_a_limit_ends_the_march(case: str, limit: dict[str, Any], end: str) -> None:
-    data = running.run(case, settings=limit)["default"].parts["wear"]
+LIMITS = {
+    "depth": ({"wear.depth_limit": "2 um"}, "final_depth", 2e-6),
+    "turns": ({"wear.cycles": 10.0}, "final_cycles", 10.0),
+    "tip land": ({"wear.tip_land_limit": "LAND"}, "worn_tip_land", 1.0),
+    "backlash": ({"wear.backlash_limit": "3 um"}, "backlash_growth", 3e-6),
+}
+
+
+@pytest.mark.parametrize("end", LIMITS)
+def test_a_limit_ends_the_march(case: str, outcome: Outcome, end: str) -> None:
+    given, name, expected = LIMITS[end]
+    if end == "tip land":
+        land = float(outcome.parts["wear"]["worn_tip_land"].values[0].min()) - 1e-6
+        given, expected = {"wear.tip_land_limit": f"{land!r} m"}, land
+    found = running.run(case, settings=given)["default"]
+    data = found.parts["wear"]
     assert data.attrs["end"] == end
-    if end == "depth":
-        assert float(data["final_depth"]) == pytest.approx(2e-6, rel=1e-9)
+    assert float(data[name].values.reshape(data[name].shape or 1)[-1].min()) == pytest.approx(
+        expected, rel=1e-3
+    )
+    assert float(data["final_cycles"]) < 3e6
+    (printed,) = SECTION.screen(found)
+    assert {"tip land": "at its tip", "backlash": "backlash"}.get(end, "") in printed.line
+
+
+def test_tips_that_are_narrower_as_new_are_refused(case: str) -> None:
+    with pytest.raises(InputError, match=r"wear.tip_land_limit: 9 mm was given, and teeth of gear"):
+        running.run(case, settings={"wear.tip_land_limit": "9 mm"})
+
+
+STEEL = {"young": "206 GPa", "poisson": 0.3, "hardness": "2 GPa"}
+MIXED = {
+    "wear.cycles": 1.0,
+    "wear.law": "masjedi_khonsari_2015",
+    "wear.adsorption_heat": "49 kJ/mol",
+    "models.asperity_load": "masjedi_khonsari_2012",
+    "materials.gear_1": STEEL,
+    "materials.gear_2": STEEL,
+}
 
 
 def test_mixed_lubrication_wears_less_than_dry_flanks(folder: Path) -> None:
     dry = running.run(written(folder, MODELS + DRY), settings={"wear.cycles": 1.0})
-    mixed = running.run(
-        written(folder, MODELS + DRY, "mixed.toml"),
-        settings={
-            "wear.cycles": 1.0,
-            "wear.law": "masjedi_khonsari_2015",
-            "wear.adsorption_heat": "49 kJ/mol",
-            "models.asperity_load": "masjedi_khonsari_2012",
-            "materials.gear_1": {"young": "206 GPa", "poisson": 0.3, "hardness": "2 GPa"},
-            "materials.gear_2": {"young": "206 GPa", "poisson": 0.3, "hardness": "2 GPa"},
-        },
-    )
+    mixed = running.run(written(folder, MODELS + DRY, "mixed.toml"), settings=MIXED)
     depths = [float(one["default"].parts["wear"]["final_depth"]) for one in (dry, mixed)]
     assert 0.0 < depths[1] < 1e-2 * depths[0]
+
+
+def test_the_load_on_asperities_by_films(folder: Path) -> None:
+    """Named in the case: neither a formula nor its hardness is asked for, and the report says so."""
+    films = {**MIXED, "wear.load_ratio": "film", "models.asperity_load": "none"}
+    outcome = running.run(written(folder, MODELS + DRY, "films.toml"), settings=films)["default"]
+    formula = running.run(written(folder, MODELS + DRY, "mixed.toml"), settings=MIXED)["default"]
+    depths = [float(one.parts["wear"]["final_depth"]) for one in (outcome, formula)]
+    assert 0.05 < depths[0] / depths[1] < 20.0 and depths[0] != depths[1]
+    page = render({"default": outcome})
+    assert "with the load on asperities from solved films" in page
+    assert "1 % more of" not in page
+    (record,) = describe(written(folder, MODELS + DRY, "films.toml"), settings=films)
+    rows = {f"{row['table']}.{row['key']}" for row in record["inputs"]}
+    assert {"wear.load_ratio", "film.nodes", "film.asperities"} <= rows
+
+
+def test_a_film_that_is_not_solved_ends_the_march(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lost = lambda model, at, oil, temperature: np.full(at.load.shape, np.nan)  # noqa: E731
+    monkeypatch.setattr(history, "asperity_share", lost)
+    films = {**MIXED, "wear.load_ratio": "film"}
+    outcome = running.run(written(folder, MODELS + DRY, "lost.toml"), settings=films)["default"]
+    data = outcome.parts["wear"]
+    assert data.attrs["end"] == "lost" and data.sizes["step"] == 1
+    told = "the loads, or films, of flanks that are worn so far were not found"
+    assert told in render({"default": outcome})
 
 
 def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     page = render({"default": outcome})
     assert 'id="wear"' in page
     assert "not reached: 1.5 times the least rate" in page
+    assert "backlash that wear adds" in page
     assert 'data-menu="wear0_flank0"' in page
     ((name, words),) = SECTION.answer(outcome)
     assert name == "Wear"
     assert "after 3000000 turns of gear 1" in words
     (printed,) = SECTION.screen(outcome)
     assert printed.line == "The march ended after as many turns as were asked for."
+    severe = outcome.parts["wear"].assign(severe_cycles=((), 1e6))
+    ((_, words),) = SECTION.answer(Outcome(outcome.manifest, {"wear": severe}))
+    assert "; severe wear (1.5 times the least rate) begins at 1000000" in words
 
 
 REFUSED = {
@@ -240,6 +335,28 @@ REFUSED = {
         },
         "knows of none",
     ),
+    "films that a law does not ask for": (
+        {"wear.law": "archard_1953", "wear.cycles": 1.0, "wear.load_ratio": "film"},
+        "does not ask for the load on asperities",
+    ),
+    "films of smooth flanks": (
+        {
+            "wear.law": "masjedi_khonsari_2015",
+            "wear.cycles": 1.0,
+            "wear.load_ratio": "film",
+            "film.solver": "line",
+            "film.asperities": "none",
+        },
+        "leaves no load on asperities",
+    ),
+    "another way of solving": (
+        {"wear.law": "masjedi_khonsari_2015", "wear.cycles": 1.0, "wear.load_ratio": "solved"},
+        "formula",
+    ),
+    "no such stage": (
+        {"wear.law": "archard_1953", "wear.cycles": 1.0, "wear.severe_by": "depth"},
+        "pressure",
+    ),
     "no such result": ({"worn.file": "nowhere.nc"}, "cannot be read as a result"),
 }
 
@@ -266,3 +383,20 @@ def test_worn_flanks_belong_to_their_gears(outcome: Outcome, folder: Path) -> No
         with pytest.raises(InputError, match=words.replace("+", r"\+")):
             load_case(bare, settings=settings)
     assert json.loads(load(kept).attrs["members"]) == ["gear 1", "gear 2"]
+
+
+def test_what_has_no_teeth_has_no_limit_of_them() -> None:
+    ball = str(Path(__file__).parents[2] / "examples" / "ball_on_disc.toml")
+    wear = {"wear.law": "vdi_2736", "wear.rate": "1e-9 mm3/(N m)", "wear.cycles": 1.0}
+    for key, told in (("tip_land_limit", "with a tip"), ("backlash_limit", "with a backlash")):
+        with pytest.raises(InputError, match=rf"wear.{key}: .* no teeth {told}"):
+            load_case(ball, settings={**wear, f"wear.{key}": "1 um"})
+    films = {"wear.law": "masjedi_khonsari_2015", "wear.load_ratio": "film", "wear.cycles": 1.0}
+    with pytest.raises(InputError, match=r"wear.load_ratio: 'film' is for line contacts"):
+        load_case(ball, settings={**films, "wear.hardness": "2 GPa"})
+
+
+def test_severe_wear_by_the_pressure_is_told_with_its_factor(case: str) -> None:
+    given = {"wear.severe_by": "pressure", "wear.cycles": 10.0}
+    page = render({"default": running.run(case, settings=given)["default"]})
+    assert "not reached: 1.5 times the largest pressure at the start" in page

@@ -21,6 +21,7 @@ _MAIN = (
     "wear_steps",
 )
 _EACH = ("deepest_wear", "fastest_wear", "worn_volume", "wear_error")
+_OF_TEETH = ("worn_tip_land", "backlash_growth")
 
 
 def _unasked(built: Built) -> str | None:
@@ -52,7 +53,8 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("wear")
     if data is None:
         return {"wear": {}}
-    at_end = {name: numbers(data[name].values[-1]) for name in _EACH}
+    of_teeth = [name for name in _OF_TEETH if name in data]
+    at_end = {name: numbers(data[name].values[-1]) for name in (*_EACH, *of_teeth)}
     return {"wear": {name: numbers(data[name].values) for name in _MAIN} | at_end}
 
 

@@ -1,6 +1,7 @@
 """Wear of the flanks over the life of a drive: the march, a step a piece, and the whole course."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -10,7 +11,7 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.schema import WearTable
+from pitchpoint.cases.schema import WEAR_LAND, WearTable
 from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
@@ -22,9 +23,10 @@ from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 from pitchpoint.wear.gradients import depth_gradient, sensitivities
 from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_turn
-from pitchpoint.wear.march import End, Rate, Reached, after
+from pitchpoint.wear.march import End, Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
+from pitchpoint.wear.teeth import Tips, backlash_growth, tips_of
 
 __all__ = ["asked", "further", "joined", "wear_part"]
 
@@ -44,24 +46,27 @@ class _Course(NamedTuple):
     start: Start
     cells: Cells
     model: WearModel
+    tips: Tips | None
 
 
 @lru_cache(maxsize=2)
 def _course(built: Built) -> _Course:
     table, design = asked(built), built.design
     roughness = float(design.roughness.ra_1), float(design.roughness.ra_2)
-    model = wear_model(built.case, built.solids, roughness)
+    model = wear_model(built.case, built.solids, roughness, built.film_model)
     parts, count = int(table.phases), int(table.cells)
     try:
         start, cells = as_new(design, built.operation, built.models[0], parts=parts, count=count)
     except InputError as error:
         raise InputError(error.message, key="wear") from None
-    return _Course(start, cells, model)
+    return _Course(
+        start, cells, model, tips_of(design.mesh, cells) if design.mesh.toothed else None
+    )
 
 
 def _rate(built: Built, depth: np.ndarray) -> Rate:
     """What a turn does to flanks that have lost so much; those of a kept profile count as new."""
-    start, cells, model = _course(built)
+    start, cells, model, _ = _course(built)
     seen = depth if asked(built).profile == "updated" else np.zeros_like(depth)
     given = built.design, built.operation, built.models[0], model, cells, start
     return Rate.of(one_turn(*given, array(seen)))
@@ -70,8 +75,44 @@ def _rate(built: Built, depth: np.ndarray) -> Rate:
 def wear_part(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
     """Flanks as new."""
     progress(0, "flanks as new")
+    _check_tips(built)
     cells = _course(built).cells
     return _piece(unworn(lambda depth: _rate(built, depth), (2, cells.count, cells.strips)), None)
+
+
+def _check_tips(built: Built) -> None:
+    """InputError for tips that are as narrow as new as they may become."""
+    least, tips = asked(built).tip_land_limit, _course(built).tips
+    if least is None or tips is None or np.all(tips.width > least):
+        return
+    narrow = int(np.argmin(tips.width))
+    raise InputError(
+        f"{WEAR_LAND.show(least)} was given, and teeth of {_bodies(built)[narrow]} are "
+        f"{WEAR_LAND.show(float(tips.width[narrow]))} thick as new where flanks touch last; allowed is less",
+        key="wear.tip_land_limit",
+    )
+
+
+def _bodies(built: Built) -> list[str]:
+    """Names of the bodies whose flanks touch."""
+    return [next(one.body for one in built.bodies if one.member == member) for member in range(2)]
+
+
+def _limit(built: Built) -> Limit:
+    """Where the march of a case ends."""
+    table, tips = asked(built), _course(built).tips
+    teeth: list[tuple[End, Callable[[np.ndarray], float]]] = []
+    if (least := table.tip_land_limit) is not None and tips is not None:
+        teeth.append(("tip land", lambda depth: least - float(tips.left(depth).min())))
+    if (most := table.backlash_limit) is not None:
+        teeth.append(("backlash", lambda depth: _play(built, depth) - most))
+    return replace(limit_of(table, _deepest(built)), teeth=tuple(teeth))
+
+
+def _play(built: Built, depth: np.ndarray) -> float:
+    """Normal backlash that wear has added [m]."""
+    course = _course(built)
+    return backlash_growth(built.design.mesh, course.cells, course.start, depth)
 
 
 def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | None:
@@ -79,7 +120,7 @@ def further(built: Built, last: xr.Dataset, progress: Progress) -> xr.Dataset | 
     before = _reached(last)
     if before.end:
         return None
-    limit = limit_of(asked(built), _deepest(built))
+    limit = _limit(built)
     part = before.turns / limit.turns
     progress(round(1e4 * part), f"{before.turns:.3g} of {limit.turns:.3g} turns")
     reached = after(
@@ -167,11 +208,11 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     codes = np.full(len(parts), int(Code.SOLVED))
     if end == "lost":
         codes[-1] = int(Code.NOT_CONVERGED)
-    bodies = [next(one.body for one in built.bodies if one.member == member) for member in range(2)]
     return dataset(
         {
             **{name: (dims[name], one) for name, one in values.items()},
             **added,
+            **_of_teeth(built, values["worn_depth"]),
             **{name: ((), one) for name, one in figures.items()},
         },
         {},
@@ -179,14 +220,27 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         law=asked(built).law,
         gears=gears_digest(built.case.gears),
         profile=asked(built).profile,
+        load_ratio=asked(built).load_ratio,
+        severe_by=asked(built).severe_by,
         end=end,
-        members=bodies,
+        members=_bodies(built),
         driver=built.driver,
         tolerance=asked(built).tolerance,
         sensitivities=_sensitivities(built),
         warnings=_warnings(built, values, deepest, end),
         solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
     )
+
+
+def _of_teeth(built: Built, depth: np.ndarray) -> dict[str, Any]:
+    """What wear leaves of the teeth in each step, where there are any."""
+    tips = _course(built).tips
+    if tips is None:
+        return {}
+    return {
+        "worn_tip_land": (("step", "member"), np.stack([tips.left(one) for one in depth])),
+        "backlash_growth": (("step",), np.array([_play(built, one) for one in depth])),
+    }
 
 
 def _figures(
@@ -198,13 +252,15 @@ def _figures(
     most = int(np.argmax(deepest[-1]))
     course = fastest[:, most]
     moves = bool(np.all(course > 0.0))
+    by = asked(built).severe_by
+    told = course if by == "rate" else pressure
     return {
         "final_cycles": cycles[-1],
         "final_depth": deepest[-1].max(),
         "life_hours": cycles[-1] * 2.0 * np.pi / speed,
         "pressure_change": pressure[-1] / pressure[0] - 1.0 if pressure[0] > 0.0 else np.nan,
         "run_in_cycles": run_in_end(cycles, course) if moves else np.nan,
-        "severe_cycles": severe_start(cycles, course) if moves else np.nan,
+        "severe_cycles": severe_start(cycles, told, by) if moves else np.nan,
         "wear_steps": cycles.size - 1,
     }
 
@@ -212,11 +268,11 @@ def _figures(
 def _sensitivities(built: Built) -> dict[str, float]:
     """Relative changes of the largest depth per turn with those of inputs, of flanks as new.
 
-    Not of bodies that couple their teeth, for which derivatives take minutes.
+    Not of bodies that couple their teeth, for which derivatives take minutes, nor through solved films.
     """
-    if built.design.mesh.couples:
-        return {}
     course = _course(built)
+    if built.design.mesh.couples or course.model.films is not None:
+        return {}
     inputs = built.design, built.operation, course.model
     given = built.models[0], course.cells, int(asked(built).phases)
     value, slopes = depth_gradient(inputs, *given)
@@ -231,7 +287,7 @@ def _warnings(
     told = told_of_wear(built.case, _course(built).model)
     if end == "lost":
         told.append(
-            "Wear: the loads of flanks that are worn so far were not found, and the march ends there."
+            f"Wear: {_lost(built)} of flanks that are worn so far were not found, and the march ends there."
         )
     if end == "no wear":
         told.append(
@@ -254,6 +310,11 @@ def _warnings(
             "conform, and Hertz's theory ends."
         )
     return told
+
+
+def _lost(built: Built) -> str:
+    """What may not be found of worn flanks, in words."""
+    return "the loads" if asked(built).load_ratio == "formula" else "the loads, or films,"
 
 
 def _deepest(built: Built) -> float:

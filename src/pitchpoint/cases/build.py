@@ -20,6 +20,7 @@ from pitchpoint.cases.schema import (
     TORQUE,
     Case,
     Dynamics,
+    FilmTable,
     Loss,
     Oil,
     Operating,
@@ -170,11 +171,13 @@ class Built:
 
     @cached_property
     def film_model(self) -> FilmModel | None:
-        """How films of the contacts are solved; None where neither a table nor a law asks for them."""
-        if self.case.film is None:
+        """How films of the contacts are solved; None where no table, law or wear asks for them."""
+        table, wear = self.case.film, self.case.wear
+        if table is None and (wear is None or wear.load_ratio == "formula"):
             return next((law.films for law in self.laws if law.films is not None), None)
         solids = [used.record for used in self.solids]
-        return film_model(self.case.film, solids, tooth_size(self.design.mesh))
+        usual = FilmTable(solver="line")
+        return film_model(table or usual, solids, tooth_size(self.design.mesh))
 
     @property
     def asperities(self) -> AsperityLoad | None:

@@ -106,6 +106,7 @@ WORN_TURNS = Quantity("dimensionless", 0.0, 1e15)
 WEAR_COEFFICIENT = Quantity("dimensionless", 0.0, 1.0)
 WEAR_RATE = Quantity("specific wear rate", 0.0, 1e-6, "mm3/(N m)")
 WEAR_DEPTH = Quantity("length", 1e-8, 0.1, "um")
+WEAR_LAND = Quantity("length", 0.0, 0.1, "mm")
 WEAR_CELLS = Quantity("dimensionless", 8, 400, whole=True)
 WEAR_PHASES = Quantity("dimensionless", 4, 400, whole=True)
 WEAR_ERROR = Quantity("dimensionless", 1e-8, 0.1)
@@ -1060,9 +1061,12 @@ class WearTable(Table):
     """Wear of the flanks at the operating point, over the life of the drive.
 
     `cycles` are turns of the driver. A `profile` that is "updated" gives worn flanks back to load sharing,
-    pressure and film; one that is "kept" goes on as with new ones. The march ends before at a limit of the
-    depth, or of the largest pressure over that at the start. `cells` lie along each flank, `phases` are those
-    between two events of the mesh cycle, and `tolerance` is the error of a step over the largest depth.
+    pressure and film; one that is "kept" goes on as with new ones. The load on asperities is that of
+    `models.asperity_load`, the "formula", or that of the solved "film". The march ends before at a limit of
+    the depth, of the largest pressure over that at the start, of the thickness that is left of a tooth at
+    its tip, or of the normal backlash that wear adds. `severe_by` names what tells that wear is severe.
+    `cells` lie along each flank, `phases` are those between two events of the mesh cycle, and `tolerance` is
+    the error of a step over the largest depth.
     """
 
     law: Annotated[str, BeforeValidator(named(_wear_laws, "wear law"))]
@@ -1074,8 +1078,12 @@ class WearTable(Table):
     molecule_diameter: Annotated[float, MOLECULE] | None = None
     vibration_period: Annotated[float, VIBRATION] | None = None
     profile: Literal["updated", "kept"] = "updated"
+    load_ratio: Literal["formula", "film"] = "formula"
     depth_limit: Annotated[float, WEAR_DEPTH] | None = None
     pressure_limit: Annotated[float, WEAR_PRESSURE] | None = None
+    tip_land_limit: Annotated[float, WEAR_LAND] | None = None
+    backlash_limit: Annotated[float, WEAR_DEPTH] | None = None
+    severe_by: Literal["rate", "pressure"] = "rate"
     cells: Annotated[float, WEAR_CELLS] = 40.0
     phases: Annotated[float, WEAR_PHASES] = 24.0
     tolerance: Annotated[float, WEAR_ERROR] = 3e-4

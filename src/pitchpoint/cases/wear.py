@@ -14,6 +14,7 @@ from pitchpoint.contact.contacts import KINDS, TOUCH
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
+from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.wear.history import WearModel
 from pitchpoint.wear.laws import WEAR_LAWS, WearLaw
@@ -68,12 +69,8 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
         )
     wanted = inspect.signature(law.function).parameters
     _check_asked(table, law, wanted)
-    if "asperity_share" in wanted and case.models.asperity_load == "none":
-        known = ", ".join(name for name in ASPERITY_LOAD if name != "none")
-        raise InputError(
-            f"'{law.name}' asks for the load on asperities, which 'none' leaves out; choose {known}",
-            key="models.asperity_load",
-        )
+    _check_share(case, table, law, mesh, wanted)
+    _check_teeth(table, mesh)
     _own(table, law, wanted, used)
     if table.profile == "updated" and mesh.toothed and not _feels(case):
         raise InputError(
@@ -85,6 +82,48 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
 
 def _feels(case: Case) -> bool:
     return case.models.load_sharing == "from_stiffness"
+
+
+def _check_share(
+    case: Case, table: WearTable, law: WearLaw, mesh: Mesh, wanted: Mapping[str, object]
+) -> None:
+    """InputError for a load on asperities that a law does not get, or does not ask for."""
+    films = table.load_ratio == "film"
+    if "asperity_share" not in wanted:
+        if films:
+            raise InputError(
+                f"'film' was given, and '{law.name}' does not ask for the load on asperities; leave it out",
+                key="wear.load_ratio",
+            )
+        return
+    if films and mesh.shape != "line":
+        raise InputError(
+            f"'film' is for {KINDS['line']}, and these gears touch {TOUCH[mesh.shape]}; use formula",
+            key="wear.load_ratio",
+        )
+    if films and case.film is not None and case.film.asperities == SMOOTH:
+        raise InputError(
+            f"'{SMOOTH}' leaves no load on asperities, which wear.load_ratio takes from the film; leave it "
+            "out, or name another law",
+            key="film.asperities",
+        )
+    if not films and case.models.asperity_load == "none":
+        known = ", ".join(name for name in ASPERITY_LOAD if name != "none")
+        raise InputError(
+            f"'{law.name}' asks for the load on asperities, which 'none' leaves out; choose {known}, or set "
+            'wear.load_ratio = "film"',
+            key="models.asperity_load",
+        )
+
+
+def _check_teeth(table: WearTable, mesh: Mesh) -> None:
+    """InputError for a limit of teeth where there are none."""
+    for key, what in (("tip_land_limit", "tip"), ("backlash_limit", "backlash")):
+        if getattr(table, key) is not None and not mesh.toothed:
+            raise InputError(
+                f"was given, and these bodies have no teeth with a {what}; leave it out",
+                key=f"wear.{key}",
+            )
 
 
 def _check_asked(table: WearTable, law: WearLaw, wanted: Mapping[str, object]) -> None:
@@ -138,13 +177,16 @@ def _missing(law: WearLaw, name: str, member: int) -> str:
     )
 
 
-def wear_model(case: Case, used: Used, roughness: tuple[float, float]) -> WearModel:
+def wear_model(
+    case: Case, used: Used, roughness: tuple[float, float], films: FilmModel | None
+) -> WearModel:
     """How flanks of a case wear.
 
     Args:
         case: with a table of wear that was checked.
         used: solids of both gears.
         roughness: mean Ra of both flanks [m].
+        films: how films of the case are solved, for a load on asperities that is taken from them.
     """
     table = case.wear
     assert table is not None
@@ -164,6 +206,7 @@ def wear_model(case: Case, used: Used, roughness: tuple[float, float]) -> WearMo
         asperities=ASPERITY_LOAD[case.models.asperity_load],
         defect=defect,
         bodies=_conductors(used) if defect is not None and _by_formula(case) else None,
+        films=films if table.load_ratio == "film" else None,
     )
 
 
@@ -195,6 +238,12 @@ def told_of_wear(case: Case, model: WearModel) -> list[str]:
         found.append(
             f"wear.coefficient was left out and is taken as {ASSUMED_COEFFICIENT:g}; those of dry metals are "
             "1e-6 to 1e-4, and depths are in proportion to it."
+        )
+    if model.films is not None:
+        found.append(
+            "Wear: the load on asperities is that of steady films, each contact by itself, solved anew in "
+            "every state that a step looks at. What the depth depends on is not told: no derivatives are "
+            "taken through solved films."
         )
     if model.defect is not None:
         if "adsorption_heat" not in model.defect:

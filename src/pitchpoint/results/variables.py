@@ -199,6 +199,10 @@ VARIABLES: dict[str, Variable] = {
     "worn_volume": Variable("volume worn off a flank", "V", "m3", "mm3", "volume"),
     "wear_error": deviation("error of the depth by the steps of the march", "Δh"),
     "wear_pressure": pressure("largest pressure of the mesh cycle", "p_H max"),
+    "worn_tip_land": length("thickness of the teeth at their tips, normal section", "s_an"),
+    "backlash_growth": deviation(
+        "normal backlash that wear adds, largest of the mesh cycle", "Δj_n"
+    ),
     "flank_place": length("arc length on the flank", "s"),
     "across_place": length("place across the face from its middle", "y"),
     "flank_radius": length("radius of the place on the flank", "r"),

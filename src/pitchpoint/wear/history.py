@@ -28,9 +28,12 @@ from pitchpoint.gears.period import edges
 from pitchpoint.loading.tooth_compliance import TeethAt, teeth_at
 from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.conditions import UNITS, Conditions, evaluate
+from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
+from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.programs import program
 from pitchpoint.wear.film_defect import fractional_film_defect
+from pitchpoint.wear.film_share import asperity_share
 
 __all__ = [
     "ROOM",
@@ -123,6 +126,9 @@ class WearModel(eqx.Module):
         defect: parameters of the fractional film defect, for laws that ask for it.
         bodies: what conducts the heat of friction behind both flanks; None where contacts stay as warm as the
             oil.
+        films: how films are solved whose asperities carry the share, in place of the law; static.
+        share: part of the load on asperities at each contact, once its film is solved; not a number where it
+            was not.
     """
 
     law: Callable[..., Array] = eqx.field(static=True)
@@ -130,6 +136,21 @@ class WearModel(eqx.Module):
     asperities: AsperityLoad | None = eqx.field(static=True, default=None)
     defect: Mapping[str, Float[Array, ""]] | None = None
     bodies: tuple[Conductor, Conductor] | None = None
+    films: FilmModel | None = eqx.field(static=True, default=None)
+    share: Lanes | None = None
+
+    def solved(self, at: Conditions, oil: Lubricant, temperature: Each) -> "WearModel":
+        """The same with the load on asperities that films at these contacts have, if they are asked for.
+
+        Args:
+            at: conditions at the contacts.
+            oil: between the flanks.
+            temperature: of the oil [K].
+        """
+        if self.films is None:
+            return self
+        share = asperity_share(self.films, at, oil, temperature)
+        return replace(self, films=None, share=array(share))
 
     def rates(self, at: Conditions, temperature: Each, friction: Lanes) -> tuple[Lanes, Lanes]:
         """Specific wear rate of each member at every contact [m3/(N m)].
@@ -144,7 +165,9 @@ class WearModel(eqx.Module):
             softer = jnp.minimum(*(own["hardness"] for own in self.own))
             at = replace(at, hardness=jnp.asarray(softer))
         found = {name: getattr(at, name) for name in wanted if name in UNITS}
-        if "asperity_share" in wanted and self.asperities is not None:
+        if "asperity_share" in wanted and self.share is not None:
+            found["asperity_share"] = self.share
+        elif "asperity_share" in wanted and self.asperities is not None:
             found["asperity_share"] = evaluate(self.asperities, at)
         if "film_defect" in wanted and self.defect is not None:
             warm = temperature + self._flash(at, friction)
@@ -185,7 +208,7 @@ class Turn(eqx.Module):
         pressure: largest one [Pa].
         conforming: True where a loaded contact is flatter than it is taken for.
         outgrown: True where an ellipse reaches beyond the cells across the face.
-        lost: True where the equilibrium of the contacts was not found.
+        lost: True where the equilibrium of the contacts was not found, or a film.
 
     Source: Archard (1953); Andersson (1975), single-point observation: each point of a flank slides against
     the mate as long as the contact takes to pass it.
@@ -386,12 +409,16 @@ def one_turn(
         start: of the design.
         depth: worn off so far [m].
     """
-    if not design.mesh.couples:
+    if not design.mesh.couples and wear.films is None:
         return _turn_alone(design, operation, models, wear, cells, start, depth)
     contacts, flat = worn_contacts(cells, start, depth)
     worn = replace(design, mesh=design.mesh.worn(cells.surfaces(depth)))
     share = shares_at(worn, contacts, operation.load, models, start.body)
-    found = wear_of(design, operation, models, wear, cells, start.engaged(share, contacts).loaded())
+    known = start.engaged(share, contacts).loaded()
+    if wear.films is not None:
+        at, _ = travelled(design, operation, models, known)
+        wear = wear.solved(at, design.lubricant, operation.temperature)
+    found = wear_of(design, operation, models, wear, cells, known)
     conforming = np.any(np.asarray(flat) & (np.asarray(share) > 0.0))
     return replace(found, conforming=array(conforming))
 

@@ -15,7 +15,9 @@ from pitchpoint.wear.history import Turn
 __all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "after", "as_new"]
 
 Values = NDArray[np.float64]
-End = Literal["", "turns", "depth", "pressure", "outgrown", "lost", "no wear"]
+End = Literal[
+    "", "turns", "depth", "pressure", "tip land", "backlash", "outgrown", "lost", "no wear"
+]
 
 FIRST = 1e-9
 """Depth that the first step takes off [m]; no less counts as depth when errors are judged."""
@@ -30,7 +32,7 @@ class Rate:
         pressure: largest one [Pa].
         conforming: True where flanks were flatter than contacts are taken for.
         outgrown: True where contacts reach beyond the cells across the face.
-        lost: True where the equilibrium of the contacts was not found.
+        lost: True where the equilibrium of the contacts was not found, or a film.
     """
 
     depth: Values
@@ -59,11 +61,13 @@ class Limit:
         turns: of the driver.
         depth: on either member [m].
         pressure: largest one over that with flanks as new.
+        teeth: measures of the depth that stay below zero, each with the end that it makes.
     """
 
     turns: float
     depth: float = inf
     pressure: float = inf
+    teeth: tuple[tuple[End, Callable[[Values], float]], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -154,7 +158,7 @@ def after(
         march.step()
         if march.status == "failed":
             return replace(before, end="lost")
-        turns, end = _ends(march, limit, seen_at, start)
+        turns, end = _ends(march, limit, seen_at, start, shape)
         depth = march.y if turns == march.t else march.dense_output()(turns)
         depth = np.maximum(depth, before.depth.ravel())  # a polynomial between two states may fall
         found = seen_at(depth)
@@ -175,11 +179,15 @@ def after(
 
 
 class _LostError(Exception):
-    """The equilibrium of the contacts was not found."""
+    """The equilibrium of the contacts was not found, or a film."""
 
 
 def _ends(
-    march: RK23, limit: Limit, rate: Callable[[Values], Rate], start: float
+    march: RK23,
+    limit: Limit,
+    rate: Callable[[Values], Rate],
+    start: float,
+    shape: tuple[int, ...],
 ) -> tuple[float, End]:
     """Turns at the end of a step, or where a limit is passed within it, and which."""
     inside = march.dense_output()
@@ -191,11 +199,17 @@ def _ends(
         depth = march.y if turns == march.t else inside(turns)
         return rate(depth).pressure / start - limit.pressure
 
+    def beyond(measure: Callable[[Values], float]) -> Callable[[float], float]:
+        return lambda turns: measure(inside(turns).reshape(shape))
+
     found: list[tuple[float, End]] = []
     if beyond_depth(march.t) >= 0.0:
         found.append((brentq(beyond_depth, march.t_old, march.t), "depth"))
     if beyond_pressure(march.t) >= 0.0:
         found.append((_first(beyond_pressure, march.t_old, march.t), "pressure"))
+    for end, own in limit.teeth:
+        if (measure := beyond(own))(march.t) >= 0.0:
+            found.append((_first(measure, march.t_old, march.t), end))
     if found:
         return min(found)
     return march.t, "turns" if march.status == "finished" else ""

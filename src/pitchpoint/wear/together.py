@@ -9,6 +9,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Models
+from pitchpoint.errors import InputError
 from pitchpoint.programs import fast_program
 from pitchpoint.wear.gradients import Inputs
 from pitchpoint.wear.history import Cells, Start, Turn, reached, travelled, turn_alone
@@ -45,7 +46,6 @@ class Worn(eqx.Module):
     found: Bool[Array, "*drive"]
 
 
-@fast_program
 def worn_together(
     inputs: Inputs,
     models: Models,
@@ -68,9 +68,28 @@ def worn_together(
         depth: on either member [m].
         tolerance: error of a step, over the largest depth.
 
+    Raises:
+        InputError: films are asked for the load on asperities.
+
     Source: Bogacki and Shampine (1989), by diffrax.
     """
+    if inputs[2].films is not None:
+        raise InputError(
+            "many drives wear together by a formula of the load on asperities, not by films"
+        )
+    return _together(inputs, models, cells, parts, turns, depth, tolerance)
 
+
+@fast_program
+def _together(
+    inputs: Inputs,
+    models: Models,
+    cells: Cells,
+    parts: int,
+    turns: Array,
+    depth: Array,
+    tolerance: Array,
+) -> Worn:
     def one(given: tuple[Inputs, Array, Array]) -> Worn:
         return _worn(*given, models, cells, parts, tolerance)
 

@@ -35,7 +35,7 @@ from pitchpoint.views.section import (
     Table,
     by_variant,
 )
-from pitchpoint.wear.stages import SEVERE
+from pitchpoint.wear.stages import SEVERE, SEVERE_BY
 
 __all__ = ["WEAR"]
 
@@ -50,7 +50,9 @@ _ENDS = {
     "module": "at 0.2 modules, beyond which contacts move off their places",
     "outgrown": "where its contacts have outgrown Hertz's theory",
     "pressure": "where the largest pressure reaches its limit",
-    "lost": "where the loads of the worn flanks were not found",
+    "tip land": "where a tooth is as thin at its tip as its limit",
+    "backlash": "where the backlash that wear adds reaches its limit",
+    "lost": "where the loads of the worn flanks, or films that are asked for, were not found",
     "no wear": "where it begins: nothing wears",
 }
 """Why a march ended, in words."""
@@ -106,18 +108,27 @@ def _how(data: xr.Dataset) -> str:
     )
     return (
         f"Every place of a flank wears by its line load times the sliding over the rolling speed of its "
-        f"contact, once for each engagement, times the specific wear rate of {data.attrs['law']}. "
-        f"{feedback}. All teeth of a gear wear alike, forces are those without friction, and contacts stay "
-        f"on the normals of the flanks as new. {int(data['wear_steps'])} steps of the march, each with an "
-        f"error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth at most, which are "
-        "added up. Curvatures are those of the depths smoothed over two cells to either side, so that "
-        "pressures depend on the number of cells: repeat with another one (wear.cells) where they matter."
+        f"contact, once for each engagement, times the specific wear rate of {data.attrs['law']}"
+        f"{_by_films(data)}. {feedback}. All teeth of a gear wear alike, forces are those without friction, "
+        f"and contacts stay on the normals of the flanks as new. {int(data['wear_steps'])} steps of the "
+        f"march, each with an error of {100.0 * float(data.attrs['tolerance']):g} % of the largest depth "
+        "at most, which are added up. Curvatures are those of the depths smoothed over two cells to either "
+        "side, so that pressures depend on the number of cells: repeat with another one (wear.cells) where "
+        "they matter."
     )
+
+
+def _by_films(data: xr.Dataset) -> str:
+    films = data.attrs["load_ratio"] == "film"
+    return ", with the load on asperities from solved films" if films else ""
 
 
 def _whole(data: xr.Dataset) -> Table:
     """Where the march ended, and its stages."""
     rows = [(titled(name, data), _told(data, name)) for name in _FIGURES]
+    if "backlash_growth" in data:
+        grown = show.quantity("backlash_growth", float(data["backlash_growth"].values[-1]))
+        rows.append((titled("backlash_growth", data), grown))
     rows.append(("ended", _ENDS[str(data.attrs["end"])]))
     for name in ("run_in_cycles", "severe_cycles"):
         rows.append((titled(name, data), _told(data, name)))
@@ -127,13 +138,20 @@ def _whole(data: xr.Dataset) -> Table:
 def _told(data: xr.Dataset, name: str) -> str:
     value = float(data[name])
     if name == "severe_cycles" and not np.isfinite(value):
-        return f"not reached: {SEVERE:g} times the least rate"
+        return f"not reached: {_severe(data)}"
+    if name == "severe_cycles":
+        return f"{show.quantity(name, value, of=data)}, {_severe(data)}"
     if name == "run_in_cycles" and value == 0.0:
         return "none: the rate is near its least from the start"
     return show.quantity(name, value, of=data)
 
 
-_OF_MEMBER = ("deepest_wear", "wear_error", "fastest_wear", "worn_volume")
+def _severe(data: xr.Dataset) -> str:
+    """What tells that wear is severe, with its factor."""
+    return f"{SEVERE:g} {SEVERE_BY[str(data.attrs['severe_by'])]}"
+
+
+_OF_MEMBER = ("deepest_wear", "wear_error", "fastest_wear", "worn_volume", "worn_tip_land")
 
 
 def _members(data: xr.Dataset) -> list[str]:
@@ -146,6 +164,7 @@ def _table(data: xr.Dataset) -> Table:
     rows = [
         (titled(name, data), *(show.quantity(name, float(v)) for v in data[name].values[-1]))
         for name in _OF_MEMBER
+        if name in data
     ]
     rows.insert(1, ("where", *(_where(data, k) for k in range(2))))
     return Table(["at the end", *names], rows)
@@ -299,6 +318,11 @@ def _answer(data: xr.Dataset) -> str:
         f"{show.quantity('deepest_wear', float(depth[most]))} at most, on {_members(data)[most]}, after "
         f"{turns} turns of {data.attrs['driver']} ({hours})"
     )
+    severe = float(data["severe_cycles"])
+    if np.isfinite(severe):
+        words += (
+            f"; severe wear ({_severe(data)}) begins at {show.quantity('severe_cycles', severe)}"
+        )
     return words if end == "turns" else f"{words}: the march ended {_ENDS[end]}"
 
 
