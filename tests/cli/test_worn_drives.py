@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 from pitchpoint._jax import array
+from pitchpoint.analyses import wear_course
 from pitchpoint.analyses.along_action import STIFFNESS
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.torsion import TORSION
@@ -48,6 +49,8 @@ def alone() -> Iterator[None]:
     few = {one.name: one for one in (WEAR, TORSION, STIFFNESS)}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ANALYSES, "_entries", few)
+        # Another file holds derivatives against differences.
+        patch.setattr(wear_course, "depth_gradient", lambda *_: (0.0, None))
         yield
 
 
@@ -99,6 +102,13 @@ def test_a_spur_pair_wears_in_two_humps_around_its_pitch_point(spur: Path) -> No
         assert below > above  # where the mate slides far over a short way
     volumes = data["worn_volume"].values[-1]
     assert volumes[0] / volumes[1] == pytest.approx(36.0 / 18.0, rel=1e-6)
+
+
+def test_steps_that_a_killed_run_did_not_remove_go_with_the_next(spur: Path) -> None:
+    left = spur / "physical" / "wear.0003.nc"
+    left.write_bytes(b"")
+    parts(DRY, spur)
+    assert not left.exists()
 
 
 def test_stiffness_error_and_backlash_of_a_worn_spur_pair(
