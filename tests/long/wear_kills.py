@@ -82,6 +82,8 @@ class Marches:
             stderr=subprocess.PIPE,
             text=True,
             start_new_session=True,
+            # Shells let what runs behind ignore it.
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
         )
 
     def whole(self, folder: Path) -> float:
@@ -124,6 +126,15 @@ def writing(start: str, wait: int = 0) -> Due:
     return due
 
 
+def steps_of(number: int) -> Due:
+    """Due once so many steps are on disk."""
+    return lambda folder: _steps(folder) >= number
+
+
+def _steps(folder: Path) -> int:
+    return sum(bool(STEP.fullmatch(name)) for name in _names(folder))
+
+
 def _names(folder: Path) -> list[str]:
     return os.listdir(folder) if folder.is_dir() else []
 
@@ -131,7 +142,7 @@ def _names(folder: Path) -> list[str]:
 def place(folder: Path) -> str:
     """Where in a run it was stopped, from what it left."""
     names = _names(folder)
-    steps = sum(bool(STEP.fullmatch(name)) for name in names)
+    steps = _steps(folder)
     if any(name.startswith(".wear.") for name in names):
         return "while a step was being written"
     if any(name.startswith(".wear-") for name in names):
@@ -199,15 +210,13 @@ def main(kills: int, seed: int) -> int:
                 print(f"    {times:4d}  {what}")
             sys.stdout.flush()
 
-        kept, unheard = root / "interrupted", []
-        for _ in range(INTERRUPTS):
-            cut, told = marches.stopped(
-                kept, after(float(rng.uniform(0.3, 0.6)) * time_taken), signal.SIGINT
-            )
+        kept, unheard = root / "interrupted", False
+        for number in range(INTERRUPTS):
+            due = steps_of(1 + number * (count - 2) // INTERRUPTS)
+            cut, told = marches.stopped(kept, due, signal.SIGINT)
             sentence = told.strip().splitlines()[-1:]
-            print(f"Ctrl-C, {place(kept / 'default')}: {sentence}")
-            if cut and ("Traceback" in told or len(sentence) != 1):
-                unheard.append(told)
+            unheard |= not cut or "Traceback" in told
+            print(f"Ctrl-C, {_steps(kept / 'default')} steps on disk: {' '.join(sentence)}")
         marches.whole(kept)
         wrong += differences(kept / "default", expected)
     print(f"\n{'other bits in ' + ', '.join(wrong) if wrong else 'the same bits everywhere'}")
