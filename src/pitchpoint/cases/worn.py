@@ -8,6 +8,7 @@ import numpy as np
 
 from pitchpoint._jax import array
 from pitchpoint.cases.schema import WornTable
+from pitchpoint.contact.worn import FLATTEST
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import GearsTable
@@ -65,6 +66,11 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
     told = (
         f"Flanks are worn by {turns:.4g} turns of {data.attrs['driver']}: {deepest} deep at most."
     )
+    if data["conforming"].values[: at + 1].any():
+        told += (
+            f" They conform; their contacts are taken to keep {FLATTEST:g} of the relative curvature they "
+            "had, and pressures are a guess."
+        )
     return mesh.worn(cells.surfaces(array(gone))), told
 
 

@@ -1,14 +1,20 @@
 """Worn flanks: how deep material is gone, as a surface that contacts feel."""
 
+from dataclasses import replace
 from itertools import product
 from typing import ClassVar
 
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.surface import Lanes, Spot, Surface
+from pitchpoint.contact.contacts import Contacts
+from pitchpoint.contact.surface import Lanes, Spot, Surface, Surfaces, with_surfaces
+from pitchpoint.factored import Arrays
 
-__all__ = ["Worn"]
+__all__ = ["FLATTEST", "Worn", "new_and_worn", "with_worn"]
+
+FLATTEST = 0.1
+"""Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
 
 
 class Worn(Surface):
@@ -40,6 +46,43 @@ class Worn(Surface):
             (one * other * self.depth[k, j] for (k, one), (j, other) in product(along, aside)),
             jnp.zeros_like(spot.flank),
         )
+
+
+def new_and_worn(surfaces: Surfaces) -> tuple[Surfaces, Surfaces]:
+    """Surfaces of both members as made, and what wear has added."""
+    first, second = surfaces
+    worn = _worn(first), _worn(second)
+    return (_made(first), _made(second)), worn
+
+
+def _made(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
+    return tuple(one for one in surfaces if not isinstance(one, Worn))
+
+
+def _worn(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
+    return tuple(one for one in surfaces if isinstance(one, Worn))
+
+
+def with_worn(
+    contacts: Contacts, worn: Surfaces, spots: tuple[Spot, Spot]
+) -> tuple[Contacts, Bool[Arrays, "pair slice *b"]]:
+    """Contacts of worn flanks, and where they would have become flatter than they are taken for.
+
+    Args:
+        contacts: of flanks as new.
+        worn: what wear has added to both members.
+        spots: where the contacts lie on them.
+
+    They stay on the normals of flanks as new, and keep a part of their relative curvatures.
+    """
+    found = with_surfaces(contacts, worn, spots)
+    own, least = 1.0 / found.radius, FLATTEST / contacts.radius
+    kept, flat = replace(found, felt=jnp.maximum(own, least)), own < least
+    if contacts.shape == "line":
+        return kept, flat
+    lacks = FLATTEST * contacts.relative_curvature[1] - found.relative_curvature[1]
+    across = found.curvature.at[0, 1].add(jnp.maximum(lacks, 0.0))
+    return replace(kept, curvature=across), flat | (lacks > 0.0)
 
 
 def _weights(place: Lanes, ends: Float[Array, "2"], cells: int) -> list[tuple[Array, Lanes]]:

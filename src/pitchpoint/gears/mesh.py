@@ -13,6 +13,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, with_surfaces
+from pitchpoint.contact.worn import new_and_worn, with_worn
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.on_balls import Body
@@ -380,7 +381,10 @@ class Mesh(eqx.Module):
         rigid = self.rigid_contacts(phase)
         if not any(self.surfaces):
             return rigid
-        return with_surfaces(rigid, self.surfaces, self.spots(rigid, phase))
+        spots = self.spots(rigid, phase)
+        made, worn = new_and_worn(self.surfaces)
+        new = with_surfaces(rigid, made, spots)
+        return with_worn(new, worn, spots)[0] if any(worn) else new
 
     @abc.abstractmethod
     def rigid_contacts(self, phase: Float[Array, "*b"]) -> Contacts:

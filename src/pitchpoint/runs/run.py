@@ -426,6 +426,8 @@ def _part(
     found = None if variant.own is not None else _found(whole, mark)
     progress.part(variant.variant, job.title, found is not None)
     if found is not None:
+        if folder is not None:
+            _drop_pieces(folder, job.name)  # of a run that was killed while it removed them
         return found
     pieces: list[xr.Dataset] = []
     for piece in _pieces(job, variant, labels, folder, progress):

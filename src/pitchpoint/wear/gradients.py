@@ -6,7 +6,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.programs import program
 from pitchpoint.wear.history import Cells, WearModel, midpoints, reached, travelled, wear_of
@@ -33,12 +33,17 @@ def depth_gradient(
 
     By automatic differentiation in reverse, no differences are taken.
     """
-    found: tuple[Array, Inputs] = _gradient(inputs, models, cells, parts)
-    return found
+    value, slopes = _gradient(inputs, models, cells, parts)
+    structure = jax.tree.structure(eqx.filter(inputs, eqx.is_inexact_array))
+    return value, jax.tree.unflatten(structure, slopes)
 
 
 @program
-def _gradient(inputs: Inputs, models: Models, cells: Cells, parts: int) -> tuple[Array, Inputs]:
+def _gradient(
+    inputs: Inputs, models: Models, cells: Cells, parts: int
+) -> tuple[Array, list[Array]]:
+    """Value and derivatives without the laws between them, by which the program could not be kept."""
+
     def deepest(inputs: Inputs) -> Array:
         design, operation, wear = inputs
         design = dataclasses.replace(design, mesh=design.mesh.completed())
@@ -51,8 +56,8 @@ def _gradient(inputs: Inputs, models: Models, cells: Cells, parts: int) -> tuple
         own = dataclasses.replace(cells, flank=flank, across=across)
         return jnp.max(wear_of(design, operation, models, wear, own, known).depth)
 
-    found: tuple[Array, Inputs] = eqx.filter_value_and_grad(deepest)(inputs)
-    return found
+    value, slopes = eqx.filter_value_and_grad(deepest)(inputs)
+    return value, jax.tree.leaves(slopes)
 
 
 def sensitivities(inputs: Inputs, value: float, derivatives: Inputs) -> dict[str, float]:

@@ -11,8 +11,8 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.contact.surface import Spot, with_surfaces
-from pitchpoint.contact.worn import Worn
+from pitchpoint.contact.surface import Spot
+from pitchpoint.contact.worn import Worn, with_worn
 from pitchpoint.efficiency.quasi_static import (
     Coupling,
     Design,
@@ -58,9 +58,6 @@ STRIPS_OF_ELLIPSE = 32
 
 ROOM = 2.5
 """Half-width of the strips of ellipses together, over the largest semi-axis of flanks as new."""
-
-FLATTEST = 0.1
-"""Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
 
 _SHORT = 1e-3  # of a cell: shorter ways count as that long
 
@@ -456,23 +453,9 @@ def worn_contacts(
         cells: on both flanks.
         start: with flanks as new.
         depth: worn off so far [m].
-
-    They stay on the normals of flanks as new, and keep a part of their relative curvatures.
     """
     first, second = cells.surfaces(depth)
-    new = start.contacts
-    contacts = with_surfaces(new, ((first,), (second,)), start.spots)
-    least, own = (
-        (FLATTEST / new.radius, FLATTEST * new.relative_curvature[1]),
-        1.0 / contacts.radius,
-    )
-    lacks = least[1] - contacts.relative_curvature[1]
-    kept = replace(
-        contacts,
-        felt=jnp.maximum(own, least[0]),
-        curvature=contacts.curvature.at[0, 1].add(jnp.maximum(lacks, 0.0)),
-    )
-    return kept, (own < least[0]) | (lacks > 0.0)
+    return with_worn(start.contacts, ((first,), (second,)), start.spots)
 
 
 @program
