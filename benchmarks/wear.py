@@ -107,6 +107,7 @@ def as_rival(given: Given) -> rival.Pair:
         teeth=TEETH,
         rate=(COEFFICIENT / HARDNESS,) * 2,
         ends=np.asarray(cells.flank),
+        span=float(cells.span[0]),
         cells=CELLS,
     )
 

@@ -49,6 +49,7 @@ class Pair(NamedTuple):
         teeth: of both members.
         rate: specific wear rate of both members [1/Pa].
         ends: of both members' cells along the flank, shape (member, 2) [m].
+        span: half-width of the contacts over which a worn flank's curvature counts [m].
         cells: along each flank.
     """
 
@@ -64,6 +65,7 @@ class Pair(NamedTuple):
     teeth: tuple[int, int]
     rate: tuple[float, float]
     ends: Array
+    span: float
     cells: int
 
 
@@ -76,30 +78,33 @@ class Course(NamedTuple):
     steps: int
 
 
-def splines(place: Array, ends: Array, cells: int) -> tuple[Array, Array]:
-    """Matrices from depths of cells to depth and its second derivative at places."""
-    scale = cells / (ends[1] - ends[0])
-    raw = (place.ravel() - ends[0]) * scale - 0.5
-    at = np.clip(raw, 0.0, cells - 1.0)
+def spline(place: Array, ends: Array, cells: int, *, straight: bool) -> Array:
+    """Matrix from depths of cells to depths at places; beyond the last cells as there, or straight on."""
+    anywhere = (place.ravel() - ends[0]) * cells / (ends[1] - ends[0]) - 0.5
+    at = np.clip(anywhere, 0.0, cells - 1.0)
     first = np.clip(np.floor(at), 0, cells - 2).astype(int)
-    t = at - first
-    bent = np.where((raw > 0.0) & (raw < cells - 1.0), scale**2, 0.0)
-    heights = ((1 - t) ** 3 / 6, (4 - 6 * t**2 + 3 * t**3) / 6)
-    heights += ((1 + 3 * t + 3 * t**2 - 3 * t**3) / 6, t**3 / 6)
-    bends = (1 - t, 3 * t - 2, 1 - 3 * t, t)
-    rows = np.arange(place.size)
-    found = np.zeros((2, place.size, cells))
-    for kind, weights in enumerate((heights, [one * bent for one in bends])):
-        for offset, one in zip((-1, 0, 1, 2), weights, strict=True):
-            number = first + offset
-            inside = (number >= 0) & (number < cells)
-            np.add.at(found[kind], (rows[inside], number[inside]), one[inside])
-            low, high = number < 0, number >= cells
-            # Cells beyond an end go straight on from the last two.
-            for beyond, near, next_one in ((low, 0, 1), (high, cells - 1, cells - 2)):
-                np.add.at(found[kind], (rows[beyond], near), 2.0 * one[beyond])
-                np.add.at(found[kind], (rows[beyond], next_one), -one[beyond])
-    return found[0], found[1]
+    t, rows = at - first, np.arange(place.size)
+    weights = ((1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3)
+    found = np.zeros((place.size, cells + 2))
+    for offset, one in enumerate(weights):
+        found[rows, first + offset] = one / 6
+    # Cells beyond an end go straight on from the last two.
+    for beyond, last, before in ((0, 1, 2), (-1, -2, -3)):
+        found[:, last] += 2.0 * found[:, beyond]
+        found[:, before] -= found[:, beyond]
+    found = found[:, 1:-1]
+    if straight:
+        far = anywhere - at
+        found[rows, first] -= far
+        found[rows, first + 1] += far
+    return found
+
+
+def splines(place: Array, ends: Array, cells: int, span: float) -> tuple[Array, Array]:
+    """Matrices from depths of cells to depth at places, and to its second difference over a span."""
+    beside = sum(spline(place + by, ends, cells, straight=True) for by in (-span, span))
+    here = spline(place, ends, cells, straight=True)
+    return spline(place, ends, cells, straight=False), (beside - 2.0 * here) / span**2
 
 
 class Rater:
@@ -107,7 +112,7 @@ class Rater:
 
     def __init__(self, pair: Pair) -> None:
         self.pair, self.count = pair, 0
-        both = [splines(pair.flank[k], pair.ends[k], pair.cells) for k in range(2)]
+        both = [splines(pair.flank[k], pair.ends[k], pair.cells, pair.span) for k in range(2)]
         self.height = np.concatenate([one for one, _ in both], axis=1)
         self.bend = np.concatenate([one for _, one in both], axis=1)
         self.least = FLATTEST * pair.curvature

@@ -404,7 +404,7 @@ def spot(flank: np.ndarray, across: np.ndarray) -> Spot:
 def test_smoothed_depths_keep_their_volume_and_stay_positive():
     depth = np.zeros((30, 12))
     depth[8:20, 4:9] = np.random.default_rng(3).random((12, 5))
-    surface = Worn(array(depth), array([1.0, 4.0]), array([-2.0, 2.0]))
+    surface = Worn(array(depth), array([1.0, 4.0]), array([-2.0, 2.0]), array([0.1, 0.1]))
     s, y = np.meshgrid(np.linspace(1.0, 4.0, 1201), np.linspace(-2.0, 2.0, 961), indexing="ij")
     height = np.asarray(missing((surface,), spot(s, y)))
     assert height.min() >= 0.0
@@ -412,19 +412,26 @@ def test_smoothed_depths_keep_their_volume_and_stay_positive():
     assert volume == pytest.approx(depth.sum() * (3.0 / 30) * (4.0 / 12), rel=1e-4)
 
 
-def test_curvatures_of_smoothed_depths_are_their_second_differences():
-    rng = np.random.default_rng(4)
-    surface = Worn(array(rng.random((20, 8))), array([0.0, 1.0]), array([-1.0, 1.0]))
-    s, y = rng.uniform(0.1, 0.9, 40), rng.uniform(-0.8, 0.8, 40)
-
-    def height(at: jax.Array) -> jax.Array:
-        return missing((surface,), replace(spot(s, y), flank=at))
-
-    ones, at = jnp.ones(40), jnp.asarray(s)
-    bend = jax.jvp(lambda v: jax.jvp(height, (v,), (ones,))[1], (at,), (ones,))[1]
-    step = 1e-4
-    differences = (height(at + step) - 2.0 * height(at) + height(at - step)) / step**2
-    assert np.asarray(bend) == pytest.approx(np.asarray(differences), rel=1e-2, abs=2.0)
+def test_contacts_feel_the_second_difference_over_their_width():
+    span, ends = np.array([0.03, 0.2]), (array([0.0, 1.0]), array([-1.0, 1.0]))
+    rough = Worn(array(np.random.default_rng(4).random((20, 8))), *ends, array(span))
+    rng = np.random.default_rng(5)
+    s, y = rng.uniform(0.12, 0.88, 40), rng.uniform(-0.6, 0.6, 40)
+    moved = [(s + k * span[0], y) for k in (-1.0, 1.0)], [(s, y + k * span[1]) for k in (-1.0, 1.0)]
+    here = np.asarray(rough.missing(spot(s, y)))
+    expected = [
+        (sum(np.asarray(rough.missing(spot(*one))) for one in both) - 2.0 * here) / step**2
+        for both, step in zip(moved, span, strict=True)
+    ]
+    assert np.asarray(rough.bent(spot(s, y))) == pytest.approx(np.array(expected), rel=1e-9)
+    # Of a parabola its curvature, up to where a contact reaches beyond the middles of the last cells.
+    middle = (np.arange(20)[:, None] + 0.5) / 20
+    even = Worn(array(np.repeat(3.0 * middle**2, 8, axis=1)), *ends, array(span))
+    found = np.asarray(even.bent(spot(s, y)))
+    assert found[0] == pytest.approx(6.0, rel=1e-9)
+    assert found[1] == pytest.approx(0.0, abs=1e-12)
+    over = np.asarray(even.bent(spot(np.array([1.0 + span[0]]), np.array([0.0]))))
+    assert over[0] == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", ["torus", "helical_few_teeth_plastic"])

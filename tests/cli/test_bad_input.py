@@ -396,8 +396,10 @@ def worn_file(gears: dict[str, Any]) -> str:
         {
             "worn_depth": (("step", "member", "cell", "strip"), depth),
             "cycles": (("step",), np.array([0.0, 1e6])),
+            "conforming": (("step",), np.array([False, False])),
             "flank_ends": (("member", "side"), np.array([[0.5e-3, 3e-3], [2e-3, 6e-3]])),
             "across_ends": (("side",), np.array([-0.01, 0.01])),
+            "contact_span": (("axis",), np.array([1e-4, 0.02])),
         },
         {},
         title="wear",

@@ -162,7 +162,8 @@ def test_flanks_that_conform_keep_a_part_of_their_curvature() -> None:
     mesh = load_case("tian2024", variant="physical").design.mesh
     flank, across = array([0.0, 7e-3]), array([-20e-3, 20e-3])
     rough = np.random.default_rng(1).uniform(0.0, 20e-6, (40, 1))
-    uneven = mesh.worn((Worn(array(rough), flank, across), Worn(array(rough), flank, across)))
+    one = Worn(array(rough), flank, across, array([1e-4, 0.04]))
+    uneven = mesh.worn((one, one))
     phase = np.linspace(0.0, 0.9, 10)
     found, new = contacts_at(uneven, phase), contacts_at(mesh, phase)
     ratio = np.asarray(new.radius / found.radius)[np.asarray(new.active)]

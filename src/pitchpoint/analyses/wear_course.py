@@ -203,6 +203,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         "across_place": (("strip",), across),
         "flank_ends": (("member", "side"), np.asarray(course.cells.flank)),
         "across_ends": (("side",), np.asarray(course.cells.across)),
+        "contact_span": (("axis",), np.asarray(course.cells.span)),
     }
     figures = _figures(built, values, deepest, fastest)
     codes = np.full(len(parts), int(Code.SOLVED))

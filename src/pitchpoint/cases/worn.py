@@ -17,6 +17,9 @@ from pitchpoint.wear.history import Cells
 
 __all__ = ["gears_digest", "with_wear"]
 
+_PLACES = ("flank_ends", "across_ends", "contact_span")
+_READ = ("worn_depth", "cycles", "conforming", *_PLACES)
+
 
 def gears_digest(gears: GearsTable) -> str:
     """What tells gears from any others whose flanks wear elsewhere.
@@ -51,6 +54,9 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
         raise _wrong(
             name, "holds the wear of other gears: every key of [gears] has to be as it was there"
         )
+    lacking = [one for one in _READ if one not in data]
+    if lacking:
+        raise _wrong(name, f"lacks {', '.join(lacking)}; compute the wear again with this version")
     cycles = data["cycles"].values
     turns = float(cycles[-1]) if worn.cycles is None else worn.cycles
     if turns > cycles[-1]:
@@ -60,8 +66,8 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
     at = max(int(np.searchsorted(cycles, turns)), 1) if cycles.size > 1 else 0
     part = 0.0 if at == 0 else (turns - cycles[at - 1]) / (cycles[at] - cycles[at - 1])
     gone = (1.0 - part) * depth[at - 1] + part * depth[at] if at else depth[0]
-    ends = data["flank_ends"].values, data["across_ends"].values
-    cells = Cells(array(ends[0]), array(ends[1]), depth.shape[2], depth.shape[3])
+    flank, across, span = (array(data[one].values) for one in _PLACES)
+    cells = Cells(flank, across, span, depth.shape[2], depth.shape[3])
     deepest = " and ".join(f"{1e6 * float(one.max()):.3g} um" for one in gone)
     told = (
         f"Flanks are worn by {turns:.4g} turns of {data.attrs['driver']}: {deepest} deep at most."

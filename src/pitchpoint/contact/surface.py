@@ -78,6 +78,14 @@ class Surface(eqx.Module):
             spot: where on the member.
         """
 
+    def bent(self, spot: Spot) -> Float[Array, "2 *#b"]:
+        """Second derivatives of the missing height along the flank and across it, as felt [1/m].
+
+        Args:
+            spot: where on the member.
+        """
+        return jnp.stack([_second(self, spot, name) for name in ("flank", "across")])
+
     def fitted(self, flank: Flank) -> Self:
         """The same on flanks that end elsewhere: amounts and lengths stay as they are.
 
@@ -148,7 +156,8 @@ def other_side(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
 def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spot]) -> Contacts:
     """Contacts of flanks that differ from their design.
 
-    Missing height adds to the gap, its second derivatives along the flank and across it to the curvatures.
+    Missing height adds to the gap, its second derivatives along the flank and across it, as contacts feel
+    them, to the curvatures.
 
     Args:
         contacts: of the flanks as designed.
@@ -162,25 +171,22 @@ def with_surfaces(contacts: Contacts, surfaces: Surfaces, spots: tuple[Spot, Spo
     for member, (own, spot) in enumerate(zip(surfaces, spots, strict=True)):
         if own:
             gap = gap + missing(own, spot)
-            bend = _bend(own, spot)
+            bend = sum((one.bent(spot) for one in own[1:]), own[0].bent(spot))
             curvature = curvature.at[member].add(bend)
             felt = felt if felt is None else felt + bend[0]
     return replace(contacts, gap=gap, curvature=curvature, felt=felt)
 
 
-def _bend(surfaces: tuple[Surface, ...], spot: Spot) -> Float[Array, "2 *#b"]:
-    """Second derivatives of the missing height along the flank and across it [1/m]."""
+def _second(surface: Surface, spot: Spot, name: str) -> Lanes:
+    """Second derivative of the missing height with respect to a place."""
 
-    def second(name: str) -> Lanes:
-        def height(place: Lanes) -> Lanes:
-            return missing(surfaces, replace(spot, **{name: place}))
+    def height(place: Lanes) -> Lanes:
+        return surface.missing(replace(spot, **{name: place}))
 
-        def slope(place: Lanes) -> Lanes:
-            tangent: Lanes = jax.jvp(height, (place,), (jnp.ones_like(place),))[1]
-            return tangent
+    def slope(place: Lanes) -> Lanes:
+        tangent: Lanes = jax.jvp(height, (place,), (jnp.ones_like(place),))[1]
+        return tangent
 
-        place = getattr(spot, name)
-        found: Lanes = jax.jvp(slope, (place,), (jnp.ones_like(place),))[1]
-        return found
-
-    return jnp.stack([second("flank"), second("across")])
+    place = getattr(spot, name)
+    found: Lanes = jax.jvp(slope, (place,), (jnp.ones_like(place),))[1]
+    return found

@@ -24,10 +24,14 @@ class Worn(Surface):
     but for the half cells at the ends, never fall below zero, and have curvatures without jumps. From the
     middle of the last cell on the depth stays what it is there.
 
+    A contact bridges what is narrower than itself: it feels the second difference over its half-width, not
+    the curvature at one point, and so hardly how many cells there are.
+
     Attributes:
         depth: mean depth of each cell along the flank and across the face [m].
         flank: arc lengths at which the grid begins and ends [m].
         across: places across the face at which it begins and ends [m].
+        span: half-widths of the contacts along the flank and across it [m].
 
     Source: de Boor, A Practical Guide to Splines (2001), chapter 12, the Schoenberg approximation.
     """
@@ -37,15 +41,39 @@ class Worn(Surface):
     depth: Float[Array, "cell strip"]
     flank: Float[Array, "2"]
     across: Float[Array, "2"]
+    span: Float[Array, "2"]
 
     def missing(self, spot: Spot) -> Lanes:
         """Depth at each place."""
-        along = _weights(spot.flank, self.flank, self.depth.shape[0])
-        aside = _weights(spot.across, self.across, self.depth.shape[1])
+        return self._depth_at(spot.flank, spot.across, straight=False)
+
+    def bent(self, spot: Spot) -> Float[Array, "2 *#b"]:
+        """Second differences of the depth over the span of a contact; flanks go straight on at their ends."""
+        flank, across = spot.flank, spot.across
+        along = self._depth_at(_beside(flank, self.span[0]), across, straight=True)
+        if self.depth.shape[1] == 1:
+            return jnp.stack([_second(along, self.span[0]), jnp.zeros_like(flank)])
+        aside = self._depth_at(flank, _beside(across, self.span[1]), straight=True)
+        return jnp.stack([_second(along, self.span[0]), _second(aside, self.span[1])])
+
+    def _depth_at(self, flank: Lanes, across: Lanes, *, straight: bool) -> Lanes:
+        """Depth at places; beyond the middles of the last cells as there, or straight on."""
+        along = _weights(flank, self.flank, self.depth.shape[0], straight)
+        aside = _weights(across, self.across, self.depth.shape[1], straight)
         return sum(
             (one * other * self.depth[k, j] for (k, one), (j, other) in product(along, aside)),
-            jnp.zeros_like(spot.flank),
+            jnp.zeros(jnp.broadcast_shapes(flank.shape, across.shape)),
         )
+
+
+def _beside(place: Lanes, span: Array) -> Lanes:
+    """Places at, before and behind a contact, on an axis in front."""
+    return jnp.stack([place, place - span, place + span])
+
+
+def _second(values: Lanes, span: Array) -> Lanes:
+    """Second difference of values there."""
+    return (values[1] + values[2] - 2.0 * values[0]) / span**2
 
 
 def new_and_worn(surfaces: Surfaces) -> tuple[Surfaces, Surfaces]:
@@ -85,23 +113,26 @@ def with_worn(
     return replace(kept, curvature=across), flat | (lacks > 0.0)
 
 
-def _weights(place: Lanes, ends: Float[Array, "2"], cells: int) -> list[tuple[Array, Lanes]]:
+def _weights(
+    place: Lanes, ends: Float[Array, "2"], cells: int, straight: bool
+) -> list[tuple[Array, Lanes]]:
     """Cells that count at a place, and their weights, which sum to one."""
     if cells == 1:
         return [(jnp.zeros(jnp.shape(place), int), jnp.ones(jnp.shape(place)))]
-    at = (place - ends[0]) / (ends[1] - ends[0]) * cells - 0.5
-    at = jnp.clip(at, 0.0, cells - 1.0)
+    anywhere = (place - ends[0]) / (ends[1] - ends[0]) * cells - 0.5
+    at = jnp.clip(anywhere, 0.0, cells - 1.0)
     first = jax.lax.stop_gradient(jnp.clip(jnp.floor(at), 0.0, cells - 2.0))
     t = at - first
     before, after = (1.0 - t) ** 3 / 6.0, t**3 / 6.0
     low, high = first == 0.0, first == cells - 2.0
     number = first.astype(int)
+    beyond = anywhere - at if straight else jnp.zeros_like(at)
     # Cells that would lie beyond an end go straight on from the last two: no curvature comes from there.
+    here = (4.0 - 6.0 * t**2 + 3.0 * t**3) / 6.0 - jnp.where(high, after, 0.0) - beyond
+    later = (1.0 + 3.0 * t + 3.0 * t**2 - 3.0 * t**3) / 6.0 - jnp.where(low, before, 0.0) + beyond
     return [
-        (jnp.maximum(number - 1, 0), jnp.where(low, 2.0 * before, before)),
-        (number + 1, jnp.where(low, -before, 0.0)),
-        (number, (4.0 - 6.0 * t**2 + 3.0 * t**3) / 6.0),
-        (number + 1, (1.0 + 3.0 * t + 3.0 * t**2 - 3.0 * t**3) / 6.0),
-        (number, jnp.where(high, -after, 0.0)),
-        (jnp.minimum(number + 2, cells - 1), jnp.where(high, 2.0 * after, after)),
+        (jnp.maximum(number - 1, 0), jnp.where(low, 2.0, 1.0) * before),
+        (number, here),
+        (number + 1, later),
+        (jnp.minimum(number + 2, cells - 1), jnp.where(high, 2.0, 1.0) * after),
     ]

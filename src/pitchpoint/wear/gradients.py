@@ -52,8 +52,8 @@ def _gradient(
         share = models.share(design, contacts, operation.load)
         known = Engagement(phase, weight, contacts, share, None, 1)
         # Cells follow the flanks.
-        flank, across = reached(*travelled(design, operation, models, known))
-        own = dataclasses.replace(cells, flank=flank, across=across)
+        flank, across, span = reached(*travelled(design, operation, models, known))
+        own = dataclasses.replace(cells, flank=flank, across=across, span=span)
         return jnp.max(wear_of(design, operation, models, wear, own, known).depth)
 
     value, slopes = eqx.filter_value_and_grad(deepest)(inputs)

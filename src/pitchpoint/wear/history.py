@@ -73,12 +73,14 @@ class Cells(eqx.Module):
     Attributes:
         flank: arc lengths at which they begin and end, of each member [m].
         across: places across the face at which they begin and end [m].
+        span: mean half-widths of the contacts along the flank and across it, with flanks as new [m].
         count: along the flank; static.
         strips: across the face; static.
     """
 
     flank: Float[Array, "2 2"]
     across: Two
+    span: Two
     count: int = eqx.field(static=True)
     strips: int = eqx.field(static=True)
 
@@ -108,7 +110,7 @@ class Cells(eqx.Module):
 
     def surfaces(self, depth: Depths) -> tuple[Worn, Worn]:
         """Both members' flanks with so much gone."""
-        first, second = (Worn(depth[k], self.flank[k], self.across) for k in range(2))
+        first, second = (Worn(depth[k], self.flank[k], self.across, self.span) for k in range(2))
         return first, second
 
 
@@ -338,7 +340,7 @@ def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int
     Raises:
         InputError: a contact stands still on a flank.
     """
-    flank, across = jax.device_get(reached(at, ways))
+    flank, across, span = jax.device_get(reached(at, ways))
     if not np.all(np.diff(flank) > 0.0):
         raise InputError(
             "one flank stands still under its contact and has no depth per turn; it is for flanks that roll"
@@ -348,14 +350,14 @@ def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int
         lanes = at.contacts.active.shape
         width = np.broadcast_to(at.contacts.width, lanes)[np.asarray(at.contacts.active)]
         strips = lanes[1] if np.ptp(width) else 1
-    return Cells(array(flank), array(across), count, strips)
+    return Cells(array(flank), array(across), array(span), count, strips)
 
 
 @program
 def reached(
     at: Conditions, ways: Float[Array, "2 pair slice node"]
-) -> tuple[Float[Array, "2 2"], Two]:
-    """First and last arc length of each flank, and place across the face, that contacts reach [m].
+) -> tuple[Float[Array, "2 2"], Two, Two]:
+    """Ends of both flanks and of the face that contacts reach, and the span of contacts [m].
 
     Args:
         at: conditions at the contacts of a whole period under load.
@@ -370,7 +372,16 @@ def reached(
         return jnp.stack([low, jnp.max(jnp.where(active, places + half, -jnp.inf))])
 
     flanks = [ends(own, 0.5 * way) for own, way in zip(contacts.flank, ways, strict=True)]
-    return jnp.stack(flanks), ends(contacts.width, reach)
+    across = ends(contacts.width, reach)
+    carried = jnp.where(active, at.load, 0.0)
+
+    def mean(half: Each) -> Array:
+        return jnp.sum(carried * jnp.where(carried > 0.0, half, 0.0)) / jnp.sum(carried)
+
+    # What lies across a line does not bend it.
+    half = at.half_width if line else at.semi_axis_along
+    aside = across[1] - across[0] if line else mean(at.semi_axis_across)
+    return jnp.stack(flanks), across, jnp.stack([mean(half), aside])
 
 
 def extents(contacts: Contacts) -> Lanes:

@@ -15,7 +15,7 @@ from pitchpoint.wear.gradients import Inputs
 from pitchpoint.wear.history import Cells, Start, Turn, reached, travelled, turn_alone
 from pitchpoint.wear.march import FIRST
 
-__all__ = ["AT_ONCE", "Worn", "worn_together"]
+__all__ = ["AT_ONCE", "Marches", "worn_together"]
 
 AT_ONCE = 16
 """Drives in one step of the loop over many: what they need stays in the cache."""
@@ -26,7 +26,7 @@ MOST_STEPS = 4096
 _DEEPEST = 1.0  # m: finite, for the search of the place where a depth is reached
 
 
-class Worn(eqx.Module):
+class Marches(eqx.Module):
     """Flanks of many drives at the end of their marches.
 
     Attributes:
@@ -54,7 +54,7 @@ def worn_together(
     turns: Float[Array, " drive"],
     depth: Float[Array, " drive"],
     tolerance: Float[Array, ""],
-) -> Worn:
+) -> Marches:
     """Flanks of many drives after so many turns, or at a depth if that comes first.
 
     The march is that of `march.after`: the same method, the same measure of its error.
@@ -89,11 +89,11 @@ def _together(
     turns: Array,
     depth: Array,
     tolerance: Array,
-) -> Worn:
-    def one(given: tuple[Inputs, Array, Array]) -> Worn:
+) -> Marches:
+    def one(given: tuple[Inputs, Array, Array]) -> Marches:
         return _worn(*given, models, cells, parts, tolerance)
 
-    found: Worn = jax.lax.map(one, (inputs, turns, depth), batch_size=AT_ONCE)
+    found: Marches = jax.lax.map(one, (inputs, turns, depth), batch_size=AT_ONCE)
     return found
 
 
@@ -105,13 +105,13 @@ def _worn(
     cells: Cells,
     parts: int,
     tolerance: Array,
-) -> Worn:
+) -> Marches:
     """Flanks of one drive."""
     design, operation, wear = inputs
     start = Start.of(design, models, parts)
     share = models.share(design, start.contacts, operation.load, start.body, start.teeth)
-    flank, across = reached(*travelled(design, operation, models, start.engaged(share)))
-    own = dataclasses.replace(cells, flank=flank, across=across)
+    flank, across, span = reached(*travelled(design, operation, models, start.engaged(share)))
+    own = dataclasses.replace(cells, flank=flank, across=across, span=span)
 
     def turn(depth: Array) -> Turn:
         return turn_alone(design, operation, models, wear, own, start, depth)
@@ -140,7 +140,7 @@ def _worn(
     ended = diffrax.is_successful(found.result) | diffrax.is_event(found.result)
     depth = found.ys[0]
     last = turn(depth)
-    return Worn(
+    return Marches(
         turns=found.ts[0],
         depth=depth,
         cells=own,
