@@ -47,13 +47,14 @@ def test_an_error_of_half_an_order_repeats_after_two_mesh_cycles(alone):
     assert float(orders[1]) < 1e-6 * float(orders[2])
 
 
-def test_the_error_of_a_motion_falls_with_its_tolerance(alone):
+def test_the_error_of_a_motion_follows_its_tolerance(alone):
+    """From one tolerance to the next it may fall by three or by thirty: steps end at kinks by chance."""
     exact = found_at(tolerance=1e-13).transmission_error
-    errors = [
-        relative(found_at(tolerance=size).transmission_error, exact)
-        for size in (1e-9, 1e-10, 1e-11)
-    ]
-    assert errors[0] < 1e-7
-    assert errors[1] < errors[0] / 10.0
-    assert errors[2] < errors[1] / 3.0
-    assert relative(alone.transmission_error, exact) < 1e-8
+
+    def error(motion):
+        return relative(motion.transmission_error, exact)
+
+    errors = {size: error(found_at(tolerance=size)) for size in (1e-8, 1e-9, 1e-11)}
+    errors[1e-10] = error(alone)
+    assert all(found < 20.0 * size for size, found in errors.items())
+    assert errors[1e-11] < errors[1e-8] / 100.0
