@@ -29,7 +29,7 @@ from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_t
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
-from pitchpoint.wear.teeth import backlash_growth, tips_of
+from pitchpoint.wear.teeth import backlash_growth, half_teeth, tips_of
 from pitchpoint.wear.together import worn_together
 
 K = 1e-16
@@ -378,6 +378,22 @@ def test_tips_lose_what_the_flank_loses_over_the_cosine_of_its_angle():
     assert tips.left(depth) == pytest.approx(tips.width - 1e-5 * tips.taken, rel=1e-12)
     depth[:, -1], depth[:, 0] = 0.0, 1e-5
     assert tips.left(depth) == pytest.approx(tips.width, rel=1e-12)
+
+
+def test_cells_lie_on_the_involutes_of_the_teeth():
+    built = pair("equal")
+    _, cells = begun(built)
+    mesh, found = built.design.mesh, half_teeth(built.design.mesh, cells)
+    base = np.asarray(mesh.base_radii)[:, None]
+    radius = np.sqrt(base**2 + 2.0 * base * np.asarray(cells.middles[0]))
+    tips, arc = np.asarray(mesh.tip_radii), np.asarray(mesh.dimensions()["tip_thickness"])
+    pressure = np.arccos(base / np.hstack([tips[:, None], radius]))
+    involute = np.tan(pressure) - pressure
+    half = (arc / (2.0 * tips))[:, None] + involute[:, :1] - involute[:, 1:]
+    assert found.half == pytest.approx(radius * np.sin(half), rel=1e-6)
+    rise = radius * np.cos(half)
+    assert found.height == pytest.approx(rise - rise.min(axis=1, keepdims=True), abs=1e-8)
+    assert found.angle == pytest.approx(pressure[:, 1:] - half, abs=1e-6)
 
 
 def test_even_wear_of_both_flanks_adds_both_depths_to_the_backlash():

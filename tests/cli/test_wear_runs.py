@@ -24,7 +24,9 @@ from pitchpoint.results.store import load
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, describe, load_case
+from pitchpoint.views.figures import Panel
 from pitchpoint.views.report import render
+from pitchpoint.views.section import Page
 from pitchpoint.views.sections.wear import WEAR as SECTION
 from pitchpoint.wear import history
 
@@ -287,6 +289,8 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     assert "not reached: 1.5 times the least rate" in page
     assert "backlash that wear adds" in page
     assert 'data-menu="wear0_flank0"' in page
+    assert "Flank as new and worn, gear 2" in page
+    assert "the march itself is not differentiated" in page
     ((name, words),) = SECTION.answer(outcome)
     assert name == "Wear"
     assert "after 3000000 turns of gear 1" in words
@@ -394,6 +398,22 @@ def test_what_has_no_teeth_has_no_limit_of_them() -> None:
     films = {"wear.law": "masjedi_khonsari_2015", "wear.load_ratio": "film", "wear.cycles": 1.0}
     with pytest.raises(InputError, match=r"wear.load_ratio: 'film' is for line contacts"):
         load_case(ball, settings={**films, "wear.hardness": "2 GPa"})
+
+
+def test_flanks_are_drawn_where_they_are_and_their_wear_magnified(outcome: Outcome) -> None:
+    """Off the new flank by so many times the depth, along its normal, at every place of the slider."""
+    panel = next(
+        one for one in SECTION.blocks(Page({"default": outcome}, {})) if isinstance(one, Panel)
+    )
+    data, (*_, driven) = outcome.parts["wear"], panel.figures
+    times = float(driven.keys[1].label.rpartition(" ")[2])
+    before, after = (np.array([one["x"], one["y"]]) for one in driven.data)
+    off = np.hypot(*(after - before)) / times * 1e3
+    deepest = data["worn_depth"].values[-1, 1, :, 0] * 1e6
+    assert sorted(off) == pytest.approx(sorted(deepest), rel=0.02, abs=0.01)
+    assert np.all(after[0] < before[0])
+    start = panel.choices[0].changes[driven.name][0]
+    assert start["x"][0] == start["x"][1] and start["y"][0] == start["y"][1]
 
 
 def test_severe_wear_by_the_pressure_is_told_with_its_factor(case: str) -> None:

@@ -34,7 +34,7 @@ from pitchpoint.views.section import Page
 from pitchpoint.views.sections.formulas import FORMULAS
 
 NAME, TREE = find("liu_xiong_torus")
-FORMULAS_BESIDE = PUBLICATIONS[TREE["source"]].beside
+FORMULAS_BESIDE = PUBLICATIONS[TREE["source"]].beside[0]
 VARIANTS = ("as_published", "physical", "standard")
 
 

@@ -26,7 +26,7 @@ from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_t
 from pitchpoint.wear.march import End, Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
 from pitchpoint.wear.stages import run_in_end, severe_start
-from pitchpoint.wear.teeth import Tips, backlash_growth, tips_of
+from pitchpoint.wear.teeth import Tips, backlash_growth, half_teeth, tips_of
 
 __all__ = ["asked", "further", "joined", "wear_part"]
 
@@ -234,11 +234,15 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 
 def _of_teeth(built: Built, depth: np.ndarray) -> dict[str, Any]:
-    """What wear leaves of the teeth in each step, where there are any."""
+    """Where the cells lie on the teeth and what wear leaves of them in each step, where there are any."""
     tips = _course(built).tips
     if tips is None:
         return {}
+    new = half_teeth(built.design.mesh, _course(built).cells)
     return {
+        "flank_half_thickness": (("member", "cell"), new.half),
+        "flank_height": (("member", "cell"), new.height),
+        "flank_angle": (("member", "cell"), new.angle),
         "worn_tip_land": (("step", "member"), np.stack([tips.left(one) for one in depth])),
         "backlash_growth": (("step",), np.array([_play(built, one) for one in depth])),
     }

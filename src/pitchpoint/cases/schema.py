@@ -28,7 +28,7 @@ from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.xu2021.table import ZoneFilms
-from pitchpoint.published.zhao2022.table import FlankWear
+from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.registry import nearest
 
 __all__ = [
@@ -1050,10 +1050,16 @@ DriveLosses = Annotated[dict[str, Loss], BeforeValidator(_at_most(20)), BeforeVa
 Formulas = Annotated[
     Annotated[TorusFormulas, Tag("motion")]
     | Annotated[ZoneFilms, Tag("films")]
-    | Annotated[FlankWear, Tag("wear")],
-    Field(discriminator=by("form", TorusFormulas, ZoneFilms, FlankWear)),
+    | Annotated[FlankWear, Tag("wear")]
+    | Annotated[ConjugateWear, Tag("conjugate wear")],
+    Field(discriminator=by("form", TorusFormulas, ZoneFilms, FlankWear, ConjugateWear)),
 ]
-_SOURCE_OF = {TorusFormulas: "liu_xiong_2017", ZoneFilms: "xu_2021", FlankWear: "zhao_2022"}
+_SOURCE_OF = {
+    TorusFormulas: "liu_xiong_2017",
+    ZoneFilms: "xu_2021",
+    FlankWear: "zhao_2022",
+    ConjugateWear: "zhao_2022",
+}
 """Bibliography entries of the papers whose equations take inputs of their own."""
 
 

@@ -12,7 +12,7 @@ from pitchpoint.programs import program
 from pitchpoint.published.publication import Point
 from pitchpoint.results.variable import Variable, angle, deviation, length, speed
 
-__all__ = ["VARIABLES", "readings"]
+__all__ = ["VARIABLES", "of_sharp_flank", "readings"]
 
 VARIABLES = {
     "phase_rate": Variable("speed of the wave over the teeth over that of the driver", "φ'/ω", "1"),
@@ -58,10 +58,12 @@ def readings(point: Point) -> dict[str, float]:
     """
     mesh = point.design.mesh
     assert isinstance(mesh, StrainWave)
-    found = _conjugate(mesh)
+    found = of_sharp_flank(mesh)
+    own = jax.device_get(_branches(mesh))["clearance"]  # where its rounded tip reaches its mate
     rate = float(found["phase_rate"])
     (deep, outer), (r_deep, r_outer) = found["angle"], found["radius"]
-    speed = np.abs(found["entrainment"][0]) * rate * float(point.operation.speed)
+    entrainment = found["rolling"][0] + found["sliding"][0] / 2.0
+    speed = np.abs(entrainment) * rate * float(point.operation.speed)
     return {
         "phase_rate": rate,
         "deep_angle_first": float(np.nanmin(deep)),
@@ -74,7 +76,7 @@ def readings(point: Point) -> dict[str, float]:
         "outer_angle_last": float(np.nanmax(outer)),
         "outer_radius_least": float(np.nanmin(r_outer)),
         "outer_radius_largest": float(np.nanmax(r_outer)),
-        "outer_clearance_least": float(np.nanmin(found["clearance"][1])),
+        "outer_clearance_least": float(np.nanmin(own[1])),
         "clearance_between": _clearance_between(mesh),
     }
 
@@ -86,16 +88,21 @@ def _clearance_between(mesh: StrainWave) -> float:
     return float(found[touching[0] : touching[-1] + 1].max())
 
 
-def _conjugate(mesh: StrainWave) -> dict[str, Any]:
-    """Points of both branches along the flank, NaN where a branch leaves one out.
+def of_sharp_flank(mesh: StrainWave) -> dict[str, np.ndarray]:
+    """Points of both branches along the flank without the rounding of its tip, [branch, place].
 
-    Clearances are those of the drive's own flank with its rounded tip, where it reaches its mate.
+    Args:
+        mesh: drive.
+
+    Returns:
+        Their arc length from the root `along` [m], flank angle `lean` [rad], `angle` from the long axis
+        [rad], relative `radius` with its sign [m], speeds of the contact over the flank and of the material
+        along it, `rolling` and `sliding` [m/rad]; NaN where a branch leaves a point out. `phase_rate` is
+        that of the wave past the teeth over the driver's.
     """
     sharp = replace(mesh, flank=replace(mesh.flank.unrelieved, tip_rounding=1e-6 * mesh.module))
-    names = ("phase_rate", "angle", "radius", "entrainment")
-    found = jax.device_get(_branches(sharp))
-    own: dict[str, Any] = jax.device_get(_branches(mesh))
-    return {**{name: found[name] for name in names}, "clearance": own["clearance"]}
+    found: dict[str, np.ndarray] = jax.device_get(_branches(sharp))
+    return found
 
 
 @program
@@ -124,6 +131,9 @@ def _branches(mesh: StrainWave) -> dict[str, Array]:
         "phase_rate": jnp.abs(mesh.motion[1] - mesh.motion[0]),
         "angle": angle,
         "radius": 1.0 / at.relative_curvature,
-        "entrainment": at.rolling + at.sliding / 2.0,
+        "along": along,
+        "lean": mesh.flank.angle(along),
+        "rolling": at.rolling,
+        "sliding": at.sliding,
         "clearance": jnp.where(jnp.real(at.place) > mesh.groove.low, clearance, jnp.nan),
     }

@@ -47,12 +47,14 @@ class Curves:
         along: variable of the places that all of them run over.
         names: variables of the courses, in the order of the columns.
         columns: what they are in words, where they are not those of the table beside them.
+        decades: drawn on a logarithmic axis.
     """
 
     title: str
     along: str
     names: tuple[str, ...]
     columns: tuple[str, ...] = ()
+    decades: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,14 +65,18 @@ class Beside:
         columns: what stands beside each other, in words.
         rows: by words for the quantity, the variable of each column; of one kind and unit.
         note: what they are, and what to see in them.
+        calibrated: which constants were set for numbers that they then meet; shown in a box of its own.
         curves: drawn under the numbers.
+        families: of one course each, drawn for all points of a sweep over each other.
         solves: by words for a solve, the variable of each column that holds its `status.Code`.
     """
 
     columns: tuple[str, ...]
     rows: Mapping[str, tuple[str, ...]]
     note: str
+    calibrated: str = ""
     curves: tuple[Curves, ...] = ()
+    families: tuple[Curves, ...] = ()
     solves: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -83,7 +89,7 @@ class Publication:
         laws: of friction, as its tables rest on them; any case may name them, no spread counts them.
         readings: each gives values by the name of their variable.
         variables: of the readings.
-        beside: those that the report sets beside each other; None for most.
+        beside: those that the report sets beside each other; none for most.
         courses: dimension of each reading that is a course, by name.
     """
 
@@ -91,7 +97,7 @@ class Publication:
     laws: tuple[FrictionLaw, ...] = ()
     readings: tuple[Reading, ...] = ()
     variables: Mapping[str, Variable] = field(default_factory=dict)
-    beside: Beside | None = None
+    beside: tuple[Beside, ...] = ()
     courses: Mapping[str, str] = field(default_factory=dict)
 
     def read(self, point: Point) -> Read:

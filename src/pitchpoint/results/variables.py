@@ -206,6 +206,9 @@ VARIABLES: dict[str, Variable] = {
     "flank_place": length("arc length on the flank", "s"),
     "across_place": length("place across the face from its middle", "y"),
     "flank_radius": length("radius of the place on the flank", "r"),
+    "flank_half_thickness": length("half thickness of the new tooth, normal section", "x"),
+    "flank_height": length("height on the tooth from the lowest place that touches", "z"),
+    "flank_angle": angle("angle between flank and axis of the tooth", "α"),
     "final_cycles": Variable("turns of the driver at the end of the march", "N end", "1"),
     "final_depth": deviation("largest depth of wear at the end", "h end"),
     "pressure_change": percent(

@@ -1,9 +1,10 @@
-"""What wear leaves of the teeth: how wide their tips are, and how much the backlash grows."""
+"""What wear leaves of the teeth: their shape, how wide their tips are, and how much the backlash grows."""
 
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Array, Float
+from numpy.polynomial.chebyshev import chebfit, chebval
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
@@ -13,7 +14,7 @@ from pitchpoint.gears.tooth_section import chebyshev_nodes
 from pitchpoint.programs import program
 from pitchpoint.wear.history import Cells, Start
 
-__all__ = ["STEEPEST", "Tips", "backlash_growth", "tips_of"]
+__all__ = ["STEEPEST", "HalfTeeth", "Tips", "backlash_growth", "half_teeth", "tips_of"]
 
 STEEPEST = np.deg2rad(60.0)
 """Angle between flank and axis of the tooth beyond which a tip is rounded."""
@@ -47,6 +48,45 @@ class Tips(NamedTuple):
         return np.asarray(self.width - self.taken * np.array(gone))
 
 
+class HalfTeeth(NamedTuple):
+    """Where the cells lie on the new teeth of both members, in the normal section.
+
+    Attributes:
+        half: thickness there from the axis of the tooth, at the middle of each cell [m].
+        height: along the axis of the tooth from root to tip, from the lowest cell on [m].
+        angle: between the flank and the axis of the tooth [rad].
+    """
+
+    half: Float[np.ndarray, "2 cell"]
+    height: Float[np.ndarray, "2 cell"]
+    angle: Float[np.ndarray, "2 cell"]
+
+
+def half_teeth(mesh: Mesh, cells: Cells) -> HalfTeeth:
+    """Half teeth of a mesh that has any, see `Mesh.toothed`.
+
+    Args:
+        mesh: with flanks as new.
+        cells: on both flanks.
+    """
+    each = [
+        _at_cells(nodes, middles)
+        for nodes, middles in zip(
+            jax.device_get(_tips(mesh)), np.asarray(cells.middles[0]), strict=True
+        )
+    ]
+    half, height, angle = np.stack(each, axis=1)
+    return HalfTeeth(half, height - height.min(axis=1, keepdims=True), angle)
+
+
+def _at_cells(nodes: tuple[Values, ...], flank: Values) -> Values:
+    """Half thickness, height and angle at arc lengths [m, m, rad]."""
+    half, height, angle, reach = nodes
+    place = (np.sqrt(np.maximum(flank, 0.0)) - reach[0]) / (reach[1] - reach[0])
+    series = chebfit(chebyshev_nodes(half.size), np.stack([half, height, angle], 1), half.size - 1)
+    return np.asarray(chebval(np.clip(2.0 * place - 1.0, -1.0, 1.0), series))
+
+
 def tips_of(mesh: Mesh, cells: Cells) -> Tips:
     """Tips of the teeth of a mesh that has any, see `Mesh.toothed`.
 
@@ -55,7 +95,7 @@ def tips_of(mesh: Mesh, cells: Cells) -> Tips:
         cells: on both flanks.
     """
     width, taken, held = [], [], []
-    for (half, angle, reach), ends in zip(
+    for (half, _, angle, reach), ends in zip(
         jax.device_get(_tips(mesh)), np.asarray(cells.flank), strict=True
     ):
         part = 0.5 * (chebyshev_nodes(half.size) + 1.0)
@@ -71,9 +111,9 @@ def tips_of(mesh: Mesh, cells: Cells) -> Tips:
 
 
 @program
-def _tips(mesh: Mesh) -> list[tuple[Array, Array, Array]]:
-    """Half thickness and angle along the flanks of both members, and the ends of these."""
-    return [(one.flank[0], one.load_angle, one.reach) for one in mesh.sections]
+def _tips(mesh: Mesh) -> list[tuple[Array, Array, Array, Array]]:
+    """Half thickness, height and angle along the flanks of both members, and the ends of these."""
+    return [(*one.flank, one.load_angle, one.reach) for one in mesh.sections]
 
 
 def backlash_growth(mesh: Mesh, cells: Cells, start: Start, depth: Values) -> float:

@@ -209,6 +209,6 @@ PUBLICATION = Publication(
         **_PLACES,
         **_STEADY_RATIOS,
     },
-    beside=_SIDE_BY_SIDE,
+    beside=(_SIDE_BY_SIDE,),
     courses=_dimensions(),
 )

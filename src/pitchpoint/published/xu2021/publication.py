@@ -167,7 +167,7 @@ PUBLICATION = Publication(
         **_of_points({"films_status": _plain("status of the films", "")}),
         **_of_points({k: v for courses in _COURSES.values() for k, v in courses.items()}),
     },
-    beside=_FILMS,
+    beside=(_FILMS,),
     courses={
         name: f"{along}_place"
         for along, courses in _COURSES.items()

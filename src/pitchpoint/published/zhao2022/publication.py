@@ -4,8 +4,16 @@ from dataclasses import replace
 
 from pitchpoint.published import conjugate
 from pitchpoint.published.publication import Beside, Curves, Publication
-from pitchpoint.published.zhao2022 import printed, wear
-from pitchpoint.results.variable import Variable, angle, deviation, length, pressure, torque
+from pitchpoint.published.zhao2022 import conjugate_wear, printed, wear
+from pitchpoint.results.variable import (
+    Variable,
+    angle,
+    deviation,
+    length,
+    pressure,
+    temperature_rise,
+    torque,
+)
 
 __all__ = ["PUBLICATION"]
 
@@ -63,6 +71,10 @@ _WEAR = {
     "depth_over_involute": _plain(
         "largest wear depth over that of involute teeth at the same point", "h/h"
     ),
+    "tip_flash": temperature_rise("flash temperature at the tip, at most", "ΔT"),
+    "contact_temperature": Variable(
+        "contact temperature at the tip, bulk and flash", "T_s", "K", "degC", "temperature"
+    ),
     "adsorbed_film_defect": _plain("fractional film defect", "ψ"),
     "wetted_share": _plain("wear depth lubricated over dry", "h/h"),
     "dry_coefficient": _plain("wear coefficient of dry flanks", "K"),
@@ -91,6 +103,18 @@ _ALONG = {
     },
 }
 
+_LOADS = {
+    "tangential_load": Variable(
+        "tangential load per face width and length of the ring", "q_t", "Pa", "MPa", "pressure"
+    ),
+    "radial_load": Variable(
+        "radial load per face width and length of the ring", "q_r", "Pa", "MPa", "pressure"
+    ),
+}
+"""Loads of new flanks along the way from the tip, eq. 13."""
+
+_DRY = "dry_flank_depth"
+
 _OVER_CYCLES = {
     "wear_course": length("largest wear depth", "h"),
     "wear_course_without_offset": length("largest wear depth without the turn of the teeth", "h"),
@@ -111,7 +135,7 @@ _PLACES = {
 }
 
 _DIMENSIONS = {
-    **{"flank_way": "flank_point", "flexspline_radius": "flank_point"},
+    **{name: "flank_point" for name in ("flank_way", "flexspline_radius", *_LOADS, _DRY)},
     **{
         f"{name}_{state}": "flank_point"
         for one in _ALONG.values()
@@ -119,6 +143,13 @@ _DIMENSIONS = {
         for state in _STATES
     },
     **{name: "wear_time" for name in ("wear_cycles", *_OVER_CYCLES)},
+    **{
+        name: "conjugate_point"
+        for name in (
+            "conjugate_way",
+            *(f"conjugate_course_{branch}" for branch in conjugate_wear.BRANCHES),
+        )
+    },
     **{name: "severe_time" for name in ("severe_course", *_UNTIL_SEVERE)},
 }
 
@@ -146,6 +177,16 @@ _CURVES = (
         for name, one in _UNTIL_SEVERE.items()
     ),
     Curves(
+        "loads of new flanks, q_t and q_r", "flank_way", tuple(_LOADS), ("tangential", "radial")
+    ),
+    Curves(
+        "wear depth over the radius after 6.28e9 cycles",
+        "flexspline_radius",
+        ("flank_depth_late", _DRY),
+        ("mixed lubrication", "dry"),
+        decades=True,
+    ),
+    Curves(
         "largest wear depth over the cycles",
         "wear_cycles",
         ("wear_course", "wear_course_without_offset"),
@@ -159,37 +200,102 @@ _CURVES = (
     ),
 )
 
-_BESIDE = Beside(
+_FAMILIES = (
+    Curves("wear depth after 6.28e9 cycles", "flank_way", ("flank_depth_late",)),
+    *(Curves(one.long_name, "wear_cycles", (name,)) for name, one in _OVER_CYCLES.items()),
+)
+"""Figures 14 to 17, 19 and 20."""
+
+_STRIPS = Beside(
     columns=tuple(_STATES.values()),
     rows={one.long_name: _states(name) for name, one in _AT_TIP.items()},
     note=(
         "Wear by the discrete model of the paper: prescribed load with its largest force at the tip, strips "
-        "one pitch step long, a coefficient that stays as it is while the load changes. Calibrated are the "
-        "wear coefficient (for 0.0557 mm), the length of the flank, the depth at which wear is severe and "
-        "the heat of adsorption (for three powers of ten to dry wear). The double-arc profile is not "
-        "published: its arcs were chosen after others, shown beside them, had missed the cycles until "
-        "severe wear. So the agreement of the default arcs shows that the printed numbers are consistent "
-        "with one simple model; it does not validate the model. With the other arcs the ratios over the "
-        "torque and the share of the turn of the teeth still come out, the order of double-arc and "
-        "involute teeth does not. Everything is uniform along the face. Dry flanks wear in the same "
-        "shape, deeper by the stated factor, which would be more than the tooth has."
+        "one pitch step long, a coefficient that stays as it is while the load changes. Double-arc and "
+        "involute teeth have the same torque, speed, hardness, coefficient and length of the worn part of "
+        "the flank; the involute is that of Table 1, the arcs are assumed. Everything is uniform along the "
+        "face. Dry flanks wear in the same shape, deeper by the stated factor, which would be more than the "
+        "tooth has. Heat of friction warms the tip by less than a kelvin. With the module grow all of the "
+        "teeth, the length of the worn part of the flank, the deflection and the depth at which wear is "
+        "severe; rim, face width, torque and the steps of the angle stay. With the face width nothing else "
+        "changes, and so the depth falls as one over it but for the change of the flank. Stresses of the "
+        "ring, Figure 18, are taken from another publication and follow from no equation of this one."
+    ),
+    calibrated=(
+        "Calibrated are the wear coefficient (for 0.0557 mm), the length of the flank (for a step of 0.021 "
+        "mm), the depth at which wear is severe (for 4e10 cycles) and the heat of adsorption (for three "
+        "powers of ten to dry wear). The double-arc profile is not published: its arcs were chosen after "
+        "others, shown beside them, had missed the cycles until severe wear. So the agreement of the "
+        "default arcs shows that the printed numbers are consistent with one simple model; it does not "
+        "validate the model. With the other arcs the ratios over the torque and the share of the turn of "
+        "the teeth still come out, the order of double-arc and involute teeth does not."
     ),
     curves=_CURVES,
+    families=_FAMILIES,
+)
+
+_ON_BRANCHES = {
+    "conjugate_depth": length("largest wear depth by the conjugate kinematics", "h"),
+    "conjugate_angle": angle("angle from the long axis where it is largest", "p"),
+    "conjugate_way": length("way from the tip where it is largest", "s"),
+}
+
+_CONJUGATE = {
+    f"{name}_{branch}": replace(one, long_name=f"{one.long_name}, {branch} branch")
+    for name, one in {
+        **_ON_BRANCHES,
+        "conjugate_course": length("wear depth along the flank by the conjugate kinematics", "h"),
+    }.items()
+    for branch in conjugate_wear.BRANCHES
+}
+
+_TOUCHING = Beside(
+    columns=tuple(f"{branch} branch" for branch in conjugate_wear.BRANCHES),
+    rows={
+        one.long_name: tuple(f"{name}_{branch}" for branch in conjugate_wear.BRANCHES)
+        for name, one in _ON_BRANCHES.items()
+    },
+    note=(
+        "Wear where the flank touches its envelope: line load times sliding over rolling of the conjugate "
+        "kinematics, with tooth forces by the cosine of the paper as it closes the torque, on points whose "
+        "relative radius is positive within 36 degrees. The specific wear rate is assumed, so that only the "
+        "shape and the comparison of teeth mean anything; flanks stay as they are, and neither a load on "
+        "asperities nor a film defect is counted beside the rate. Double-arc teeth wear where the convex "
+        "arc ends and not at the tip; involute teeth touch near the long axis alone and hardly slide there. "
+        "A positive radius is not yet contact: on the other arcs nothing of the outer branch touches (see "
+        "their clearance). [wear] in a case file marches with loads from stiffness instead."
+    ),
+    curves=(
+        Curves(
+            "wear depth along the flank by the conjugate kinematics",
+            "conjugate_way",
+            tuple(f"conjugate_course_{branch}" for branch in conjugate_wear.BRANCHES),
+        ),
+    ),
 )
 
 PUBLICATION = Publication(
     name="zhao_2022",
-    readings=(printed.readings, conjugate.readings, wear.readings),
+    readings=(
+        printed.readings,
+        conjugate.readings,
+        wear.readings,
+        conjugate_wear.readings,
+    ),
     variables={
         **_VARIABLES,
         **conjugate.VARIABLES,
         **_WEAR,
         **_PLACES,
+        **_LOADS,
+        _DRY: deviation("wear depth of dry flanks after 6.28e9 cycles", "h"),
+        **_CONJUGATE,
+        "conjugate_way": length("way from the tip along the flank", "s"),
         **_OVER_CYCLES,
         **_UNTIL_SEVERE,
         **_of_states(_AT_TIP),
         **_of_states({name: one for courses in _ALONG.values() for name, one in courses.items()}),
     },
-    beside=_BESIDE,
+    beside=(_STRIPS, _TOUCHING),
     courses=_DIMENSIONS,
 )

@@ -1,11 +1,11 @@
-"""The table [formulas] of the case: what its wear takes beside gears, torque and speed."""
+"""The tables [formulas] of the case: what its wear takes beside gears, torque and speed."""
 
 from typing import Annotated, Literal
 
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import Table
 
-__all__ = ["FlankWear"]
+__all__ = ["ConjugateWear", "FlankWear"]
 
 COEFFICIENT = Quantity("dimensionless", 0.0, 1.0, open_low=True)
 HARDNESS = Quantity("pressure", 1e7, 1e11, "MPa")
@@ -17,6 +17,10 @@ SHARE = Quantity("dimensionless", 0.0, 1.0, open_low=True)
 HEAT = Quantity("molar energy", 0.0, 1e6, "kJ/mol")
 SIZE = Quantity("length", 1e-11, 1e-8, "nm")
 PERIOD = Quantity("time", 1e-15, 1e-9, "s")
+FRICTION = Quantity("dimensionless", 0.0, 2.0)
+CONDUCTIVITY = Quantity("thermal conductivity", 0.01, 1000.0, "W/m/K")
+SPECIFIC_HEAT = Quantity("specific heat", 50.0, 5000.0, "J/kg/K")
+RATE = Quantity("specific wear rate", 0.0, 1.0, "1/Pa", open_low=True)
 
 
 class FlankWear(Table):
@@ -36,6 +40,8 @@ class FlankWear(Table):
         adsorption_heat: E_a of eq. 10.
         molecule: diameter alpha_x of an adsorbed molecule.
         vibration_period: t_0 of it.
+        friction: coefficient of the heat that warms the contacts, T_s of eq. 10.
+        conductivity, specific_heat: of the flank that the heat flows into.
     """
 
     form: Literal["wear"] = "wear"
@@ -51,3 +57,20 @@ class FlankWear(Table):
     adsorption_heat: Annotated[float, HEAT]
     molecule: Annotated[float, SIZE]
     vibration_period: Annotated[float, PERIOD]
+    friction: Annotated[float, FRICTION]
+    conductivity: Annotated[float, CONDUCTIVITY]
+    specific_heat: Annotated[float, SPECIFIC_HEAT]
+
+
+class ConjugateWear(Table):
+    """Wear of the flexspline's flank by the kinematics of its envelope, with loads by the closed cosine.
+
+    Attributes:
+        form: "conjugate wear".
+        rate: specific wear rate k.
+        cycles: after which depths are told.
+    """
+
+    form: Literal["conjugate wear"]
+    rate: Annotated[float, RATE]
+    cycles: Annotated[float, CYCLES]

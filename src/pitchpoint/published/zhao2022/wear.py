@@ -5,7 +5,7 @@ the step between two points of the flank stands for the sliding, and the coeffic
 the load. What is calibrated in it is data of the case.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import acos, log10, pi, tan
 from typing import Any
@@ -13,10 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank, Flank, InvoluteFlank
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
+from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
+from pitchpoint.programs import program
 from pitchpoint.published.publication import Point, Read
 from pitchpoint.published.zhao2022.printed import (
     ENGAGED_HEIGHT,
@@ -58,6 +60,7 @@ class Strips:
         angle: flank angle of the new flank, from the axis of the tooth to the tangent, shape (point) [rad].
         place: new flank, across the tooth and outwards from its neutral line, shape (2, point) [m].
         force: tangential, eq. 19 with its largest value at the tip, shape (point) [N].
+        load: q_t behind it, per face width and length of the ring, shape (point) [Pa].
         turn: of the tooth where the point is in mesh, eq. 27; the tip enters first, shape (point) [rad].
         step: between two points [m].
         face_width: [m].
@@ -68,6 +71,7 @@ class Strips:
     angle: Array
     place: Array
     force: Array
+    load: Array
     turn: Array
     step: float
     face_width: float
@@ -228,17 +232,19 @@ def strips_of(point: Point, flank: Flank, neutral: float) -> Strips:
     step, middle = given.flank_length * module / count, np.arange(count, dtype=np.float64) + 0.5
     angle, place = curve(step * middle)
     diameter = module * (gears.teeth[0] - ENGAGED_HEIGHT)
-    load = largest_tangential_load(
+    largest = largest_tangential_load(
         torque=float(point.operation.load),
         half_zone=HALF_ZONE,
         diameter=diameter,
         face_width=gears.face_width,
     )
+    load = largest * np.cos(pi / 2.0 * middle / count)
     pitch = 2.0 * pi / gears.teeth[0]
     made = Strips(
         angle=angle,
         place=np.stack([place.imag, place.real]),
-        force=gears.face_width * diameter / 2.0 * load * pitch * np.cos(pi / 2.0 * middle / count),
+        force=gears.face_width * diameter / 2.0 * load * pitch,
+        load=load,
         turn=deflection_offset(
             angle=HALF_ZONE * (1.0 - middle / count),
             radius=neutral,
@@ -270,6 +276,7 @@ def readings(point: Point) -> Read:
     found |= _stages(strips, rate, _limit(strips, given, gears.module))
     found |= _dry(found, point, given)
     found |= _flank_courses(strips, rate, neutral)
+    found["dry_flank_depth"] = found["flank_depth_late"] / found["wetted_share"]
     found["depth_growth"] = found["tip_depth_late"] / found["tip_depth_early"]
     if isinstance(mesh.flank, DoubleArcFlank):
         found |= _beside_involute(found["severe_wear_cycles"], strips, point, rate)
@@ -330,24 +337,53 @@ def _dry(found: dict[str, Any], point: Point, given: FlankWear) -> dict[str, Any
     assert isinstance(mesh, StrainWave)
     step = given.flank_length * gears.module / given.points
     rate = abs(float(mesh.motion[1] - mesh.motion[0])) * float(point.operation.speed)
-    passing = 2.0 * pi / gears.teeth[0] / rate
-    defect = float(
-        fractional_film_defect(
-            sliding=jnp.asarray(step / passing),
-            temperature=jnp.asarray(point.operation.temperature),
-            adsorption_heat=given.adsorption_heat,
-            molecule_diameter=given.molecule,
-            vibration_period=given.vibration_period,
-        )
-    )
+    sliding = step * rate * gears.teeth[0] / (2.0 * pi)
+    strip = {
+        "heat": array(given.friction * found["wear_pressure_new"] * sliding),
+        "half_width": array(step / 2.0),
+        "speed_a": array(sliding),
+        "speed_b": array(0.0),
+    }
+    capacity = float(point.design.solids[0].density) * given.specific_heat
+    steel = Conductor(conductivity=given.conductivity, heat_capacity=capacity)
+    flash, defect = map(float, _bare(strip, steel, point.operation.temperature, _molecules(given)))
     wetted = defect * given.asperity_share
     return {
+        "tip_flash": flash,
+        "contact_temperature": float(point.operation.temperature) + flash,
         "adsorbed_film_defect": defect,
         "dry_coefficient": given.coefficient / wetted,
         "dry_depth": found["wear_depth"] / wetted,
         "dry_orders": -log10(wetted),
         "wetted_share": wetted,
     }
+
+
+def _molecules(given: FlankWear) -> dict[str, jax.Array]:
+    """What eq. 10 takes of the adsorbed film."""
+    return {
+        "adsorption_heat": array(given.adsorption_heat),
+        "molecule_diameter": array(given.molecule),
+        "vibration_period": array(given.vibration_period),
+    }
+
+
+@program
+def _bare(
+    strip: Mapping[str, jax.Array],
+    flank: Conductor,
+    bulk: jax.Array,
+    molecules: Mapping[str, jax.Array],
+) -> tuple[jax.Array, jax.Array]:
+    """Flash temperature of a strip [K] and the film defect that it is warm enough for, eq. 10.
+
+    One flank passes the strip at the speed of sliding and takes all the heat, the other stays under it; the
+    limit of fast surfaces makes it warmer than it is.
+    """
+    flash = shared_flash(**strip, bodies=(flank, flank))
+    warm = bulk + flash
+    bare = fractional_film_defect(sliding=strip["speed_a"], temperature=warm, **molecules)
+    return flash, bare
 
 
 def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any]:
@@ -357,7 +393,12 @@ def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any
         strips.step * (np.arange(count, dtype=np.float64) + 0.5),
         neutral + strips.place[1],
     )
-    found: dict[str, Any] = {"flank_way": _spread(way), "flexspline_radius": _spread(radius)}
+    found: dict[str, Any] = {
+        "flank_way": _spread(way),
+        "flexspline_radius": _spread(radius),
+        "tangential_load": _spread(strips.load),
+        "radial_load": _spread(strips.load * np.tan(strips.angle)),
+    }
     for name, cycles in {"new": 0.0, **LATER}.items():
         last = marched(strips, rate=rate, cycles=cycles)
         held = last.cycles[-1] >= cycles * (1.0 - 1e-12)

@@ -18,6 +18,7 @@ from pitchpoint.views.figures import (
     Figure,
     Key,
     Panel,
+    Trace,
     display,
     layout,
     plain,
@@ -28,10 +29,18 @@ from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, T
 
 __all__ = ["FORMULAS"]
 
+_WIDE = 6
+"""Columns of numbers that a table has room for."""
 
-def _beside(page: Page) -> Beside | None:
+_MANY = 1e6
+"""Cycles from which on an axis counts them in powers of ten."""
+
+
+def _besides(page: Page) -> tuple[Beside, ...]:
+    """What the publication sets beside each other, as far as a study holds it."""
     source = page.first.get("source", "")
-    return PUBLICATIONS[source].beside if source in PUBLICATIONS else None
+    every = PUBLICATIONS[source].beside if source in PUBLICATIONS else ()
+    return tuple(one for one in every if _studies(page, one))
 
 
 def _studies(page: Page, beside: Beside) -> list[xr.Dataset]:
@@ -73,15 +82,17 @@ def _points(data: xr.Dataset, beside: Beside) -> list[_Told]:
 
 
 def _blocks(page: Page) -> Iterator[Block]:
-    beside = _beside(page)
-    assert beside is not None
-    yield Paragraph(beside.note, "note")
-    for position, data in enumerate(_studies(page, beside)):
-        yield Heading(str(data.attrs["title"]))
-        yield _table(data, beside)
-        yield from _solves(data, beside)
-        panel = _panel(f"formulas{position}", data, beside)
-        yield from [panel] if panel.figures else []
+    for number, beside in enumerate(_besides(page)):
+        yield Paragraph(beside.note, "note")
+        if beside.calibrated:
+            yield Paragraph(beside.calibrated, "warning")
+        for position, data in enumerate(_studies(page, beside)):
+            yield Heading(str(data.attrs["title"]))
+            yield _table(data, beside)
+            yield from _solves(data, beside)
+            name = f"formulas{number}_{position}"
+            panels = _panel(name, data, beside), _families(f"{name}_all", data, beside)
+            yield from (panel for panel in panels if panel.figures)
 
 
 def _solves(data: xr.Dataset, beside: Beside) -> Iterator[Block]:
@@ -120,6 +131,40 @@ def _changed(one: Curves, data: xr.Dataset, point: int) -> dict[str, list[Any]]:
     return {**x, "y": [_shown(name, data, point) for name in one.names]}
 
 
+def _families(name: str, data: xr.Dataset, beside: Beside) -> Panel:
+    """Courses of all points of a sweep over each other; empty without a sweep, or beyond all colours."""
+    places = _places(data)
+    if not 1 < len(places) <= len(PALETTE):
+        return Panel("", [])
+    there = [one for one in beside.families if all(each in data for each in one.names)]
+    return Panel("", [_family(f"{name}{k}", one, data, places) for k, one in enumerate(there)])
+
+
+def _family(name: str, one: Curves, data: xr.Dataset, places: list[str]) -> Figure:
+    """A course at each point of a sweep."""
+    (variable,) = one.names
+    keys = [Key(place, PALETTE[k]) for k, place in enumerate(places)]
+    traces = [
+        plain(
+            key,
+            _shown(one.along, data, point),
+            _shown(variable, data, point),
+            show.unit_of(variable),
+        )
+        for point, key in enumerate(keys)
+    ]
+    return _drawn(name, one, traces, keys)
+
+
+def _drawn(name: str, one: Curves, traces: list[Trace], keys: list[Key]) -> Figure:
+    scales: dict[str, Any] = {"yaxis": {"type": "log"}} if one.decades else {}
+    if max(filter(None, traces[0]["x"]), default=0.0) > _MANY:
+        scales["xaxis"] = {"exponentformat": "power", "separatethousands": False}
+    axes = layout(show.axis_title(one.along), short_axis(one.names[0]), **scales)
+    title = one.title[0].upper() + one.title[1:]
+    return Figure(name, title, traces, axes, keys=tuple(keys), missing="No numbers were found.")
+
+
 def _shown(name: str, data: xr.Dataset, point: int) -> list[Any]:
     return rounded(display(name, data[name].values[point]))
 
@@ -135,22 +180,28 @@ def _figure(name: str, one: Curves, data: xr.Dataset, beside: Beside) -> Figure:
     ]
     for trace in traces:
         trace["line"]["width"] = 1  # of vibrations that lie close
-    axes = layout(show.axis_title(one.along), short_axis(one.names[0]))
-    title = one.title[0].upper() + one.title[1:]
-    return Figure(name, title, traces, axes, keys=tuple(keys), missing="No numbers were found.")
+    return _drawn(name, one, traces, keys)
 
 
 def _table(data: xr.Dataset, beside: Beside) -> Table:
-    columns = [
-        ", ".join(filter(None, (place, told))) for place in _places(data) for told in beside.columns
+    """Points of a sweep side by side, or below each other where they are many."""
+    places, rows = _places(data), _rows(data, beside).items()
+    if len(places) * len(beside.columns) > _WIDE:
+        long = [
+            (f"{_titled(told, names[0])}, {place}", *_cells(data, names, point))
+            for told, names in rows
+            for point, place in enumerate(places)
+        ]
+        return Table(["Quantity", *beside.columns], long)
+    heads = [", ".join(filter(None, (place, told))) for place in places for told in beside.columns]
+    wide = [
+        (
+            _titled(told, names[0]),
+            *(cell for point in range(len(places)) for cell in _cells(data, names, point)),
+        )
+        for told, names in rows
     ]
-    return Table(
-        ["Quantity", *columns],
-        [
-            (_titled(told, names[0]), *_cells(data, names))
-            for told, names in _rows(data, beside).items()
-        ],
-    )
+    return Table(["Quantity", *heads], wide)
 
 
 def _titled(told: str, name: str) -> str:
@@ -158,12 +209,11 @@ def _titled(told: str, name: str) -> str:
     return f"{told} [{unit}]" if unit else told
 
 
-def _cells(data: xr.Dataset, names: tuple[str, ...]) -> Iterator[str]:
-    for point in range(data.sizes["point"]):
-        for name in names:
-            value = float(data[name].values[0, point])
-            known = np.isfinite(value)
-            yield show.quantity(name, value, with_unit=False) if known else "not found"
+def _cells(data: xr.Dataset, names: tuple[str, ...], point: int) -> Iterator[str]:
+    for name in names:
+        value = float(data[name].values[0, point])
+        known = np.isfinite(value)
+        yield show.quantity(name, value, with_unit=False) if known else "not found"
 
 
 def _places(data: xr.Dataset) -> list[str]:
@@ -178,8 +228,7 @@ def _places(data: xr.Dataset) -> list[str]:
 
 
 def _lacks(page: Page) -> str | None:
-    beside = _beside(page)
-    return "" if beside is None or not _studies(page, beside) else None
+    return None if _besides(page) else ""
 
 
 FORMULAS = Section(

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,6 +10,7 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
+    GREY,
     INK,
     PALETTE,
     Choice,
@@ -40,6 +42,9 @@ from pitchpoint.wear.stages import SEVERE, SEVERE_BY
 __all__ = ["WEAR"]
 
 _NONE = "No depth is known here."
+
+_DRAWN = 0.15
+"""Largest depth as it is drawn, over the height of a flank."""
 
 _DEPENDS = 5e-4
 """Relative change over that of an input from which on it is told."""
@@ -85,7 +90,8 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
         yield Heading("What the depth depends on")
         yield Paragraph(
             "By how much the largest depth per turn of flanks as new changes with 1 % more of an input "
-            "alone, by derivatives; the cycles to a depth change by as much the other way. Temperatures "
+            "alone, by derivatives. The cycles to a depth change by as much the other way as long as worn "
+            "flanks share the load as new ones do; the march itself is not differentiated. Temperatures "
             "count from absolute zero.",
             "note",
         )
@@ -191,8 +197,10 @@ def _places(data: xr.Dataset, member: int) -> tuple[str, np.ndarray]:
 
 
 def _flanks(name: str, data: xr.Dataset) -> Panel:
-    """Depth along both flanks, with the cycles to slide."""
+    """Depth along both flanks and the teeth before and after, with the cycles to slide."""
     figures = [_flank(f"{name}_flank{k}", data, k) for k in range(2)]
+    if "flank_height" in data:
+        figures += [_tooth(f"{name}_tooth{k}", data, k) for k in range(2)]
     choices = [_choice(figures, data, step) for step in range(data.sizes["step"])]
     last = len(choices) - 1
     return Panel("", figures, choices=choices, menu="Turns", slides=True, at=last)
@@ -200,11 +208,17 @@ def _flanks(name: str, data: xr.Dataset) -> Panel:
 
 def _choice(figures: list[Figure], data: xr.Dataset, step: int) -> Choice:
     turns = float(data["cycles"][step])
+    drawn = [(lines, member) for lines in (_lines, _outlines) for member in range(2)]
     changes = {
-        figure.name: [{"y": [line["y"] for line in _lines(data, k, step)]}, {}]
-        for k, figure in enumerate(figures)
+        figure.name: [_moved(lines(data, member, step)), {}]
+        for figure, (lines, member) in zip(figures, drawn, strict=False)
     }
     return Choice(f"{turns:.3g}", changes)
+
+
+def _moved(lines: list[Trace]) -> dict[str, list[Any]]:
+    """Places of lines, for a choice."""
+    return {axis: [line[axis] for line in lines] for axis in ("x", "y")}
 
 
 def _flank(name: str, data: xr.Dataset, member: int) -> Figure:
@@ -235,6 +249,54 @@ def _lines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
         plain(key, display(place, x[order]), display("worn_depth", values[order]), unit)
         for key, values in each
     ]
+
+
+def _tooth(name: str, data: xr.Dataset, member: int) -> Figure:
+    """Half a tooth before and after, its wear magnified."""
+    look = layout(
+        f"from the axis of the tooth [{show.unit_of('flank_half_thickness')}]",
+        short_axis("flank_height", data),
+        yaxis={"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"},
+        xaxis={"constrain": "domain"},
+    )
+    title = f"Flank as new and worn, {_members(data)[member]}"
+    keys = _before_and_after(data)
+    lines = _outlines(data, member, data.sizes["step"] - 1)
+    return Figure(name, title, lines, look, "In the normal section.", keys, _NONE)
+
+
+def _before_and_after(data: xr.Dataset) -> tuple[Key, Key]:
+    return Key("as new", GREY), Key(f"worn, depth times {_magnified(data):g}", INK)
+
+
+def _outlines(data: xr.Dataset, member: int, step: int) -> list[Trace]:
+    """The flank as new, and what a step leaves of it where most is gone across the face."""
+    half, height, angle = (
+        data[name].values[member]
+        for name in ("flank_half_thickness", "flank_height", "flank_angle")
+    )
+    gone = _magnified(data) * data["worn_depth"].values[step, member].max(axis=1)
+    order, unit = np.argsort(height), show.unit_of("flank_height")
+    return [
+        plain(
+            key,
+            display("flank_half_thickness", (half - off * np.cos(angle))[order]),
+            display("flank_height", (height - off * np.sin(angle))[order]),
+            unit,
+        )
+        for key, off in zip(_before_and_after(data), (0.0 * gone, gone), strict=True)
+    ]
+
+
+def _magnified(data: xr.Dataset) -> float:
+    """How much larger depths are drawn than they are, at all cycles alike: 1, 2 or 5 times a power of ten."""
+    deepest = float(data["worn_depth"].values.max())
+    if deepest == 0.0:
+        return 1.0
+    height = float(np.ptp(data["flank_height"].values, axis=1).min())
+    wanted = max(_DRAWN * height / deepest, 1.0)
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(power * max(one for one in (1.0, 2.0, 5.0) if one * power <= wanted))
 
 
 def _map(name: str, data: xr.Dataset, member: int) -> Figure:
