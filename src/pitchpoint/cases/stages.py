@@ -36,7 +36,7 @@ from pitchpoint.results.variable import End
 
 __all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
 
-_SHARED = ("materials", "models")
+_SHARED = ("materials", "models", "strength")
 """Tables that stages share key by key; of the others a stage has its own or that of the drive."""
 
 _OF_STAGE = ("lubricant", "roughness", "housing")

@@ -17,6 +17,7 @@ from pitchpoint.contact.worn import new_and_worn, with_worn
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.on_balls import Body
+from pitchpoint.gears.rated_pair import RatedPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
 
@@ -148,6 +149,7 @@ class Mesh(eqx.Module):
         pitch_point: of the class; True if it has a `reference`.
         shape: of the class; that of all its contacts.
         toothed: of the class; True if `sections` holds teeth that yield.
+        rated: of the class; True if it has a `rated_pair`.
         along_action: of the class; True if it has a `line_of_action`.
         couples: of the class; True if bodies under the teeth couple them, see `body_compliance`.
         counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
@@ -159,6 +161,7 @@ class Mesh(eqx.Module):
     pitch_point: ClassVar[bool] = False
     shape: ClassVar[Shape] = "line"
     toothed: ClassVar[bool] = False
+    rated: ClassVar[bool] = False
     along_action: ClassVar[bool] = False
     couples: ClassVar[bool] = False
     counts: ClassVar[Path] = "turn"
@@ -352,6 +355,16 @@ class Mesh(eqx.Module):
     def standardised(self) -> bool:
         """True if the standards for cylindrical gears apply."""
         return False
+
+    @property
+    def bare(self) -> Self:
+        """The same gears with their dimensions alone, so that many share a program that asks no more."""
+        return self
+
+    @property
+    def rated_pair(self) -> RatedPair:
+        """What standards for the strength of cylindrical gears ask, of families that say so, see `rated`."""
+        raise self._without("teeth that a standard rates")
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"]:
         """Moments of inertia of plain bodies about their axes [kg m2], masses of those that travel [kg].
