@@ -44,14 +44,14 @@ Numbers = Mapping[str, np.ndarray]
 
 def _unrated(built: Ready) -> str | None:
     """Why there are no teeth to rate."""
-    if any(one.design.mesh.rated for one in built.meshes):
+    if any(one.case.gears.rated for one in built.meshes):
         return None
     return "ISO 6336 rates pairs of cylindrical gears, and these are none"
 
 
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
-    stages = [one for one in _stages(built) if one[1].design.mesh.rated]
+    stages = [one for one in _stages(built) if one[1].case.gears.rated]
     each = [_rating(one) for _, one in stages]
     several = isinstance(built, BuiltDrive)
     values = {name: np.stack([found[name] for found in each]) for name in each[0]}

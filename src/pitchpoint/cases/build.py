@@ -394,7 +394,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
             film_model(case.film, [one.record for one in used], None)
             height_maps(case.film)
         check_wear(case, mesh, used)
-        check_strength(case, mesh, used)
+        check_strength(case, used)
     except InputError as error:
         raise error.at(file=document.name) from None
     design = Design(

@@ -11,7 +11,6 @@ from pitchpoint._jax import array
 from pitchpoint.cases.schema import Case, StrengthTable
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.errors import InputError
-from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials.lubricants import LubricantRecord
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.strength.flank import NO_MODIFICATION
@@ -20,9 +19,10 @@ from pitchpoint.strength.load_factors import CLASSES
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
 from pitchpoint.strength.treatments import PLASTIC, TREATMENTS, Treatment
 
-__all__ = ["Rated", "check_strength", "rated_case"]
+__all__ = ["UNRATED", "Rated", "check_strength", "rated_case"]
 
 _SOURCES = ("iso_6336_2_2019", "iso_6336_3_2019", "iacs_m56_2021")
+UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, and these are none; leave it out"
 _ASSUMED_CLASS = 7
 _ROOT_ROUGHNESS = 10e-6  # Rz of the test gears [m]
 _RZ_PER_RA = 6.0  # ISO 6336-2:2006, 12.3; IACS UR M56, 2.10 c
@@ -70,21 +70,17 @@ class Rated:
         return Duty(array(load), array(speed), array(cycles[0]), array(cycles[1]))
 
 
-def check_strength(case: Case, mesh: Mesh, used: Used) -> None:
+def check_strength(case: Case, used: Used) -> None:
     """InputError for a table that these gears have no use for, or a limit without its treatment.
 
     Args:
         case: whole.
-        mesh: of its gears.
         used: materials of both.
     """
     if case.strength is None:
         return
-    if not mesh.rated:
-        told = (
-            "was given; ISO 6336 rates pairs of cylindrical gears, and these are none; leave it out"
-        )
-        raise InputError(told, key="strength")
+    if not case.gears.rated:
+        raise InputError(UNRATED, key="strength")
     _treatments(case.strength, used)
 
 

@@ -149,7 +149,6 @@ class Mesh(eqx.Module):
         pitch_point: of the class; True if it has a `reference`.
         shape: of the class; that of all its contacts.
         toothed: of the class; True if `sections` holds teeth that yield.
-        rated: of the class; True if it has a `rated_pair`.
         along_action: of the class; True if it has a `line_of_action`.
         couples: of the class; True if bodies under the teeth couple them, see `body_compliance`.
         counts: of the class; what `Contacts.path` counts, a key of `PATHS`.
@@ -161,7 +160,6 @@ class Mesh(eqx.Module):
     pitch_point: ClassVar[bool] = False
     shape: ClassVar[Shape] = "line"
     toothed: ClassVar[bool] = False
-    rated: ClassVar[bool] = False
     along_action: ClassVar[bool] = False
     couples: ClassVar[bool] = False
     counts: ClassVar[Path] = "turn"
@@ -363,7 +361,7 @@ class Mesh(eqx.Module):
 
     @property
     def rated_pair(self) -> RatedPair:
-        """What standards for the strength of cylindrical gears ask, of families that say so, see `rated`."""
+        """What standards for the strength of cylindrical gears ask, see `GearsTable.rated`."""
         raise self._without("teeth that a standard rates")
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"]:

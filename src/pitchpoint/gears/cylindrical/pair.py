@@ -2,7 +2,7 @@
 
 import dataclasses
 from math import pi
-from typing import ClassVar, Self
+from typing import Self
 
 from jaxtyping import Array, Float
 
@@ -23,8 +23,6 @@ class CylindricalPair(InvolutePair):
     A contact line enters the plane of action at one end face and leaves at the other; a spur pair has
     one slice, a line over the whole face, unless its surfaces change across the face.
     """
-
-    rated: ClassVar[bool] = True
 
     @property
     def bare(self) -> Self:
