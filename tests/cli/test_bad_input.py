@@ -153,6 +153,24 @@ cells = 20
 phases = 8
 tolerance = 1e-3
 
+[strength]
+application_factor = 1.25
+dynamic_factor = 1.1
+face_load_factor = 1.3
+transverse_load_factor = 1.1
+root_face_load_factor = 1.2
+root_transverse_load_factor = 1.1
+accuracy_class = 6
+profile_correction = 1.0
+life = "20000 h"
+sigma_hlim = "1500 MPa"
+sigma_flim = ["500 MPa", "460 MPa"]
+treatment = "case_hardened"
+work_hardening = 1.0
+mean_stress_factor = 0.7
+flank_roughness = "3 um"
+root_roughness = ["10 um", "16 um"]
+
 [studies.scan]
 title = "a sweep"
 sweep = { key = "gears.module", start = "1.9 mm", stop = "2.1 mm", count = 2 }

@@ -29,7 +29,7 @@ from pitchpoint.views.report import render
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COLUMNS = ["quantity", "where", "printed", "computed", "tolerance", "kind", "verdict", "reason"]
 COLUMNS += ["unit", "bound"]
-PARTS = {"teeth", "cycle", "operation", "laws", "loss_map", "back_driving"}
+PARTS = {"teeth", "cycle", "operation", "laws", "strength", "loss_map", "back_driving"}
 
 TINY = """
 title = "A [bold]pair[/bold] of <b>gears</b>"

@@ -44,7 +44,7 @@ seal_torque = "0.5 N m"
 count = 2
 temperatures = ["60 degC"]
 """
-PARTS = ["operation", "laws", "torsion", "study_sweep_operation_speed"]
+PARTS = ["operation", "laws", "strength", "torsion", "study_sweep_operation_speed"]
 PARTS += ["study_sweep_stages_1_gears_profile_shift_1", "running", "loss_map", "back_driving"]
 SWEEPS = ["--sweep", "operation.speed=500 rpm:1500 rpm:2"]
 SWEEPS += ["--sweep", "stages.1.gears.profile_shift.1=0:0.3:2"]
@@ -115,8 +115,8 @@ def test_a_seal_at_the_output_is_what_starts_the_drive(folder: Path) -> None:
 
 def test_a_sweep_holds_the_operating_point(folder: Path) -> None:
     where = folder / "out" / "default"
-    point, speeds = load(where / "operation.nc"), load(where / f"{PARTS[3]}.nc")
-    shifts = load(where / f"{PARTS[4]}.nc")
+    point, speeds = load(where / "operation.nc"), load(where / f"{PARTS[4]}.nc")
+    shifts = load(where / f"{PARTS[5]}.nc")
     for name in ("mean_efficiency", "torque_ripple", "stage_loss"):
         expected = point[name].values[:, 0]
         np.testing.assert_allclose(speeds[name].values[:, -1], expected, rtol=1e-10)

@@ -16,6 +16,7 @@ from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.running import RUNNING
+from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import STUDIES
 from pitchpoint.analyses.teeth import TEETH
 from pitchpoint.analyses.torsion import TORSION
@@ -31,6 +32,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     CYCLE,
     OPERATION,
     LAWS_THERE,
+    STRENGTH,
     FILM,
     FINITE_FILM,
     FILM_SQUEEZE,

@@ -36,6 +36,7 @@ from pitchpoint.cases.solids import (
     solids_in_use,
     surrounded,
 )
+from pitchpoint.cases.strength import Rated, check_strength, rated_case
 from pitchpoint.cases.wear import check_wear
 from pitchpoint.cases.worn import with_wear
 from pitchpoint.contact.contacts import TOUCH, Shape
@@ -184,6 +185,11 @@ class Built:
         """The law of the load on asperities; None without one."""
         law = ASPERITY_LOAD[self.case.models.asperity_load]
         return None if law.name == "none" else law
+
+    @property
+    def rated(self) -> Rated:
+        """The case as a rating of its strength takes it."""
+        return rated_case(self.case, self.solids, self.lubricant, self.design.roughness)
 
     @property
     def law_names(self) -> list[str]:
@@ -388,6 +394,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
             film_model(case.film, [one.record for one in used], None)
             height_maps(case.film)
         check_wear(case, mesh, used)
+        check_strength(case, used)
     except InputError as error:
         raise error.at(file=document.name) from None
     design = Design(

@@ -38,6 +38,7 @@ _TABLES = (
     "film",
     "wear",
     "worn",
+    "strength",
     "loss_map",
     "formulas",
 )
@@ -184,7 +185,7 @@ def _models(built: BuiltDrive, document: Document) -> Iterator[Row]:
             yield _in_stage(row, number, given=given)
 
 
-_OF_STAGE = ("materials", "lubricant", "roughness", "losses")
+_OF_STAGE = ("materials", "lubricant", "roughness", "losses", "strength")
 """Tables that a stage may have of its own, beside gears and models."""
 
 

@@ -114,6 +114,13 @@ WEAR_PRESSURE = Quantity("dimensionless", 1.0, 1000.0, open_low=True)
 ADSORPTION_HEAT = Quantity("molar energy", 0.0, 1e6, "kJ/mol")
 MOLECULE = Quantity("length", 1e-11, 1e-7, "nm")
 VIBRATION = Quantity("time", 1e-15, 1e-6, "s")
+LOAD_FACTOR = Quantity("dimensionless", 1.0, 10.0)
+ACCURACY = Quantity("dimensionless", 3, 8, whole=True)
+LIFE = Quantity("time", 0.0, 4e9, "h", open_low=True)
+ENDURED = Quantity("pressure", 1e6, 1e10, "MPa")
+HARDENING = Quantity("dimensionless", 0.5, 2.0)
+REVERSED = Quantity("dimensionless", 0.1, 1.0)
+PEAK_TO_VALLEY = Quantity("length", 0.0, 4e-4, "um", open_low=True)
 INSTANTS = Quantity("dimensionless", 2, 20_000, whole=True)
 ON_PATH = Quantity("dimensionless", 0.0, 40.0)
 
@@ -230,6 +237,12 @@ def _wear_laws() -> list[str]:
     from pitchpoint.wear.laws import WEAR_LAWS
 
     return list(WEAR_LAWS)
+
+
+def _treatments() -> list[str]:
+    from pitchpoint.strength.treatments import TREATMENTS
+
+    return list(TREATMENTS)
 
 
 def _viscosities() -> list[str]:
@@ -1105,6 +1118,48 @@ class WornTable(Table):
     cycles: Annotated[float, WORN_TURNS] | None = None
 
 
+_TREATMENT = named(_treatments, "heat treatment")
+
+
+def _of_both(value: Any) -> tuple[str, str]:
+    """Heat treatments of gear 1 and gear 2 from one name or a list of two."""
+    given = value if isinstance(value, list | tuple) else [value, value]
+    if len(given) != 2:
+        raise InputError(
+            f"{shown(value)} has {len(given)} values; give one for both gears, or a list of two"
+        )
+    return _TREATMENT(given[0]), _TREATMENT(given[1])
+
+
+class StrengthTable(Table):
+    """What the strength of a pair of cylindrical gears depends on beside its dimensions and its load.
+
+    Load factors are at least 1: `application_factor` K_A, `dynamic_factor` K_v, `face_load_factor` K_Hbeta,
+    `transverse_load_factor` K_Halpha, and those of the root. Without a K_v it follows by method C for gears
+    of `accuracy_class` of ISO 1328-1. `sigma_hlim` and `sigma_flim` take the place of those of the
+    materials, for plastics at the temperature and life of the case; steels then say their `treatment`.
+    Without a `life` the teeth are to endure. `mean_stress_factor` is below 1 for teeth that are loaded both
+    ways, 0.7 for the same load. Roughness is Rz.
+    """
+
+    application_factor: Annotated[float, LOAD_FACTOR] | None = None
+    dynamic_factor: Annotated[float, LOAD_FACTOR] | None = None
+    face_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    transverse_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    root_face_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    root_transverse_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    accuracy_class: Annotated[float, ACCURACY] | None = None
+    profile_correction: Annotated[float, LOAD_FACTOR] | None = None
+    life: Annotated[float, LIFE] | None = None
+    sigma_hlim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
+    sigma_flim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
+    treatment: Annotated[tuple[str, str], BeforeValidator(_of_both)] | None = None
+    work_hardening: Annotated[tuple[float, float], Pair(HARDENING)] | None = None
+    mean_stress_factor: Annotated[tuple[float, float], Pair(REVERSED)] | None = None
+    flank_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
+    root_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
+
+
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
 Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
@@ -1128,6 +1183,7 @@ class Case(Table):
     film: FilmTable | None = None
     wear: WearTable | None = None
     worn: WornTable | None = None
+    strength: StrengthTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
     formulas: Formulas | None = None
@@ -1198,6 +1254,7 @@ class StageTable(Table):
     lubricant: Oil | None = None
     roughness: Surface | None = None
     models: Choices = Choices()
+    strength: StrengthTable | None = None
     losses: Losses = Field(default_factory=dict)
     place: Annotated[float, PLACE] = 0.0
     turn: Annotated[float, TURN] = 0.0
@@ -1247,6 +1304,7 @@ class DriveCase(Table):
     models: Choices = Choices()
     housing: Housing = Housing()
     losses: DriveLosses = Field(default_factory=dict)
+    strength: StrengthTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
     targets: Targets = ()

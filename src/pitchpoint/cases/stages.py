@@ -25,6 +25,7 @@ from pitchpoint.cases.document import STAGES, Document, Provenance, Tree
 from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, StageTable, validated
+from pitchpoint.cases.strength import UNRATED
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import InputError
@@ -36,7 +37,7 @@ from pitchpoint.results.variable import End
 
 __all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
 
-_SHARED = ("materials", "models")
+_SHARED = ("materials", "models", "strength")
 """Tables that stages share key by key; of the others a stage has its own or that of the drive."""
 
 _OF_STAGE = ("lubricant", "roughness", "housing")
@@ -275,6 +276,7 @@ def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> Buil
         with _told_of_stage(document, number):
             alone.append(validated(Case, inside))
     _check_laws(alone)
+    _check_rated(case, alone)
     alone = _following(alone, document)
     points = _points(case.operation, alone, document)
     built = []
@@ -312,12 +314,13 @@ def _of_stage(case: DriveCase, document: Document, number: int) -> Document:
     """A stage as a case of its own: its tables, and those of the drive for what it leaves out."""
     whole, stage = document.tree, document.tree[STAGES][str(number)]
     tree: Tree = {key: stage.get(key, whole[key]) for key in _OF_STAGE if key in {*stage, *whole}}
-    both = {key: {**whole.get(key, {}), **stage.get(key, {})} for key in _SHARED}
+    gears = case.stages[str(number)].gears
+    shared = {key: whole.get(key, {}) for key in _SHARED if gears.rated or key != "strength"}
+    both = {key: {**shared.get(key, {}), **stage.get(key, {})} for key in _SHARED}
     tree |= {key: table for key, table in both.items() if table}
     tree |= {key: stage[key] for key in ("gears", "losses") if key in stage}
-    load = case.stages[str(number)].gears.load
     kept = {key: whole["operation"][key] for key in ("speed", "temperature")}
-    tree["operation"] = {**kept, load: SIValue(case.operation.load)}
+    tree["operation"] = {**kept, gears.load: SIValue(case.operation.load)}
     if "driver" in stage:
         tree["operation"]["driver"] = stage["driver"]
     return Document(document.name, tree, _marks(document.provenance, number, stage))
@@ -375,6 +378,12 @@ def _check_laws(alone: Sequence[Case]) -> None:
                 "stands beside each of them, or as many",
                 key=_key(number, "models.friction"),
             )
+
+
+def _check_rated(case: DriveCase, alone: Sequence[Case]) -> None:
+    """InputError for a table on strength that no stage has a use for."""
+    if case.strength is not None and not any(one.gears.rated for one in alone):
+        raise InputError(UNRATED, key="strength")
 
 
 def _following(alone: Sequence[Case], document: Document) -> list[Case]:

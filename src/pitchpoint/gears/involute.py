@@ -323,6 +323,22 @@ class InvoluteGear(eqx.Module):
         tangent = space - jnp.arctan(form / base)
         return tangent, tangent + jnp.arctan((form - self.fillet_radius * self.module) / base)
 
+    def ring_tangent(self, angle: float | Float[Array, ""]) -> Float[Array, "3"]:
+        """Where the tangent to the fillet of a ring makes an angle with the middle of the tooth.
+
+        Args:
+            angle: between that of the flank and a right angle [rad].
+
+        Returns:
+            Distance from the middle of the tooth, along it from the axis of the ring, and radius [m].
+        """
+        rounding = self.fillet_radius * self.module
+        distance = jnp.abs(self.root_radius) - rounding
+        centre = self.pitch_half_angle - self._ring_fillet_angles[1]
+        across = distance * jnp.sin(centre) - rounding * jnp.cos(angle)
+        along = distance * jnp.cos(centre) + rounding * jnp.sin(angle)
+        return jnp.stack([across, along, rounding])
+
     @property
     def root_land_angle(self) -> Float[Array, ""]:
         """Half the angle of the root circle between two fillets [rad]; negative if they do not fit."""

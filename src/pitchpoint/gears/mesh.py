@@ -17,6 +17,7 @@ from pitchpoint.contact.worn import new_and_worn, with_worn
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.on_balls import Body
+from pitchpoint.gears.rated_pair import RatedPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.materials.solids import Solid
 
@@ -352,6 +353,16 @@ class Mesh(eqx.Module):
     def standardised(self) -> bool:
         """True if the standards for cylindrical gears apply."""
         return False
+
+    @property
+    def bare(self) -> Self:
+        """The same gears with their dimensions alone, so that many share a program that asks no more."""
+        return self
+
+    @property
+    def rated_pair(self) -> RatedPair:
+        """What standards for the strength of cylindrical gears ask, see `GearsTable.rated`."""
+        raise self._without("teeth that a standard rates")
 
     def inertia(self, density: Float[Array, "2"]) -> Float[Array, " dof"]:
         """Moments of inertia of plain bodies about their axes [kg m2], masses of those that travel [kg].

@@ -54,6 +54,7 @@ class GearsTable(Table):
         load: what the loaded member takes.
         carries: that in words.
         transmits: False for a test rig.
+        rated: True if standards rate the strength of their teeth, see `Mesh.rated_pair`.
         friction, film_thickness, load_sharing: laws where none are given.
         meaningless: by key of the models why they say nothing about these gears.
         drivers: members that may drive, the usual one first.
@@ -65,6 +66,7 @@ class GearsTable(Table):
     load: ClassVar[Load] = "torque"
     carries: ClassVar[str] = "gears carry a torque"
     transmits: ClassVar[bool] = True
+    rated: ClassVar[bool] = False
     friction: ClassVar[str] = "constant"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
     damping_ratio: ClassVar[float] = 0.1

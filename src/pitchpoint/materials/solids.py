@@ -125,6 +125,9 @@ class SolidRecord:
         service_limit: temperature that it bears for long in air [K], of plastics.
         contact_limit: largest Hertz pressure that it bears, a few times only [Pa], if known.
         hardness: of its flanks, Vickers or Brinell [Pa], if known.
+        sigma_hlim: contact stress that flanks of test gears endure [Pa], if known.
+        sigma_flim: nominal root stress that test gears endure [Pa], if known.
+        treatment: heat treatment to which these limits belong, as `strength.treatments` names it.
 
     Raises:
         InputError: a value is out of its physical range, or the table is not in order.
@@ -150,6 +153,9 @@ class SolidRecord:
     service_limit: Datum | None = None
     contact_limit: Datum | None = None
     hardness: Datum | None = None
+    sigma_hlim: Datum | None = None
+    sigma_flim: Datum | None = None
+    treatment: str = ""
 
     def __post_init__(self) -> None:
         positive = [item for item in self.data().items() if item[0] != "poisson"]
@@ -174,6 +180,8 @@ class SolidRecord:
             "service_limit": self.service_limit,
             "contact_limit": self.contact_limit,
             "hardness": self.hardness,
+            "sigma_hlim": self.sigma_hlim,
+            "sigma_flim": self.sigma_flim,
         }
         table = {f"young_at {celsius(p.temperature)}": p.young for p in self.young_at}
         return {key: datum for key, datum in every.items() if datum is not None} | table
@@ -311,6 +319,9 @@ def _record(name: str, entry: dict[str, Any]) -> SolidRecord:
         service_limit=_temperature(entry, "service_limit_degC"),
         contact_limit=_optional(entry, "contact_limit_GPa", 1e9),
         hardness=_optional(entry, "hardness_GPa", 1e9),
+        sigma_hlim=_optional(entry, "sigma_hlim_MPa", 1e6),
+        sigma_flim=_optional(entry, "sigma_flim_MPa", 1e6),
+        treatment=entry.get("treatment", ""),
     )
 
 

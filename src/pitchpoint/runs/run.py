@@ -533,6 +533,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
     solids = [used for mesh in meshes for used in mesh.solids]
     keys = [key for law in [*laws, *others.values()] for key in law.sources]
     keys += [key for mesh in meshes for key in mesh.case.gears.sources]
+    keys += [key for mesh in meshes if mesh.case.gears.rated for key in mesh.rated.sources]
     keys += [key for table in _loss_tables(document) for key in set_sources(table)]
     data = [mesh.lubricant.data() for mesh in meshes] + [used.record.data() for used in solids]
     keys += [one.source for values in data for one in values.values() if one.source]

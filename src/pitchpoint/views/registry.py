@@ -23,6 +23,7 @@ from pitchpoint.views.sections.path import PATH
 from pitchpoint.views.sections.sources import SOURCES
 from pitchpoint.views.sections.stages import STAGES
 from pitchpoint.views.sections.stiffness import STIFFNESS
+from pitchpoint.views.sections.strength import STRENGTH
 from pitchpoint.views.sections.studies import STUDIES
 from pitchpoint.views.sections.teeth import TEETH
 from pitchpoint.views.sections.torsion import TORSION
@@ -38,6 +39,7 @@ SECTIONS: Registry[Section] = Registry(
     STAGES,
     TEETH,
     PATH,
+    STRENGTH,
     DRIVE,
     ARC,
     CYCLE,

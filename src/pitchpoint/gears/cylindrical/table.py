@@ -108,6 +108,7 @@ class CylindricalGears(GearsTable):
     """
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
+    rated: ClassVar[bool] = True
     friction: ClassVar[str] = "iso_tr_14179_2"
 
     family: Literal["cylindrical"] = "cylindrical"

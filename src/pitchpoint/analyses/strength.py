@@ -1,0 +1,155 @@
+"""Strength of cylindrical pairs: forces, flank pressure, root stress, safeties at the operating point."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint._jax import array, jax
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress
+from pitchpoint.analyses.figures import numbers
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.failures import in_stage
+from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.results.store import dataset
+from pitchpoint.strength.rating import rated
+
+__all__ = ["STRENGTH"]
+
+_MAIN = (
+    "tangential_force",
+    "radial_force",
+    "axial_force",
+    "contact_stress",
+    "flank_safety",
+    "root_stress",
+    "root_safety",
+)
+_SUBCRITICAL = 10.0  # m/s
+_LEAST_NOTCH, _MOST_NOTCH = 1.0, 8.0
+_DEEPEST = 2.5
+_HELIX = np.radians(30.0)
+
+_METHOD = "ISO 6336-2:2019 and ISO 6336-3:2019, method B"
+_PLASTIC = "the root of plastic gears by VDI 2736 Part 2, force at the tip"
+_RING = (
+    "The root of the ring is rated on its own fillet, an arc, where tangents make 60 degrees with the middle "
+    "of the tooth; a pinion cutter leaves another one."
+)
+_SINGLE = "Forces and stresses are those without friction and losses, for the load at the output."
+
+Numbers = Mapping[str, np.ndarray]
+
+
+def _unrated(built: Ready) -> str | None:
+    """Why there are no teeth to rate."""
+    if any(one.case.gears.rated for one in built.meshes):
+        return None
+    return "ISO 6336 rates pairs of cylindrical gears, and these are none"
+
+
+def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+    """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
+    stages = [one for one in _stages(built) if one[1].case.gears.rated]
+    each = [_rating(one) for _, one in stages]
+    several = isinstance(built, BuiltDrive)
+    values = {name: np.stack([found[name] for found in each]) for name in each[0]}
+    dims = {name: ("stage", "gear")[: np.ndim(found)] for name, found in values.items()}
+    labels = {"stage": [number for number, _ in stages], "gear": ["gear 1", "gear 2"]}
+
+    def told(of: Callable[[Built, Numbers], Iterable[str]]) -> list[str]:
+        pairs = zip(stages, each, strict=True)
+        every = [(number, text) for (number, one), found in pairs for text in of(one, found)]
+        return [in_stage(number, text) if several else text for number, text in every]
+
+    data = dataset(
+        {name: (dims[name], found) for name, found in values.items()},
+        labels,
+        title="strength",
+        method=_method([one for _, one in stages]),
+        assumed=told(lambda one, _: _assumed(one)),
+        withheld=told(lambda one, _: one.rated.withheld),
+        remarks=told(lambda one, _: [_RING] * _ring(one)) + [_SINGLE] * several,
+        warnings=told(_doubts),
+    )
+    return data if several else data.isel(stage=0, drop=True)
+
+
+def _stages(built: Ready) -> list[tuple[int, Built]]:
+    """Meshes with their numbers, in the order of the power."""
+    if isinstance(built, BuiltDrive):
+        return [*zip(built.numbers, built.stages, strict=True)]
+    return [(1, built)]
+
+
+def _rating(built: Built) -> dict[str, np.ndarray]:
+    case, mesh, given = built.case, built.design.mesh, built.rated
+    point, life = case.operation, None if case.strength is None else case.strength.life
+    first, second = built.motion
+    duty = given.duty(point.load, point.speed, (first, second), life)
+    ratio = array(built.dimensions["transverse_contact_ratio"])
+    found = rated(mesh.bare, ratio, duty, given.factors, given.strengths, given.finish)
+    return {name: np.asarray(value) for name, value in jax.device_get(found).items()}
+
+
+def _method(pairs: Iterable[Built]) -> str:
+    plastic = any(used.plastic for one in pairs for used in one.solids)
+    return f"{_METHOD}; {_PLASTIC}" if plastic else _METHOD
+
+
+def _assumed(built: Built) -> list[str]:
+    """What a rating takes where the case leaves it open, as one sentence."""
+    listed = "; ".join(built.rated.assumed)
+    return [f"Assumed, [strength] has none: {listed}."] if listed else []
+
+
+def _ring(built: Built) -> bool:
+    return min(getattr(built.case.gears, "teeth", (0.0,))) < 0.0
+
+
+def _doubts(built: Built, found: Numbers) -> Iterator[str]:
+    """Where a rating lies outside what the standards cover."""
+    resonance, ratio = (
+        float(found["resonance_number"]),
+        built.dimensions["transverse_contact_ratio"],
+    )
+    given = built.case.strength is not None and built.case.strength.dynamic_factor is not None
+    steel = not any(used.plastic for used in built.solids)
+    if resonance >= _SUBCRITICAL and steel and not given:
+        yield (
+            f"K_v by method C holds below resonance, for less than {_SUBCRITICAL:g} m/s; this pair is at "
+            f"{resonance:.3g} m/s: give dynamic_factor in [strength]."
+        )
+    for gear, notch in enumerate(found["notch_parameter"], 1):
+        if not _LEAST_NOTCH <= notch < _MOST_NOTCH:
+            yield (
+                f"The notch parameter of gear {gear}, {notch:.3g}, is outside 1 to 8, for which Y_S was "
+                "derived."
+            )
+    if float(ratio) > _DEEPEST:
+        yield f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers."
+    if getattr(built.case.gears, "helix_angle", 0.0) > _HELIX:
+        yield "A helix angle above 30 degrees is beyond what ISO 6336-3 was confirmed for."
+
+
+def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    data = parts.get("strength")
+    if data is None:
+        return {"strength": {}}
+    return {"strength": {name: _nested(data[name].values) for name in _MAIN}}
+
+
+def _nested(values: np.ndarray) -> Any:
+    return [numbers(one) for one in values] if values.ndim > 1 else numbers(values)
+
+
+STRENGTH = Analysis(
+    name="strength",
+    title="strength of the teeth",
+    alone="",
+    lacks=_unrated,
+    compute=_strength,
+    main=_MAIN,
+    figures=_figures,
+)

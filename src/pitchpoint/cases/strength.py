@@ -1,0 +1,258 @@
+"""What a case says of the strength of its gears: load factors, limits of the materials, what is assumed."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import nan
+
+import numpy as np
+from jaxtyping import Array
+
+from pitchpoint._jax import array
+from pitchpoint.cases.schema import Case, StrengthTable
+from pitchpoint.cases.solids import SolidInUse
+from pitchpoint.errors import InputError
+from pitchpoint.materials.lubricants import LubricantRecord
+from pitchpoint.materials.surfaces import Roughness
+from pitchpoint.strength.flank import NO_MODIFICATION
+from pitchpoint.strength.limits import Constants
+from pitchpoint.strength.load_factors import CLASSES
+from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths
+from pitchpoint.strength.treatments import PLASTIC, TREATMENTS, Treatment
+
+__all__ = ["UNRATED", "Rated", "check_strength", "rated_case"]
+
+_SOURCES = ("iso_6336_2_2019", "iso_6336_3_2019", "iacs_m56_2021")
+UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, and these are none; leave it out"
+_ASSUMED_CLASS = 7
+_ROOT_ROUGHNESS = 10e-6  # Rz of the test gears [m]
+_RZ_PER_RA = 6.0  # ISO 6336-2:2006, 12.3; IACS UR M56, 2.10 c
+
+Used = tuple[SolidInUse, SolidInUse]
+
+
+@dataclass(frozen=True)
+class Rated:
+    """A case as its rating takes it.
+
+    Attributes:
+        factors, strengths, finish: arrays.
+        assumed: what was not given, in the words of a list.
+        withheld: sentences on gears whose safeties are not known.
+    """
+
+    factors: Factors
+    strengths: Strengths
+    finish: Finish
+    assumed: tuple[str, ...]
+    withheld: tuple[str, ...]
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Keys of the bibliography."""
+        plastic = bool(np.any(self.strengths.plastic))
+        return (*_SOURCES, *("vdi_2736_2_2014",) * plastic)
+
+    def duty(
+        self, load: float, speed: float, rates: tuple[float, float], life: float | None
+    ) -> Duty:
+        """What the pair has to bear.
+
+        Args:
+            load: torque on the driven gear [N m].
+            speed: of the driving gear [rad/s].
+            rates: of both gears for a radian of the driver.
+            life: time under load [s]; None if the teeth are to endure.
+        """
+        constants = self.strengths.constants
+        cycles = [np.asarray(one)[2] for one in (constants.flank, constants.root)]
+        if life is not None:
+            cycles = [np.abs(rates) * speed * life / (2.0 * np.pi)] * 2
+        return Duty(array(load), array(speed), array(cycles[0]), array(cycles[1]))
+
+
+def check_strength(case: Case, used: Used) -> None:
+    """InputError for a table that these gears have no use for, or a limit without its treatment.
+
+    Args:
+        case: whole.
+        used: materials of both.
+    """
+    if case.strength is None:
+        return
+    if not case.gears.rated:
+        raise InputError(UNRATED, key="strength")
+    _treatments(case.strength, used)
+
+
+def rated_case(case: Case, used: Used, oil: LubricantRecord, roughness: Roughness) -> Rated:
+    """A case as its rating takes it.
+
+    Args:
+        case: whole.
+        used: materials of both gears, as they are used.
+        oil: of the case.
+        roughness: of the flanks.
+    """
+    table = case.strength or StrengthTable()
+    plastic = (used[0].plastic, used[1].plastic)
+    grade, of_grade = _class(table, case)
+    factors = _factors(table, grade, plastic)
+    strengths = _strengths(table, used, plastic)
+    return Rated(
+        factors,
+        strengths,
+        _finish(table, oil, roughness),
+        tuple(_assumed(table, of_grade, plastic, helical=_helical(case))),
+        tuple(_withheld(strengths, used)),
+    )
+
+
+def _helical(case: Case) -> bool:
+    return bool(getattr(case.gears, "helix_angle", 0.0))
+
+
+def _class(table: StrengthTable, case: Case) -> tuple[int, str]:
+    """Class of the gears by ISO 1328-1, as K_v takes it, and what is to be said of it."""
+    deviations = getattr(case.gears, "deviations", None)
+    drawn = getattr(deviations, "iso_class", None)
+    if table.accuracy_class is not None:
+        return int(table.accuracy_class), ""
+    if drawn is None:
+        return _ASSUMED_CLASS, f"accuracy class {_ASSUMED_CLASS} of ISO 1328-1 for K_v"
+    worse = int(max(drawn))
+    taken = min(max(worse, min(CLASSES)), max(CLASSES))
+    return (
+        taken,
+        "" if taken == worse else f"K_v of accuracy class {taken} for gears of class {worse}",
+    )
+
+
+def _factors(table: StrengthTable, grade: int, plastic: tuple[bool, bool]) -> Factors:
+    spur, helical = CLASSES[grade]
+    dynamic = 1.0 if any(plastic) else nan
+    return Factors(
+        application=_given(table.application_factor, 1.0),
+        dynamic=_given(table.dynamic_factor, dynamic),
+        face=_given(table.face_load_factor, 1.0),
+        transverse=_given(table.transverse_load_factor, 1.0),
+        root_face=_given(table.root_face_load_factor, nan),
+        root_transverse=_given(table.root_transverse_load_factor, nan),
+        spur=array(spur),
+        helical=array(helical),
+        accurate=array(float(grade <= 4)),
+        correction=_given(table.profile_correction, NO_MODIFICATION),
+    )
+
+
+def _given(value: float | None, usual: float) -> Array:
+    return array(usual if value is None else value)
+
+
+def _strengths(table: StrengthTable, used: Used, plastic: tuple[bool, bool]) -> Strengths:
+    first, second = _treatments(table, used)
+    return Strengths(
+        solids=(used[0].solid, used[1].solid),
+        flank=array(_limits(table.sigma_hlim, "sigma_hlim", used)),
+        root=array(_limits(table.sigma_flim, "sigma_flim", used)),
+        constants=Constants.of(first, second, plastic),
+        plastic=array(plastic),
+        work_hardening=array(table.work_hardening or (1.0, 1.0)),
+        mean_stress=array(table.mean_stress_factor or (1.0, 1.0)),
+    )
+
+
+def _limits(given: tuple[float, float] | None, name: str, used: Used) -> list[float]:
+    """Limits of both gears, by value or of their materials; not a number where they are not known."""
+    if given is not None:
+        return [*given]
+    known = (getattr(one.record, name) for one in used)
+    return [nan if datum is None else datum.value for datum in known]
+
+
+def _treatments(table: StrengthTable, used: Used) -> tuple[Treatment, Treatment]:
+    """Treatments of both gears.
+
+    Raises:
+        InputError: limits by value of a steel whose treatment is not known.
+    """
+    first, second = (_treatment(table, one, gear) for gear, one in enumerate(used, 1))
+    return first, second
+
+
+def _treatment(table: StrengthTable, used: SolidInUse, gear: int) -> Treatment:
+    if used.plastic:
+        return PLASTIC
+    name = used.record.treatment if table.treatment is None else table.treatment[gear - 1]
+    if name:
+        return TREATMENTS[name]
+    if table.sigma_hlim is not None or table.sigma_flim is not None:
+        raise InputError(
+            f"is missing: limits were given for gear {gear}, and factors between test gears and these depend "
+            f"on the heat treatment; known are {', '.join(TREATMENTS)}",
+            key="strength.treatment",
+        )
+    return TREATMENTS["case_hardened"]  # without limits its factors lead to no safety
+
+
+def _finish(table: StrengthTable, oil: LubricantRecord, roughness: Roughness) -> Finish:
+    usual = _RZ_PER_RA * float(roughness.ra_1 + roughness.ra_2) / 2.0
+    flank = usual if table.flank_roughness is None else sum(table.flank_roughness) / 2.0
+    return Finish(
+        flank=array(max(flank, 1e-7)),  # a perfectly smooth flank has no roughness factor
+        root=array(table.root_roughness or (_ROOT_ROUGHNESS, _ROOT_ROUGHNESS)),
+        viscosity=array(oil.nu_1.value),
+    )
+
+
+def _assumed(
+    table: StrengthTable, of_grade: str, plastic: tuple[bool, bool], *, helical: bool
+) -> Iterator[str]:
+    """What the case leaves open and a rating takes, for a list."""
+    if table.application_factor is None:
+        yield "K_A = 1"
+    if table.dynamic_factor is None and any(plastic):
+        yield "K_v = 1"
+    elif table.dynamic_factor is None and of_grade:
+        yield of_grade
+    if table.face_load_factor is None:
+        yield "K_Hβ = 1"
+    if table.transverse_load_factor is None:
+        yield "K_Hα = 1"
+    if helical and table.profile_correction is None:
+        yield "f_ZCa = 1.2 (no profile modification that suits the load)"
+    if table.mean_stress_factor is None:
+        yield "teeth loaded in one direction"
+    if all(plastic):
+        return
+    if table.life is None:
+        yield "endless life (Z_NT = Y_NT = 1)"
+    if table.work_hardening is None:
+        yield "Z_W = 1"
+    if table.flank_roughness is None:
+        yield "Rz = 6 Ra at the flanks"
+    if table.root_roughness is None:
+        yield "Rz = 10 µm at the roots"
+
+
+def _withheld(strengths: Strengths, used: Used) -> Iterator[str]:
+    """Why a gear has no safeties."""
+    limits = zip(np.asarray(strengths.flank), np.asarray(strengths.root), used, strict=True)
+    for gear, (flank, root, one) in enumerate(limits, 1):
+        known = {"sigma_hlim": flank, "sigma_flim": root}
+        missing = [name for name, value in known.items() if np.isnan(value)]
+        if missing:
+            yield _missing(gear, missing, one)
+
+
+def _missing(gear: int, names: list[str], used: SolidInUse) -> str:
+    against = " and ".join(_AGAINST[name] for name in names)
+    instead = _OF_PLASTICS if used.plastic else _OF_STEELS
+    return (
+        f"No safety of gear {gear} against {against}: '{used.record.name}' has no {' and '.join(names)}; "
+        f"{instead}."
+    )
+
+
+_AGAINST = {"sigma_hlim": "pitting", "sigma_flim": "breakage"}
+_OF_STEELS = "name a material that has them, such as 'case-hardened-mq', or give them in [strength]"
+_OF_PLASTICS = "give those of its temperature and life in [strength]"

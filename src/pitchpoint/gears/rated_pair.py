@@ -1,0 +1,48 @@
+"""What the standards for the strength of cylindrical gears ask about a pair."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+__all__ = ["RatedPair"]
+
+
+class RatedPair(eqx.Module):
+    """Dimensions of a pair of cylindrical gears; number of teeth and radii of a ring are negative.
+
+    Attributes:
+        teeth: z.
+        module: normal module m_n [m].
+        pressure_angle: normal one of the basic racks [rad].
+        helix_angle: on the reference cylinders [rad].
+        base_helix_angle: on the base cylinders [rad].
+        transverse_pressure_angle, working_pressure_angle: alpha_t and alpha_wt [rad].
+        profile_shift: coefficients x.
+        dedendum, fillet_radius: of the basic racks, in normal modules.
+        reference_radii, base_radii, working_radii, tip_radii, root_radii: [m].
+        transverse_contact_ratio, overlap_ratio: eps_alpha and eps_beta.
+        face_width: common to both [m].
+        rim_thickness: from the root circle to the bore, or to the outside of a ring [m].
+        ring_section: half chord, distance from the axis and radius of the fillet of a ring where tangents to
+            it make 60 degrees with the middle of a tooth, in the normal section [m]; zeros without a ring.
+    """
+
+    teeth: Float[Array, "2"]
+    module: Float[Array, ""]
+    pressure_angle: Float[Array, ""]
+    helix_angle: Float[Array, ""]
+    base_helix_angle: Float[Array, ""]
+    transverse_pressure_angle: Float[Array, ""]
+    working_pressure_angle: Float[Array, ""]
+    profile_shift: Float[Array, "2"]
+    dedendum: Float[Array, "2"]
+    fillet_radius: Float[Array, "2"]
+    reference_radii: Float[Array, "2"]
+    base_radii: Float[Array, "2"]
+    working_radii: Float[Array, "2"]
+    tip_radii: Float[Array, "2"]
+    root_radii: Float[Array, "2"]
+    transverse_contact_ratio: Float[Array, ""]
+    overlap_ratio: Float[Array, ""]
+    face_width: Float[Array, ""]
+    rim_thickness: Float[Array, "2"]
+    ring_section: Float[Array, "3"]

@@ -1,0 +1,66 @@
+"""Name, symbol and unit of what a rating of the strength of gears holds."""
+
+from typing import Final
+
+from pitchpoint.results.variable import Variable, angle, force, length, pressure
+
+__all__ = ["STRENGTH"]
+
+
+def _factor(long_name: str, symbol: str) -> Variable:
+    return Variable(long_name, symbol, "1")
+
+
+STRENGTH: Final = {
+    "reference_force": force("tangential force at the reference circles", "F_t"),
+    "tangential_force": force("tangential force at the pitch circles in operation", "F_tw"),
+    "radial_force": force("radial force of the teeth", "F_r"),
+    "axial_force": force("axial force of the teeth", "F_a"),
+    "normal_force": force("normal force of the teeth", "F_n"),
+    "resonance_number": Variable(
+        "speed against resonance, (v z_1/100) sqrt(u^2/(1 + u^2))", "N*", "m/s", "m/s", "velocity"
+    ),
+    "application_factor": _factor("application factor", "K_A"),
+    "dynamic_factor": _factor("dynamic factor", "K_v"),
+    "face_load_factor": _factor("face load factor of the flank", "K_Hβ"),
+    "transverse_load_factor": _factor("transverse load factor of the flank", "K_Hα"),
+    "root_face_load_factor": _factor("face load factor of the root", "K_Fβ"),
+    "root_transverse_load_factor": _factor("transverse load factor of the root", "K_Fα"),
+    "zone_factor": _factor("zone factor", "Z_H"),
+    "elasticity_factor": _factor("elasticity factor in √(N/mm²)", "Z_E"),
+    "contact_ratio_factor": _factor("contact ratio factor of the flank", "Z_ε"),
+    "helix_factor": _factor("helix angle factor of the flank", "Z_β"),
+    "single_contact_factor": _factor("single pair contact factor", "Z_B, Z_D"),
+    "nominal_contact_stress": pressure("nominal contact stress at the pitch point", "σ_H0"),
+    "contact_stress": pressure("contact stress", "σ_H"),
+    "flank_life_factor": _factor("life factor of the flank", "Z_NT"),
+    "lubricant_factor": _factor("lubricant factor", "Z_L"),
+    "velocity_factor": _factor("velocity factor", "Z_v"),
+    "roughness_factor": _factor("roughness factor", "Z_R"),
+    "work_hardening_factor": _factor("work hardening factor", "Z_W"),
+    "flank_size_factor": _factor("size factor of the flank", "Z_X"),
+    "contact_limit": pressure("permissible contact stress with safety 1", "σ_HP"),
+    "flank_safety": _factor("flank safety", "S_H"),
+    "form_factor": _factor("tooth form factor", "Y_F"),
+    "stress_correction_factor": _factor("stress correction factor", "Y_S"),
+    "root_helix_factor": _factor("helix angle factor of the root", "Y_β"),
+    "rim_factor": _factor("rim thickness factor", "Y_B"),
+    "root_contact_ratio_factor": _factor(
+        "deep tooth factor, contact ratio factor of plastic gears", "Y_DT"
+    ),
+    "root_chord": length("chord of the root at the critical section", "s_Fn"),
+    "bending_arm": length("arm of the force above that section", "h_F"),
+    "load_angle": angle("angle of the force to the perpendicular of the tooth", "α_Fn"),
+    "root_fillet_radius": length("radius of the root fillet there", "ρ_F"),
+    "notch_parameter": _factor("notch parameter", "q_s"),
+    "nominal_root_stress": pressure("nominal root stress", "σ_F0"),
+    "root_stress": pressure("root stress", "σ_F"),
+    "root_life_factor": _factor("life factor of the root", "Y_NT"),
+    "notch_sensitivity_factor": _factor("relative notch sensitivity factor", "Y_δrelT"),
+    "surface_factor": _factor("relative surface factor", "Y_RrelT"),
+    "root_size_factor": _factor("size factor of the root", "Y_X"),
+    "mean_stress_factor": _factor("factor of load in both directions", "Y_M"),
+    "root_limit": pressure("permissible root stress with safety 1", "σ_FP"),
+    "root_safety": _factor("root safety", "S_F"),
+}
+"""Variables of a rating."""

@@ -1,0 +1,1 @@
+"""Strength of cylindrical gear pairs: forces, flank pressure, root stress and safeties by the standards."""

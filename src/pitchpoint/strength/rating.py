@@ -1,0 +1,445 @@
+"""Forces, stresses and safeties of one cylindrical pair, from its dimensions, duty, factors and materials."""
+
+import dataclasses
+
+import equinox as eqx
+from jaxtyping import Array, Bool, Float
+
+from pitchpoint._jax import jnp
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.rated_pair import RatedPair
+from pitchpoint.materials.solids import Solid
+from pitchpoint.programs import program
+from pitchpoint.strength import flank, limits, load_factors, root, vdi_2736
+from pitchpoint.strength.forces import ToothForces, tooth_forces
+
+__all__ = ["Duty", "Factors", "Finish", "Strengths", "rate", "rated"]
+
+Both = Float[Array, "2"]
+One = Float[Array, ""]
+Rating = dict[str, Float[Array, "..."]]
+
+
+class Duty(eqx.Module):
+    """What a pair has to bear.
+
+    Attributes:
+        load: torque on the driven gear [N m].
+        speed: of the driving gear [rad/s].
+        cycles_flank, cycles_root: load cycles of both gears that their life factors count.
+    """
+
+    load: One
+    speed: One
+    cycles_flank: Both
+    cycles_root: Both
+
+
+class Factors(eqx.Module):
+    """Factors on the load; one that is not a number follows from the others.
+
+    Attributes:
+        application: K_A.
+        dynamic: K_v; follows by method C.
+        face, transverse: K_Hbeta, K_Halpha.
+        root_face, root_transverse: K_Fbeta, follows from K_Hbeta; K_Falpha, follows as K_Halpha.
+        spur, helical: K_1 of the class of the gears, for method C.
+        accurate: 1 for class 4 or better, else 0.
+        correction: f_ZCa of helical gears.
+    """
+
+    application: One
+    dynamic: One
+    face: One
+    transverse: One
+    root_face: One
+    root_transverse: One
+    spur: One
+    helical: One
+    accurate: One
+    correction: One
+
+
+class Strengths(eqx.Module):
+    """Materials of both gears, and what they bear.
+
+    Attributes:
+        solids: elastic constants.
+        flank, root: sigma_Hlim and sigma_Flim [Pa]; not a number where they are not known.
+        constants: of their treatments.
+        plastic: True for a gear that is rated by VDI 2736.
+        work_hardening: Z_W.
+        mean_stress: factor on sigma_Flim of teeth that are loaded both ways.
+    """
+
+    solids: tuple[Solid, Solid]
+    flank: Both
+    root: Both
+    constants: limits.Constants
+    plastic: Bool[Array, "2"]
+    work_hardening: Both
+    mean_stress: Both
+
+
+class Finish(eqx.Module):
+    """Surfaces and oil.
+
+    Attributes:
+        flank: mean Rz of both flanks [m].
+        root: Rz of the root fillets of both gears [m].
+        viscosity: nu_40 of the oil [m2/s].
+    """
+
+    flank: One
+    root: Both
+    viscosity: One
+
+
+@program
+def rated(
+    mesh: Mesh,
+    contact_ratio: One,
+    duty: Duty,
+    factors: Factors,
+    strengths: Strengths,
+    finish: Finish,
+) -> Rating:
+    """The rating of a mesh, see `rate`.
+
+    Args:
+        mesh: with a `rated_pair`, bare.
+        contact_ratio: eps_alpha of the pair as it runs, undercut included.
+        duty, factors, strengths, finish: as `rate` takes them.
+    """
+    pair = dataclasses.replace(mesh.rated_pair, transverse_contact_ratio=contact_ratio)
+    reference = jnp.abs(pair.reference_radii)
+    force = duty.load / jnp.sum(mesh.loaded * reference)
+    speed = duty.speed * jnp.abs(mesh.motion[0]) * reference[0]
+    return rate(pair, force, speed, duty, factors, strengths, finish)
+
+
+def rate(
+    pair: RatedPair,
+    force: One,
+    speed: One,
+    duty: Duty,
+    factors: Factors,
+    strengths: Strengths,
+    finish: Finish,
+) -> Rating:
+    """Forces, stresses, limits and safeties of a pair.
+
+    Pure: it can be traced, vectorised and differentiated; `jax.vmap` rates a batch.
+
+    Args:
+        pair: dimensions.
+        force: F_t tangential to the reference circles [N].
+        speed: v at the reference circles [m/s].
+        duty: cycles count.
+        factors: on the load.
+        strengths: of the materials.
+        finish: of the surfaces.
+
+    Returns:
+        Values by the names of `results.strength.STRENGTH`, for the pair or for both gears [SI].
+
+    Source: ISO 6336-2:2019 and ISO 6336-3:2019, methods B, dynamic factor by method C; VDI 2736 Part 2 for
+    the roots of plastic gears.
+    """
+    forces = _forces(pair, force)
+    k = _load_factors(pair, forces, speed, factors)
+    found = {**_told(forces), **k}
+    found |= _flank(pair, forces, speed, k, factors, strengths, finish, duty)
+    return found | _root(pair, forces, k, factors, strengths, finish, duty)
+
+
+def _forces(pair: RatedPair, force: One) -> ToothForces:
+    return tooth_forces(
+        reference=force,
+        radius_ratio=jnp.abs(pair.reference_radii[0] / pair.working_radii[0]),
+        transverse_pressure_angle=pair.transverse_pressure_angle,
+        working_pressure_angle=pair.working_pressure_angle,
+        helix_angle=pair.helix_angle,
+        base_helix_angle=pair.base_helix_angle,
+    )
+
+
+def _told(forces: ToothForces) -> Rating:
+    return {
+        "reference_force": forces.reference,
+        "tangential_force": forces.tangential,
+        "radial_force": forces.radial,
+        "axial_force": forces.axial,
+        "normal_force": forces.normal,
+    }
+
+
+def _load_factors(pair: RatedPair, forces: ToothForces, speed: One, factors: Factors) -> Rating:
+    teeth = jnp.sort(jnp.abs(pair.teeth))
+    resonance = load_factors.resonance_number(
+        speed=speed, teeth=teeth[0], ratio=teeth[1] / teeth[0]
+    )
+    dynamic = load_factors.dynamic_factor(
+        resonance=resonance,
+        line_load=factors.application * forces.reference / pair.face_width,
+        overlap_ratio=pair.overlap_ratio,
+        spur=factors.spur,
+        helical=factors.helical,
+    )
+    root_face = load_factors.root_face_load_factor(
+        flank=factors.face, face_width=pair.face_width, height=jnp.max(_heights(pair))
+    )
+    return {
+        "resonance_number": resonance,
+        "application_factor": factors.application,
+        "dynamic_factor": _or(factors.dynamic, dynamic),
+        "face_load_factor": factors.face,
+        "transverse_load_factor": factors.transverse,
+        "root_face_load_factor": _or(factors.root_face, root_face),
+        "root_transverse_load_factor": _or(factors.root_transverse, factors.transverse),
+    }
+
+
+def _or(given: One, following: One) -> One:
+    return jnp.where(jnp.isnan(given), following, given)
+
+
+def _heights(pair: RatedPair) -> Both:
+    return jnp.abs(pair.tip_radii - pair.root_radii)
+
+
+def _flank(
+    pair: RatedPair,
+    forces: ToothForces,
+    speed: One,
+    k: Rating,
+    factors: Factors,
+    strengths: Strengths,
+    finish: Finish,
+    duty: Duty,
+) -> Rating:
+    found = _nominal_contact(pair, forces, strengths)
+    found["single_contact_factor"] = single = _single_contact(pair, factors, strengths)
+    load = k["application_factor"] * k["dynamic_factor"]
+    load *= k["face_load_factor"] * k["transverse_load_factor"]
+    stress = single * found["nominal_contact_stress"] * jnp.sqrt(load)
+    limiting = _flank_factors(pair, speed, strengths, finish, duty)
+    limit = strengths.flank * _product(limiting)
+    safety = {"contact_stress": stress, "contact_limit": limit, "flank_safety": limit / stress}
+    return found | limiting | safety
+
+
+def _product(factors: Rating) -> Both:
+    return jnp.prod(jnp.stack([jnp.broadcast_to(one, 2) for one in factors.values()]), axis=0)
+
+
+def _nominal_contact(pair: RatedPair, forces: ToothForces, strengths: Strengths) -> Rating:
+    first, second = strengths.solids
+    parts = {
+        "zone_factor": flank.zone_factor(
+            base_helix_angle=pair.base_helix_angle,
+            transverse_pressure_angle=pair.transverse_pressure_angle,
+            working_pressure_angle=pair.working_pressure_angle,
+        ),
+        "elasticity_factor": flank.elasticity_factor(
+            young_1=first.young,
+            poisson_1=first.poisson,
+            young_2=second.young,
+            poisson_2=second.poisson,
+        ),
+        "contact_ratio_factor": flank.contact_ratio_factor(
+            transverse_contact_ratio=pair.transverse_contact_ratio,
+            overlap_ratio=pair.overlap_ratio,
+        ),
+        "helix_factor": flank.helix_factor(helix_angle=pair.helix_angle),
+    }
+    zone, elasticity, contact_ratio, helix = parts.values()
+    stress = flank.nominal_contact_stress(
+        zone=zone,
+        elasticity=elasticity,
+        contact_ratio=contact_ratio,
+        helix=helix,
+        force=forces.reference,
+        diameter=2.0 * pair.reference_radii[0],
+        face_width=pair.face_width,
+        ratio=pair.teeth[1] / pair.teeth[0],
+    )
+    shown = {"elasticity_factor": elasticity / 1e3}  # sqrt(N/mm2), which has no name in SI
+    return {**parts, **shown, "nominal_contact_stress": stress}
+
+
+def _single_contact(pair: RatedPair, factors: Factors, strengths: Strengths) -> Both:
+    """Z_B and Z_D; 1 for a ring and for plastic gears, whose pressure is that of the pitch point."""
+    tips = jnp.sqrt((pair.tip_radii / pair.base_radii) ** 2 - 1.0)
+    found = flank.single_contact_factor(
+        own_tip=tips,
+        own_teeth=pair.teeth,
+        other_tip=tips[::-1],
+        other_teeth=pair.teeth[::-1],
+        working_pressure_angle=pair.working_pressure_angle,
+        transverse_contact_ratio=pair.transverse_contact_ratio,
+        overlap_ratio=pair.overlap_ratio,
+        correction=factors.correction,
+    )
+    return jnp.where((pair.teeth < 0.0) | strengths.plastic, 1.0, found)
+
+
+def _flank_factors(
+    pair: RatedPair, speed: One, strengths: Strengths, finish: Finish, duty: Duty
+) -> Rating:
+    metal = ~strengths.plastic
+    softer = jnp.nanmin(jnp.where(metal, strengths.flank, jnp.nan))
+    rolling = pair.base_radii * jnp.tan(pair.working_pressure_angle)
+    level, few, many = strengths.constants.flank
+    found = {
+        "flank_life_factor": limits.life_factor(
+            cycles=duty.cycles_flank, level=level, few=few, many=many
+        ),
+        "lubricant_factor": flank.lubricant_factor(viscosity=finish.viscosity, limit=softer),
+        "velocity_factor": flank.velocity_factor(speed=speed, limit=softer),
+        "roughness_factor": flank.roughness_factor(
+            roughness=finish.flank, radius=jnp.prod(rolling) / jnp.sum(rolling), limit=softer
+        ),
+        "work_hardening_factor": strengths.work_hardening,
+        "flank_size_factor": flank.size_factor(
+            module=pair.module, slope=strengths.constants.flank_size
+        ),
+    }
+    return {name: jnp.where(metal, one, 1.0) for name, one in found.items()}
+
+
+def _root(
+    pair: RatedPair,
+    forces: ToothForces,
+    k: Rating,
+    factors: Factors,
+    strengths: Strengths,
+    finish: Finish,
+    duty: Duty,
+) -> Rating:
+    shape, dimensions = _tooth_form(pair, strengths)
+    shape |= _root_factors(pair, factors, strengths)
+    nominal = root.nominal_root_stress(
+        force=forces.reference,
+        face_width=pair.face_width,
+        module=pair.module,
+        factors=_product(shape),
+    )
+    load = k["application_factor"] * k["dynamic_factor"]
+    load *= k["root_face_load_factor"] * k["root_transverse_load_factor"]
+    stress = nominal * load
+    notch = dimensions["notch_parameter"]
+    limiting = _root_limit_factors(pair, notch, strengths, finish, duty)
+    limit = strengths.root * strengths.constants.test_gear * _product(limiting)
+    return {
+        **dimensions,
+        **shape,
+        **limiting,
+        "nominal_root_stress": nominal,
+        "root_stress": stress,
+        "root_limit": limit,
+        "root_safety": limit / stress,
+    }
+
+
+def _virtual(pair: RatedPair) -> tuple[Both, One]:
+    """Numbers of teeth and contact ratio of the virtual gears in the normal section."""
+    slope = jnp.cos(pair.base_helix_angle) ** 2
+    teeth = pair.teeth / (slope * jnp.cos(pair.helix_angle))
+    return teeth, pair.transverse_contact_ratio / slope
+
+
+def _tooth_form(pair: RatedPair, strengths: Strengths) -> tuple[Rating, Rating]:
+    """Y_F with f_eps and Y_S, or Y_Fa and Y_Sa of plastic gears, and the dimensions behind them."""
+    teeth, ratio = _virtual(pair)
+    section = _sections(pair, teeth)
+    load = root.load_point(
+        virtual_teeth=teeth,
+        module=pair.module,
+        pressure_angle=pair.pressure_angle,
+        profile_shift=pair.profile_shift,
+        tip_height=pair.tip_radii - pair.reference_radii,
+        base_pitches=jnp.where(strengths.plastic, 0.0, ratio - 1.0),
+    )
+    form = root.form_factor(
+        section=section, load=load, module=pair.module, pressure_angle=pair.pressure_angle
+    )
+    several = root.load_distribution_factor(
+        virtual_contact_ratio=ratio, overlap_ratio=pair.overlap_ratio
+    )
+    dimensions = {
+        "root_chord": section.chord,
+        "bending_arm": root.bending_arm(section, load),
+        "load_angle": load.angle,
+        "root_fillet_radius": section.fillet_radius,
+        "notch_parameter": root.notch_parameter(section),
+    }
+    factors = {
+        "form_factor": form * jnp.where(strengths.plastic, 1.0, several),
+        "stress_correction_factor": root.stress_correction_factor(section=section, load=load),
+    }
+    return factors, dimensions
+
+
+def _sections(pair: RatedPair, teeth: Both) -> root.RootSection:
+    """Sections of both gears: as a rack cuts them, as measured where gear 2 is a ring."""
+    cut = root.rack_section(
+        virtual_teeth=jnp.abs(teeth),
+        module=pair.module,
+        pressure_angle=pair.pressure_angle,
+        dedendum=pair.dedendum,
+        tip_radius=pair.fillet_radius,
+        generating_shift=pair.profile_shift,
+    )
+    half, distance, radius = pair.ring_section
+    ring = root.ring_section(half_chord=half, distance=distance, fillet_radius=radius)
+    is_ring = pair.teeth < 0.0
+    return root.RootSection(
+        jnp.where(is_ring, ring.chord, cut.chord),
+        jnp.where(is_ring, ring.distance, cut.distance),
+        jnp.where(is_ring, ring.fillet_radius, cut.fillet_radius),
+    )
+
+
+def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Rating:
+    """Y_beta, Y_B, Y_DT; Y_eps in the place of the last of plastic gears, whose force is at the tip."""
+    _, ratio = _virtual(pair)
+    skew = {"helix_angle": pair.helix_angle, "overlap_ratio": pair.overlap_ratio}
+    rim = jnp.where(
+        pair.teeth < 0.0,
+        root.ring_rim_factor(thickness=pair.rim_thickness, module=pair.module),
+        root.rim_factor(thickness=pair.rim_thickness, height=_heights(pair)),
+    )
+    deep = root.deep_tooth_factor(virtual_contact_ratio=ratio, accurate=factors.accurate)
+    several = vdi_2736.contact_ratio_factor(virtual_contact_ratio=ratio)
+    plastic = strengths.plastic
+    return {
+        "root_helix_factor": jnp.where(
+            plastic, vdi_2736.helix_factor(**skew), root.helix_factor(**skew)
+        ),
+        "rim_factor": jnp.where(plastic, 1.0, rim),
+        "root_contact_ratio_factor": jnp.where(plastic, several, deep),
+    }
+
+
+def _root_limit_factors(
+    pair: RatedPair, notch: Both, strengths: Strengths, finish: Finish, duty: Duty
+) -> Rating:
+    own, metal = strengths.constants, ~strengths.plastic
+    level, few, many = own.root
+    a, b, n, smooth = own.surface
+    first, slope, least = own.root_size
+    found = {
+        "root_life_factor": limits.life_factor(
+            cycles=duty.cycles_root, level=level, few=few, many=many
+        ),
+        "notch_sensitivity_factor": limits.notch_sensitivity_factor(
+            notch=notch, slip_layer=own.slip_layer
+        ),
+        "surface_factor": limits.surface_factor(
+            roughness=finish.root, a=a, b=b, n=n, smooth=smooth
+        ),
+        "root_size_factor": limits.size_factor(module=pair.module, a=first, b=slope, least=least),
+    }
+    found = {name: jnp.where(metal, one, 1.0) for name, one in found.items()}
+    return {**found, "mean_stress_factor": strengths.mean_stress}

@@ -1,0 +1,167 @@
+"""Strength of the teeth: forces, stresses and safeties, with every factor by name."""
+
+import json
+from collections.abc import Iterator
+
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    Page,
+    Paragraph,
+    Printed,
+    Section,
+    Table,
+    by_variant,
+)
+
+__all__ = ["STRENGTH", "strength_rows"]
+
+_FORCES = ("tangential_force", "radial_force", "axial_force")
+_STRESSES = ("contact_stress", "flank_safety", "root_stress", "root_safety")
+
+_LOAD = (
+    "application_factor",
+    "dynamic_factor",
+    "face_load_factor",
+    "transverse_load_factor",
+    "root_face_load_factor",
+    "root_transverse_load_factor",
+)
+_FLANK = (
+    "zone_factor",
+    "elasticity_factor",
+    "contact_ratio_factor",
+    "helix_factor",
+    "nominal_contact_stress",
+    "single_contact_factor",
+    "contact_stress",
+    "flank_life_factor",
+    "lubricant_factor",
+    "velocity_factor",
+    "roughness_factor",
+    "work_hardening_factor",
+    "flank_size_factor",
+    "contact_limit",
+    "flank_safety",
+)
+_ROOT = (
+    "root_chord",
+    "bending_arm",
+    "load_angle",
+    "root_fillet_radius",
+    "notch_parameter",
+    "form_factor",
+    "stress_correction_factor",
+    "root_helix_factor",
+    "rim_factor",
+    "root_contact_ratio_factor",
+    "nominal_root_stress",
+    "root_stress",
+    "root_life_factor",
+    "notch_sensitivity_factor",
+    "surface_factor",
+    "root_size_factor",
+    "mean_stress_factor",
+    "root_limit",
+    "root_safety",
+)
+
+
+def _pairs(data: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    """Ratings of each stage with its name; one without a name of a pair by itself."""
+    if "stage" not in data.dims:
+        yield "", data
+        return
+    for at, stage in enumerate(data["stage"].values):
+        yield f"stage {stage}", data.isel(stage=at)
+
+
+def strength_rows(outcome: Outcome) -> list[dict[str, str]]:
+    """Forces, stresses and safeties of each gear."""
+    return [
+        ({"stage": name.removeprefix("stage ")} if name else {})
+        | {"gear": str(gear)}
+        | {head(one, data): _cell(data, one, at) for one in (*_FORCES, *_STRESSES)}
+        for name, data in _pairs(outcome.parts["strength"])
+        for at, gear in enumerate(data["gear"].values)
+    ]
+
+
+def _cell(data: xr.Dataset, name: str, gear: int) -> str:
+    """Value of a gear, or of both; a dash where it is withheld."""
+    values = data[name].values
+    value = float(values[gear] if values.ndim else values)
+    return "–" if value != value else shown(name, value, data)
+
+
+def _told(data: xr.Dataset, name: str) -> list[str]:
+    return [str(text) for text in json.loads(data.attrs[name])]
+
+
+def _caveats(data: xr.Dataset) -> list[str]:
+    """Method, and what stands beside the safeties."""
+    return [
+        f"{data.attrs['method']}.",
+        *(text for name in ("withheld", "assumed", "remarks") for text in _told(data, name)),
+    ]
+
+
+def _table(title: str, names: tuple[str, ...], data: xr.Dataset) -> Table:
+    rows = [(_words(name, data), *_values(name, data)) for name in names]
+    return Table([title, *(str(gear) for gear in data["gear"].values)], rows, compact=True)
+
+
+def _words(name: str, data: xr.Dataset) -> str:
+    variable = show.described(name, data)
+    unit = show.unit_of(name, data)
+    return f"{variable.long_name} {variable.symbol}{f' [{unit}]' if unit else ''}"
+
+
+def _values(name: str, data: xr.Dataset) -> tuple[str, ...]:
+    """Values of both gears, or the one that they share."""
+    both = range(2) if data[name].values.ndim else range(1)
+    return tuple(_cell(data, name, gear) for gear in both)
+
+
+def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
+    whole = outcome.parts["strength"]
+    rows = strength_rows(outcome)
+    yield Table([*rows[0]], [[*row.values()] for row in rows])
+    for text in _told(whole, "warnings"):
+        yield Paragraph(text, "warning")
+    for text in _caveats(whole):
+        yield Paragraph(text, "note")
+    for name, data in _pairs(whole):
+        if name:
+            yield Heading(name)
+        yield _table("Load factors", _LOAD, data)
+        yield _table("Flank", _FLANK, data)
+        yield _table("Root", _ROOT, data)
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    return by_variant(page, "strength", _blocks_of)
+
+
+def _screen(outcome: Outcome) -> Iterator[Printed]:
+    data = outcome.parts.get("strength")
+    if data is not None:
+        line = " ".join([*_told(data, "warnings"), *_caveats(data)])
+        yield Printed("Strength of the teeth", strength_rows(outcome), line)
+
+
+STRENGTH = Section(
+    name="strength",
+    title="Strength of the teeth",
+    short="Strength",
+    order=140.0,
+    parts=("strength",),
+    blocks=_blocks,
+    warns=lambda one: _told(one.parts["strength"], "warnings") if "strength" in one.parts else (),
+    screen=_screen,
+)

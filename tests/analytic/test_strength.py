@@ -1,0 +1,412 @@
+"""Strength of cylindrical pairs: what other programs print, other routes to the same numbers, limits.
+
+STplus (FZG, Munich) and the FVA Workbench compute by ISO 6336 and DIN 3990; their listings are printed in a
+public repository, https://github.com/tkuhn39/semesterthesis. Each program here is traced once.
+"""
+
+from dataclasses import replace
+from math import degrees, nan, pi, radians
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from pitchpoint.contact.hertz import line_pressure
+from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.materials import solids
+from pitchpoint.materials.solids import Solid
+from pitchpoint.programs import program
+from pitchpoint.results.strength import STRENGTH
+from pitchpoint.strength.limits import Constants
+from pitchpoint.strength.load_factors import CLASSES
+from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths, rated
+from pitchpoint.strength.treatments import PLASTIC, TREATMENTS
+
+Found = dict[str, np.ndarray]
+CASE = TREATMENTS["case_hardened"]
+STEEL = Solid(young=210e9, poisson=0.3, density=7850.0)
+
+
+def numbers(*values: float) -> jax.Array:
+    return jnp.asarray(np.array(values if len(values) > 1 else values[0], float))
+
+
+@pytest.fixture(scope="module")
+def base() -> CylindricalPair:
+    """A pair whose dimensions the others replace: no program for each."""
+    return build_cylindrical_pair(
+        teeth=(20, 30),
+        module=1e-3,
+        pressure_angle=radians(20.0),
+        face_width=0.01,
+        centre_distance=25e-3,
+        tip_alteration=(0.0, 0.0),
+    ).bare
+
+
+def with_circles(
+    base: CylindricalPair, *, teeth: tuple[int, int], module: float, tips: Any, **values: Any
+) -> CylindricalPair:
+    """A pair with tip diameters by value [m], cut with the profile shifts that it has."""
+    helix = values.get("helix_angle", 0.0)
+    shifts = np.array(values.pop("profile_shift"), float)
+    reference = np.array(teeth) * module / np.cos(helix)
+    alteration = (np.array(tips) - reference) / 2.0 / module - 1.0 - shifts
+    return replace(
+        base,
+        teeth=numbers(*teeth),
+        module=numbers(module),
+        profile_shift=jnp.asarray(shifts),
+        tip_alteration=jnp.asarray(alteration),
+        **{name: jnp.asarray(np.array(value, float)) for name, value in values.items()},
+    )
+
+
+def strengths(**changed: Any) -> Strengths:
+    """Two case-hardened steel gears unless told otherwise."""
+    plastic = changed.pop("plastic", (False, False))
+    treatments = [PLASTIC if one else CASE for one in plastic]
+    usual = {
+        "solids": (STEEL, STEEL),
+        "flank": numbers(1510e6, 1510e6),
+        "root": numbers(475e6, 475e6),
+        "work_hardening": numbers(1.0, 1.0),
+        "mean_stress": numbers(1.0, 1.0),
+    }
+    constants = Constants.of(treatments[0], treatments[1], plastic)
+    return Strengths(constants=constants, plastic=jnp.asarray(plastic), **usual | changed)
+
+
+def factors(**changed: float) -> Factors:
+    usual = dict.fromkeys(("application", "dynamic", "face", "transverse"), 1.0)
+    usual |= {"root_face": nan, "root_transverse": nan, "accurate": 0.0, "correction": 1.2}
+    usual |= dict(zip(("spur", "helical"), CLASSES[6], strict=True))
+    return Factors(**{name: numbers(value) for name, value in (usual | changed).items()})
+
+
+def duty(load: float, rpm: float, flank: float = 5e7, root: float = 3e6) -> Duty:
+    speed = rpm * pi / 30.0
+    return Duty(numbers(load), numbers(speed), numbers(flank, flank), numbers(root, root))
+
+
+FINISH = Finish(numbers(1.8e-6), numbers(20e-6, 20e-6), numbers(90.02e-6))
+
+
+def rating(
+    pair: CylindricalPair,
+    ratio: float,
+    asked: Duty,
+    loads: Factors,
+    of: Strengths,
+    finish: Finish = FINISH,
+) -> Found:
+    found = rated(pair, numbers(ratio), asked, loads, of, finish)
+    return {name: np.asarray(value) for name, value in jax.device_get(found).items()}
+
+
+# ---- printed by other programs
+
+
+@pytest.fixture(scope="module")
+def fzg(base: CylindricalPair) -> Found:
+    """FZG test gears type C, by STplus 11.1F after ISO 6336:2019; cut with the shifts x_E."""
+    pair = with_circles(
+        base,
+        teeth=(16, 24),
+        module=4.5e-3,
+        tips=(82.45e-3, 118.35e-3),
+        profile_shift=(0.1559, 0.1454),
+        centre_distance=91.5e-3,
+        face_width=14e-3,
+        dedendum=(1.39, 1.39),
+        fillet_radius=(0.25, 0.25),
+    )
+    loads = factors(dynamic=1.03, face=1.32)
+    return rating(pair, 19.079 / 13.285, duty(195.0, 1500.0), loads, strengths())
+
+
+PRINTED_FZG = {
+    "reference_force": (3611.1, 0.05),
+    "tangential_force": (3551.9, 0.05),
+    "normal_force": (3842.9, 0.05),
+    "zone_factor": (2.342, 5e-4),
+    "elasticity_factor": (191.6, 0.05),
+    "contact_ratio_factor": (0.924, 6e-4),
+    "nominal_contact_stress": (1013.8e6, 1e5),
+    "single_contact_factor": ([1.075, 1.000], 5e-4),
+    "lubricant_factor": (0.960, 5e-4),
+    "velocity_factor": (0.985, 5e-4),
+    "roughness_factor": (1.037, 5e-4),
+    "contact_limit": (1480.9e6, 1e6),
+    "root_face_load_factor": (1.21, 5e-3),
+    "form_factor": ([2.087, 1.866], 1e-3),
+    "stress_correction_factor": ([1.758, 1.856], 1e-3),
+    "notch_parameter": ([1.93, 2.18], 5e-3),
+    "root_chord": ([1.933 * 4.5e-3, 2.089 * 4.5e-3], 3e-6),
+    "bending_arm": ([1.329 * 4.5e-3, 1.385 * 4.5e-3], 3e-6),
+    "root_fillet_radius": ([0.501 * 4.5e-3, 0.479 * 4.5e-3], 3e-6),
+    "nominal_root_stress": ([210.3e6, 198.5e6], 1.5e5),
+    "notch_sensitivity_factor": ([0.994, 0.997], 5e-4),
+    "surface_factor": (0.957, 5e-4),
+    "root_limit": ([903.7e6, 906.1e6], 3e5),
+}
+
+
+@pytest.mark.parametrize("name", PRINTED_FZG)
+def test_test_gears_as_stplus_prints_them(fzg: Found, name: str) -> None:
+    printed, half_digit = PRINTED_FZG[name]
+    values = np.broadcast_to(fzg[name], np.broadcast_shapes(fzg[name].shape, np.shape(printed)))
+    np.testing.assert_allclose(
+        values, np.broadcast_to(printed, values.shape), atol=half_digit, rtol=0.0
+    )
+
+
+def test_safeties_of_the_test_gears(fzg: Found) -> None:
+    """K_v and K_Hbeta are printed with three digits, which the stresses have half of, or all."""
+    np.testing.assert_allclose(fzg["flank_safety"], [1.166, 1.253], rtol=3e-3)
+    np.testing.assert_allclose(fzg["root_safety"], [3.446, 3.661], rtol=6e-3)
+    angles = np.degrees(fzg["load_angle"])
+    np.testing.assert_allclose(angles, [23.206, 22.975], atol=0.03)
+
+
+def kst_e(base: CylindricalPair) -> CylindricalPair:
+    """A pair of steel and plastic with long tip clearances, cut by two tools; common face width."""
+    return with_circles(
+        base,
+        teeth=(51, 52),
+        module=1e-3,
+        tips=(52.894e-3, 53.788e-3),
+        profile_shift=(-0.2030, 0.0117),
+        centre_distance=52e-3,
+        face_width=15e-3,
+        dedendum=(1.1, 1.25),
+        fillet_radius=(0.2, 0.2),
+    )
+
+
+def test_a_pair_by_din_3990(base: CylindricalPair) -> None:
+    """STplus 11.0F by DIN 3990:1987, whose method B is that of ISO 6336 for spur gears; both as steel."""
+    plastic = Solid(young=2.3e9, poisson=0.5, density=1140.0)
+    both = strengths(solids=(STEEL, plastic), flank=numbers(nan, nan), root=numbers(430e6, nan))
+    loads = factors(dynamic=1.56, face=1.19, root_face=1.16)
+    found = rating(kst_e(base), 1.1538, duty(10.0, 1000.0), loads, both)
+    assert float(found["reference_force"]) == pytest.approx(384.6, abs=0.05)
+    assert float(found["nominal_contact_stress"]) / 1e6 == pytest.approx(72.4, abs=0.05)
+    np.testing.assert_allclose(found["single_contact_factor"], [1.009, 1.008], atol=1e-3)
+    np.testing.assert_allclose(found["contact_stress"] / 1e6, [99.6, 99.5], atol=0.15)
+    np.testing.assert_allclose(found["form_factor"], [2.417, 1.970], atol=1.5e-3)
+    np.testing.assert_allclose(found["stress_correction_factor"], [1.819, 1.984], atol=1e-3)
+    wide = np.array([15.0 / 17.0, 1.0])  # gear 1 is 17 mm wide at its root
+    np.testing.assert_allclose(wide * found["nominal_root_stress"] / 1e6, [99.5, 100.2], atol=0.1)
+    np.testing.assert_allclose(wide * found["root_stress"] / 1e6, [180.1, 181.4], rtol=2e-3)
+    assert found["root_safety"][0] / wide[0] == pytest.approx(4.571, rel=3e-3)
+    assert np.isnan(found["root_safety"][1]) and np.isnan(found["flank_safety"]).all()
+
+
+def test_a_plastic_wheel_by_vdi_2736(base: CylindricalPair) -> None:
+    """The same pair by the FVA Workbench: force at the tip, pressure of the pitch point."""
+    plastic = Solid(young=4.156e9, poisson=0.34, density=1400.0)
+    both = strengths(
+        solids=(STEEL, plastic),
+        plastic=(False, True),
+        flank=numbers(1510e6, 80e6),
+        root=numbers(430e6, 35e6),
+    )
+    found = rating(kst_e(base), 1.1538, duty(8.0, 2250.0), factors(), both)
+    assert found["contact_stress"][1] / 1e6 == pytest.approx(79.893, abs=0.1)
+    assert found["root_stress"][1] / 1e6 == pytest.approx(77.896, rel=3e-3)
+    assert found["form_factor"][1] == pytest.approx(2.211, abs=1.5e-3)  # Y_Fa of STplus
+    assert found["stress_correction_factor"][1] == pytest.approx(1.904, abs=1e-3)
+    assert found["root_safety"][1] == pytest.approx(35e6 / found["root_stress"][1])
+    assert found["flank_safety"][1] == pytest.approx(80e6 / found["contact_stress"][1])
+
+
+def test_a_helical_pinion_has_the_load_distribution_of_2019(base: CylindricalPair) -> None:
+    """Normal section and Y_F of a pinion by the FVA Workbench after ISO 6336:2019, eps_beta above 1."""
+    helix = radians(20.0)
+    pair = with_circles(
+        base,
+        teeth=(25, 40),
+        module=2e-3,
+        tips=(57.209e-3, 89.134e-3),
+        profile_shift=(-0.058384, -0.058384),
+        helix_angle=helix,
+        centre_distance=65.0 * 1e-3 / np.cos(helix),
+        face_width=25e-3,
+        fillet_radius=(0.25, 0.25),
+    )
+    found = rating(pair, 1.527, duty(100.0, 3000.0), factors(), strengths())
+    assert found["root_chord"][0] / 2e-3 == pytest.approx(2.031, abs=1e-3)
+    assert found["root_fillet_radius"][0] / 2e-3 == pytest.approx(0.49, abs=5e-3)
+    assert found["bending_arm"][0] / 2e-3 == pytest.approx(1.050, abs=1e-3)
+    assert degrees(found["load_angle"][0]) == pytest.approx(18.539, abs=5e-3)
+    assert found["form_factor"][0] == pytest.approx(1.181, abs=1e-3)
+    assert float(found["helix_factor"]) == pytest.approx(1.032, abs=5e-4)
+    np.testing.assert_allclose(found["single_contact_factor"], np.sqrt(1.2))
+
+
+# ---- other routes to the same numbers
+
+
+def test_the_zone_factor_is_hertz_at_the_pitch_point(fzg: Found) -> None:
+    """sigma_H0 without Z_eps is the pressure of one pair of flanks over the face, by their curvatures."""
+    base_radii, angle = np.array([67.658, 101.487]) * 0.5e-3, radians(22.43879)
+    rolling = base_radii * np.tan(angle)
+    young = 210e9 / (1.0 - 0.3**2)
+    expected = line_pressure(
+        line_load=fzg["normal_force"] / 14e-3,
+        radius=np.prod(rolling) / np.sum(rolling),
+        modulus=young,
+    )
+    nominal = fzg["nominal_contact_stress"] / fzg["contact_ratio_factor"]
+    assert float(nominal) == pytest.approx(float(expected), rel=1e-5)
+
+
+def test_the_single_pair_factor_is_hertz_where_one_pair_begins(fzg: Found) -> None:
+    """One base pitch before the end of the path, with the curvatures there."""
+    base_radii, tip = np.array([67.658, 101.487]) * 0.5e-3, 82.45e-3 / 2.0
+    whole = 91.5e-3 * np.sin(radians(22.43879))
+    at = np.sqrt(tip**2 - base_radii[0] ** 2) - 2.0 * pi * base_radii[0] / 16.0
+    pitch = base_radii[0] * np.tan(radians(22.43879))
+    ratio = np.sqrt(pitch * (whole - pitch) / (at * (whole - at)))
+    assert fzg["single_contact_factor"][0] == pytest.approx(ratio, rel=1e-4)
+
+
+@program
+def _flanks(pair: CylindricalPair) -> jax.Array:
+    return jnp.stack([gear.outline(800)[800:1600] for gear in pair.gears])
+
+
+def tangent(fillet: np.ndarray, angle: float) -> tuple[float, float]:
+    """Where a fillet makes an angle with the middle of its tooth: half chord and distance from the axis."""
+    across, along = np.abs(fillet[:, 0]), fillet[:, 1]
+    slopes = np.arctan2(np.abs(np.diff(across)), np.abs(np.diff(along)))
+    middles = np.abs(fillet[1:] + fillet[:-1]) / 2.0
+    order = np.argsort(slopes)
+    return tuple(float(np.interp(angle, slopes[order], one[order])) for one in middles.T)  # type: ignore[return-value]
+
+
+def test_the_section_of_a_cut_tooth_touches_its_generated_fillet(
+    base: CylindricalPair, fzg: Found
+) -> None:
+    pair = with_circles(
+        base,
+        teeth=(25, 40),
+        module=4.5e-3,
+        tips=(122e-3, 190e-3),
+        profile_shift=(0.1, 0.2),
+        centre_distance=148e-3,
+        face_width=14e-3,
+    )
+    found = rating(pair, 1.5, duty(195.0, 1500.0), factors(), strengths())
+    for gear, fillet in enumerate(np.asarray(_flanks(pair))):
+        half, _ = tangent(fillet, radians(30.0))
+        assert 2.0 * half == pytest.approx(found["root_chord"][gear], rel=1e-4)
+
+
+@pytest.fixture(scope="module")
+def ring() -> CylindricalPair:
+    return build_cylindrical_pair(
+        teeth=(20, -70),
+        module=1e-3,
+        pressure_angle=radians(20.0),
+        face_width=0.01,
+        addendum=(1.0, 0.8),
+        fillet_radius=(0.3, 0.3),
+    )
+
+
+def test_a_ring_is_rated_on_the_fillet_that_it_has(ring: CylindricalPair) -> None:
+    ratio = float(ring.transverse_contact_ratio)
+    found = rating(ring.bare, ratio, duty(7.0, 1000.0), factors(), strengths())
+    half, distance = tangent(np.asarray(_flanks(ring.bare))[1], radians(60.0))
+    assert found["root_chord"][1] == pytest.approx(2.0 * half, rel=1e-3)
+    assert found["root_fillet_radius"][1] == pytest.approx(0.3e-3)
+    # The force is tangent to the base circle: it crosses the middle of the tooth at r_b/cos(alpha_Fn).
+    crossing = 35e-3 * np.cos(radians(20.0)) / np.cos(found["load_angle"][1])
+    assert found["bending_arm"][1] == pytest.approx(distance - crossing, rel=5e-3)
+    assert found["single_contact_factor"][1] == 1.0
+    assert found["form_factor"][1] < found["form_factor"][0]
+    # Forces are in balance with both torques.
+    working = np.array([20.0, 70.0]) * 25e-3 / 50.0
+    torques = float(found["tangential_force"]) * working
+    assert torques == pytest.approx([2.0, 7.0], rel=1e-9)
+
+
+def test_the_root_of_a_rack_is_a_straight_tooth(base: CylindricalPair) -> None:
+    """With very many teeth the section is that of a rack: its corner, 30 degrees from the middle."""
+    pair = with_circles(
+        base,
+        teeth=(100_000, 100_000),
+        module=1e-3,
+        tips=(100.002, 100.002),
+        profile_shift=(0.0, 0.0),
+        centre_distance=100.0,
+    )
+    found = rating(pair, 2.0, duty(1.0, 1.0), factors(), strengths())
+    angle, depth, rounding = radians(20.0), 1.25, 0.38
+    corner = pi / 4.0 - (depth - rounding) * np.tan(angle) - rounding / np.cos(angle)
+    half = pi / 2.0 - corner - rounding * np.cos(radians(30.0))
+    assert found["root_chord"][0] == pytest.approx(2.0 * half * 1e-3, rel=1e-3)
+    assert found["root_fillet_radius"][0] == pytest.approx(rounding * 1e-3, rel=1e-3)
+
+
+# ---- limits and derivatives
+
+
+def test_every_number_has_its_name(fzg: Found) -> None:
+    assert fzg.keys() == STRENGTH.keys()
+    assert all(value.shape in ((), (2,)) for value in fzg.values())
+
+
+@pytest.mark.parametrize(
+    ("flank", "root", "expected"),
+    [
+        (1.0, 1.0, (1.6, 2.5)),
+        (5e7, 3e6, (1.0, 1.0)),
+        (1e10, 1e10, (0.85, 0.85)),
+        (1e12, 1e12, (0.85, 0.85)),
+    ],
+)
+def test_life_factors_at_their_corners(
+    base: CylindricalPair, flank: float, root: float, expected: tuple[float, float]
+) -> None:
+    found = rating(kst_e(base), 1.15, duty(1.0, 1.0, flank, root), factors(), strengths())
+    corners = found["flank_life_factor"][0], found["root_life_factor"][0]
+    assert corners == pytest.approx(expected)
+
+
+def test_stresses_grow_with_the_load_as_they_should(base: CylindricalPair) -> None:
+    one, four = (
+        rating(kst_e(base), 1.15, duty(load, 1.0), factors(), strengths()) for load in (2.0, 8.0)
+    )
+    np.testing.assert_allclose(four["contact_stress"], 2.0 * one["contact_stress"])
+    np.testing.assert_allclose(four["root_stress"], 4.0 * one["root_stress"])
+
+
+def test_many_designs_are_one_batch_and_have_derivatives(base: CylindricalPair) -> None:
+    pair, asked = kst_e(base), duty(8.0, 1000.0)
+
+    def root_safety(width: jax.Array) -> jax.Array:
+        found = rated(
+            replace(pair, face_width=width), numbers(1.15), asked, factors(), strengths(), FINISH
+        )
+        return found["root_safety"][0]
+
+    widths = jnp.asarray(np.linspace(0.01, 0.02, 1000))
+    values, slopes = jax.jit(jax.vmap(jax.value_and_grad(root_safety)))(widths)
+    assert float(values[0]) < float(values[-1])
+    steps = np.diff(values) / np.diff(widths)
+    np.testing.assert_allclose((slopes[1:] + slopes[:-1]) / 2.0, steps, rtol=1e-5)
+
+
+def test_materials_of_the_catalogue_name_treatments_that_are_known() -> None:
+    limited = [one for one in solids.catalogue().values() if one.sigma_hlim is not None]
+    assert limited
+    for one in limited:
+        assert one.treatment in TREATMENTS
+        assert one.sigma_flim is not None
+        assert one.sigma_hlim.source == "iso_6336_5_2016"

@@ -1,0 +1,220 @@
+"""Strength of pairs from their case files: balance with the reactions, what is said, what is refused."""
+
+import json
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pitchpoint.analyses.strength import STRENGTH as ANALYSIS
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError
+from pitchpoint.gears.families import sample_of
+from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
+from pitchpoint.gears.torus.table import TorusGears
+from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.run import Outcome, Progress, describe, open_result, run_piece, run_variant
+from pitchpoint.views.report import render
+from pitchpoint.views.sections.strength import STRENGTH, strength_rows
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SPEED, TORQUE = 1500.0 * np.pi / 30.0, 50.0
+
+PAIR = """
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = "20 mm"
+helix_angle = "15 deg"
+[materials]
+gear_1 = "case-hardened-mq"
+gear_2 = "case-hardened-mq"
+[lubricant]
+name = "pao-vg-150"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+[models]
+friction = "frictionless"
+"""
+RATED = """
+[strength]
+application_factor = 1.25
+face_load_factor = 1.3
+accuracy_class = 6
+treatment = ["case_hardened", "case_hardened"]
+"""
+
+
+def computed(text: str, folder: Path | None, *names: str, **settings: Any) -> Outcome:
+    """What `pitchpoint run` computes and keeps, of some parts only."""
+    variant = Variant(tomllib.loads(text), "pair.toml", "default", settings)
+    work = [job for job in jobs(variant, {}) if job.name in names]
+    return run_variant(variant, work, folder=folder, studies={}, progress=Progress())
+
+
+def strength_of(case: Path | str, settings: Mapping[str, Any] | None = None) -> Any:
+    """The rating of a file by itself."""
+    if settings:
+        tree = tomllib.loads(Path(case).read_text("utf-8"))
+        variant = Variant(tree, "x.toml", "default", dict(settings))
+        (job,) = [job for job in jobs(variant, {}) if job.name == "strength"]
+        return job.compute(job.pieces[0])
+    return run_piece(str(case), {"analysis": "strength"})
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("strength")
+
+
+@pytest.fixture(scope="module")
+def outcome(folder: Path) -> Outcome:
+    """A pair with a table, beside its operation, on disk."""
+    setting = {"strength.transverse_load_factor": 1.1, "strength.life": "20000 h"}
+    return computed(PAIR + RATED, folder / "default", "operation", "strength", **setting)
+
+
+def test_forces_are_those_on_the_bearings(outcome: Outcome) -> None:
+    rated, point = outcome.parts["strength"], outcome.parts["operation"]
+    tangential, radial, axial = (
+        rated[f"{name}_force"].values for name in ("tangential", "radial", "axial")
+    )
+    for gear in (1, 2):
+        across = float(point[f"radial_reaction_{gear}"].values[0, 0])
+        along = float(point[f"axial_reaction_{gear}"].values[0, 0])
+        assert np.hypot(tangential, radial) == pytest.approx(across, rel=1e-10)
+        assert abs(axial) == pytest.approx(abs(along), rel=1e-10)
+    wheel = (
+        61 / np.cos(np.radians(15.0)) * 1e-3
+    )  # radius of the reference circle, the pitch circle too
+    assert tangential == pytest.approx(TORQUE / wheel, rel=1e-12)
+
+
+def test_the_record_repeats_the_rating(outcome: Outcome, folder: Path) -> None:
+    again = run_piece(str(folder / "default" / "manifest.json"), {"analysis": "strength"})
+    assert again is not None
+    for name, variable in outcome.parts["strength"].data_vars.items():
+        np.testing.assert_array_equal(again[name].values, variable.values, err_msg=str(name))
+    rows = {f"{row['table']}.{row['key']}": row for row in outcome.manifest["inputs"]}
+    assert rows["strength.treatment"]["value"] == ["case_hardened", "case_hardened"]
+    assert rows["strength.life"]["value"] == 20000.0 * 3600.0
+    assert rows["strength.transverse_load_factor"]["status"] == "set"
+    keys = [source["key"] for source in outcome.manifest["sources"]]
+    assert {"iso_6336_3_2019", "iacs_m56_2021", "iso_6336_5_2016"} <= set(keys)
+    assert "vdi_2736_2_2014" not in keys
+
+
+def test_what_is_assumed_stands_beside_the_safeties(outcome: Outcome, folder: Path) -> None:
+    data = outcome.parts["strength"]
+    (assumed,) = json.loads(data.attrs["assumed"])
+    assert assumed.startswith("Assumed, [strength] has none: f_ZCa = 1.2")
+    for given in ("K_A", "K_Hβ", "K_Hα", "K_v", "endless"):
+        assert given not in assumed
+    (printed,) = STRENGTH.screen(outcome)
+    assert assumed in printed.line
+    assert "method B" in printed.line
+    (folder / "run.json").write_text(json.dumps({"case": "pair.toml", "variants": ["default"]}))
+    page = render(open_result(folder))
+    assert "Strength of the teeth" in page
+    assert "tooth form factor" in page
+
+
+def test_limits_without_a_material_that_has_them(tmp_path: Path) -> None:
+    plain = PAIR.replace('gear_2 = "case-hardened-mq"', 'gear_2 = "steel"')
+    outcome = computed(plain, None, "strength")
+    first, second = strength_rows(outcome)
+    safeties = [name for name in first if name.startswith(("S_H", "S_F"))]
+    assert len(safeties) == 2
+    for name in safeties:
+        assert float(first[name]) > 1.0
+        assert second[name] == "–"
+    assert all(row[name] != "–" for row in (first, second) for name in row if name not in safeties)
+    (told,) = json.loads(outcome.parts["strength"].attrs["withheld"])
+    assert told == (
+        "No safety of gear 2 against pitting and breakage: 'steel' has no sigma_hlim and sigma_flim; name a "
+        "material that has them, such as 'case-hardened-mq', or give them in [strength]."
+    )
+    kept = json.dumps(ANALYSIS.figures(outcome.parts))
+    assert "NaN" not in kept
+
+
+def test_a_table_of_limits_asks_for_the_treatment(tmp_path: Path) -> None:
+    path = tmp_path / "pair.toml"
+    plain = PAIR.replace("case-hardened-mq", "steel") + '[strength]\nsigma_hlim = "1400 MPa"\n'
+    path.write_text(plain)
+    with pytest.raises(
+        InputError, match=r"strength\.treatment: is missing: limits were given for gear 1"
+    ):
+        describe(str(path))
+    data = strength_of(path, {"strength.treatment": "case_hardened"})
+    assert np.all(np.isfinite(data["flank_safety"]))
+    assert np.all(np.isnan(data["root_safety"]))
+
+
+@pytest.mark.parametrize("table", [RackAndPinionGears, TorusGears])
+def test_gears_without_cylindrical_pairs_are_refused_with_a_sentence(table: Any) -> None:
+    sample = str(sample_of(table))
+    tree = tomllib.loads(Path(sample).read_text("utf-8"))
+    built = Variant(tree, "sample.toml", "default").built({})
+    assert ANALYSIS.lacks(built) == "ISO 6336 rates pairs of cylindrical gears, and these are none"
+    with pytest.raises(
+        InputError, match="strength: was given; ISO 6336 rates pairs of cylindrical"
+    ):
+        describe(sample, settings={"strength.application_factor": 1.2})
+
+
+def test_a_pinion_of_steel_and_a_wheel_of_plastic() -> None:
+    path = EXAMPLES / "helical_few_teeth_plastic.toml"
+    data = strength_of(path)
+    assert "VDI 2736" in data.attrs["method"]
+    assert np.all(np.isfinite(data["root_stress"]))
+    told = json.loads(data.attrs["withheld"])
+    assert any("'POM-H'" in text and "temperature and life" in text for text in told)
+    limits = {
+        "strength.sigma_hlim": ["1500 MPa", "40 MPa"],
+        "strength.sigma_flim": ["500 MPa", "30 MPa"],
+    }
+    given = strength_of(path, {**limits, "strength.treatment": "case_hardened"})
+    stress, safety = given["root_stress"].values, given["root_safety"].values
+    assert safety[1] == pytest.approx(30e6 / stress[1], rel=1e-12)
+    assert json.loads(given.attrs["withheld"]) == []
+
+
+def test_stages_are_rated_each_by_itself() -> None:
+    """The second stage of the drive, without losses, as a case of its own."""
+    data = strength_of(EXAMPLES / "two_stage.toml")
+    assert data["stage"].values.tolist() == [1, 2]
+    assert data["root_stress"].dims == ("stage", "gear")
+    alone = PAIR.replace("23, 61", "19, 70").replace(
+        'helix_angle = "15 deg"', "profile_shift = [0.4, 0.0]"
+    )
+    alone = (
+        alone.replace('"2 mm"', '"3 mm"')
+        .replace('"20 mm"', '"30 mm"')
+        .replace('"50 N m"', '"300 N m"')
+    )
+    one = computed(alone, None, "strength", **{"operation.speed": f"{1500.0 * 23 / 61} rpm"})
+    for name in ("tangential_force", "contact_stress", "root_stress", "dynamic_factor"):
+        values = data[name].sel(stage=2).values
+        np.testing.assert_allclose(values, one.parts["strength"][name].values, rtol=1e-10)
+    told = json.loads(data.attrs["withheld"])
+    assert [text.partition(":")[0] for text in told] == ["Stage 1"] * 2 + ["Stage 2"] * 2
+
+
+def test_a_table_of_a_drive_is_for_those_stages_that_are_rated() -> None:
+    path = EXAMPLES / "spur_and_strain_wave.toml"
+    plain, twice = (
+        strength_of(path, {"strength.application_factor": factor}) for factor in (1.0, 2.0)
+    )
+    assert plain["stage"].values.tolist() == [1]
+    ratio = twice["root_stress"].values / plain["root_stress"].values
+    assert ratio == pytest.approx(2.0, abs=0.2)  # K_v falls a little with the load
+    with pytest.raises(InputError, match=r"stages\.2\.strength: was given"):
+        strength_of(path, {"stages.2.strength.application_factor": 1.2})
