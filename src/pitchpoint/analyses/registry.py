@@ -11,6 +11,7 @@ from pitchpoint.analyses.along_action import (
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
+from pitchpoint.analyses.inspection import INSPECTION
 from pitchpoint.analyses.joint import JOINT
 from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
 from pitchpoint.analyses.loss_map import LOSS_MAP
@@ -28,6 +29,7 @@ __all__ = ["ANALYSES", "register"]
 ANALYSES: Registry[Analysis | Several] = Registry(
     "analysis",
     TEETH,
+    INSPECTION,
     CYCLE,
     OPERATION,
     LAWS_THERE,

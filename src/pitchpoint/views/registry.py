@@ -13,6 +13,7 @@ from pitchpoint.views.sections.film_squeeze import FILM_SQUEEZE
 from pitchpoint.views.sections.finite_film import FINITE_FILM
 from pitchpoint.views.sections.formulas import FORMULAS
 from pitchpoint.views.sections.inputs import INPUTS
+from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.issues import ISSUES
 from pitchpoint.views.sections.joint import JOINT
 from pitchpoint.views.sections.kinematic_error import KINEMATIC_ERROR
@@ -37,6 +38,7 @@ SECTIONS: Registry[Section] = Registry(
     INPUTS,
     STAGES,
     TEETH,
+    INSPECTION,
     PATH,
     DRIVE,
     ARC,
