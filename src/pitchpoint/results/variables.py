@@ -75,6 +75,19 @@ VARIABLES: dict[str, Variable] = {
     "disc_inertia": Variable(
         "moment of inertia of a gear as a disc", "J", "kg m2", "kg cm2", "moment of inertia"
     ),
+    "bending_strain": Variable("largest strain by which the wave bends", "ε_b", "1", "%"),
+    "alternating_stress": pressure("alternating bending stress of the flexspline", "σ_a"),
+    "mean_bending_stress": pressure("mean bending stress of the flexspline", "σ_m"),
+    "torsional_stress": pressure("shear stress of the flexspline by its torque", "τ"),
+    "mean_stress": pressure("mean equivalent stress of the flexspline", "σ_m'"),
+    "goodman_safety": Variable("safety of the flexspline by the Goodman line", "S", "1"),
+    "goodman_torque": torque("torque at which that safety is one", "T_S=1"),
+    "flexspline_torque": torque("torque on the flexspline, without losses", "T_F"),
+    "limit_torque": torque("torque of a maker, at this size", "T_limit"),
+    "limit_margin": Variable("that torque over the one on the flexspline", "T_limit/T_F", "1"),
+    "bearing_life": Variable(
+        "life of the wave generator's bearing by its rating", "L", "s", "h", "time"
+    ),
     "flank_tolerance": deviation("tolerance of the flanks by ISO 1328-1", "T"),
     "residual": Variable("relative residual of the torque balance", "", "1"),
     "load": Variable("normal force of the pair", "F", "N", "N", "force"),

@@ -17,6 +17,7 @@ from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.issues import ISSUES
 from pitchpoint.views.sections.joint import JOINT
 from pitchpoint.views.sections.kinematic_error import KINEMATIC_ERROR
+from pitchpoint.views.sections.load_limits import LOAD_LIMITS
 from pitchpoint.views.sections.loss_map import LOSS_MAP
 from pitchpoint.views.sections.models import MODELS
 from pitchpoint.views.sections.motion import MOTION
@@ -39,6 +40,7 @@ SECTIONS: Registry[Section] = Registry(
     STAGES,
     TEETH,
     INSPECTION,
+    LOAD_LIMITS,
     PATH,
     DRIVE,
     ARC,
