@@ -177,6 +177,7 @@ def backlash(first: Toothing, second: Toothing, centre_distance: float) -> Backl
 
     Example:
         >>> from math import radians
+        >>> from pitchpoint.gears.cylindrical.inspection import Toothing
         >>> gear = Toothing(20, 1e-3, radians(20.0), 0.0, 0.0)
         >>> play = backlash(gear.thinned(-30e-6), gear.thinned(-40e-6), 0.02)
         >>> round(1e6 * play.circumferential, 3), round(1e6 * play.normal, 3)

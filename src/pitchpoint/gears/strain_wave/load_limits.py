@@ -107,8 +107,8 @@ def goodman_safety(
         >>> round(goodman_safety(alternating=25.0, mean=25.98, **strengths), 2)
         1.05
     """
-    used: Values = alternating / endurance_limit + mean / tensile_strength
-    return 1.0 / used
+    safety: Values = 1.0 / (alternating / endurance_limit + mean / tensile_strength)
+    return safety
 
 
 def torque_by_goodman(
