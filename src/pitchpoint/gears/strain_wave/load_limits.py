@@ -107,8 +107,7 @@ def goodman_safety(
         >>> round(goodman_safety(alternating=25.0, mean=25.98, **strengths), 2)
         1.05
     """
-    safety: Values = 1.0 / (alternating / endurance_limit + mean / tensile_strength)
-    return safety
+    return 1.0 / (alternating / endurance_limit + mean / tensile_strength)
 
 
 def torque_by_goodman(
@@ -142,7 +141,8 @@ def torque_by_goodman(
         23.094
     """
     left = np.maximum(tensile_strength * (1.0 - alternating / endurance_limit), 0.0)
-    return np.sqrt(np.maximum(left**2 - np.square(mean_bending), 0.0) / 3.0) / shear_per_torque
+    equivalent = np.sqrt(np.maximum(left**2 - np.square(mean_bending), 0.0) / 3.0)
+    return np.asarray(equivalent / shear_per_torque)
 
 
 def flexspline_torque(load: float, loaded: str, teeth: tuple[float, float]) -> float:
