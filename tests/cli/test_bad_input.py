@@ -67,6 +67,12 @@ gear_1 = [{ order = 1, amplitude = "5 um", phase = "30 deg" }]
 gear_2 = [{ order = 2, amplitude = "3 um" }]
 iso_class = 6
 
+[gears.inspection]
+upper_thickness_allowance = ["-40 um", "-50 um"]
+lower_thickness_allowance = ["-70 um", "-90 um"]
+span_teeth = [3, 7]
+ball_diameter = "3.5 mm"
+
 [materials]
 gear_1 = { young = "206 GPa", poisson = 0.3, density = "7830 kg/m3" }
 gear_2 = { young = "206 GPa", poisson = 0.3, density = "7830 kg/m3" }
@@ -243,6 +249,16 @@ bolts = 8
 
 [gears.circular_spline]
 form = "conjugate"
+
+[gears.limits]
+bending_concentration = 1.5
+endurance_limit = "450 MPa"
+tensile_strength = "1100 MPa"
+ratcheting_torque = "500 N m"
+catalogue_diameter = "62 mm"
+rated_torque = "67 N m"
+rated_speed = "2000 rpm"
+rated_life = "7000 h"
 
 [gears.deviations]
 flexspline = [{ order = 1, amplitude = "5 um", phase = "30 deg" }]

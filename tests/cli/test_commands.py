@@ -29,7 +29,16 @@ from pitchpoint.views.report import render
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COLUMNS = ["quantity", "where", "printed", "computed", "tolerance", "kind", "verdict", "reason"]
 COLUMNS += ["unit", "bound"]
-PARTS = {"teeth", "cycle", "operation", "laws", "strength", "loss_map", "back_driving"}
+PARTS = {
+    "teeth",
+    "inspection",
+    "cycle",
+    "operation",
+    "laws",
+    "strength",
+    "loss_map",
+    "back_driving",
+}
 
 TINY = """
 title = "A [bold]pair[/bold] of <b>gears</b>"
@@ -313,7 +322,7 @@ def test_damaged_parts_are_computed_again(
     assert after.json == before.json
     assert not any(piece.exists() for piece in pieces)
     kept = {name for name, stamp in times(folder).items() if stamp == made.get(name)}
-    assert kept == {"loss_map", "back_driving", "study_speed", "study_smooth"}
+    assert kept == {"inspection", "loss_map", "back_driving", "study_speed", "study_smooth"}
 
 
 def test_cite(pitchpoint: Callable[..., Told], finished: Path, tiny: Path) -> None:

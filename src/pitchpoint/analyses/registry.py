@@ -11,8 +11,10 @@ from pitchpoint.analyses.along_action import (
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
+from pitchpoint.analyses.inspection import INSPECTION
 from pitchpoint.analyses.joint import JOINT
 from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
+from pitchpoint.analyses.load_limits import LOAD_LIMITS
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.running import RUNNING
@@ -29,6 +31,8 @@ __all__ = ["ANALYSES", "register"]
 ANALYSES: Registry[Analysis | Several] = Registry(
     "analysis",
     TEETH,
+    INSPECTION,
+    LOAD_LIMITS,
     CYCLE,
     OPERATION,
     LAWS_THERE,

@@ -11,14 +11,12 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 
-__all__ = [
-    "TEETH",
-]
+__all__ = ["TEETH", "drawing_of"]
 
 
 def _teeth(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     """What a drawing of the teeth to scale needs."""
-    numbers = jax.device_get(_drawing(built.design.mesh))
+    numbers = drawing_of(built)
     dims, labels = built.family.drawing, built.family.coordinates
     data = {name: (dims.get(name) or _dims(name, v), v) for name, v in numbers.items()}
     used = {name for each, _ in data.values() for name in each}
@@ -26,6 +24,12 @@ def _teeth(built: Built, _: Piece, __: Progress) -> xr.Dataset:
     if "points" in drawn:
         drawn["points"].attrs.update(built.way)
     return drawn
+
+
+def drawing_of(built: Built) -> dict[str, np.ndarray]:
+    """Arrays of a drawing of the teeth, by name; empty where there are none."""
+    found: dict[str, np.ndarray] = jax.device_get(_drawing(built.design.mesh))
+    return found
 
 
 def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
@@ -41,7 +45,7 @@ def _drawing(mesh: Mesh) -> dict[str, Array]:
 
 
 def _undrawn(built: Built) -> str | None:
-    return None if _drawing(built.design.mesh) else "there are no teeth to draw"
+    return None if drawing_of(built) else "there are no teeth to draw"
 
 
 TEETH = Analysis(name="teeth", title="teeth", lacks=_undrawn, compute=_teeth)

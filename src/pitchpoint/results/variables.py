@@ -61,6 +61,36 @@ VARIABLES: dict[str, Variable] = {
     "pitch_radius": length("relative radius of curvature at the pitch point", "ρ_redC"),
     "circumferential_backlash": deviation("backlash on the pitch circles", "j_wt"),
     "normal_backlash": deviation("backlash along the normal", "j_bn"),
+    "backlash_on_circle": deviation("backlash on the pitch circles by tolerances", "j_wt"),
+    "backlash_along_normal": deviation("backlash along the normal by tolerances", "j_bn"),
+    "backlash_angle": Variable(
+        "turn of a gear in its backlash, the other one held", "j_θ", "rad", "arcmin", "angle"
+    ),
+    "normal_thickness": length("tooth thickness on the reference cylinder", "s_n"),
+    "span_teeth": Variable("teeth under a span", "k", "1"),
+    "span_measurement": length("span measurement", "W_k"),
+    "span_diameter": length("diameter on which a span touches", "d_W"),
+    "ball_diameter": length("diameter of the measuring balls", "D_M"),
+    "over_balls": length("dimension over balls", "M_d"),
+    "ball_contact_diameter": length("diameter on which the balls touch", "d_K"),
+    "disc_mass": Variable("mass of a gear as a disc", "m", "kg", "kg", "mass"),
+    "disc_inertia": Variable(
+        "moment of inertia of a gear as a disc", "J", "kg m2", "kg cm2", "moment of inertia"
+    ),
+    "bending_strain": Variable("largest strain by which the wave bends", "ε_b", "1", "%"),
+    "alternating_stress": pressure("alternating bending stress of the flexspline", "σ_a"),
+    "mean_bending_stress": pressure("mean bending stress of the flexspline", "σ_m"),
+    "torsional_stress": pressure("shear stress of the flexspline by its torque", "τ"),
+    "mean_stress": pressure("mean equivalent stress of the flexspline", "σ_m'"),
+    "goodman_safety": Variable("safety of the flexspline by the Goodman line", "S", "1"),
+    "goodman_torque": torque("torque at which that safety is one", "T_S=1"),
+    "flexspline_torque": torque("torque on the flexspline, without losses", "T_F"),
+    "limit_torque": torque("torque of a maker, at this size", "T_limit"),
+    "limit_margin": Variable("that torque over the one on the flexspline", "T_limit/T_F", "1"),
+    "bearing_life": Variable(
+        "life of the wave generator's bearing by its rating", "L", "s", "h", "time"
+    ),
+    "flank_tolerance": deviation("tolerance of the flanks by ISO 1328-1", "T"),
     "residual": Variable("relative residual of the torque balance", "", "1"),
     "load": Variable("normal force of the pair", "F", "N", "N", "force"),
     "load_share": Variable("share of the load", "λ", "1"),

@@ -13,9 +13,11 @@ from pitchpoint.views.sections.film_squeeze import FILM_SQUEEZE
 from pitchpoint.views.sections.finite_film import FINITE_FILM
 from pitchpoint.views.sections.formulas import FORMULAS
 from pitchpoint.views.sections.inputs import INPUTS
+from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.issues import ISSUES
 from pitchpoint.views.sections.joint import JOINT
 from pitchpoint.views.sections.kinematic_error import KINEMATIC_ERROR
+from pitchpoint.views.sections.load_limits import LOAD_LIMITS
 from pitchpoint.views.sections.loss_map import LOSS_MAP
 from pitchpoint.views.sections.models import MODELS
 from pitchpoint.views.sections.motion import MOTION
@@ -38,6 +40,8 @@ SECTIONS: Registry[Section] = Registry(
     INPUTS,
     STAGES,
     TEETH,
+    INSPECTION,
+    LOAD_LIMITS,
     PATH,
     STRENGTH,
     DRIVE,

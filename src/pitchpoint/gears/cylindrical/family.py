@@ -4,9 +4,11 @@ from dataclasses import replace
 from typing import Any
 
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, with_bores
+from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,
     class_deviations,
@@ -29,6 +31,7 @@ _RING_FILLET = 0.2  # fits the narrow spaces of most rings
 
 def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
     pair = _pair(gears, driver=2 if driver == "gear 2" else 1, slices=slices)
+    _check_field(pair, gears)
     told = (*check_cylindrical(pair), *_shortened(pair, gears), *_beyond_iso_1328(pair, gears))
     return _with_flanks(pair, gears, slices), told
 
@@ -51,9 +54,19 @@ def _modifications(gears: CylindricalGears) -> Modifications | None:
     return Modifications(**given, relief_power=power, misalignment=slope)
 
 
+def _check_field(pair: CylindricalPair, gears: CylindricalGears) -> None:
+    """InputError for a tolerance field that is not known for the centre distance."""
+    field = None if gears.inspection is None else gears.inspection.centre_distance_field
+    if field is None:
+        return
+    try:
+        symmetrical_deviation(field, float(pair.centre_distance))
+    except InputError as error:
+        raise error.at(key="inspection.centre_distance_field") from None
+
+
 def _beyond_iso_1328(pair: CylindricalPair, gears: CylindricalGears) -> tuple[str, ...]:
-    asked = gears.deviations
-    return class_warnings(pair) if asked is not None and asked.iso_class is not None else ()
+    return class_warnings(pair) if gears.tolerance_class is not None else ()
 
 
 def _gear_deviations(gears: CylindricalGears, pair: CylindricalPair) -> Surfaces:

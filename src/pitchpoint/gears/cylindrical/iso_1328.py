@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import floor, sqrt
+from math import floor, hypot, sqrt
 
 import numpy as np
 from jaxtyping import Float
@@ -27,6 +27,7 @@ class FlankTolerances:
         total_pitch: F_pT, of the range of the cumulative pitch deviation [m].
         profile_slope, profile_form: f_HαT, f_fαT, along the line of action [m].
         helix_slope, helix_form: f_HβT, f_fβT, along the line of action [m].
+        profile_total, helix_total: F_αT, F_βT, of slope and form together [m].
     """
 
     single_pitch: float
@@ -35,6 +36,8 @@ class FlankTolerances:
     profile_form: float
     helix_slope: float
     helix_form: float
+    profile_total: float
+    helix_total: float
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,7 @@ def flank_tolerances(
         module: normal module [m].
         face_width: [m].
 
-    Source: ISO 1328-1:2013, eqs. 5 to 8, 10 and 11, in mm and um; `out_of_scope` says where they do not hold.
+    Source: ISO 1328-1:2013, eqs. 5 to 12, in mm and um; `out_of_scope` says where they do not hold.
 
     Example:
         >>> found = flank_tolerances(tolerance_class=6, diameter=0.1, module=3e-3, face_width=0.03)
@@ -81,7 +84,8 @@ def flank_tolerances(
         0.05 * sqrt(d) + 0.35 * sqrt(b) + 4.0,
         0.07 * sqrt(d) + 0.45 * sqrt(b) + 4.0,
     )
-    return FlankTolerances(*(1e-6 * _rounded(step * limit) for limit in in_um))
+    totals = hypot(*in_um[2:4]), hypot(*in_um[4:])  # of what is not rounded yet
+    return FlankTolerances(*(1e-6 * _rounded(step * limit) for limit in (*in_um, *totals)))
 
 
 _TIE = 1e-9  # what lies half way is rounded up, whatever binary numbers make of it

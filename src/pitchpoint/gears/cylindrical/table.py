@@ -3,13 +3,15 @@
 from math import pi
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator, BeforeValidator, model_validator
 
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS
+from pitchpoint.gears.cylindrical.iso_286 import FIELDS
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
+    DEVIATION,
     DISTANCE,
     FILLET,
     HELIX,
@@ -20,10 +22,10 @@ from pitchpoint.gears.table import (
     GearsTable,
     PairDeviations,
 )
-from pitchpoint.input.quantities import Pair, Quantity
+from pitchpoint.input.quantities import Pair, Quantity, named
 from pitchpoint.input.tables import Table
 
-__all__ = ["CylindricalGears", "FlankModifications", "GearDeviations"]
+__all__ = ["CylindricalGears", "FlankModifications", "GearDeviations", "Inspection"]
 
 TEETH = Quantity("dimensionless", -10_000, 10_000, whole=True)
 TIP = Quantity("dimensionless", -2.0, 2.0)
@@ -33,6 +35,8 @@ RELIEF_LENGTH = Quantity("length", 0.0, 1.0, "mm", open_low=True)
 MISALIGNMENT = Quantity("length", -1e-2, 1e-2, "um")
 TOLERANCE_CLASS = Quantity("dimensionless", 1, 11, whole=True)
 SEED = Quantity("dimensionless", 0, 1_000_000, whole=True)
+ALLOWANCE = Quantity("length", -1e-2, 1e-2, "um")
+SPAN = Quantity("dimensionless", 1, 1_000, whole=True)
 
 FEWEST_TEETH = 2
 FEWEST_RING_TEETH = 10
@@ -100,6 +104,64 @@ class GearDeviations(PairDeviations):
     seed: Annotated[float, SEED] = 1.0
 
 
+class Inspection(Table):
+    """What the drawing of each gear says of its teeth; the gears that are computed stay the nominal ones.
+
+    Allowances are those of the tooth thickness in the normal section, negative ones make teeth thinner. The
+    centre distance deviates to either side, by value or by a field of ISO 286. A span is over the number of
+    teeth that has it touch nearest to the middle of the active flank, and a ball touches there, unless they
+    are given. Tolerances are those of a class of ISO 1328-1, that of the deviations where it is left out.
+    """
+
+    upper_thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
+    lower_thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
+    centre_distance_deviation: Annotated[float, DEVIATION] | None = None
+    centre_distance_field: (
+        Annotated[str, BeforeValidator(named(lambda: FIELDS, "symmetrical tolerance field"))] | None
+    ) = None
+    span_teeth: Annotated[tuple[float, float], Pair(SPAN)] | None = None
+    ball_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
+    iso_class: Annotated[tuple[float, float], Pair(TOLERANCE_CLASS)] | None = None
+
+    @property
+    def allowances(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Upper and lower allowances of both gears [m]; None where none are given."""
+        upper, lower = self.upper_thickness_allowance, self.lower_thickness_allowance
+        return None if upper is None or lower is None else (upper, lower)
+
+    @model_validator(mode="after")
+    def _limits(self) -> "Inspection":
+        upper, lower = self.upper_thickness_allowance, self.lower_thickness_allowance
+        if (upper is None) != (lower is None):
+            given, missing = ("upper", "lower") if lower is None else ("lower", "upper")
+            raise InputError(
+                f"was given without {missing}_thickness_allowance; a tooth thickness has both",
+                key=f"{given}_thickness_allowance",
+            )
+        for number, (high, low) in enumerate(zip(upper or (), lower or (), strict=True), 1):
+            if low > high:
+                raise InputError(
+                    f"{ALLOWANCE.show(low)} of gear {number} is above its upper allowance, "
+                    f"{ALLOWANCE.show(high)}",
+                    key="lower_thickness_allowance",
+                )
+        if None not in (self.centre_distance_deviation, self.centre_distance_field):
+            raise InputError(
+                "centre_distance_deviation and centre_distance_field were both given; give one",
+                key="centre_distance_field",
+            )
+        return self
+
+
+def _allowed(inspection: Inspection | None) -> dict[str, float]:
+    """Largest allowance by key."""
+    limits = (None if inspection is None else inspection.allowances) or ()
+    keys = ("upper_thickness_allowance", "lower_thickness_allowance")
+    return {
+        f"inspection.{key}": max(map(abs, pair)) for key, pair in zip(keys, limits, strict=False)
+    }
+
+
 class CylindricalGears(GearsTable):
     """A pair of involute gears on parallel axes, spur or helical; gear 2 may be a ring.
 
@@ -129,6 +191,7 @@ class CylindricalGears(GearsTable):
     misalignment: Annotated[float, MISALIGNMENT] | None = None
     modifications: FlankModifications | None = None
     deviations: GearDeviations | None = None
+    inspection: Inspection | None = None
 
     @property
     def opposed(self) -> "CylindricalGears":
@@ -150,8 +213,20 @@ class CylindricalGears(GearsTable):
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography for what is given."""
         modified = self.modifications is not None or self.misalignment is not None
-        by_class = self.deviations is not None and self.deviations.iso_class is not None
-        return ("iso_21771_2007",) * modified + ("iso_1328_1_2013",) * by_class
+        inspected = self.inspection is not None
+        by_field = self.inspection is not None and self.inspection.centre_distance_field is not None
+        return (
+            *("iso_21771_2007",) * (modified or inspected),
+            *("iso_1328_1_2013",) * (self.tolerance_class is not None),
+            *("iso_286_1_2010",) * by_field,
+        )
+
+    @property
+    def tolerance_class(self) -> tuple[float, float] | None:
+        """Class of the flank tolerances of both gears, by inspection or by deviations; None without one."""
+        if self.inspection is not None and self.inspection.iso_class is not None:
+            return self.inspection.iso_class
+        return None if self.deviations is None else self.deviations.iso_class
 
     @property
     def load_sharing(self) -> str:
@@ -164,6 +239,7 @@ class CylindricalGears(GearsTable):
         amounts = self.modifications.amounts if self.modifications is not None else {}
         given = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
         given["misalignment"] = abs(self.misalignment or 0.0)
+        given |= _allowed(self.inspection)
         for key, most in given.items():
             if most > self.module / 2.0:
                 raise InputError(

@@ -23,7 +23,7 @@ from pitchpoint.gears.table import (
 from pitchpoint.input.quantities import Pair, Quantity, named
 from pitchpoint.input.tables import Table, by
 
-__all__ = ["DoubleArcTooth", "InvoluteGroove", "InvoluteTooth", "StrainWaveGears"]
+__all__ = ["DoubleArcTooth", "InvoluteGroove", "InvoluteTooth", "LoadLimits", "StrainWaveGears"]
 
 SPLINE_TEETH = Quantity("dimensionless", 30, 2_000, whole=True)
 SPLINE_SHIFT = Quantity("dimensionless", -5.0, 10.0)
@@ -45,6 +45,11 @@ SUPPORT = Quantity("pressure", 1e6, 1e16, "N/mm2")
 TWIST = Quantity("torsional stiffness", 1e-3, 1e12, "kN m/rad")
 SLOPE = Quantity("torque", 0.0, 1e8, "N m", open_low=True)
 SEVERAL = Quantity("dimensionless", 3, 60, whole=True)
+CONCENTRATION = Quantity("dimensionless", 1.0, 10.0)
+STRENGTH = Quantity("pressure", 1e6, 1e10, "MPa")
+LIMIT = Quantity("torque", 0.0, 1e8, "N m", open_low=True)
+TURNING = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
+LIFE = Quantity("time", 0.0, 1e12, "h", open_low=True)
 
 
 def _double_arcs() -> list[str]:
@@ -213,6 +218,51 @@ class Yielding(Table):
         return self
 
 
+_FATIGUE = ("endurance_limit", "tensile_strength")
+_RATED = ("rated_torque", "rated_speed", "rated_life")
+
+
+class LoadLimits(Table):
+    """What the flexspline and the bearing of the wave generator bear, as material and maker say.
+
+    The endurance limit is that of the finished flexspline under fully reversed bending. Torques against
+    ratcheting and buckling are a maker's; where they are those of a drive of another size, its pitch diameter
+    stands beside them, and they go with the cube of the size. The life of the bearing goes from its rated
+    life; average torque and speed are those of the operating point where they are left out.
+    """
+
+    bending_concentration: Annotated[float, CONCENTRATION] = 1.0
+    shear_concentration: Annotated[float, CONCENTRATION] = 1.0
+    endurance_limit: Annotated[float, STRENGTH] | None = None
+    tensile_strength: Annotated[float, STRENGTH] | None = None
+    ratcheting_torque: Annotated[float, LIMIT] | None = None
+    buckling_torque: Annotated[float, LIMIT] | None = None
+    catalogue_diameter: Annotated[float, BORE] | None = None
+    rated_torque: Annotated[float, LIMIT] | None = None
+    rated_speed: Annotated[float, TURNING] | None = None
+    rated_life: Annotated[float, LIFE] | None = None
+    average_torque: Annotated[float, LIMIT] | None = None
+    average_speed: Annotated[float, TURNING] | None = None
+
+    @model_validator(mode="after")
+    def _together(self) -> "LoadLimits":
+        for group in (_FATIGUE, _RATED):
+            missing = [key for key in group if getattr(self, key) is None]
+            if 0 < len(missing) < len(group):
+                given = next(key for key in group if key not in missing)
+                raise InputError(f"was given without {' and '.join(missing)}", key=given)
+        alone = {
+            "average_torque": self.rated_life,
+            "average_speed": self.rated_life,
+            "catalogue_diameter": self.ratcheting_torque or self.buckling_torque,
+        }
+        for key, other in alone.items():
+            if getattr(self, key) is not None and other is None:
+                what = "a torque of a catalogue" if key == "catalogue_diameter" else "a rated life"
+                raise InputError(f"was given without {what}, to which it belongs", key=key)
+        return self
+
+
 class SplineDeviations(Table):
     """How far the flanks of both splines lie behind their places, as waves around them.
 
@@ -276,6 +326,7 @@ class StrainWaveGears(GearsTable):
     slopes: tuple[Annotated[float, SLOPE], Annotated[float, SLOPE]] | None = None
     circular_spline: CircularSpline = ConjugateGroove()
     deviations: SplineDeviations = SplineDeviations()
+    limits: LoadLimits = LoadLimits()
 
     @property
     def tooth_numbers(self) -> tuple[float, float]:
@@ -297,6 +348,11 @@ class StrainWaveGears(GearsTable):
             "pitch diameter": self.module * first,
             "deflection over pitch diameter": deflection / first,
         }
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Keys of the bibliography for what is given."""
+        return ("harmonic_drive_2014",) * (self.limits.rated_life is not None)
 
     @property
     def drivers(self) -> tuple[str, ...]:

@@ -1,0 +1,257 @@
+"""What the drawing of a cylindrical gear asks for: span, balls, backlash by tolerances, classes, mass."""
+
+from dataclasses import astuple, dataclass
+from math import hypot, nan, sqrt
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.teeth import drawing_of
+from pitchpoint.cases.build import Built
+from pitchpoint.gears.cylindrical.inspection import (
+    Backlash,
+    Toothing,
+    backlash,
+    backlash_limits,
+    disc,
+)
+from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
+from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
+from pitchpoint.gears.cylindrical.table import CylindricalGears, Inspection
+from pitchpoint.results.store import dataset
+
+__all__ = ["INSPECTION"]
+
+NOTE = (
+    "Backlash is that of tooth thickness and centre distance; deviations of pitch, runout, misalignment, "
+    "bearing clearance and temperature come on top. Dimensions are those of involutes, without modifications."
+)
+
+CASES = ("nominal", "least", "mean", "largest")
+LIMITS = ("nominal", "upper", "lower")
+
+TOLERANCES = ("f_pT", "F_pT", "f_HαT", "f_fαT", "f_HβT", "f_fβT", "F_αT", "F_βT")
+"""Symbols of `FlankTolerances`, in its order."""
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """A gear, the part of its flanks that can be measured, and with what.
+
+    Attributes:
+        name: of the gear.
+        toothing: without allowances.
+        usable: roll lengths at which involute and tip begin and end [m].
+        tip: radius without sign [m].
+        width: of the face [m].
+        span: teeth under a span.
+        ball: diameter of the balls [m].
+        allowances: of the tooth thickness for each of `LIMITS` [m].
+    """
+
+    name: str
+    toothing: Toothing
+    usable: tuple[float, float]
+    tip: float
+    width: float
+    span: int
+    ball: float
+    allowances: tuple[float, ...]
+
+    @property
+    def no_span(self) -> str:
+        """Why no span can be measured; empty where one can."""
+        gear = self.toothing
+        if gear.side < 0.0:
+            return "a span is that of external teeth"
+        if gear.span_face(self.span) > self.width:
+            return f"a span over {self.span} teeth is wider than its face"
+        if not self._on_flank(gear.span_roll(self.span)):
+            return f"a span over {self.span} teeth does not touch its involutes"
+        return ""
+
+    @property
+    def no_ball(self) -> str:
+        """Why balls measure nothing; empty where they do."""
+        gear, told = self.toothing, f"balls of {1e3 * self.ball:.4g} mm"
+        if not self._on_flank(gear.ball_roll(self.ball)):
+            return f"{told} do not touch its involutes"
+        if gear.side * (gear.ball_reach(self.ball) - self.tip) <= 0.0:
+            return f"{told} do not stand out of its spaces"
+        return ""
+
+    @property
+    def told(self) -> list[str]:
+        """Sentences on what cannot be measured."""
+        return [f"{self.name}: {why}." for why in (self.no_span, self.no_ball) if why]
+
+    def _on_flank(self, roll: float) -> bool:
+        return self.usable[0] <= roll <= self.usable[1]
+
+    def values(self) -> dict[str, Any]:
+        """Dimensions by name; NaN where they cannot be measured."""
+        gear, base = self.toothing, self.toothing.base_radius
+        span, ball = (nan if why else 1.0 for why in (self.no_span, self.no_ball))
+        thinned = [gear.thinned(one) for one in self.allowances]
+        return {
+            "normal_thickness": [one.normal_thickness for one in thinned],
+            "span_teeth": span * self.span,
+            "span_measurement": [span * one.span(self.span) for one in thinned],
+            "span_diameter": span * 2.0 * hypot(base, gear.span_roll(self.span)),
+            "ball_diameter": self.ball,
+            "over_balls": [ball * one.over_balls(self.ball) for one in thinned],
+            "ball_contact_diameter": ball * 2.0 * hypot(base, gear.ball_roll(self.ball)),
+        }
+
+
+def inspection_part(built: Built) -> xr.Dataset:
+    """Dimensions, tolerances and backlash of a cylindrical pair, nominal and at the limits of its case.
+
+    Args:
+        built: the case.
+    """
+    table = built.case.gears
+    assert isinstance(table, CylindricalGears)
+    asked = table.inspection or Inspection()
+    pair = [_measured(number, built, asked) for number in (0, 1)]
+    each = [one.values() for one in pair]
+    plays = _plays(pair, asked, float(built.dimensions["centre_distance"]))
+    over = {0: ("gear",), 1: ("gear", "limit")}
+    told = [
+        f"The least backlash by tolerances is {1e6 * one.normal:.3g} um: the teeth can jam."
+        for one in plays[1:2]
+        if one.normal < 0.0
+    ]
+    return dataset(
+        {
+            **{
+                name: (over[np.ndim(value)], [one[name] for one in each])
+                for name, value in each[0].items()
+            },
+            "backlash_on_circle": (("case",), [one.circumferential for one in plays]),
+            "backlash_along_normal": (("case",), [one.normal for one in plays]),
+            "backlash_angle": (("gear", "case"), np.transpose([one.angular for one in plays])),
+            **_discs(built),
+            **_tolerances(table, pair),
+        },
+        {
+            "gear": [one.name for one in pair],
+            "limit": [*LIMITS[: len(pair[0].allowances)]],
+            "case": [*CASES[: len(plays)]],
+            **({"tolerance": [*TOLERANCES]} if table.tolerance_class else {}),
+        },
+        title="inspection",
+        warnings=told,
+        note=NOTE,
+        unmeasured=[sentence for one in pair for sentence in one.told],
+        asked=int(table.inspection is not None),
+        iso_class=[*(table.tolerance_class or ())],
+    )
+
+
+def _measured(number: int, built: Built, asked: Inspection) -> _Measured:
+    mesh: Any = built.design.mesh
+    drawn, angles = drawing_of(built), (float(mesh.pressure_angle), float(mesh.helix_angle))
+    gear = Toothing(
+        float(mesh.teeth[number]), float(mesh.module), *angles, float(mesh.profile_shift[number])
+    )
+    tip = float(drawn["tip_radius"][number])
+    form, active, end = (
+        _roll(gear, float(drawn[name][number]))
+        for name in ("form_radius", "active_root_radius", "tip_radius")
+    )
+    middle = (active + end) / 2.0
+    given, balls, limits = asked.span_teeth, asked.ball_diameter, asked.allowances or ()
+    return _Measured(
+        name=f"gear {number + 1}",
+        toothing=gear,
+        usable=(min(form, end), max(form, end)),
+        tip=tip,
+        width=float(mesh.face_width),
+        span=int(given[number]) if given else gear.usual_span(middle),
+        ball=balls[number] if balls else gear.usual_ball(middle),
+        allowances=(0.0, *(limit[number] for limit in limits)),
+    )
+
+
+def _roll(gear: Toothing, radius: float) -> float:
+    """Roll length at a radius [m]."""
+    return sqrt(max(radius**2 - gear.base_radius**2, 0.0))
+
+
+def _plays(pair: list[_Measured], asked: Inspection, distance: float) -> list[Backlash]:
+    """Backlash of the nominal gears, and least, mean and largest one where tolerances are given."""
+    gears, deviation = [one.toothing for one in pair], _deviation(asked, distance)
+    nominal = backlash(gears[0], gears[1], distance)
+    if asked.allowances is None and deviation is None:
+        return [nominal]
+    upper, lower = asked.allowances or ((0.0, 0.0), (0.0, 0.0))
+    limits = backlash_limits(
+        gears[0], gears[1], distance, upper=upper, lower=lower, deviation=deviation or 0.0
+    )
+    return [nominal, *limits]
+
+
+def _deviation(asked: Inspection, distance: float) -> float | None:
+    """Deviation of the centre distance to either side [m]; None where none is given."""
+    if asked.centre_distance_field is not None:
+        return symmetrical_deviation(asked.centre_distance_field, distance)
+    return asked.centre_distance_deviation
+
+
+def _discs(built: Built) -> dict[str, Any]:
+    """Mass and moment of inertia of both gears as discs, as a vibration takes them."""
+    mesh: Any = built.design.mesh
+    drawn, found = drawing_of(built), []
+    for number, solid in enumerate(built.design.solids):
+        ring = float(mesh.teeth[number]) < 0.0
+        root, rim = float(drawn["root_radius"][number]), float(mesh.rim_ratio[number])
+        found.append(
+            disc(
+                density=float(solid.density),
+                width=float(mesh.face_width),
+                outer=float(drawn["reference_radius"][number]),
+                inner=root * rim if ring else root / rim,
+            )
+        )
+    mass, inertia = zip(*found, strict=True)
+    return {"disc_mass": (("gear",), mass), "disc_inertia": (("gear",), inertia)}
+
+
+def _tolerances(table: CylindricalGears, pair: list[_Measured]) -> dict[str, Any]:
+    """Limits of the flanks of both gears by their classes; nothing without them."""
+    if table.tolerance_class is None:
+        return {}
+    found = [
+        astuple(
+            flank_tolerances(
+                tolerance_class=int(number),
+                diameter=2.0 * abs(one.toothing.reference_radius),
+                module=one.toothing.module,
+                face_width=one.width,
+            )
+        )
+        for number, one in zip(table.tolerance_class, pair, strict=True)
+    ]
+    return {"flank_tolerance": (("gear", "tolerance"), found)}
+
+
+def _unmeasured(built: Built) -> str | None:
+    if "inspection" in type(built.case.gears).model_fields:
+        return None
+    return Unasked("span, balls and backlash by tolerances are those of cylindrical gears")
+
+
+def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    return inspection_part(built)
+
+
+INSPECTION = Analysis(
+    name="inspection",
+    title="inspection",
+    lacks=_unmeasured,
+    compute=_computed,
+    main=("backlash_angle", "span_measurement", "over_balls", "disc_mass", "disc_inertia"),
+)

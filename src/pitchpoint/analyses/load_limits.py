@@ -1,0 +1,172 @@
+"""What a strain wave gear bears, by named estimates: stress of its flexspline, margins, bearing life."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.cases.build import Built
+from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.load_limits import (
+    bearing_life,
+    curvature_change,
+    face_stress,
+    flexspline_torque,
+    goodman_safety,
+    of_other_size,
+    torque_by_goodman,
+    tube_shear,
+    von_mises,
+)
+from pitchpoint.gears.strain_wave.table import LoadLimits, StrainWaveGears
+from pitchpoint.results.store import dataset
+
+__all__ = ["LOAD_LIMITS"]
+
+PLACES = ("rim under the teeth", "wall of the cup, at its open end")
+AGAINST = ("ratcheting", "buckling")
+
+ESTIMATE = (
+    "An estimate: a thin smooth ring bent to its wave, E t/2 times the change of its curvature, and a thin "
+    "tube under the torque of the operating point without losses, which is steady. Left out are the teeth, "
+    "which stiffen the rim and notch it, the cone to which the wave bends the cup, its bottom, and tooth "
+    "forces that bend the rim: peaks are higher. A torque that reverses alternates too, and is not covered."
+)
+
+
+def load_limits_part(built: Built) -> xr.Dataset:
+    """Stresses of the flexspline, and margins that follow from what a case gives.
+
+    Args:
+        built: a case of a strain wave gear.
+    """
+    gears, mesh = built.case.gears, _mesh(built)
+    assert isinstance(gears, StrainWaveGears)
+    limits, loaded = gears.limits, built.case.operation.load
+    torque = flexspline_torque(loaded, built.loaded, gears.tooth_numbers)
+    stresses = _stresses(built, limits, torque)
+    against = _against(limits, torque, float(mesh.module * mesh.teeth[0]))
+    life = _life(built, limits, torque)
+    return dataset(
+        {
+            **{name: (("place",), value) for name, value in stresses.items()},
+            **{name: (("against",), value) for name, value in against.items()},
+            "flexspline_torque": ((), torque),
+            **({} if life is None else {"bearing_life": ((), life)}),
+        },
+        {"place": [*PLACES], **({"against": [*AGAINST]} if against else {})},
+        title="load limits",
+        warnings=[*_failing(stresses, against)],
+        note=ESTIMATE,
+        concentrations=[limits.bending_concentration, limits.shear_concentration],
+        scaled=int(limits.catalogue_diameter is not None),
+    )
+
+
+def _mesh(built: Built) -> Any:
+    return built.design.mesh
+
+
+def _stresses(built: Built, limits: LoadLimits, torque: float) -> dict[str, np.ndarray]:
+    """Strain, stresses and what follows from strengths that are given, at each of `PLACES`."""
+    mesh, young = _mesh(built), float(built.solids[0].solid.young)
+    radius = float(mesh.rim.radius)
+    thickness = np.array([float(mesh.rim.thickness), float(mesh.rim.wall_thickness)])
+    bent = curvature_change(
+        np.linspace(0.0, np.pi, 721),
+        radius=float(mesh.line.radius),
+        deflection=float(mesh.line.deflection),
+        weights=np.asarray(mesh.line.weights),
+    )
+    swing, middle = np.ptp(bent) / 2.0, (bent.max() + bent.min()) / 2.0
+    notched = limits.bending_concentration * young
+    alternating = face_stress(young=notched, thickness=thickness, curvature=swing)
+    bending = face_stress(young=notched, thickness=thickness, curvature=middle)
+    per_torque = limits.shear_concentration * tube_shear(
+        torque=1.0, radius=radius, thickness=thickness
+    )
+    mean = von_mises(normal=bending, shear=torque * per_torque)
+    found = {
+        "bending_strain": thickness / 2.0 * np.abs(bent).max(),
+        "alternating_stress": alternating,
+        "mean_bending_stress": bending,
+        "torsional_stress": torque * per_torque,
+        "mean_stress": mean,
+    }
+    if limits.endurance_limit is None or limits.tensile_strength is None:
+        return found
+    strengths = {
+        "endurance_limit": limits.endurance_limit,
+        "tensile_strength": limits.tensile_strength,
+    }
+    return found | {
+        "goodman_safety": goodman_safety(alternating=alternating, mean=mean, **strengths),
+        "goodman_torque": torque_by_goodman(
+            alternating=alternating,
+            mean_bending=bending,
+            shear_per_torque=per_torque,
+            **strengths,
+        ),
+    }
+
+
+def _against(limits: LoadLimits, torque: float, diameter: float) -> dict[str, np.ndarray]:
+    """Torques of a maker at this size over the one on the flexspline, for each of `AGAINST`."""
+    given = (limits.ratcheting_torque, limits.buckling_torque)
+    if given == (None, None):
+        return {}
+    known = limits.catalogue_diameter or diameter
+    found = np.array(
+        [np.nan if one is None else of_other_size(one, size=diameter, known=known) for one in given]
+    )
+    with np.errstate(divide="ignore"):
+        return {"limit_torque": found, "limit_margin": np.divide(found, torque)}
+
+
+def _life(built: Built, limits: LoadLimits, torque: float) -> float | None:
+    """Life of the wave generator's bearing [s]; None where no rating is given."""
+    if limits.rated_life is None or limits.rated_torque is None or limits.rated_speed is None:
+        return None
+    motion = built.nominal["motion"]
+    turns = abs(float(motion[0] - motion[MEMBERS.index("circular spline")]))
+    return bearing_life(
+        rated_life=limits.rated_life,
+        rated_torque=limits.rated_torque,
+        rated_speed=limits.rated_speed,
+        torque=limits.average_torque or torque,
+        speed=limits.average_speed or built.case.operation.speed * turns,
+    )
+
+
+def _failing(stresses: dict[str, np.ndarray], against: dict[str, np.ndarray]) -> Iterator[str]:
+    """What does not hold, in words."""
+    safety = stresses.get("goodman_safety")
+    if safety is not None and safety.min() < 1.0:
+        yield (
+            f"The flexspline fails by the estimate of its stress: at the {PLACES[int(safety.argmin())]} its "
+            f"safety for endless life is {safety.min():.2f}."
+        )
+    for name, margin in zip(AGAINST, against.get("limit_margin", ()), strict=False):
+        if margin < 1.0:
+            yield f"The torque on the flexspline is {1.0 / margin:.2f} times that of {name}."
+
+
+def _unlimited(built: Built) -> str | None:
+    if isinstance(built.case.gears, StrainWaveGears):
+        return None
+    return Unasked("a flexspline is that of a strain wave gear")
+
+
+def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    return load_limits_part(built)
+
+
+LOAD_LIMITS = Analysis(
+    name="load_limits",
+    title="load limits",
+    lacks=_unlimited,
+    compute=_computed,
+    main=("alternating_stress", "torsional_stress", "mean_stress", "flexspline_torque"),
+)

@@ -1,0 +1,149 @@
+"""What goes on the drawing of each gear: span, balls, limits of backlash, tolerances, mass."""
+
+import json
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.screen import head, shown
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, Table, by_variant
+
+__all__ = ["INSPECTION", "backlash_rows", "measured_rows"]
+
+_SIDES = {"nominal": "", "upper": ", upper limit", "lower": ", lower limit"}
+
+_BACKLASH = {
+    "backlash_on_circle": "on the pitch circles in operation j_wt",
+    "backlash_along_normal": "along the normal of the flanks j_bn",
+}
+
+_USUAL = (
+    "Unless given, span and balls touch nearest to the middle of the active flank, balls rounded up to two "
+    "digits. Mass and inertia are those of discs from bore to reference circle; a ring lies outside of it."
+)
+
+Row = tuple[str, ...]
+
+
+def measured_rows(data: xr.Dataset) -> list[Row]:
+    """Names of the dimensions of a drawing, each with its values for both gears."""
+    return [
+        *_limits(data, "normal_thickness", "tooth thickness, normal section s_n [mm]"),
+        _row("teeth under the span k", [_count(v) for v in data["span_teeth"].values]),
+        *_limits(data, "span_measurement", "span W_k [mm]"),
+        _row("the span touches on d [mm]", _millimetres(data["span_diameter"].values)),
+        _row("measuring balls D_M [mm]", _millimetres(data["ball_diameter"].values)),
+        *_limits(data, "over_balls", "over balls, in a ring between them, M_d [mm]"),
+        _row("the balls touch on d [mm]", _millimetres(data["ball_contact_diameter"].values)),
+        *(
+            _row(f"{title} [{show.unit_of(name)}]", _each(name, data))
+            for name, title in (("disc_mass", "mass m"), ("disc_inertia", "moment of inertia J"))
+        ),
+    ]
+
+
+def backlash_rows(data: xr.Dataset) -> list[Row]:
+    """Names of each kind of backlash with its values for every case."""
+    return [
+        *(
+            _row(f"{title} [{show.unit_of(name)}]", _each(name, data))
+            for name, title in _BACKLASH.items()
+        ),
+        *(
+            _row(
+                f"turn of {gear}, the other one held [{show.unit_of('backlash_angle')}]",
+                _each("backlash_angle", data.sel(gear=gear)),
+            )
+            for gear in data["gear"].values
+        ),
+    ]
+
+
+def _limits(data: xr.Dataset, name: str, title: str) -> Iterator[Row]:
+    """A row for the nominal value and one for each limit."""
+    for side in data["limit"].values:
+        values = data[name].sel(limit=side).values
+        yield _row(title.replace(" [", f"{_SIDES[str(side)]} [", 1), _millimetres(values))
+
+
+def _row(title: str, cells: Sequence[str]) -> Row:
+    return (title, *cells)
+
+
+def _each(name: str, data: xr.Dataset) -> list[str]:
+    return [show.quantity(name, float(v), with_unit=False) for v in data[name].values]
+
+
+def _millimetres(values: np.ndarray) -> list[str]:
+    """Lengths to a micrometre; a dash where there is none."""
+    return [f"{1e3 * v:.3f}" if np.isfinite(v) else "–" for v in values]
+
+
+def _count(value: float) -> str:
+    return f"{value:.0f}" if np.isfinite(value) else "–"
+
+
+def _tolerance_rows(data: xr.Dataset) -> list[Row]:
+    return [
+        _row(f"{name} [µm]", [show.number(1e6 * float(v)) for v in values])
+        for name, values in zip(
+            data["tolerance"].values, data["flank_tolerance"].values.T, strict=True
+        )
+    ]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield from by_variant(page, "inspection", _of_variant)
+
+
+def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
+    data = outcome.parts["inspection"]
+    gears = [str(name) for name in data["gear"].values]
+    yield Paragraph(data.attrs["note"])
+    yield Table(["backlash", *map(str, data["case"].values)], backlash_rows(data), compact=True)
+    if data.sizes["case"] == 1:
+        yield Paragraph(
+            "Without tolerances: a table [gears.inspection] with thickness allowances and a deviation of the "
+            "centre distance gives the least, mean and largest backlash.",
+            "note",
+        )
+    yield Table(["dimension", *gears], measured_rows(data), compact=True)
+    yield Paragraph(" ".join([_USUAL, *json.loads(data.attrs["unmeasured"])]), "note")
+    if "flank_tolerance" in data:
+        classes = [f"{value:.0f}" for value in json.loads(data.attrs["iso_class"])]
+        titles = [f"{gear}, class {of}" for gear, of in zip(gears, classes, strict=True)]
+        yield Table(["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True)
+
+
+def _printed(outcome: Outcome) -> Iterator[Printed]:
+    """What is asked for alone: the screen is short."""
+    data = outcome.parts.get("inspection")
+    if data is None or not data.attrs["asked"]:
+        return
+    yield Printed(rows=[_on_screen(data, str(gear)) for gear in data["gear"].values])
+
+
+def _on_screen(data: xr.Dataset, gear: str) -> dict[str, str]:
+    own = data.sel(gear=gear)
+    row = {"inspection": gear, head("span_teeth"): _count(float(own["span_teeth"]))}
+    for name in ("span_measurement", "ball_diameter", "over_balls"):
+        values = np.sort(np.atleast_1d(own[name].values)[-2:])
+        row[head(name)] = " to ".join(dict.fromkeys(_millimetres(values)))
+    plays = own["backlash_angle"].values
+    ends = plays if plays.size == 1 else plays[[1, -1]]
+    words = [shown("backlash_angle", float(v)) for v in ends]
+    return row | {f"backlash {head('backlash_angle')}": " to ".join(words)}
+
+
+INSPECTION = Section(
+    name="inspection",
+    title="Inspection: backlash, span, balls, tolerances",
+    short="Inspection",
+    order=105.0,
+    parts=("inspection",),
+    blocks=_blocks,
+    screen=_printed,
+)
