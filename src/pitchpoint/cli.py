@@ -170,8 +170,8 @@ def show(
         return
     from pitchpoint.views.inputs import input_rows
 
-    for manifest in manifests:
-        _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({manifest['variant']})")
+    for number, manifest in enumerate(manifests):
+        _heading(manifest, number)
         columns = ("table", "key", "value", "status", "where", "note")
         _table(input_rows(manifest), columns)
         _warn(manifest["warnings"])
@@ -211,8 +211,8 @@ def run(
     if json_:
         _emit({name: _figures(outcome) for name, outcome in outcomes.items()})
         return
-    for name, outcome in outcomes.items():
-        _summary(name, outcome)
+    for number, outcome in enumerate(outcomes.values()):
+        _summary(outcome, number)
     measured = {name: outcome.rows for name, outcome in outcomes.items() if outcome.rows}
     for name, rows in measured.items():
         _verdicts(rows, f"{name}, " if len(measured) > 1 else "")
@@ -395,15 +395,23 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
     return figures(outcome)
 
 
-def _summary(name: str, outcome: "Outcome") -> None:
+def _summary(outcome: "Outcome", number: int) -> None:
     from pitchpoint.views.registry import in_order
 
-    manifest = outcome.manifest
-    _console().print(f"\n[bold]{_plain(manifest['title'])}[/] ({_plain(name)})")
+    _heading(outcome.manifest, number)
     for section in in_order():
         for printed in section.screen(outcome):
             _print(printed)
-    _warn(manifest["warnings"])
+    _warn(outcome.manifest["warnings"])
+
+
+def _heading(manifest: Mapping[str, Any], number: int) -> None:
+    """What cannot be, before anything else is said of a variant; then its title."""
+    if number:
+        _console().print()
+    for text in manifest["implausible"]:
+        _console().print(_plain(text), style="bold red")
+    _console().print(f"[bold]{_plain(manifest['title'])}[/] ({_plain(manifest['variant'])})")
 
 
 def _print(printed: "Printed") -> None:

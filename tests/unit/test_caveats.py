@@ -11,14 +11,13 @@ import pytest
 from pitchpoint.analyses import caveats
 from pitchpoint.analyses.cycle import _reasons
 from pitchpoint.cases.build import _roughness
-from pitchpoint.cases.failures import fails, worst_first
+from pitchpoint.cases.failures import apart, fails
 from pitchpoint.cases.laws import FRICTION, limits_words
 from pitchpoint.cases.schema import Surface
-from pitchpoint.cases.solids import BY_VALUE, SolidInUse, failures
+from pitchpoint.cases.solids import SolidInUse, failures
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.materials import solids
-from pitchpoint.materials._leaves import Datum
 from pitchpoint.runs.catalogue import entries
 
 XU, ISO = FRICTION["xu_2007"], FRICTION["iso_tr_14179_2"]
@@ -134,21 +133,12 @@ def test_beyond_its_table_a_molten_plastic_is_refused_as_such() -> None:
         solids.find("POM-H").build(500.0)
 
 
-def test_a_pressure_beyond_what_steel_bears_comes_first() -> None:
-    steel, plastic = in_use("steel"), in_use("PA66")
-    by_value = in_use("rigid", title=BY_VALUE, young=Datum(value=206e9))
-    assert caveats.pressure_warning(case("none", steel, steel), [cycle()]) == []
-    pressed = [cycle(), cycle(pressure=3.1e9)]
-    for gears in ((steel, steel), (plastic, by_value)):
-        (told,) = caveats.pressure_warning(case("none", *gears), pressed)
-        assert told.startswith("Fails: the Hertz pressure reaches 3.1 GPa")
-        assert "bears about 2.5 GPa" in told
-    assert caveats.pressure_warning(case("none", in_use("rigid"), plastic), pressed) == []
-
-
-def test_what_cannot_run_is_told_first_and_once() -> None:
+def test_what_cannot_be_is_told_apart_and_once() -> None:
     told = ["a tip is pointed.", fails("teeth melt."), "a tip is pointed.", "a root is thin."]
-    assert worst_first(told) == ["Fails: teeth melt.", "a tip is pointed.", "a root is thin."]
+    assert apart(told) == {
+        "implausible": ["Fails: teeth melt."],
+        "warnings": ["a tip is pointed.", "a root is thin."],
+    }
 
 
 def test_ra_and_rq_together_reach_the_laws_that_ask_for_them() -> None:

@@ -45,7 +45,7 @@ def job(name, *numbers):
 
 JOBS = [job("teeth", 0), job("study_sweep", 1, 2, 3)]
 Variant.built = lambda self, changes: None
-running._manifest = lambda *_: {"warnings": [], "inputs": [], "source": "", "own": ""}
+running._manifest = lambda *_: {"implausible": [], "warnings": [], "inputs": [], "source": "", "own": ""}
 running._lacking = lambda built: {}
 running._rows = lambda *_: []
 variant = Variant({}, "pair.toml", "default")

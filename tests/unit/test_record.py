@@ -30,6 +30,7 @@ GOOD: dict[str, Any] = {
     "inputs": entries({"operation.torque": 77.0}),
     "targets": [],
     "own": "",
+    "implausible": [],
     "warnings": ["dry"],
     "laws": [LAW],
     "models": [{**LAW, "effect": "load sharing"}],

@@ -280,6 +280,7 @@ def outcome(parts: Mapping[str, xr.Dataset], **changes: Any) -> Outcome:
         "against": PATHS["wave"].against if turning[1] < turning[0] else "",
         "averaging": "base_pitch",
         "finished": True,
+        "implausible": [],
         "warnings": [],
         "inputs": entries(given),
         "laws": [{"name": "own", "title": EVIL, "note": ""}],

@@ -176,6 +176,7 @@ def outcome(parts: Mapping[str, xr.Dataset], driver: str = "gear 1") -> Outcome:
         "oil": "oil",
         "averaging": "base_pitch",
         "finished": True,
+        "implausible": [],
         "warnings": ["of the design", BESIDE],
         "inputs": entries(given),
         "driver": driver,

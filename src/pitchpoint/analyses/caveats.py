@@ -25,6 +25,7 @@ __all__ = [
     "asperity_warning",
     "beyond_face",
     "cold_warning",
+    "conformal",
     "conformal_warning",
     "demand_convergence",
     "demand_films",
@@ -34,9 +35,9 @@ __all__ = [
     "film_warning",
     "films_lost",
     "jamming_words",
-    "pressure_warning",
     "proportions_counted",
     "proportions_words",
+    "rolling_share",
     "room_warning",
     "told_of_law",
     "why_outside",
@@ -50,7 +51,6 @@ NEARLY_JAMMED = 1e-3
 """Distance from the coefficient that locks the mesh, relative, at which it is said to be reached."""
 
 LENGTH = Quantity("length", 0.0, 1e3, "mm")
-PRESSURE = Quantity("pressure", 0.0, 1e15, "GPa")
 
 LEAST_FACE = 3.0
 """Mean number of slices of a contact line below which it is nearly a point, not a line."""
@@ -133,16 +133,21 @@ def _where(built: Ready) -> str:
     )
 
 
+def conformal(mesh: Mesh, run: Mapping[str, Any]) -> np.ndarray:
+    """True for loaded contacts whose flanks have the same curvature nearly: their relative radius is cut."""
+    flat = np.asarray(run["radius"]) > float(mesh.largest_radius) * (1.0 - 1e-9)
+    found: np.ndarray = (np.asarray(run["load"]) > 0.0) & flat
+    return found
+
+
 def conformal_warning(mesh: Mesh, run: Mapping[str, Any]) -> list[str]:
     """Contacts whose flanks have the same curvature nearly, where the formulas of contact do not hold."""
-    loaded = np.asarray(run["load"]) > 0.0
-    largest = float(mesh.largest_radius)
-    flat = loaded & (np.asarray(run["radius"]) > largest * (1.0 - 1e-9))
+    loaded, flat = np.asarray(run["load"]) > 0.0, conformal(mesh, run)
     if not flat.any():
         return []
     return [
         f"{flat.sum()} of {loaded.sum()} loaded contacts of the mesh cycle are conformal: their relative "
-        f"radius is cut at {largest:.3g} m, and pressure and film there say little."
+        f"radius is cut at {float(mesh.largest_radius):.3g} m, and pressure and film there say little."
     ]
 
 
@@ -226,24 +231,6 @@ def room_warning(run: Mapping[str, Any]) -> list[str]:
 
 def _length(value: float) -> str:
     return LENGTH.show(float(f"{value:.3g}"))
-
-
-def pressure_warning(built: Built, runs: Sequence[Mapping[str, np.ndarray]]) -> list[str]:
-    """A Hertz pressure that a material does not bear even once."""
-    largest = max(float(np.max(run["pressure"])) for run in runs)
-    limits = [
-        (limit.value, gear) for gear, used in enumerate(built.solids, 1) if (limit := used.bears)
-    ]
-    weakest, gear = min(limits, default=(np.inf, 0))
-    if not largest > weakest:
-        return []
-    name = built.solids[gear - 1].record.name
-    return [
-        fails(
-            f"the Hertz pressure reaches {PRESSURE.show(float(f'{largest:.3g}'))}; {name} bears about "
-            f"{PRESSURE.show(weakest)}, and that a few times only."
-        )
-    ]
 
 
 def proportions_words(points: Sequence[Built]) -> str:
@@ -376,7 +363,7 @@ def why_outside(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -
     if law.whole and rolling.sources:
         reasons.append(
             "its coefficient was fitted to whole losses of gears, those of rolling among them; with "
-            f"'{rolling.name}' beside it rolling counts twice, here with {_rolling_share(run):.2g} % of "
+            f"'{rolling.name}' beside it rolling counts twice, here with {rolling_share(run):.2g} % of "
             "the loss"
         )
     return reasons
@@ -397,7 +384,7 @@ def _how_long(outside: np.ndarray, weight: np.ndarray) -> str:
     return "throughout" if share > 1.0 - 1e-9 else f"in {100.0 * share:.2g} % of the mesh cycle"
 
 
-def _rolling_share(run: Mapping[str, np.ndarray]) -> float:
+def rolling_share(run: Mapping[str, np.ndarray]) -> float:
     """Part of the loss in the teeth that rolling takes [%]."""
     rolling, sliding = (
         float(np.sum(np.sum(run[name], axis=(1, 2)) * run["weight"]))

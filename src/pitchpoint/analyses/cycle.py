@@ -15,11 +15,11 @@ from pitchpoint.analyses.caveats import (
     demand_motion,
     face_warning,
     film_warning,
-    pressure_warning,
     room_warning,
     told_of_law,
     why_outside,
 )
+from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
@@ -83,9 +83,9 @@ def _cycle(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
     warnings += film_warning(built.film, runs[0])
     warnings += asperity_warning(built.asperities, runs[0])
     warnings += conformal_warning(mesh, runs[0])
-    warnings += pressure_warning(built, runs)
     warnings += face_warning(built, runs[0])
     warnings += room_warning(runs[0])
+    warnings += implausible(AtWork(built, built.laws, runs))
     code = locked_or_lost(each["locked"][1])
     beyond = np.stack([beyond_face(run) for run in runs])
     code = np.where(beyond & (code == Code.SOLVED), int(Code.BEYOND_FACE), code)

@@ -27,12 +27,15 @@ __all__ = [
     "covered",
     "covers",
     "error_ranges",
+    "headline",
+    "holding",
     "json_figures",
     "main_figures",
     "numbers",
     "of_contact",
     "of_operation",
     "out_of_range",
+    "why_not",
 ]
 
 Parts = Mapping[str, xr.Dataset]
@@ -158,6 +161,7 @@ def of_operation(parts: Parts) -> dict[str, Any]:
     """Figures of the operating point."""
     data = parts["operation"]
     return {
+        "headline": by_law(headline(parts), main_figures(data)[:1]),
         "operation": by_law(data, json_figures(data)),
         "efficiency_of": covers(data),
         "reactions": by_law(data, REACTIONS),
@@ -182,6 +186,30 @@ def out_of_range(laws: xr.Dataset) -> list[dict[str, Any]]:
     """Laws of the library that do not hold at the operating point, with their efficiency and the reasons."""
     found: list[dict[str, Any]] = json.loads(laws.attrs.get("outside", "[]"))
     return found
+
+
+def why_not(parts: Parts) -> dict[str, list[str]]:
+    """Laws that do not hold at the operating point, and the reasons; none where that is not known."""
+    told = out_of_range(parts["laws"]) if "laws" in parts else []
+    return {str(one["law"]): one["reasons"] for one in told}
+
+
+def holding(parts: Parts) -> list[bool]:
+    """For each friction law of a case whether it holds at the operating point."""
+    outside = why_not(parts)
+    return [str(law) not in outside for law in parts["operation"]["law"].values]
+
+
+def headline(parts: Parts) -> xr.Dataset:
+    """The operating point by the laws of the case that hold there; by those of the library where none does.
+
+    Where no law holds at all, those of the case are all there is.
+    """
+    data, holds = parts["operation"], holding(parts)
+    if any(holds):
+        return data.isel(law=np.flatnonzero(holds))
+    others = parts.get("laws")
+    return data if others is None or not others.sizes["law"] else others
 
 
 def bearing_loads(data: Any, law: int) -> list[tuple[str, float]]:

@@ -17,9 +17,12 @@ from pitchpoint.analyses.figures import (
     of_operation,
     out_of_range,
 )
+from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.failures import in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import without_nan
 
 __all__ = [
@@ -32,7 +35,26 @@ __all__ = [
 
 
 def _operation(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
-    return summaries([built], built.models, beside([built]), title="operating point")
+    data = summaries([built], built.models, beside([built]), title="operating point")
+    told = [*json.loads(data.attrs["warnings"]), *_implausible(built)]
+    return data.assign_attrs(warnings=json.dumps(told))
+
+
+def _implausible(built: Ready) -> list[str]:
+    """What cannot be in the stages of a drive; of one mesh its cycle tells it."""
+    return (
+        [
+            in_stage(number, text)
+            for k, (number, one) in enumerate(zip(built.numbers, built.stages, strict=True))
+            for text in _of_stage(one, [acting.stages[k] for acting in built.models])
+        ]
+        if isinstance(built, BuiltDrive)
+        else []
+    )
+
+
+def _of_stage(stage: Built, under: Sequence[Models]) -> list[str]:
+    return implausible(AtWork(stage, [models.law for models in under], profiles(stage, under)))
 
 
 def _laws(built: Ready, _: Piece, __: Progress) -> xr.Dataset:

@@ -244,7 +244,10 @@ class Built:
 
     @cached_property
     def nominal(self) -> dict[str, Any]:
-        """Nominal motion, driver, loaded member, period, sense and events of the mesh, as plain numbers."""
+        """Nominal motion, driver, loaded member, period, sense and events of the mesh, as plain numbers.
+
+        The speed of its pitch circles, zero where it has none, is for a unit rate of the driver.
+        """
         found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
         return found
 
@@ -825,6 +828,7 @@ def _nominal(mesh: Mesh) -> dict[str, Any]:
         "period": mesh.period,
         "onward": mesh.onward,
         "events": mesh.events(),
+        "pitch_line_speed": mesh.reference.pitch_line_speed if mesh.pitch_point else jnp.zeros(()),
     }
 
 

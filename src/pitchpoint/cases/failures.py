@@ -1,14 +1,14 @@
-"""Sentences on what cannot run: they stand before all other warnings."""
+"""Sentences on what cannot be: they stand above every number, apart from all other warnings."""
 
 from collections.abc import Iterable
 
-__all__ = ["fails", "in_stage", "worst_first"]
+__all__ = ["apart", "fails", "in_stage"]
 
 _FAILS = "Fails: "
 
 
 def fails(sentence: str) -> str:
-    """Sentence marked as one on what cannot run.
+    """Sentence marked as one on what cannot be; whoever warns of a result may tell such ones.
 
     Example:
         >>> fails("the teeth of gear 2 melt.")
@@ -32,12 +32,16 @@ def in_stage(number: int, sentence: str) -> str:
     return f"Stage {number}: {sentence[:1].lower()}{sentence[1:]}"
 
 
-def worst_first(sentences: Iterable[str]) -> list[str]:
-    """Sentences, each once, those on what cannot run first.
+def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
+    """Sentences on what cannot be, and all other warnings, each once.
 
     Example:
         >>> from pitchpoint.cases.failures import fails
-        >>> worst_first(["tips are pointed.", fails("teeth melt."), "tips are pointed."])
-        ['Fails: teeth melt.', 'tips are pointed.']
+        >>> apart(["tips are pointed.", fails("teeth melt."), "tips are pointed."])
+        {'implausible': ['Fails: teeth melt.'], 'warnings': ['tips are pointed.']}
     """
-    return sorted(dict.fromkeys(sentences), key=lambda text: not text.startswith(_FAILS))
+    each = list(dict.fromkeys(sentences))
+    return {
+        "implausible": [text for text in each if text.startswith(_FAILS)],
+        "warnings": [text for text in each if not text.startswith(_FAILS)],
+    }

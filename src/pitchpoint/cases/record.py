@@ -180,6 +180,7 @@ class Manifest(_Kept):
     Attributes:
         surroundings: versions of the packages that computed it, and of what else decides its last bits.
         own: name of a friction law of the user's own that took the place of those of the case, or empty.
+        implausible: sentences on what cannot be, above every number.
         members: body of each coordinate.
         motion: nominal rate of each coordinate for one radian of the driver.
         period: driver angle after which the mesh repeats [rad].
@@ -198,6 +199,7 @@ class Manifest(_Kept):
     inputs: list[Input]
     targets: list[dict[str, JsonValue]]
     own: str
+    implausible: list[str] = []
     warnings: list[str]
     laws: list[Law]
     models: list[Model]

@@ -89,6 +89,7 @@ def figures(outcome: Outcome) -> dict[str, Any]:
         for name in analysis.main
     }
     return {
+        "implausible": manifest["implausible"],
         "title": manifest["title"],
         "units": units_of,
         **{key: value for one in shown for key, value in one.items()},

@@ -15,12 +15,13 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, Unasked
 from pitchpoint.analyses.comparison import compare, demand_parts
+from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, variants
-from pitchpoint.cases.failures import worst_first
+from pitchpoint.cases.failures import apart
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.library import as_text, find, names, path_of
 from pitchpoint.cases.loss_sets import set_sources
@@ -91,7 +92,8 @@ class Outcome:
     """One variant of a case with its results.
 
     Attributes:
-        manifest: title, inputs in SI, warnings, laws, sources, issues, printed against computed.
+        manifest: title, inputs in SI, what is implausible, warnings, laws, sources, issues, printed against
+            computed.
         parts: datasets by name.
     """
 
@@ -102,6 +104,11 @@ class Outcome:
     def rows(self) -> list[Row]:
         """Printed against computed."""
         return [Row(**row) for row in self.manifest["rows"]]
+
+    def tell(self, sentences: Sequence[str]) -> None:
+        """Add sentences to what is implausible, and to the warnings."""
+        known = (*self.manifest["implausible"], *self.manifest["warnings"])
+        self.manifest.update(apart([*known, *sentences]))
 
 
 def run(
@@ -243,8 +250,8 @@ def run_variant(
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
         if not is_study(job.name):
-            told = [*outcome.manifest["warnings"], *json.loads(part.attrs.get("warnings", "[]"))]
-            outcome.manifest["warnings"] = worst_first(told)
+            told = [*json.loads(part.attrs.get("warnings", "[]")), *unlikely(built, outcome.parts)]
+            outcome.tell(told)
         _note(outcome, folder, finished=False)
     outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
     _note(outcome, folder, finished=True)
@@ -552,13 +559,7 @@ def _manifest(variant: Variant, built: Ready, studies: Mapping[str, Study]) -> d
             for target in (case.targets if _measured(variant) else ())
         ],
         "own": "" if variant.own is None else variant.own.name,
-        "warnings": worst_first(
-            [
-                *variant.warnings,
-                *built.warnings,
-                *built.heated,
-            ]
-        ),
+        **apart([*variant.warnings, *built.warnings, *built.heated]),
         "laws": [{"name": law.name, "title": law.title, "note": law.note} for law in laws],
         "models": [
             {"effect": effect, "name": law.name, "title": law.title, "note": law.note}

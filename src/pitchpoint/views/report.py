@@ -50,6 +50,7 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
         .render(
             first=page.first,
             variants=[*outcomes],
+            implausible={name: one.manifest["implausible"] for name, one in outcomes.items()},
             cited=any(one.manifest["sources"] for one in outcomes.values()),
             sections=made,
             absent=_absent(bare, lacking),

@@ -12,8 +12,11 @@ from pitchpoint.analyses.figures import (
     REACTIONS,
     bearing_loads,
     covers,
+    headline,
+    holding,
     main_figures,
     of_contact,
+    why_not,
 )
 from pitchpoint.cases.inputs import OIL
 from pitchpoint.results.variables import VARIABLES
@@ -28,7 +31,7 @@ from pitchpoint.views.sections.back_driving import back_driving, jamming, locks_
 from pitchpoint.views.sections.beside import loss_split
 from pitchpoint.views.sections.spread import spread, spread_sentence
 
-__all__ = ["ANSWER", "bearing_rows", "summary", "teeth_rows"]
+__all__ = ["ANSWER", "bearing_rows", "beyond", "summary", "teeth_rows"]
 
 AVERAGES = {
     "base_pitch": "Averages run over one {pitch}, after which the state repeats.",
@@ -61,13 +64,38 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         "finished": manifest["finished"],
         "settings": set_for_run(manifest),
         "spread": spread(outcome),
+        "instead": _instead(outcome) if "operation" in parts else [],
         "answers": [
             _answer(page, outcome, law, position, page.curves[name, law])
-            for position, law in enumerate(laws(parts["operation"]))
+            for position, law in _holding_first(parts)
         ]
         if "operation" in parts
         else [],
     }
+
+
+def _holding_first(parts: Mapping[str, xr.Dataset]) -> list[tuple[int, str]]:
+    """Positions and names of the laws of the case, those that are out of their range at the end."""
+    holds = holding(parts)
+    return sorted(enumerate(laws(parts["operation"])), key=lambda one: not holds[one[0]])
+
+
+def _instead(outcome: Outcome) -> list[dict[str, str]]:
+    """Main figures by laws of the library, where they hold and none of the case does."""
+    data = headline(outcome.parts)
+    if data is not outcome.parts.get("laws"):
+        return []
+    return [
+        {
+            "title": law_title(outcome, law),
+            "covers": covers(data),
+            **{
+                name: show.quantity(name, float(data[name].values[k, 0]))
+                for name in ("mean_efficiency", "mean_loss", "mean_friction")
+            },
+        }
+        for k, law in enumerate(laws(data))
+    ]
 
 
 def _sharing(manifest: Mapping[str, Any]) -> str:
@@ -115,6 +143,7 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
     return {
         "curve": curve,
         "title": law_title(outcome, law),
+        "outside": law in why_not(outcome.parts),
         "defined": defined,
         "efficiency": show.quantity("mean_efficiency", value("mean_efficiency")),
         "range": _range(data, "efficiency", value),
@@ -153,10 +182,11 @@ def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
 
 def _warnings(page: Page, outcome: Outcome) -> list[str]:
     """Sentences of the design and of the parts, each once, but for those that a section tells itself."""
-    texts = list(outcome.manifest["warnings"])
+    texts, known = list(outcome.manifest["warnings"]), outcome.manifest["implausible"]
     for data in outcome.parts.values():
         found = [str(text) for text in json.loads(data.attrs.get("warnings", "[]"))]
-        texts += [f"{data.attrs['title']}: {text}" for text in found if text not in texts]
+        new = [text for text in found if text not in (*texts, *known)]
+        texts += [f"{data.attrs['title']}: {text}" for text in new]
     elsewhere = {text for section in page.sections for text in section.warns(outcome)}
     return [text for text in dict.fromkeys(texts) if text not in elsewhere]
 
@@ -215,6 +245,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     yield Printed(line=_oil(outcome))
     if "operation" in outcome.parts:
         yield summary(outcome)
+        yield beyond(outcome)
         yield Printed(rows=teeth_rows(outcome))
         yield Printed(rows=bearing_rows(outcome))
 
@@ -227,28 +258,56 @@ def _oil(outcome: Outcome) -> str:
 
 
 def summary(outcome: Outcome) -> Printed:
-    """The operating point by law, and under it how far the laws disagree."""
-    data = outcome.parts["operation"]
-    rows = [
+    """The operating point by the laws that hold there, and under it how far these disagree."""
+    data = headline(outcome.parts)
+    title = ""
+    if data is outcome.parts.get("laws"):
+        title = "Laws of the library, which hold here; those of the case are out of their range"
+    elif not any(holding(outcome.parts)):
+        title = "No friction law holds here: extrapolations"
+    return Printed(title, _rows(outcome, data), spread_sentence(outcome))
+
+
+def beyond(outcome: Outcome) -> Printed:
+    """The operating point by the laws of the case that are out of their range, where others hold."""
+    data, holds = outcome.parts["operation"], holding(outcome.parts)
+    if all(holds) or headline(outcome.parts) is data:
+        return Printed()
+    outside = data.isel(law=[k for k, so in enumerate(holds) if not so])
+    return Printed("Out of their range here: extrapolations", _rows(outcome, outside))
+
+
+def _rows(outcome: Outcome, data: xr.Dataset) -> list[dict[str, str]]:
+    """Main figures by law."""
+    return [
         {
             "friction law": str(law),
             **{head(name, data): cell(data, name, position) for name in main_figures(data)},
-            **_of_power(outcome, position),
+            **_of_power(outcome, data, position),
         }
         for position, law in enumerate(data["law"].values)
     ]
-    return Printed(rows=rows, line=spread_sentence(outcome))
 
 
-def _of_power(outcome: Outcome, position: int) -> dict[str, str]:
+def _of_power(outcome: Outcome, data: xr.Dataset, position: int) -> dict[str, str]:
     """Cells on the power that goes through, for the law at a position; none where nothing does."""
-    data, back = outcome.parts["operation"], outcome.parts.get("back_driving")
+    back = outcome.parts.get("back_driving")
     if back is None:
         return {}
-    locked = bool(back["locked"].values[position, 0])
     return {
         **efficiency_of(data),
         _LOCKS: _locks(data, position),
+        **_backwards(back, str(data["law"].values[position])),
+    }
+
+
+def _backwards(back: xr.Dataset, law: str) -> dict[str, str]:
+    """Cells on back-driving, which is known by the laws of the case."""
+    if law not in laws(back):
+        return {}
+    position = laws(back).index(law)
+    locked = bool(back["locked"].values[position, 0])
+    return {
         "back-driving": "locked" if locked else cell(back, "mean_efficiency", position),
         f"back-driving {_LOCKS}": _locks(back, position),
     }

@@ -1,0 +1,465 @@
+"""What cannot be: checks of computed numbers, whose sentences stand above every number of a result.
+
+A check asks whether steel, plastic, oil or the formulas themselves bear what was computed. What it finds is
+marked by `fails`. An analysis may mark warnings of its own so: they go to the same place.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, pi
+from typing import Any, Final, Generic, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.caveats import conformal, rolling_share
+from pitchpoint.analyses.figures import holding, why_not
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.failures import fails
+from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.solids import SolidInUse
+from pitchpoint.cases.stages import Ready
+from pitchpoint.contact.contacts import Shape
+from pitchpoint.input.quantities import Quantity
+from pitchpoint.lubrication.friction_coefficient import BOUNDARY, FrictionLaw
+from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.materials import solids
+from pitchpoint.materials.solids import celsius
+from pitchpoint.registry import Registry
+
+__all__ = ["OF_CONTACTS", "OF_RESULTS", "AtWork", "Check", "Result", "implausible", "unlikely"]
+
+PRESSURE = Quantity("pressure", 0.0, 1e15, "GPa")
+LENGTH = Quantity("length", 0.0, 1e3, "um")
+
+MEAN_PRESSURE: Final[Mapping[Shape, float]] = {"line": pi / 4.0, "ellipse": 2.0 / 3.0}
+"""Mean pressure of a Hertz contact over its largest."""
+
+SMALL_STRAIN = 0.05
+"""Largest Hertz pressure over the reduced modulus that small strains allow, see `contact_strain`."""
+
+ATOM = 0.3e-9
+"""Distance of atoms in a solid, roughly; molecules of oil are thicker [m]."""
+
+DRY_PLASTIC = 0.4
+"""Friction coefficient that plastics reach without any oil."""
+
+FASTEST = 250.0
+"""Speed of pitch circles that the fastest turbo gears reach [m/s]."""
+
+ROUGHEST = 12.5e-6
+"""Mean Ra of flanks as rough as no cutter leaves them [m]."""
+
+THICKEST = 2e-3
+"""Film over the relative radius beyond which nothing is left of a film thinner than all else."""
+
+MOST = 0.5
+"""Part of load or loss from which on a place decides about the whole."""
+
+
+@dataclass(frozen=True)
+class AtWork:
+    """Contacts of one mesh over its cycle.
+
+    Attributes:
+        built: the mesh.
+        laws: of friction.
+        runs: state under each of them, see `profile`.
+    """
+
+    built: Built
+    laws: Sequence[FrictionLaw]
+    runs: Sequence[Mapping[str, Any]]
+
+    @cached_property
+    def loaded(self) -> bool:
+        """True if a contact carries."""
+        return bool(np.any(self.runs[0]["load"] > 0.0))
+
+    def largest(self, name: str) -> float:
+        """Largest value of a quantity under all laws."""
+        return max(float(np.max(np.abs(run[name]))) for run in self.runs)
+
+    @property
+    def plastic(self) -> bool:
+        """True if a gear is of plastic."""
+        return any(used.plastic for used in self.built.solids)
+
+
+@dataclass(frozen=True)
+class Result:
+    """Parts of a result, as far as they are there."""
+
+    built: Ready
+    parts: Mapping[str, xr.Dataset]
+
+
+Seen = TypeVar("Seen")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check(Generic[Seen]):
+    """One question whether a result can be.
+
+    Attributes:
+        name: of the check.
+        title: what it looks at.
+        told: what is wrong, in one sentence without its stop; None where nothing is.
+        note: the criterion, and what it rests on.
+        sources: keys of the bibliography.
+    """
+
+    name: str
+    title: str
+    told: Callable[[Seen], str | None]
+    note: str
+    sources: tuple[str, ...] = ()
+
+
+def implausible(at: AtWork) -> list[str]:
+    """What cannot be in the contacts of a mesh, in sentences that are marked so."""
+    return _told(OF_CONTACTS.values(), at) if at.loaded else []
+
+
+def unlikely(built: Ready, parts: Mapping[str, xr.Dataset]) -> list[str]:
+    """What cannot be in the figures of a result, in sentences that are marked so."""
+    return _told(OF_RESULTS.values(), Result(built, parts))
+
+
+def _told(checks: Iterable[Check[Seen]], seen: Seen) -> list[str]:
+    return [fails(f"{text}.") for check in checks if (text := check.told(seen))]
+
+
+# ---- of the contacts of a mesh
+
+
+def hertz_pressure(at: AtWork) -> str | None:
+    """A pressure that the weaker of both materials does not bear even once."""
+    largest, shape = at.largest("pressure"), at.built.design.mesh.shape
+    weakest = min(
+        (limit for used in at.built.solids for limit in _bears(used, shape)), default=None
+    )
+    if weakest is None or largest <= weakest[0]:
+        return None
+    return f"the Hertz pressure reaches {_shown(PRESSURE, largest)}; {weakest[1]}"
+
+
+def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str]]:
+    """Largest Hertz pressures of a material, and what happens there."""
+    name, hardness = used.record.name, used.record.hardness
+    if (limit := used.bears) is not None:
+        told = f"{name} bears about {PRESSURE.show(limit.value)}, and that a few times only"
+        yield limit.value, told
+    if hardness is not None:
+        most = hardness.value / MEAN_PRESSURE[shape]
+        told = f"from {_shown(PRESSURE, most)} on its mean is more than the hardness of {name}"
+        yield most, f"{told}, {PRESSURE.show(hardness.value)}, by which it is indented"
+
+
+def contact_strain(at: AtWork) -> str | None:
+    """A pressure beside which the modulus is small, of materials whose limit nobody knows."""
+    largest, modulus = at.largest("pressure"), float(at.built.design.modulus)
+    if largest <= SMALL_STRAIN * modulus or hertz_pressure(at):
+        return None
+    return (
+        f"the Hertz pressure reaches {_shown(PRESSURE, largest)}, {100.0 * largest / modulus:.2g} % of "
+        "the reduced modulus; elastic contacts with strains as small as the formulas ask for end at "
+        f"{100.0 * SMALL_STRAIN:g} %"
+    )
+
+
+def heat(at: AtWork) -> str | None:
+    """A plastic given by value, of which no limit is known, hotter than any of the catalogue bears."""
+    name, limit = _toughest()
+    for gear, used in enumerate(at.built.solids, 1):
+        unknown = used.plastic and used.record.service_limit is None
+        if unknown and used.hottest > limit:
+            return (
+                f"the teeth of gear {gear} are at {celsius(used.hottest)}; no plastic of the catalogue bears "
+                f"more than {celsius(limit)} for long, which {name} does"
+            )
+    return None
+
+
+def _toughest() -> tuple[str, float]:
+    """The plastic of the catalogue that bears the highest temperature for long, and that temperature [K]."""
+    limits = {name: one.service_limit for name, one in solids.catalogue().items()}
+    known = {name: limit.value for name, limit in limits.items() if limit is not None}
+    return max(known.items(), key=lambda item: item[1])
+
+
+def film_of_atoms(at: AtWork) -> str | None:
+    """Films thinner than an atom where most of the load is."""
+    thin = [_part(_carried(run), run["film_thickness"] < ATOM) for run in at.runs]
+    if max(thin) <= MOST:
+        return None
+    thinnest = min(float(run["film_thickness"][run["load"] > 0.0].min()) for run in at.runs)
+    return (
+        f"the film is down to {1e9 * thinnest:.2g} nm, under {100.0 * max(thin):.3g} % of the load "
+        f"thinner than an atom, {1e9 * ATOM:g} nm: flanks touch, and film, Λ and what follows "
+        "from them say nothing"
+    )
+
+
+def thick_film(at: AtWork) -> str | None:
+    """Films that are no longer thin beside the bodies that they part."""
+    ratio = max(float(np.nanmax(_over(run["film_thickness"], run["radius"]))) for run in at.runs)
+    if ratio <= THICKEST:
+        return None
+    thickest = max(float(np.nanmax(run["film_thickness"])) for run in at.runs)
+    return (
+        f"the film reaches {_shown(LENGTH, thickest)}, {100.0 * ratio:.2g} % of the relative radius of the "
+        f"flanks; laws of thin films end before {100.0 * THICKEST:g} %"
+    )
+
+
+def roughness(at: AtWork) -> str | None:
+    """Flanks rougher than any cutter leaves them, or than their own size allows."""
+    flanks, run = at.built.design.roughness, at.runs[0]
+    ra = 0.5 * (float(flanks.ra_1) + float(flanks.ra_2))
+    rq = float(np.hypot(flanks.rq_1, flanks.rq_2))
+    if ra > ROUGHEST:
+        return (
+            f"the mean Ra of the flanks is {_shown(LENGTH, ra)}; roughly cut flanks have at most about "
+            f"{LENGTH.show(ROUGHEST)}"
+        )
+    radius = float(run["radius"][run["load"] > 0.0].min())
+    if rq <= 0.01 * radius:
+        return None
+    return (
+        f"the composite Rq of the flanks, {_shown(LENGTH, rq)}, is {100.0 * rq / radius:.2g} % of their "
+        f"relative radius, {_shown(LENGTH, radius)}: that is their shape, no roughness"
+    )
+
+
+def friction(at: AtWork) -> str | None:
+    """A coefficient, given or of a law that knows no limit, that no lubricated contact has."""
+    most = DRY_PLASTIC if at.plastic else BOUNDARY
+    mean = {
+        law.title: float(np.sum(_carried(run) * run["friction"]))
+        for law, run in zip(at.laws, at.runs, strict=True)
+        if law.largest == inf
+    }
+    title, largest = max(mean.items(), key=lambda item: item[1], default=("", 0.0))
+    if largest <= most * (1.0 + 1e-9):
+        return None
+    told = "plastics have at most about {:g} even without oil" if at.plastic else _STEEL
+    return f"{title}: the mean friction coefficient is {largest:.3g}; {told.format(most)}"
+
+
+_STEEL = "steel in oil has at most about {:g}"
+
+
+def flank_speed(at: AtWork) -> str | None:
+    """Gears faster than any that run."""
+    surfaces = max(
+        float(np.max(np.abs(run["entrainment"]) + 0.5 * np.abs(run["sliding_velocity"])))
+        for run in at.runs
+    )
+    pitch = float(at.built.nominal["pitch_line_speed"]) * at.built.case.operation.speed
+    if max(pitch, surfaces) <= FASTEST:
+        return None
+    what = "pitch circles" if pitch >= surfaces else "flanks"
+    return f"the {what} run at {max(pitch, surfaces):.3g} m/s; the fastest gears reach about {FASTEST:g} m/s"
+
+
+def conformal_loss(at: AtWork) -> str | None:
+    """Conformal contacts, whose pressure and film say little, that make most of the loss."""
+    parts = [_part(_lost(run), conformal(at.built.design.mesh, run)) for run in at.runs]
+    if max(parts) <= MOST:
+        return None
+    return (
+        f"contacts whose flanks are conformal make {100.0 * max(parts):.3g} % of the loss in the teeth, and "
+        "the formulas of pressure and film do not hold there"
+    )
+
+
+def rolling_twice(at: AtWork) -> str | None:
+    """A law of whole losses beside a rolling resistance."""
+    rolling = ROLLING_RESISTANCE[at.built.case.models.rolling_resistance]
+    whole = [(law, run) for law, run in zip(at.laws, at.runs, strict=True) if law.whole]
+    if not whole or not rolling.sources:
+        return None
+    law, run = whole[0]
+    return (
+        f"rolling is counted twice: {law.title} was fitted to whole losses of gears, those of rolling among "
+        f"them, and '{rolling.name}' adds {rolling_share(run):.2g} % of the loss once more"
+    )
+
+
+# ---- of the figures of a result
+
+
+def efficiency(result: Result) -> str | None:
+    """More power that comes out than goes in, or none that does."""
+    if "operation" not in result.parts:
+        return None
+    values = result.parts["operation"]["mean_efficiency"].values[:, 0]
+    beyond = values[(values > 1.0 + 1e-9) | (values < 0.0)]
+    if not beyond.size:
+        return None
+    return (
+        f"the mean efficiency is {100.0 * beyond[0]:.4g} %: more power would come out than goes in"
+        if beyond[0] > 1.0
+        else f"the mean efficiency is {100.0 * beyond[0]:.4g} %: more power is lost than goes in"
+    )
+
+
+def friction_laws(result: Result) -> str | None:
+    """No law, of the case or of the library, that holds at the operating point."""
+    laws = result.parts.get("laws")
+    if laws is None or laws.sizes["law"] or any(holding(result.parts)):
+        return None
+    names = result.parts["operation"]["law"].values
+    reasons = {str(law): why_not(result.parts)[str(law)] for law in names}
+    told = "; ".join(f"{_title(law)}: {' and '.join(each)}" for law, each in reasons.items())
+    return f"no friction law holds at the operating point, efficiency and loss are extrapolations: {told}"
+
+
+def _title(law: str) -> str:
+    return FRICTION[law].title if law in FRICTION else law
+
+
+def edge_load(result: Result) -> str | None:
+    """Edges of teeth that carry most of the load."""
+    torsion = result.parts.get("torsion", {})
+    if "edge_share" not in torsion:
+        return None
+    at = result.built.case.operation.load
+    share = float(np.interp(at, torsion["torque"], torsion["edge_share"]))
+    if not share > MOST:
+        return None
+    return (
+        f"edges of the teeth (ends of flanks and roundings of tips) carry {100.0 * share:.3g} % of the "
+        "load, and the formulas of contact do not hold there"
+    )
+
+
+# ---- what they share
+
+
+def _shown(kind: Quantity, value: float) -> str:
+    return kind.show(float(f"{value:.3g}"))
+
+
+def _carried(run: Mapping[str, Any]) -> np.ndarray:
+    """Part of the load over the mesh cycle that each contact carries [node, pair, slice]."""
+    return _whole(run["load"] * np.reshape(run["weight"], (-1, 1, 1)))
+
+
+def _lost(run: Mapping[str, Any]) -> np.ndarray:
+    """Part of the loss over the mesh cycle that each contact makes [node, pair, slice]."""
+    loss = run["sliding_loss"] + run["rolling_loss"]
+    return _whole(loss * np.reshape(run["weight"], (-1, 1, 1)))
+
+
+def _whole(values: np.ndarray) -> np.ndarray:
+    """Values over their sum; zero where that is nothing."""
+    return _over(values, np.broadcast_to(values.sum(), values.shape))
+
+
+def _part(values: np.ndarray, where: np.ndarray) -> float:
+    return float(np.sum(values, where=where))
+
+
+def _over(values: np.ndarray, by: np.ndarray) -> np.ndarray:
+    return np.divide(values, by, out=np.zeros_like(values), where=by > 0.0)
+
+
+OF_CONTACTS: Registry[Check[AtWork]] = Registry(
+    "check",
+    Check(
+        name="hertz_pressure",
+        title="Hertz pressure that a material bears",
+        told=hertz_pressure,
+        note="The contact limit of the catalogue, where there is one. A mean pressure above the hardness, "
+        "the force over the area of an indentation, indents by definition.",
+        sources=("iso_6336_5_2016", "johnson_1985"),
+    ),
+    Check(
+        name="contact_strain",
+        title="Hertz pressure beside the modulus",
+        told=contact_strain,
+        note="At 0.05 of the reduced modulus a line of contact is 0.2 of the relative radius wide to each "
+        "side: half spaces and small strains are at their end. The number is assumed; plastics yield before.",
+        sources=("johnson_1985",),
+    ),
+    Check(
+        name="heat",
+        title="Temperature of plastics by value",
+        told=heat,
+        note="The highest service limit of all plastics of the catalogue. Those of the catalogue have their "
+        "own, which building a case checks.",
+    ),
+    Check(
+        name="film_of_atoms",
+        title="Film thinner than an atom",
+        told=film_of_atoms,
+        note="0.3 nm, under more than half of the load: where surfaces come to rest for a moment, every film "
+        "law gives nothing. The number is assumed.",
+    ),
+    Check(
+        name="thick_film",
+        title="Film that is not thin",
+        told=thick_film,
+        note="A film of 0.2 % of the relative radius; sound gears have at most 0.04 %. The number is "
+        "assumed.",
+    ),
+    Check(
+        name="roughness",
+        title="Roughness that flanks may have",
+        told=roughness,
+        note="A mean Ra of 12.5 um, or a composite Rq of 1 % of the relative radius. The numbers are "
+        "assumed.",
+    ),
+    Check(
+        name="friction",
+        title="Friction coefficient of lubricated contacts",
+        told=friction,
+        note="0.2 for steel in oil, 0.4 with a plastic, for coefficients that are given and laws without a "
+        "limit; others are out of their range there. The numbers are assumed.",
+    ),
+    Check(
+        name="flank_speed",
+        title="Speed of pitch circles and flanks",
+        told=flank_speed,
+        note="250 m/s, which the fastest turbo gears reach. The number is assumed.",
+    ),
+    Check(
+        name="conformal_loss",
+        title="Loss of conformal contacts",
+        told=conformal_loss,
+        note="More than half of the loss in the teeth from contacts whose relative radius is cut.",
+    ),
+    Check(
+        name="rolling_twice",
+        title="Rolling that is counted twice",
+        told=rolling_twice,
+        note="A friction law that was fitted to whole losses of gears, beside a rolling resistance.",
+    ),
+)
+"""Checks of the contacts of one mesh, the worst first."""
+
+OF_RESULTS: Registry[Check[Result]] = Registry(
+    "check",
+    Check(
+        name="efficiency",
+        title="Efficiency",
+        told=efficiency,
+        note="Not below zero, not above one: energy is conserved.",
+    ),
+    Check(
+        name="friction_laws",
+        title="A friction law that holds",
+        told=friction_laws,
+        note="None of the case and of the library is in its range at the operating point.",
+    ),
+    Check(
+        name="edge_load",
+        title="Load on edges of teeth",
+        told=edge_load,
+        note="More than half of the load at the operating point, where teeth are watched for it.",
+    ),
+)
+"""Checks of the main figures of a result."""
