@@ -40,6 +40,7 @@ FLOW = (
     {"analyses"},
     {"runs"},
     {"views"},
+    {"notebook"},
     {"cli"},
     {"__main__"},
 )
@@ -153,6 +154,7 @@ BLIND = (
     "analyses",
     "runs",
     "views",
+    "notebook",
 )
 """Folders whose files do not know the families; a publication reads its own gears."""
 

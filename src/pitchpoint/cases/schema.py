@@ -36,6 +36,7 @@ __all__ = [
     "DriveCase",
     "StageTable",
     "bearings_of",
+    "in_form",
     "keys",
     "quantity_at",
     "validate",
@@ -1498,12 +1499,12 @@ Whole = TypeVar("Whole", Case, DriveCase)
 def validated(model: type[Whole], document: Document) -> Whole:
     """Case of one mesh or of several out of a document; InputError as from `validate`."""
     try:
-        return model.model_validate(_in_form(document))
+        return model.model_validate(in_form(document))
     except ValidationError as error:
         raise _sentence(error, document, model) from None
 
 
-def _in_form(document: Document) -> dict[str, Any]:
+def in_form(document: Document) -> dict[str, Any]:
     """Tables as they are meant where a setting or a study changes the form of one.
 
     The values of the former form do not belong to the new one: those that it does not have are left out.
