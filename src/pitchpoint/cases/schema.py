@@ -39,6 +39,7 @@ __all__ = [
     "in_form",
     "keys",
     "quantity_at",
+    "usual_at",
     "validate",
     "validated",
 ]
@@ -1575,6 +1576,25 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         if not models:
             raise InputError(f"{shown(part)} is a value, not a table", key=key)
     return None
+
+
+def usual_at(key: str, tree: Mapping[str, Any]) -> Any:
+    """Default of the value at a dotted key; None where there is none, or no such key.
+
+    Args:
+        key: in a case file.
+        tree: values of the case, which decide what form a table has.
+    """
+    models: list[type[BaseModel]] = [DriveCase if STAGES in tree else Case]
+    info: FieldInfo | None = None
+    node: Any = tree
+    for part in key.split("."):
+        node = node.get(part) if isinstance(node, Mapping) else None
+        if part.isdigit():
+            continue
+        info = next((one.model_fields[part] for one in models if part in one.model_fields), None)
+        models = forms(info.annotation, node) if info is not None else []
+    return None if info is None or info.is_required() else info.default
 
 
 def _check_stage(key: str, stages: Any) -> None:

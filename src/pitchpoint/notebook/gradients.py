@@ -1,6 +1,6 @@
 """Derivatives of the main figures by the keys of a case file."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import equinox as eqx
@@ -47,6 +47,7 @@ Leaves = list[np.ndarray]
 def gradients(
     case: CaseLike,
     of: str = "mean_loss",
+    by: Sequence[str] = (),
     *,
     law: str | None = None,
     variant: str | None = None,
@@ -57,6 +58,7 @@ def gradients(
     Args:
         case: a `Case`, or what makes one, of one mesh.
         of: "mean_loss", "mean_efficiency", "mean_input_torque" or "torque_ripple".
+        by: keys by which to differentiate, all by default.
         law: friction law of the case that acts, the first one by default.
         variant: of the case, the first one by default.
         friction: a law of one's own, see `run`.
@@ -79,11 +81,12 @@ def gradients(
     models = _under(built, law)
     if of not in FIGURES:
         raise InputError(f"{shown(of)} has no derivatives here{nearest(of, FIGURES)}")
-    value, by = figure_gradient(built.design, built.operation, models, FIGURES[of])
-    slopes = [np.asarray(leaf) for leaf in jax.tree.leaves(by)]
+    numbers = _asked(built, [chosen.key(name) for name in by])
+    value, slopes = figure_gradient(built.design, built.operation, models, FIGURES[of])
+    flat = [np.asarray(leaf) for leaf in jax.tree.leaves(slopes)]
     rows = {
         key: {"value": number, "unit": units.si_unit(kind) or "1", "derivative": derivative}
-        for key, number, kind, derivative in _rows(base, built, slopes)
+        for key, number, kind, derivative in _rows(base, built, numbers, flat)
     }
     return _frame(rows, {"of": of, "value": value, "unit": VARIABLES[of].unit})
 
@@ -111,10 +114,22 @@ def _under(built: Built, law: str | None) -> Models:
     return named[law] if law is not None else built.models[0]
 
 
-def _rows(base: Variant, built: Built, slopes: Leaves) -> Iterator[tuple[str, float, str, float]]:
+def _asked(built: Built, keys: Sequence[str]) -> "list[Number]":
+    """Numbers of a case, those of some keys; InputError for a key without one."""
+    every = {one[0]: one for one in _numbers(built)}
+    missing = [key for key in keys if key not in every]
+    if missing:
+        told = f"is no number of the case that varies{nearest(missing[0], every)}"
+        raise InputError(told, key=missing[0])
+    return [every[key] for key in keys or every]
+
+
+def _rows(
+    base: Variant, built: Built, numbers: "Sequence[Number]", slopes: Leaves
+) -> Iterator[tuple[str, float, str, float]]:
     """Key, value, kind and derivative of every number that moves the design."""
     here = _leaves(built)
-    for key, value, kind, setting in _numbers(built):
+    for key, value, kind, setting in numbers:
         moved = _moved(base, here, setting, value)
         if moved is not None and any(np.any(one) for one in moved):
             pairs = zip(slopes, moved, strict=True)
@@ -122,9 +137,10 @@ def _rows(base: Variant, built: Built, slopes: Leaves) -> Iterator[tuple[str, fl
 
 
 Setting = Callable[[float], tuple[str, Any]]
+Number = tuple[str, float, str, Setting]
 
 
-def _numbers(built: Built) -> Iterator[tuple[str, float, str, Setting]]:
+def _numbers(built: Built) -> Iterator[Number]:
     """Key, value, kind and what sets it, of the numbers of a case, those of two gears apart."""
     for table in _TABLES:
         held = getattr(built.case, table)
@@ -170,7 +186,7 @@ def _moved(base: Variant, here: Leaves, setting: Setting, value: float) -> Leave
         return None
     first, last = (here if below is None else below), (here if above is None else above)
     width = step * ((above is not None) + (below is not None))
-    return [(b - a) / width for a, b in zip(first, last, strict=True)]
+    return [np.asarray((b - a) / width) for a, b in zip(first, last, strict=True)]
 
 
 def _built_at(base: Variant, here: Leaves, setting: tuple[str, Any]) -> Leaves | None:

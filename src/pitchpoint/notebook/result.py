@@ -16,7 +16,7 @@ from pitchpoint.notebook import tables
 from pitchpoint.notebook.figures import Plots
 from pitchpoint.notebook.gradients import gradients
 from pitchpoint.registry import nearest
-from pitchpoint.results.labelled import Units, labelled
+from pitchpoint.results.labelled import Units, demand_units, labelled
 from pitchpoint.runs import run as runs
 from pitchpoint.runs.case import Case, CaseLike, written
 from pitchpoint.runs.run import Outcome, Progress
@@ -109,6 +109,7 @@ class Result(Mapping[str, Outcome]):
         Raises:
             InputError: there is no such part, and why.
         """
+        demand_units(units)
         return labelled(self._part(part, variant), units)
 
     def to_dataframe(
@@ -125,11 +126,16 @@ class Result(Mapping[str, Outcome]):
         return frame
 
     def gradients(
-        self, of: str = "mean_loss", *, law: str | None = None, variant: str | None = None
+        self,
+        of: str = "mean_loss",
+        by: Sequence[str] = (),
+        *,
+        law: str | None = None,
+        variant: str | None = None,
     ) -> "pd.DataFrame":
         """Derivatives of a main figure by the keys of the case file, see `gradients`."""
         case = self._origins[variant or next(iter(self))]()
-        return gradients(case, of, law=law, friction=self._friction)
+        return gradients(case, of, by, law=law, friction=self._friction)
 
     def write_report(self, path: str | Path) -> None:
         """Write the report, one HTML file."""

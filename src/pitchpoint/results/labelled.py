@@ -30,11 +30,7 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
 
     Dimensions without a coordinate take the variable that runs along them (`phase` along the nodes of a
     cycle), else count from 1; a single operating point is no dimension.
-
-    Raises:
-        InputError: other units.
     """
-    demand_units(unit)
     made = _off_contact(data)
     if made.sizes.get("point") == 1:
         made = made.squeeze("point", drop=True)
@@ -44,7 +40,7 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
     return in_units(made, unit)
 
 
-def demand_units(unit: Units) -> None:
+def demand_units(unit: str) -> None:
     """InputError for units that are no choice."""
     if unit not in get_args(Units):
         raise InputError(f'{shown(unit)} was given as units; use "si" or "shown"')

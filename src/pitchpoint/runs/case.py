@@ -174,6 +174,7 @@ class Case:
         made = copy.copy(self)
         changed = (replace(one, settings={**one.settings, key: text}) for one in self.held)
         object.__setattr__(made, "held", tuple(changed))
+        made._first.document()  # a value of one gear where there is none for the other
         return made
 
 
