@@ -12,7 +12,7 @@ from beartype import BeartypeConf, FrozenDict, beartype
 from jaxtyping import install_import_hook
 
 WORDS = {"__init__", "__main__", "citations", "errors", "kept", "programs", "registry", "units"}
-WORDS |= {"cases", "analyses", "runs", "results", "views", "cli"}
+WORDS |= {"cases", "analyses", "runs", "results", "views", "notebook", "cli"}
 """Rooms without formulas; their tests put stand-ins in the place of much that they do not look at."""
 
 CHECKED = BeartypeConf(

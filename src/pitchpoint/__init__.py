@@ -15,9 +15,15 @@ __version__: str
 
 # public name -> module that defines it
 _LAZY: dict[str, str] = {
-    "run": "pitchpoint.runs.run",
+    "Case": "pitchpoint.runs.case",
+    "Result": "pitchpoint.notebook.result",
+    "run": "pitchpoint.notebook.result",
+    "open_result": "pitchpoint.notebook.result",
+    "study": "pitchpoint.runs.study",
+    "gradients": "pitchpoint.notebook.gradients",
+    "models": "pitchpoint.notebook.tables",
+    "cite": "pitchpoint.notebook.tables",
     "load_case": "pitchpoint.runs.run",
-    "open_result": "pitchpoint.runs.run",
     "write_report": "pitchpoint.views.report",
     "Study": "pitchpoint.cases.schema",
     "Sweep": "pitchpoint.cases.schema",
@@ -62,14 +68,18 @@ _LAZY: dict[str, str] = {
     "ConvergenceError": "pitchpoint.errors",
 }
 
+__all__ = sorted([*_LAZY, "__version__", "cases"])
+
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return import_module("importlib.metadata").version("pitchpoint")
+    if name == "cases":  # the folder itself, which lists what ships when it is called
+        return import_module("pitchpoint.cases")
     if name in _LAZY:
         return getattr(import_module(_LAZY[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_LAZY, "__version__"])
+    return __all__

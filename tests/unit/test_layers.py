@@ -41,6 +41,7 @@ FLOW = (
     {"analyses"},
     {"runs"},
     {"views"},
+    {"notebook"},
     {"cli"},
     {"__main__"},
 )
@@ -155,6 +156,7 @@ BLIND = (
     "analyses",
     "runs",
     "views",
+    "notebook",
 )
 """Folders whose files do not know the families; a publication reads its own gears."""
 

@@ -14,6 +14,7 @@ from pitchpoint.cases.record import MANIFEST, RUN, Record, default_folder, owner
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import dataset, save, without_nan, write_text
 from pitchpoint.runs import run as running
+from pitchpoint.runs.case import held
 from pitchpoint.runs.run import describe, manifests, open_result
 from pitchpoint.views.inputs import input_rows, set_for_run
 
@@ -425,7 +426,7 @@ def test_a_law_of_the_users_own_is_asked_for_again(odd: dict[str, Any], tmp_path
     ):
         describe(path)
     law = running._own(lambda *, pressure: pressure)
-    (variant,) = running._variants(path, own=law)
+    (variant,) = held(str(path), own=law)
     assert variant.own is law
     with pytest.raises(InputError, match='"physical" is not a variant of this case'):
         describe(kept(odd, tmp_path), ["physical"])

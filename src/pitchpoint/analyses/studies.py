@@ -23,6 +23,9 @@ from pitchpoint.units import si_unit
 
 __all__ = [
     "STUDIES",
+    "SWEPT",
+    "demand_films",
+    "demand_one",
     "is_study",
     "readings_of",
     "sweep_values",
@@ -145,8 +148,8 @@ def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:
     variant, key = subject.variant, study.sweep.key
     where = where if where.startswith("--") else f"{where}.sweep"
     values, kind = sweep_values(study.sweep, where, variant.name, variant.document().tree)
-    _demand_one(variant, study.sweep, where)
-    _demand_films(subject.built, variant, key, where)
+    demand_one(variant, study.sweep, where)
+    demand_films(subject.built, variant, key, where)
     told = {
         "sweep_key": key,
         "axis_kind": kind.kind if kind else "",
@@ -184,7 +187,7 @@ def is_study(part: str) -> bool:
     return part.startswith(PREFIX)
 
 
-def _demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
+def demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
     """InputError if one number would be swept over two gears to which the case gives different ones."""
     value: Any = variant.document().tree
     for part in sweep.key.split("."):
@@ -199,7 +202,7 @@ def _demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
         )
 
 
-def _demand_films(built: Ready, variant: Variant, key: str, where: str) -> None:
+def demand_films(built: Ready, variant: Variant, key: str, where: str) -> None:
     """InputError if choices of films are swept of a case whose figures come from formulas."""
     if key.startswith("film.") and all(law.films is None for law in built.laws):
         raise InputError(

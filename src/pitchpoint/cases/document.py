@@ -4,7 +4,7 @@ import copy
 import os
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -216,6 +216,7 @@ def resolve(
     variant: str,
     settings: Mapping[str, Any] | None = None,
     folder: Path | None = None,
+    usual: Callable[[str, Tree], Any] = lambda key, tree: None,
 ) -> Document:
     """One variant of a case with settings applied, its marks separated from the values.
 
@@ -225,6 +226,7 @@ def resolve(
         variant: one of `variants(tree)`.
         settings: values by dotted key that replace those of the file.
         folder: where files that settings name are looked for; None to take their names as they are.
+        usual: values of both gears at a key that the tables leave out; None where there are none.
 
     Raises:
         InputError: unknown variant, or a mark that is not one.
@@ -240,7 +242,7 @@ def resolve(
     merged = _merged(_numbered(base), _numbered(_overlays(tree).get(variant, {})))
     for key, value in (settings or {}).items():
         mark = {"value": copy.deepcopy(value), "status": "set"}
-        merged = setting(merged, key, mark, name=name)
+        merged = setting(merged, key, mark, name=name, usual=usual)
     if settings and folder is not None:
         _find_files(merged, folder)
     provenance: dict[str, Provenance] = {}
@@ -255,7 +257,14 @@ def _numbered(tree: Tree) -> Tree:
     return {**tree, STAGES: {str(number): one for number, one in enumerate(given, 1)}}
 
 
-def setting(tree: Tree, key: str, value: Any, *, name: str = "--set") -> Tree:
+def setting(
+    tree: Tree,
+    key: str,
+    value: Any,
+    *,
+    name: str = "--set",
+    usual: Callable[[str, Tree], Any] = lambda key, tree: None,
+) -> Tree:
     """Copy of the tables with the value at a dotted key replaced; `a.b.1` is the value of gear 1."""
     if key.count(".") + _depth(value) > MAX_DEPTH:
         raise _too_deep(name).at(key=key)
@@ -264,7 +273,8 @@ def setting(tree: Tree, key: str, value: Any, *, name: str = "--set") -> Tree:
     try:
         if last.isdecimal() and parents:
             node = _table(result, parents[:-1])
-            node[parents[-1]] = _of_gear(node.get(parents[-1], 0.0), last, value)
+            both = node.get(parents[-1], usual(".".join(parents), tree))
+            node[parents[-1]] = _of_gear(both, last, value)
         else:
             put(result, key, value)
     except InputError as error:
@@ -348,7 +358,11 @@ def _of_gear(pair: Any, gear: str, value: Any) -> Any:
     if gear not in ("1", "2"):
         raise InputError(f"there is no gear {shorten(gear)}; use 1 or 2")
     if isinstance(pair, dict):
-        pair = pair.get("value", 0.0)
+        pair = pair.get("value")
+    if pair is None:
+        raise InputError(
+            "is the value of one gear, and there is none for the other; give both as a list"
+        )
     mark = value if isinstance(value, dict) else {"value": value}
     both = list(pair) if isinstance(pair, list | tuple) and len(pair) == 2 else [pair, pair]
     both[int(gear) - 1] = mark["value"]

@@ -3,13 +3,17 @@
 import os
 from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pitchpoint import published
 from pitchpoint.cases.document import Tree, read
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.registry import nearest
 
-__all__ = ["as_text", "find", "names", "path_of"]
+__all__ = ["as_text", "find", "names", "path_of", "table"]
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def names() -> list[str]:
@@ -49,3 +53,16 @@ def find(case: str) -> tuple[str, Tree]:
 def as_text(path: str) -> str:
     """Path that can be written into any file; bytes in it that are no UTF-8 are spelled out."""
     return os.fsencode(path).decode("utf-8", "backslashreplace")
+
+
+def table() -> "pd.DataFrame":
+    """Names and titles of the shipped cases.
+
+    Example:
+        >>> "tian2024" in table().index
+        True
+    """
+    import pandas as pd
+
+    rows = [{"case": name, "title": str(find(name)[1].get("title", ""))} for name in names()]
+    return pd.DataFrame(rows).set_index("case")

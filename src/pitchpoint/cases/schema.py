@@ -36,8 +36,10 @@ __all__ = [
     "DriveCase",
     "StageTable",
     "bearings_of",
+    "in_form",
     "keys",
     "quantity_at",
+    "usual_at",
     "validate",
     "validated",
 ]
@@ -1562,12 +1564,12 @@ Whole = TypeVar("Whole", Case, DriveCase)
 def validated(model: type[Whole], document: Document) -> Whole:
     """Case of one mesh or of several out of a document; InputError as from `validate`."""
     try:
-        return model.model_validate(_in_form(document))
+        return model.model_validate(in_form(document))
     except ValidationError as error:
         raise _sentence(error, document, model) from None
 
 
-def _in_form(document: Document) -> dict[str, Any]:
+def in_form(document: Document) -> dict[str, Any]:
     """Tables as they are meant where a setting or a study changes the form of one.
 
     The values of the former form do not belong to the new one: those that it does not have are left out.
@@ -1638,6 +1640,25 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         if not models:
             raise InputError(f"{shown(part)} is a value, not a table", key=key)
     return None
+
+
+def usual_at(key: str, tree: Mapping[str, Any]) -> Any:
+    """Default of the value at a dotted key; None where there is none, or no such key.
+
+    Args:
+        key: in a case file.
+        tree: values of the case, which decide what form a table has.
+    """
+    models: list[type[BaseModel]] = [DriveCase if STAGES in tree else Case]
+    info: FieldInfo | None = None
+    node: Any = tree
+    for part in key.split("."):
+        node = node.get(part) if isinstance(node, Mapping) else None
+        if part.isdigit():
+            continue
+        info = next((one.model_fields[part] for one in models if part in one.model_fields), None)
+        models = forms(info.annotation, node) if info is not None else []
+    return None if info is None or info.is_required() else info.default
 
 
 def _check_stage(key: str, stages: Any) -> None:

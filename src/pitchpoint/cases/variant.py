@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pitchpoint.cases.document import Document, resolve
-from pitchpoint.cases.schema import validate
+from pitchpoint.cases.schema import usual_at, validate
 from pitchpoint.cases.stages import Ready, ready
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 
@@ -56,6 +56,7 @@ class Variant:
             variant=self.variant,
             settings={**self.settings, **changes},
             folder=self.folder,
+            usual=usual_at,
         )
 
     @cached_property

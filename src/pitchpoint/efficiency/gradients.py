@@ -10,7 +10,7 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle,
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.programs import program
 
-__all__ = ["input_torque_gradient", "mean_loss_gradient", "ripple_gradient"]
+__all__ = ["figure_gradient", "input_torque_gradient", "mean_loss_gradient", "ripple_gradient"]
 
 Inputs = tuple[Design, Operation]
 
@@ -57,6 +57,29 @@ def input_torque_gradient(
     By automatic differentiation of the state in reverse.
     """
     return _told(*_at_phase((design, operation), models, phase))
+
+
+def figure_gradient(
+    design: Design, operation: Operation, models: Models, figure: str
+) -> tuple[float, Inputs]:
+    """A figure of the mesh cycle and its derivatives.
+
+    Args:
+        design: mesh, materials, oil, surfaces.
+        operation: one operating point.
+        models: laws.
+        figure: "mean_loss", "mean_efficiency", "mean_input_torque" or "ripple", see `Cycle`.
+
+    Returns:
+        The figure in its SI unit, and derivatives as those of `mean_loss_gradient`.
+
+    Raises:
+        ConvergenceError: friction locks the mesh, there is no balance.
+
+    By automatic differentiation of the cycle in reverse, no differences are taken.
+    """
+    value, derivatives = _gradient((design, operation), figure, models)
+    return float(value), _told(value, derivatives)
 
 
 def _told(value: Array, derivatives: Inputs) -> Inputs:

@@ -13,17 +13,17 @@ from uuid import uuid4
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Piece, Unasked
+from pitchpoint._jax import jax
+from pitchpoint.analyses.analysis import Analysis, Piece, Unasked
 from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.document import STAGES, Document, variants
+from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.failures import apart
-from pitchpoint.cases.height_maps import MEMBERS, digest_of
-from pitchpoint.cases.library import as_text, find, names, path_of
+from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Loss, Study, validate
@@ -34,7 +34,7 @@ from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
-from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
@@ -60,13 +60,17 @@ from pitchpoint.results.store import (
     write_text,
 )
 from pitchpoint.results.target_rows import Row
+from pitchpoint.runs.case import Case, CaseLike, as_case, held
 from pitchpoint.runs.jobs import Job, job_of, jobs
 
 __all__ = [
     "MEETINGS",
     "Outcome",
     "Progress",
+    "compute_alone",
+    "keep",
     "open_result",
+    "own_law",
     "pieces_of",
     "run",
     "run_piece",
@@ -112,7 +116,7 @@ class Outcome:
 
 
 def run(
-    case: str,
+    case: CaseLike,
     *,
     folder: str | Path | None = None,
     only: Sequence[str] = (),
@@ -125,7 +129,8 @@ def run(
     """Compute all parts of a case.
 
     Args:
-        case: name of a shipped case, a file, or the manifest of a result, which repeats that result.
+        case: name of a shipped case, a file, or the manifest of a result, which repeats that result; a
+            `Case`, or tables as a case file has them.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
         settings: values by dotted key that replace those of the file.
@@ -144,11 +149,12 @@ def run(
         ConvergenceError: a balance that was not found; what was finished is on disk.
         OSError: the disk is full, say; what was finished is on disk.
     """
-    made = _variants(case, only, settings, None if friction is None else _own(friction))
+    given = case if isinstance(case, str) else as_case(case)
+    made = held(given, only, settings, None if friction is None else _own(friction))
     work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
     where = None if folder is None else Path(folder)
     name = made[0].name
-    with nullcontext() if where is None else _own_folder(where, case, name, [*work], overwrite):
+    with nullcontext() if where is None else _own_folder(where, given, name, [*work], overwrite):
         return {
             one: run_variant(
                 *prepared,
@@ -160,71 +166,14 @@ def run(
         }
 
 
-def _variants(
-    case: str,
-    only: Sequence[str] = (),
-    settings: Mapping[str, Any] | None = None,
-    own: FrictionLaw | None = None,
-) -> list[Variant]:
-    """Variants of a case, all or those that are named; of a record the one that it holds."""
-    if is_record(case):
-        held = _recorded(Path(case), own, settings or {})
-    else:
-        name, tree = find(case)
-        held = Variant(tree, name, "", folder=path_of(case).parent)
-    chosen = only or variants(dict(held.tree))
-    return [replace(held, variant=one, settings=dict(settings or {}), own=own) for one in chosen]
-
-
-def _recorded(path: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
-    """The variant that a record holds."""
-    record, name = Manifest.read(path), visible(as_text(path.name))
-    if record.own and own is None:
-        raise InputError(
-            f"was computed with '{shorten(record.own)}', a friction law of the user's own, which no record "
-            "can hold; give it again, from Python as friction",
-            file=name,
-        )
-    try:
-        tree = record.tree
-    except InputError as error:
-        raise error.at(file=name) from None
-    told = (*record.warning, *_other_heights(record, settings), *_other_wear(record, settings))
-    return Variant(
-        tree, name, record.variant, recorded=record.case, warnings=told, folder=path.parent
-    )
-
-
-def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
-    """That files hold other heights than when the record was made, those that settings replace left out."""
-    if any(key.split(".")[:2] in (["film"], ["film", "heights"]) for key in settings):
-        return
-    for which in MEMBERS:
-        yield from _other_file(record, "film", f"heights.{which}.", "heights")
-
-
-def _other_wear(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
-    """That a file holds other worn flanks than when the record was made, unless settings name one."""
-    if not any(key.split(".")[0] == "worn" for key in settings):
-        yield from _other_file(record, "worn", "", "worn flanks")
-
-
-def _other_file(record: Manifest, table: str, place: str, what: str) -> Iterator[str]:
-    """That a file that a table names at a place holds something else than when the record was made."""
-    rows = {row.key: row.value for row in record.inputs if row.table == table}
-    file, then = (rows.get(f"{place}{key}") for key in ("file", "digest"))
-    now = digest_of(file) if isinstance(file, str) and then else ""
-    if now and now != then:
-        name = visible(shorten(os.path.basename(str(file))))
-        yield f'The record was made with other {what} than "{name}" holds now: numbers differ.'
-
-
 @contextmanager
 def _own_folder(
-    folder: Path, case: str, name: str, variants: list[str], overwrite: bool
+    folder: Path, case: str | Case, name: str, variants: list[str], overwrite: bool
 ) -> Iterator[None]:
     """Folder of this case and no other, in which no other run writes meanwhile."""
-    record = Record.of(case, name, folder, variants)
+    origin = case if isinstance(case, str) else case.origin
+    made = Record.of(origin, name, folder, variants) if origin else None
+    record = made or Record(case=name, variants=variants)
     make_folder(folder)
     with sole_writer(folder) as alone:
         if not overwrite:
@@ -261,11 +210,47 @@ def run_variant(
     return outcome
 
 
+def compute_alone(
+    analysis: Analysis, variant: Variant, *, told: Any, folder: Path | None, progress: Progress
+) -> xr.Dataset:
+    """A part that no case names, computed, or read where the folder has it of these very inputs.
+
+    Args:
+        analysis: of the part.
+        variant: case.
+        told: what decides about the part beside the case.
+        folder: where it is kept; nothing is written without one.
+        progress: told about its pieces.
+    """
+    built = variant.built({})
+    job = Job(analysis, built)
+    mark = fingerprint(_mark(_manifest(variant, built, {}), job), told)
+    return _part(job, variant, mark, folder, progress)
+
+
+def own_law(variant: Variant, function: Callable[..., Any]) -> Variant:
+    """The variant under a friction law of the user's own."""
+    return replace(variant, own=_own(function))
+
+
 def _own(function: Callable[..., Any]) -> FrictionLaw:
-    """A user's function as a law; InputError if it asks for what is no condition."""
-    arguments(function)
+    """A user's function as a law; InputError if it asks for what is no condition, or is not JAX."""
+    wanted, _ = arguments(function)
     name = getattr(function, "__name__", "own")
+    _demand_traceable(function, wanted, name)
     return FrictionLaw(name, f"{name}, the user's own", function, (), ({}, 0.0))
+
+
+def _demand_traceable(function: Callable[..., Any], wanted: Sequence[str], name: str) -> None:
+    """InputError for a law in NumPy or plain Python, which no program can be made of."""
+    number = jax.ShapeDtypeStruct((), float)
+    try:
+        jax.eval_shape(lambda **given: function(**given), **dict.fromkeys(wanted, number))
+    except (jax.errors.TracerArrayConversionError, jax.errors.ConcretizationTypeError):
+        raise InputError(
+            f"the friction law {shorten(name)} works on plain numbers; write it with jax.numpy in place of "
+            "numpy and math, and jnp.where in place of if"
+        ) from None
 
 
 def open_result(folder: str | Path) -> dict[str, Outcome]:
@@ -282,6 +267,25 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     if not opened:
         raise InputError("holds no part yet that a run has finished", file=str(folder))
     return opened
+
+
+def keep(outcomes: Mapping[str, Outcome], folder: Path, *, overwrite: bool = False) -> None:
+    """Write results as a run into a folder does.
+
+    Args:
+        outcomes: by variant.
+        folder: where they go.
+        overwrite: True to replace the results of another case.
+
+    Raises:
+        InputError: the folder holds another case, or another run is writing there.
+    """
+    name = str(next(iter(outcomes.values())).manifest["case"])
+    with _own_folder(folder, "", name, [*outcomes], overwrite):
+        for variant, outcome in outcomes.items():
+            for part, data in outcome.parts.items():
+                save(data, folder / variant / f"{part}.nc")
+            _note(outcome, folder / variant, finished=bool(outcome.manifest["finished"]))
 
 
 def manifests(result: str) -> list[dict[str, Any]]:
@@ -305,7 +309,7 @@ def manifests(result: str) -> list[dict[str, Any]]:
 
 
 def load_case(
-    case: str, variant: str | None = None, settings: Mapping[str, Any] | None = None
+    case: CaseLike, variant: str | None = None, settings: Mapping[str, Any] | None = None
 ) -> Ready:
     """A case ready for computations of one's own: its design, operating point and inputs.
 
@@ -317,11 +321,11 @@ def load_case(
     Raises:
         InputError: anything wrong with the input.
     """
-    return _variants(case, [variant] if variant else [], settings)[0].built({})
+    return held(case, [variant] if variant else [], settings)[0].built({})
 
 
 def describe(
-    case: str,
+    case: CaseLike,
     only: Sequence[str] = (),
     *,
     settings: Mapping[str, Any] | None = None,
@@ -332,7 +336,7 @@ def describe(
     Raises:
         InputError: anything wrong with the input that shows before the computation.
     """
-    made = _variants(case, only, settings)
+    made = held(case, only, settings)
     for variant in made:
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
     return [_manifest(variant, variant.built({}), studies or {}) for variant in made]
@@ -348,7 +352,7 @@ def compare_case(
     Raises:
         InputError: the case has no targets.
     """
-    known = _variants(case, [variant] if variant else [])
+    known = held(case, [variant] if variant else [])
     made = next((one for one in known if one.variant == "as_published"), known[0])
     built = made.built({})
     if not built.case.targets:
@@ -383,7 +387,7 @@ def run_piece(
         InputError: anything wrong with the input, or no such part.
         ConvergenceError: a balance that was not found.
     """
-    made = _variants(case, [variant] if variant else [])[0]
+    made = held(case, [variant] if variant else [])[0]
     job = job_of(made, str(description.get("analysis", "")))
     with _told_of(made):
         return job.compute(description) if last is None else job.onward(last)
@@ -391,7 +395,7 @@ def run_piece(
 
 def pieces_of(case: str, *, variant: str | None = None) -> list[Piece]:
     """Descriptions of all pieces of a case, each less than 1 kB of plain data, see `run_piece`."""
-    made = _variants(case, [variant] if variant else [])[0]
+    made = held(case, [variant] if variant else [])[0]
     return [piece for job in jobs(made, {}) for piece in job.pieces]
 
 

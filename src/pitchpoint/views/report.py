@@ -1,7 +1,7 @@
 """The report: one HTML file that opens from disk and says what was computed, with what, and from whom."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -12,7 +12,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import Block, Drawn, Page, Section, said
+from pitchpoint.views.section import Drawn, Page, Section, panels, said
 
 if TYPE_CHECKING:
     import jinja2
@@ -55,7 +55,7 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             sections=made,
             absent=_absent(bare, lacking),
             version=page.version,
-            data=Markup(_payload(_panels(block for one in made for block in one["blocks"]))),
+            data=Markup(_payload(panels(block for one in made for block in one["blocks"]))),
             plotly=Markup(get_plotlyjs()),
         )
     )
@@ -79,14 +79,6 @@ def _absent(page: Page, lacking: Mapping[Section, str | None]) -> list[tuple[lis
         if why:
             reasons.setdefault(why, []).append(said(section.short, page))
     return [(names, why) for why, names in reasons.items()]
-
-
-def _panels(blocks: Iterable[Block]) -> Iterator[Panel]:
-    for block in blocks:
-        if isinstance(block, Panel):
-            yield block
-        elif isinstance(block, Drawn):
-            yield from block.panels
 
 
 def _drawn(block: Drawn) -> "markupsafe.Markup":

@@ -20,6 +20,7 @@ __all__ = [
     "Section",
     "Table",
     "by_variant",
+    "panels",
     "reason",
     "said",
 ]
@@ -134,6 +135,15 @@ def by_variant(
         if title:
             yield Heading(title)
         yield from show(position, outcome)
+
+
+def panels(blocks: Iterable[Block]) -> Iterator[Panel]:
+    """Panels among some blocks, and those in what templates draw."""
+    for block in blocks:
+        if isinstance(block, Panel):
+            yield block
+        elif isinstance(block, Drawn):
+            yield from block.panels
 
 
 def _has(outcome: Outcome, part: str) -> bool:

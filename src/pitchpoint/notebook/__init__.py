@@ -1,0 +1,1 @@
+"""Results and studies for people at a Python prompt or in a notebook."""

@@ -1,0 +1,207 @@
+"""Derivatives of the main figures by the keys of a case file."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import equinox as eqx
+import numpy as np
+from pydantic import BaseModel
+
+from pitchpoint import units
+from pitchpoint._jax import jax
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.document import leaves
+from pitchpoint.cases.schema import quantity_at
+from pitchpoint.cases.variant import Variant
+from pitchpoint.efficiency.gradients import figure_gradient
+from pitchpoint.efficiency.quasi_static import Models
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity, shown
+from pitchpoint.registry import nearest
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.case import Case, CaseLike, as_case, written
+from pitchpoint.runs.run import own_law
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["gradients"]
+
+FIGURES = {
+    "mean_loss": "mean_loss",
+    "mean_efficiency": "mean_efficiency",
+    "mean_input_torque": "mean_input_torque",
+    "torque_ripple": "ripple",
+}
+"""Names of figures in results, and those of the cycle."""
+
+STEP = 1e-4
+"""Step of differences of the design against a value; relative, absolute for values below a thousandth."""
+
+_TABLES = ("gears", "materials", "lubricant", "roughness", "operation", "losses")
+_LEAST = 1e-3
+
+Leaves = list[np.ndarray]
+
+
+def gradients(
+    case: CaseLike,
+    of: str = "mean_loss",
+    by: Sequence[str] = (),
+    *,
+    law: str | None = None,
+    variant: str | None = None,
+    friction: Callable[..., Any] | None = None,
+) -> "pd.DataFrame":
+    """Derivatives of a main figure by every number of a case file on which it depends.
+
+    Args:
+        case: a `Case`, or what makes one, of one mesh.
+        of: "mean_loss", "mean_efficiency", "mean_input_torque" or "torque_ripple".
+        by: keys by which to differentiate, all by default.
+        law: friction law of the case that acts, the first one by default.
+        variant: of the case, the first one by default.
+        friction: a law of one's own, see `run`.
+
+    Returns:
+        By key `value` and its SI `unit`, and `derivative` by it in SI; `attrs` has `of`, its `value` and
+        its `unit`. What follows from a number, such as a dedendum from an addendum or the modulus of
+        plastic from the temperature, is taken along.
+
+    Raises:
+        InputError: no such figure or law, or a drive of several meshes.
+        ConvergenceError: friction locks the mesh.
+
+    By automatic differentiation of the mesh cycle in reverse; what a key does to the design, which is
+    closed forms and built on the host, by central differences.
+    """
+    chosen = as_case(case) if variant is None else Case(case, variant=variant)
+    base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
+    built = _one_mesh(base)
+    models = _under(built, law)
+    if of not in FIGURES:
+        raise InputError(f"{shown(of)} has no derivatives here{nearest(of, FIGURES)}")
+    numbers = _asked(built, [chosen.key(name) for name in by])
+    value, slopes = figure_gradient(built.design, built.operation, models, FIGURES[of])
+    flat = [np.asarray(leaf) for leaf in jax.tree.leaves(slopes)]
+    rows = {
+        key: {"value": number, "unit": units.si_unit(kind) or "1", "derivative": derivative}
+        for key, number, kind, derivative in _rows(base, built, numbers, flat)
+    }
+    return _frame(rows, {"of": of, "value": value, "unit": VARIABLES[of].unit})
+
+
+def _frame(rows: Mapping[str, Mapping[str, Any]], told: Mapping[str, Any]) -> "pd.DataFrame":
+    import pandas as pd
+
+    made = pd.DataFrame.from_dict(dict(rows), orient="index").rename_axis("key")
+    made.attrs.update(told)
+    return made
+
+
+def _one_mesh(base: Variant) -> Built:
+    built = base.built({})
+    if not isinstance(built, Built):
+        told = "derivatives are those of one mesh; a stage in a file of its own has them"
+        raise InputError(told, file=base.name)
+    return built
+
+
+def _under(built: Built, law: str | None) -> Models:
+    named = dict(zip(built.law_names, built.models, strict=True))
+    if law is not None and law not in named:
+        raise InputError(f"{shown(law)} is no friction law of the case{nearest(law, named)}")
+    return named[law] if law is not None else built.models[0]
+
+
+def _asked(built: Built, keys: Sequence[str]) -> "list[Number]":
+    """Numbers of a case, those of some keys; InputError for a key without one."""
+    every = {one[0]: one for one in _numbers(built)}
+    missing = [key for key in keys if key not in every]
+    if missing:
+        told = f"is no number of the case that varies{nearest(missing[0], every)}"
+        raise InputError(told, key=missing[0])
+    return [every[key] for key in keys or every]
+
+
+def _rows(
+    base: Variant, built: Built, numbers: "Sequence[Number]", slopes: Leaves
+) -> Iterator[tuple[str, float, str, float]]:
+    """Key, value, kind and derivative of every number that moves the design."""
+    here = _leaves(built)
+    for key, value, kind, setting in numbers:
+        moved = _moved(base, here, setting, value)
+        if moved is not None and any(np.any(one) for one in moved):
+            pairs = zip(slopes, moved, strict=True)
+            yield key, value, kind, float(sum(np.sum(slope * step) for slope, step in pairs))
+
+
+Setting = Callable[[float], tuple[str, Any]]
+Number = tuple[str, float, str, Setting]
+
+
+def _numbers(built: Built) -> Iterator[Number]:
+    """Key, value, kind and what sets it, of the numbers of a case, those of two gears apart."""
+    for table in _TABLES:
+        held = getattr(built.case, table)
+        plain = held.model_dump() if isinstance(held, BaseModel) else _dumped(held)
+        for key, value in leaves({table: plain}):
+            quantity = _continuous(key)
+            if quantity is not None and isinstance(value, float):
+                yield key, value, quantity.kind, _alone(key)
+            elif quantity is not None and isinstance(value, tuple):
+                for k, one in enumerate(value):
+                    yield f"{key}.{k + 1}", one, quantity.kind, _in_list(key, value, k)
+
+
+def _dumped(tables: Mapping[str, BaseModel]) -> dict[str, Any]:
+    return {name: one.model_dump() for name, one in tables.items()}
+
+
+def _continuous(key: str) -> Quantity | None:
+    """What the number at a key is; None for counts and where there is none."""
+    try:
+        quantity = quantity_at(key)
+    except InputError:
+        return None
+    return None if quantity is None or quantity.whole else quantity
+
+
+def _alone(key: str) -> Setting:
+    return lambda value: (key, written(key, value))
+
+
+def _in_list(key: str, values: tuple[float, ...], position: int) -> Setting:
+    def setting(value: float) -> tuple[str, Any]:
+        return key, written(key, [*values[:position], value, *values[position + 1 :]])
+
+    return setting
+
+
+def _moved(base: Variant, here: Leaves, setting: Setting, value: float) -> Leaves | None:
+    """Derivatives of the numbers of the design by a key; one-sided at the end of its range."""
+    step = STEP * (abs(value) if abs(value) > _LEAST * STEP else 1.0)
+    above, below = (_built_at(base, here, setting(value + way * step)) for way in (1.0, -1.0))
+    if above is None and below is None:
+        return None
+    first, last = (here if below is None else below), (here if above is None else above)
+    width = step * ((above is not None) + (below is not None))
+    return [np.asarray((b - a) / width) for a, b in zip(first, last, strict=True)]
+
+
+def _built_at(base: Variant, here: Leaves, setting: tuple[str, Any]) -> Leaves | None:
+    """Numbers of the design with a key changed; None where it cannot be built, or is of another form."""
+    try:
+        built = base.built(dict([setting]))
+    except InputError:
+        return None
+    assert isinstance(built, Built)
+    found = _leaves(built)
+    alike = [one.shape for one in found] == [one.shape for one in here]
+    return found if alike else None
+
+
+def _leaves(built: Built) -> Leaves:
+    """Continuous numbers of the design and the operating point."""
+    numbers = eqx.filter((built.design, built.operation), eqx.is_inexact_array)
+    return [np.asarray(leaf) for leaf in jax.tree.leaves(numbers)]

@@ -1,0 +1,225 @@
+"""What `run` gives at a Python prompt: outcomes by variant, with tables, datasets and figures of them."""
+
+import html
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from pitchpoint.cases.record import MANIFEST
+from pitchpoint.cases.schema import Study
+from pitchpoint.errors import InputError, shorten
+from pitchpoint.input.quantities import shown
+from pitchpoint.notebook import tables
+from pitchpoint.notebook.figures import Plots
+from pitchpoint.notebook.gradients import gradients
+from pitchpoint.registry import nearest
+from pitchpoint.results.labelled import Units, demand_units, labelled
+from pitchpoint.runs import run as runs
+from pitchpoint.runs.case import Case, CaseLike, written
+from pitchpoint.runs.run import Outcome, Progress
+from pitchpoint.views.report import write_report
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+__all__ = ["Result", "open_result", "run"]
+
+_LONGEST_TITLE = 70
+
+
+class Result(Mapping[str, Outcome]):
+    """Outcomes of a case by variant.
+
+    Args:
+        outcomes: by variant, at least one.
+        origins: by variant what gives its case again.
+        friction: law of the user's own under which they were computed.
+
+    Tables and datasets are those of all variants, or of the one that is asked for, by default the first.
+    """
+
+    def __init__(
+        self,
+        outcomes: Mapping[str, Outcome],
+        origins: Mapping[str, Callable[[], Case]],
+        friction: Callable[..., Any] | None = None,
+    ) -> None:
+        self._outcomes, self._origins, self._friction = dict(outcomes), origins, friction
+
+    def __getitem__(self, variant: str) -> Outcome:
+        return self._outcomes[variant]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._outcomes)
+
+    def __len__(self) -> int:
+        return len(self._outcomes)
+
+    def __repr__(self) -> str:
+        lines = [f"{name}: {tables.headline(one)}" for name, one in self.items()]
+        return "\n  ".join([f"Result({self.title!r})", *lines, f"parts {', '.join(self.parts)}"])
+
+    def _repr_html_(self) -> str:
+        told = "".join(f"<li>{html.escape(text)}</li>" for text in self.warnings)
+        table = self.summary().to_html(na_rep="undefined", border=0)
+        parts = html.escape(", ".join(self.parts))
+        title = f"<strong>{html.escape(self.title)}</strong>"
+        return f"<div>{title}{table}<ul>{told}</ul><small>parts: {parts}</small></div>"
+
+    @property
+    def title(self) -> str:
+        """Of the case."""
+        return shorten(str(next(iter(self.values())).manifest["title"]), _LONGEST_TITLE)
+
+    @property
+    def parts(self) -> list[str]:
+        """Names of the datasets that there are."""
+        return [*dict.fromkeys(name for one in self.values() for name in one.parts)]
+
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences that belong to the results, of all variants."""
+        return [*dict.fromkeys(text for one in self.values() for text in one.manifest["warnings"])]
+
+    @property
+    def inputs(self) -> "pd.DataFrame":
+        """Every input by key: value in SI with its unit, as shown, status, place in print, remark."""
+        return tables.by_variant(self, tables.inputs)
+
+    @property
+    def plot(self) -> Plots:
+        """Figures of the report, by section: `result.plot.cycle()`; `dir(result.plot)` lists them."""
+        return Plots(self)
+
+    def summary(self) -> "pd.DataFrame":
+        """Main figures in the units in which they are shown, a column for each friction law."""
+        return tables.by_variant(self, tables.summary)
+
+    def dataset(self, part: str, *, units: Units = "si", variant: str | None = None) -> xr.Dataset:
+        """A part of the result: every dimension with a coordinate, NaN where no teeth touch.
+
+        Args:
+            part: one of `parts`; `outcome.parts` has it as it was computed and kept.
+            units: "si", or those in which values are "shown".
+            variant: the first one by default.
+
+        Raises:
+            InputError: there is no such part, and why.
+        """
+        demand_units(units)
+        return labelled(self._part(part, variant), units)
+
+    def to_dataframe(
+        self, part: str, *, units: Units = "si", variant: str | None = None
+    ) -> "pd.DataFrame":
+        """A part of the result as a table, a column for each variable; arguments as in `dataset`.
+
+        The units stand in `attrs["units"]`, by column.
+        """
+        data = self.dataset(part, units=units, variant=variant)
+        frame = data.to_dataframe()
+        every = {str(name): str(one.attrs.get("units", "")) for name, one in data.variables.items()}
+        frame.attrs["units"] = every
+        return frame
+
+    def gradients(
+        self,
+        of: str = "mean_loss",
+        by: Sequence[str] = (),
+        *,
+        law: str | None = None,
+        variant: str | None = None,
+    ) -> "pd.DataFrame":
+        """Derivatives of a main figure by the keys of the case file, see `gradients`."""
+        case = self._origins[variant or next(iter(self))]()
+        return gradients(case, of, by, law=law, friction=self._friction)
+
+    def write_report(self, path: str | Path) -> None:
+        """Write the report, one HTML file."""
+        write_report(self, path)
+
+    def save(self, folder: str | Path, *, overwrite: bool = False) -> None:
+        """Write the datasets and the record as a run into the folder does; `open_result` reads them.
+
+        Args:
+            folder: of the results.
+            overwrite: True to replace those of another case.
+        """
+        runs.keep(self, Path(folder), overwrite=overwrite)
+
+    def _part(self, part: str, variant: str | None) -> xr.Dataset:
+        name = variant or next(iter(self))
+        if name not in self:
+            raise InputError(f"{shown(name)} is not a variant of this result{nearest(name, self)}")
+        outcome = self[name]
+        if part not in outcome.parts:
+            why = outcome.manifest.get("lacks", {}).get(part, "")
+            told = f": {why}" if why else nearest(part, outcome.parts)
+            raise InputError(f"the result has no part {shown(part)}{told}")
+        return outcome.parts[part]
+
+
+def run(
+    case: CaseLike,
+    *,
+    folder: str | Path | None = None,
+    only: Sequence[str] = (),
+    settings: Mapping[str, Any] | None = None,
+    studies: Mapping[str, Study] | None = None,
+    friction: Callable[..., Any] | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> Result:
+    """Compute all parts of a case.
+
+    Args:
+        case: a `Case`, the name of a shipped case, a file, the manifest of a result, which repeats that
+            result, or tables as a case file has them.
+        folder: where parts and manifests go; nothing is written without one.
+        only: variants to run; all by default.
+        settings: values by dotted key that replace those of the case, SI numbers or texts with a unit.
+        studies: further studies, as `--sweep` makes them.
+        friction: a law of one's own in place of those of the case: a function of JAX arrays whose
+            keyword arguments are conditions at a contact, see `pitchpoint.lubrication.conditions`.
+        overwrite: True to replace the results of another case in the folder.
+        progress: told about parts and points.
+
+    Returns:
+        Outcomes by variant, with tables, datasets and figures of them.
+
+    Raises:
+        InputError: anything wrong with the input; the folder holds another case, or another run is
+            writing there.
+        ConvergenceError: a balance that was not found; what was finished is on disk.
+        OSError: the disk is full, say; what was finished is on disk.
+    """
+    given = {key: written(key, value) for key, value in (settings or {}).items()}
+    outcomes = runs.run(
+        case,
+        folder=folder,
+        only=only,
+        settings=given,
+        studies=studies,
+        friction=friction,
+        overwrite=overwrite,
+        progress=progress,
+    )
+    return Result(outcomes, {one: partial(_case, case, one, given) for one in outcomes}, friction)
+
+
+def open_result(folder: str | Path) -> Result:
+    """Results of a folder that `run` wrote.
+
+    Raises:
+        InputError: the folder holds no result.
+    """
+    outcomes = runs.open_result(folder)
+    records = {one: Path(folder) / one / MANIFEST for one in outcomes}
+    return Result(outcomes, {one: partial(_case, path, one, {}) for one, path in records.items()})
+
+
+def _case(case: CaseLike, variant: str, settings: Mapping[str, Any]) -> Case:
+    return Case(case, variant=variant).set(settings)

@@ -1,0 +1,88 @@
+"""Parts of a result as people of xarray expect them: labelled, in the units asked for, NaN off contact."""
+
+from typing import Any, Literal, get_args
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint import units
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import shown
+from pitchpoint.results.variables import VARIABLES, variable_of
+
+__all__ = ["Units", "demand_units", "in_units", "labelled"]
+
+Units = Literal["si", "shown"]
+"""Units of a dataset: SI, or those in which tables and figures show each variable."""
+
+_ACTIVE = "active"
+
+_ALONG = ("phase", "axis", "cycles", "time", "speed", "torque")
+"""Variables that label the dimension along which alone they run, the first one there is."""
+
+
+def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
+    """The dataset with a coordinate on each dimension and no numbers where no teeth touch.
+
+    Args:
+        data: a part of a result.
+        unit: "si" or "shown".
+
+    Dimensions without a coordinate take the variable that runs along them (`phase` along the nodes of a
+    cycle), else count from 1; a single operating point is no dimension.
+    """
+    made = _off_contact(data)
+    if made.sizes.get("point") == 1:
+        made = made.squeeze("point", drop=True)
+    for name in [*made.dims]:
+        if name not in made.coords:
+            made = _labelled(made, str(name))
+    return in_units(made, unit)
+
+
+def demand_units(unit: str) -> None:
+    """InputError for units that are no choice."""
+    if unit not in get_args(Units):
+        raise InputError(f'{shown(unit)} was given as units; use "si" or "shown"')
+
+
+def in_units(data: xr.Dataset, unit: Units) -> xr.Dataset:
+    """The dataset in SI, as it is, or in the units in which its variables are shown."""
+    if unit == "si":
+        return data
+    made = data.copy()
+    for name in [*map(str, data.variables)]:
+        if name in VARIABLES and data[name].dtype.kind == "f":
+            made[name] = _as_shown(data, name)
+    return made
+
+
+def _as_shown(data: xr.Dataset, name: str) -> Any:
+    """A variable in the unit in which it is shown."""
+    known = variable_of(data, name)
+    values = units.convert(np.asarray(data[name].values), known.display, known.kind)
+    attributes = {**data[name].attrs, "units": known.display}
+    return (data[name].dims, values, attributes)
+
+
+def _off_contact(data: xr.Dataset) -> xr.Dataset:
+    """The dataset with NaN where a pair is out of contact; solvers hold harmless numbers there."""
+    if _ACTIVE not in data:
+        return data
+    active = data[_ACTIVE].astype(bool)
+    lanes = {
+        name: one.where(active).transpose(*one.dims).assign_attrs(one.attrs)
+        for name, one in data.data_vars.items()
+        if set(active.dims) <= set(one.dims) and one.dtype.kind == "f"
+    }
+    return data.assign(lanes)
+
+
+def _labelled(data: xr.Dataset, dim: str) -> xr.Dataset:
+    along = [name for name in _ALONG if name in data.data_vars and data[name].dims == (dim,)]
+    if along:
+        return data.swap_dims({dim: along[0]})
+    counted = np.arange(1, data.sizes[dim] + 1)
+    return data.assign_coords(
+        {dim: (dim, counted, {"units": "1", "long_name": f"number of {dim}"})}
+    )

@@ -1,0 +1,76 @@
+"""The variants of a case, as a run takes them: from a file, a shipped case or a record."""
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pitchpoint.cases.document import variants
+from pitchpoint.cases.height_maps import MEMBERS, digest_of
+from pitchpoint.cases.library import as_text, find, path_of
+from pitchpoint.cases.record import Manifest, is_record
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+
+__all__ = ["variants_of"]
+
+
+def variants_of(
+    case: str,
+    only: Sequence[str] = (),
+    settings: Mapping[str, Any] | None = None,
+    own: FrictionLaw | None = None,
+) -> list[Variant]:
+    """Variants of a case, all or those that are named; of a record the one that it holds."""
+    if is_record(case):
+        held = _recorded(Path(case), own, settings or {})
+    else:
+        name, tree = find(case)
+        held = Variant(tree, name, "", folder=path_of(case).parent)
+    chosen = only or variants(dict(held.tree))
+    return [replace(held, variant=one, settings=dict(settings or {}), own=own) for one in chosen]
+
+
+def _recorded(path: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
+    """The variant that a record holds."""
+    record, name = Manifest.read(path), visible(as_text(path.name))
+    if record.own and own is None:
+        raise InputError(
+            f"was computed with '{shorten(record.own)}', a friction law of the user's own, which no record "
+            "can hold; give it again, from Python as friction",
+            file=name,
+        )
+    try:
+        tree = record.tree
+    except InputError as error:
+        raise error.at(file=name) from None
+    told = (*record.warning, *_other_heights(record, settings), *_other_wear(record, settings))
+    return Variant(
+        tree, name, record.variant, recorded=record.case, warnings=told, folder=path.parent
+    )
+
+
+def _other_heights(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
+    """That files hold other heights than when the record was made, those that settings replace left out."""
+    if any(key.split(".")[:2] in (["film"], ["film", "heights"]) for key in settings):
+        return
+    for which in MEMBERS:
+        yield from _other_file(record, "film", f"heights.{which}.", "heights")
+
+
+def _other_wear(record: Manifest, settings: Mapping[str, Any]) -> Iterator[str]:
+    """That a file holds other worn flanks than when the record was made, unless settings name one."""
+    if not any(key.split(".")[0] == "worn" for key in settings):
+        yield from _other_file(record, "worn", "", "worn flanks")
+
+
+def _other_file(record: Manifest, table: str, place: str, what: str) -> Iterator[str]:
+    """That a file that a table names at a place holds something else than when the record was made."""
+    rows = {row.key: row.value for row in record.inputs if row.table == table}
+    file, then = (rows.get(f"{place}{key}") for key in ("file", "digest"))
+    now = digest_of(file) if isinstance(file, str) and then else ""
+    if now and now != then:
+        name = visible(shorten(os.path.basename(str(file))))
+        yield f'The record was made with other {what} than "{name}" holds now: numbers differ.'
