@@ -19,12 +19,13 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.document import STAGES, Document, variants
+from pitchpoint.cases.document import STAGES, Document, read, variants
 from pitchpoint.cases.failures import worst_first
+from pitchpoint.cases.handed_over import hand_over
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.library import as_text, find, names, path_of
 from pitchpoint.cases.loss_sets import set_sources
-from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
+from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
@@ -118,7 +119,8 @@ def run(
     """Compute all parts of a case.
 
     Args:
-        case: name of a shipped case, a file, or the manifest of a result, which repeats that result.
+        case: name of a shipped case, a file, or the folder or the manifest of a result, which repeat that
+            result.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
         settings: values by dotted key that replace those of the file.
@@ -140,8 +142,8 @@ def run(
     made = _variants(case, only, settings, None if friction is None else _own(friction))
     work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
     where = None if folder is None else Path(folder)
-    name = made[0].name
-    with nullcontext() if where is None else _own_folder(where, case, name, [*work], overwrite):
+    mine = None if where is None else Record.of(case, made[0].label, where, [*work], settings)
+    with nullcontext() if mine is None or where is None else _own_folder(where, mine, overwrite):
         return {
             one: run_variant(
                 *prepared,
@@ -160,6 +162,8 @@ def _variants(
     own: FrictionLaw | None = None,
 ) -> list[Variant]:
     """Variants of a case, all or those that are named; of a record the one that it holds."""
+    if is_result(case):
+        return _of_result(Path(case), only, settings or {}, own)
     if is_record(case):
         held = _recorded(Path(case), own, settings or {})
     else:
@@ -167,6 +171,38 @@ def _variants(
         held = Variant(tree, name, "", folder=path_of(case).parent)
     chosen = only or variants(dict(held.tree))
     return [replace(held, variant=one, settings=dict(settings or {}), own=own) for one in chosen]
+
+
+def _of_result(
+    folder: Path, only: Sequence[str], settings: Mapping[str, Any], own: FrictionLaw | None
+) -> list[Variant]:
+    """Variants of the folder of a result, each from the case file that was written beside it."""
+    known = Record.read(folder / RUN).variants
+    for name in only:
+        if name not in known:
+            told = f"'{shorten(name)}' is not a variant of this result{nearest(name, known)}"
+            raise InputError(told, file=visible(as_text(str(folder))))
+    return [
+        replace(
+            _handed_over(folder / name, own, settings),
+            variant=name,
+            settings=dict(settings),
+            own=own,
+        )
+        for name in only or known
+    ]
+
+
+def _handed_over(folder: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
+    """The variant that a folder holds; where an earlier version left no case file there, its record."""
+    path = folder / CASE
+    if not path.is_file():
+        return _recorded(folder / MANIFEST, own, settings)
+    record = Manifest.read(folder / MANIFEST)
+    name = visible(as_text(f"{folder.name}/{CASE}"))
+    tree = {"variants": {folder.name: read(path)}}
+    told = tuple(record.warning)
+    return Variant(tree, name, folder.name, recorded=record.case, warnings=told, folder=folder)
 
 
 def _recorded(path: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
@@ -213,16 +249,13 @@ def _other_file(record: Manifest, table: str, place: str, what: str) -> Iterator
 
 
 @contextmanager
-def _own_folder(
-    folder: Path, case: str, name: str, variants: list[str], overwrite: bool
-) -> Iterator[None]:
+def _own_folder(folder: Path, record: Record, overwrite: bool) -> Iterator[None]:
     """Folder of this case and no other, in which no other run writes meanwhile."""
-    record = Record.of(case, name, folder, variants)
     make_folder(folder)
     with sole_writer(folder) as alone:
         if not overwrite:
             record.demand_own(folder)
-        for place in (folder, *(folder / one for one in variants)) if alone else ():
+        for place in (folder, *(folder / one for one in record.variants)) if alone else ():
             sweep(place)
         record.write(folder)
         yield
@@ -239,6 +272,8 @@ def run_variant(
     """Compute all parts of one variant; finished parts found in the folder are read."""
     built = variant.built({})
     outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
+    if folder is not None:
+        _hand_over(variant, outcome.manifest["title"], folder, studies)
     for job in work:
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
@@ -252,6 +287,18 @@ def run_variant(
         for pieces in ("study_*", "loss_map"):  # of parts that were not asked for again
             _drop_pieces(folder, pieces)
     return outcome
+
+
+def _hand_over(variant: Variant, title: str, folder: Path, studies: Mapping[str, Study]) -> None:
+    """Leave the case as it is run beside its results; none holds a friction law of the user's own."""
+    if variant.own is not None:
+        (folder / CASE).unlink(missing_ok=True)
+        return
+    document = variant.document()
+    if not _measured(variant):
+        tree = {key: table for key, table in document.tree.items() if key != "targets"}
+        document = replace(document, tree=tree)
+    hand_over(document, folder, title=title, studies=studies)
 
 
 def _own(function: Callable[..., Any]) -> FrictionLaw:
@@ -407,10 +454,16 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
         for row in manifest["inputs"]
         if row["given"]
         and (row["table"] != study or f"study_{row['key']}.".startswith(f"{job.name}."))
+        and not _names_file(row)
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
     own = uuid4().hex if manifest["own"] else ""
     return fingerprint(surroundings(), manifest["source"], given, job.name, own, *_held(manifest))
+
+
+def _names_file(row: Mapping[str, Any]) -> bool:
+    """True for the name of a file: what it holds counts, see `_held`, not where it lies."""
+    return row["table"] in ("film", "worn") and row["key"].split(".")[-1] == "file"
 
 
 def _held(manifest: Mapping[str, Any]) -> list[str]:
