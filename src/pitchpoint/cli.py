@@ -29,6 +29,9 @@ app = typer.Typer(
 )
 
 _INTERRUPTED = 130
+_FEW_DESIGNS = 3
+"""Designs up to which their differences have room on a screen."""
+
 _LONGEST = 2000  # characters of one complaint
 _SWEEP = re.compile(r"([^=]{0,500})=([^:]*):([^:]*):\s*([1-9][0-9]{0,4}|100000)\s*", re.ASCII)
 
@@ -66,7 +69,15 @@ CaseName = Annotated[
     str,
     typer.Argument(
         metavar="CASE",
-        help="A shipped case, a TOML file, or the manifest.json of a result, which repeats it.",
+        help="A shipped case, a TOML file, or a folder that `run` wrote, which is run again.",
+        autocompletion=_cases_from,
+    ),
+]
+Designs = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="CASE...",
+        help="Cases, files, folders that `run` wrote, or one variant of them, case@variant.",
         autocompletion=_cases_from,
     ),
 ]
@@ -195,7 +206,7 @@ def run(
     from pitchpoint.runs.run import run as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
-    folder = output or default_folder(case, Path("results"))
+    folder = output or default_folder(case, Path("results"), settings)
     with _progress(folder) as progress:
         outcomes = compute(
             case,
@@ -221,14 +232,80 @@ def run(
 
 @app.command()
 def compare(
-    case: CaseName,
+    designs: Designs,
     variant: Annotated[
         str | None,
-        typer.Option("--variant", help="as_published by default.", autocompletion=_variants_from),
+        typer.Option(
+            "--variant",
+            help="Of a published case; as_published by default.",
+            autocompletion=_variants_from,
+        ),
     ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Of several designs; results/A-B by default."
+        ),
+    ] = None,
+    overwrite: Overwrite = False,
     json_: AsJson = False,
 ) -> None:
-    """Compare a published case with its print; exit status 1 when a row misses."""
+    """Compare designs with each other, or a published case with its print.
+
+    Several designs: inputs that differ, main results and their differences, and a report with their
+    curves on the same axes. One published case: exit status 1 when a row misses.
+    """
+    from pitchpoint.runs.designs import wanted
+
+    if len(designs) > 1:
+        if variant is not None:
+            raise InputError("goes with one case; of several write case@variant", key="--variant")
+        _compare_designs(designs, output, overwrite, json_)
+        return
+    one = wanted(designs[0])
+    _compare_with_print(one.case, variant or one.variant, json_)
+
+
+def _compare_designs(
+    designs: list[str], output: Path | None, overwrite: bool, as_json: bool
+) -> None:
+    from pitchpoint.runs.designs import DESIGNS, folder_of
+    from pitchpoint.runs.designs import designs as compared
+
+    folder = output or folder_of(designs, Path("results"))
+    with _progress(folder) as progress:
+        outcomes = compared(
+            designs, folder=folder / DESIGNS, overwrite=overwrite, progress=progress
+        )
+        progress.part("", "report", False)
+        _write_report(outcomes, folder, designs=True)
+    if as_json:
+        from pitchpoint.runs.designs import as_json as told
+
+        _emit({**told(outcomes), "designs": {n: _figures(one) for n, one in outcomes.items()}})
+        return
+    _differences(outcomes)
+    _console().print(f"Report: {_plain(str(folder / 'report.html'))}")
+
+
+def _differences(outcomes: "dict[str, Outcome]") -> None:
+    """Results of designs with their differences, inputs that differ, and what warns of each design."""
+    from pitchpoint.views.designs import input_tables, law_words, result_table
+
+    _console().print(_plain(law_words(outcomes)))
+    given, following = input_tables(outcomes)
+    for title, table in (
+        ("Results", result_table(outcomes, differences=len(outcomes) <= _FEW_DESIGNS)),
+        ("Inputs that differ", given),
+        ("What follows from them", following),
+    ):
+        _console().print(f"\n[bold]{title}[/]" if table.rows else f"\n[bold]{title}[/]: none")
+        _table([dict(zip(table.head, row, strict=True)) for row in table.rows], tuple(table.head))
+    for name, outcome in outcomes.items():
+        _warn([f"{name}: {text}" for text in outcome.manifest["warnings"]])
+
+
+def _compare_with_print(case: str, variant: str | None, json_: bool) -> None:
     from pitchpoint.runs.run import compare_case
 
     name, chosen, rows = compare_case(case, variant, _progress)
@@ -344,10 +421,10 @@ def _studies(texts: list[str]) -> dict[str, "Study"]:
     return studies
 
 
-def _write_report(outcomes: "dict[str, Outcome]", folder: Path) -> None:
+def _write_report(outcomes: "dict[str, Outcome]", folder: Path, *, designs: bool = False) -> None:
     from pitchpoint.views.report import write_report
 
-    write_report(outcomes, folder / "report.html")
+    write_report(outcomes, folder / "report.html", designs=designs)
 
 
 @contextmanager

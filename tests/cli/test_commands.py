@@ -89,7 +89,7 @@ def pitchpoint(
 ) -> Callable[..., Told]:
     """Run a command in this process, so that programs are compiled once; reports are not written."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder: None)
+    monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder, **_: None)
     monkeypatch.setenv("COLUMNS", "200")
 
     def run(*arguments: object) -> Told:
@@ -229,8 +229,9 @@ def test_run_leaves_results_that_are_not_computed_twice(
     loss = other["operation"]["xu_2007"]["mean_loss"]
     assert loss == pytest.approx(figures["studies"]["smooth"]["xu_2007"]["mean_loss"], rel=1e-12)
     assert other["studies"]["sweep_operation_torque"]["axis"]["values"] == [10.0, 50.0]
-    changed = times(tmp_path / "results" / "tiny")
-    assert changed["operation"] != made["operation"]
+    assert times(tmp_path / "results" / "tiny") == made
+    (changed,) = (tmp_path / "results").glob("tiny+*")
+    assert changed.name == "tiny+roughness.ra=0.2_um"
 
 
 def test_every_part_says_what_became_of_its_solves(repeated: tuple[Path, Path]) -> None:
@@ -252,11 +253,28 @@ def test_a_record_repeats_its_result_bit_for_bit(repeated: tuple[Path, Path]) ->
     files = {path.name for path in first.iterdir()}
     assert files == {path.name for path in again.iterdir()}
     assert files > {"cycle.nc", "loss_map.nc", "study_smooth.nc", "study_warm.nc", "manifest.json"}
-    for name in files:
+    for name in files - {"case.toml"}:  # in the units of the case there, in SI here
         assert (first / name).read_bytes() == (again / name).read_bytes(), name
     rows = json.loads((again / "manifest.json").read_text())["inputs"]
     (row,) = (row for row in rows if (row["table"], row["key"]) == ("operation", "speed"))
     assert row["value"] == pytest.approx(1234.5678 * np.pi / 30.0, rel=1e-15)
+
+
+def test_the_folder_of_a_result_repeats_it_bit_for_bit(
+    pitchpoint: Callable[..., Told], repeated: tuple[Path, Path], tmp_path: Path
+) -> None:
+    out = shutil.copytree(repeated[0], tmp_path / "out")
+    made = times(out)
+    assert pitchpoint("run", out).status == 0
+    assert times(out) == made  # all on disk
+    (out / "default" / "cycle.nc").unlink()
+    again = pitchpoint("run", out, "-o", "again", "--json").json
+    assert again["default"]["studies"]["warm"]["axis"]["key"] == "operation.temperature"
+    first, other = (folder / "default" for folder in (repeated[0], tmp_path / "again"))
+    for name in made:
+        assert (first / f"{name}.nc").read_bytes() == (other / f"{name}.nc").read_bytes(), name
+    assert (first / "case.toml").read_bytes() == (other / "case.toml").read_bytes()
+    assert json.loads((other / "manifest.json").read_text())["case"] == "tiny.toml"
 
 
 def test_the_report_of_a_repeated_result_is_the_same(repeated: tuple[Path, Path]) -> None:
@@ -485,7 +503,7 @@ CODE = f"""
 import pitchpoint.cli as cli
 from pitchpoint.analyses import studies
 studies.PIECE = {PIECE}
-cli._write_report = lambda outcomes, folder: None
+cli._write_report = lambda outcomes, folder, **_: None
 cli.main()
 """
 PIECES = "study_sweep_operation_torque.0*.nc"

@@ -19,6 +19,7 @@ __all__ = [
     "Provenance",
     "check_name",
     "demand_shallow",
+    "files_of",
     "leaves",
     "put",
     "read",
@@ -124,6 +125,21 @@ def _find_files(tree: Tree, folder: Path) -> None:
                 given["value"] = _from(folder, given["value"])
             elif isinstance(given, str):
                 one["file"] = _from(folder, given)
+
+
+def files_of(tree: Tree) -> Iterator[tuple[str, str]]:
+    """Name of the table and file of everything that a case reads from a file of its own.
+
+    Args:
+        tree: plain values, without marks.
+    """
+    for place in _NAMING_FILES:
+        *above, last = place
+        tables = [(last, one) for one in _tables_at(tree, place)] if last != "*" else []
+        if last == "*":
+            inner = next(_tables_at(tree, tuple(above)), {})
+            tables = [(key, one) for key, one in inner.items() if isinstance(one, dict)]
+        yield from ((key, one["file"]) for key, one in tables if isinstance(one.get("file"), str))
 
 
 def _tables_at(tree: Any, place: tuple[str, ...]) -> Iterator[Tree]:

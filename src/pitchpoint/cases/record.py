@@ -4,7 +4,9 @@ A manifest is a record: it holds the inputs to the last bit, so that its result 
 alone. Folders travel between people: what these files hold is checked before it is believed or followed.
 """
 
+import hashlib
 import os
+import re
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -29,9 +31,22 @@ from pitchpoint.results.store import read_bytes, write_text
 from pitchpoint.results.target_rows import Row
 from pitchpoint.results.variable import End
 
-__all__ = ["MANIFEST", "RUN", "Manifest", "Record", "default_folder", "is_record", "owner"]
+__all__ = [
+    "CASE",
+    "MANIFEST",
+    "RUN",
+    "Manifest",
+    "Record",
+    "default_folder",
+    "is_record",
+    "is_result",
+    "owner",
+]
 
 MANIFEST = "manifest.json"
+
+CASE = "case.toml"
+"""The case as it was run, beside the manifest of a variant."""
 
 RUN = "run.json"
 """Case and variants of the last run into a folder."""
@@ -41,6 +56,7 @@ MAX_BYTES = 50_000_000
 
 # Of a variant or part, and of its folder or file: never a path that leads elsewhere.
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]{1,200}$")]
+Key = Annotated[str, StringConstraints(max_length=400)]
 
 
 class _Kept(BaseModel):
@@ -66,16 +82,33 @@ class Record(_Kept):
         case: name of the shipped case or of the file.
         file: way from the folder to the case file, so that both may move; empty for a shipped case.
         variants: of the last run.
+        settings: that it was given, in words by dotted key.
     """
 
     case: str
     file: str = ""
     variants: list[Name]
+    settings: dict[Key, str] = {}
 
     @classmethod
-    def of(cls, case: str, name: str, folder: Path, variants: list[str]) -> Self:
-        """Record of a case, given by its name or file, that runs into a folder."""
-        return cls(case=name, file=_way(case, folder), variants=variants)
+    def of(
+        cls,
+        case: str,
+        name: str,
+        folder: Path,
+        variants: list[str],
+        settings: Mapping[str, Any] | None = None,
+    ) -> Self:
+        """Record of a case, given by its name or file, that runs into a folder.
+
+        A result that is run again in its own folder stays that of its case.
+        """
+        told = _in_words(settings or {})
+        if is_result(case) and os.path.realpath(case) == os.path.realpath(folder):
+            kept = cls.read(folder / RUN)
+            changed = {"variants": variants, "settings": {**kept.settings, **told}}
+            return kept.model_copy(update=changed)
+        return cls(case=name, file=_way(case, folder), variants=variants, settings=told)
 
     @property
     def mark(self) -> str:
@@ -97,6 +130,11 @@ class Record(_Kept):
             )
 
 
+def _in_words(settings: Mapping[str, Any]) -> dict[str, str]:
+    """Settings as texts by dotted key."""
+    return {as_text(key): as_text(str(value)) for key, value in settings.items()}
+
+
 def _known(kind: str) -> str:
     if kind and kind not in units.kinds():
         raise ValueError(f"there is no kind of quantity '{shorten(kind)}'")
@@ -104,7 +142,6 @@ def _known(kind: str) -> str:
 
 
 Kind = Annotated[str, AfterValidator(_known)]
-Key = Annotated[str, StringConstraints(max_length=400)]
 
 
 class Input(_Kept):
@@ -268,6 +305,11 @@ def is_record(case: str) -> bool:
     return Path(case).suffix == Path(MANIFEST).suffix
 
 
+def is_result(case: str) -> bool:
+    """True if a case is given by the folder of a result of it."""
+    return case not in names() and (Path(case) / RUN).is_file()
+
+
 def owner(folder: Path) -> Record | None:
     """Whose folder it is; None if nobody's, or if its record cannot be read."""
     try:
@@ -276,23 +318,58 @@ def owner(folder: Path) -> Record | None:
         return None
 
 
-def default_folder(case: str, root: Path) -> Path:
+def default_folder(case: str, root: Path, settings: Mapping[str, Any] | None = None) -> Path:
     """Folder of a case under another: named after the case, by more of its path where that is taken.
 
-    A case finds its own folder again; `b/pair.toml` beside `a/pair.toml` goes to `b-pair`.
+    A case finds its own folder again; `b/pair.toml` beside `a/pair.toml` goes to `b-pair`, and
+    `pair.toml` with a setting to a folder that names it. A result is run again where it lies.
 
     Args:
-        case: name of a shipped case, or a file.
+        case: name of a shipped case, a file, or the folder of a result.
         root: folder of all results.
+        settings: values by dotted key that replace those of the file.
     """
-    path = Path(os.path.abspath(path_of(case)))
-    shipped = case in names()
-    parts = path.parent.parts[1:] if shipped else (*path.parent.parts[1:], path.stem)
-    folders = [root / "-".join(parts[-count:]) for count in range(1, len(parts) + 1)]
+    if is_result(case) and not settings:
+        return Path(case)
+    told = _in_words(settings or {})
+    parts = _parts(case)
+    names_ = ["-".join(parts[-count:]) for count in range(1, len(parts) + 1)]
+    folders = [root / f"{name}{_suffix(told)}" for name in names_]
     owners = {folder: owner(folder) for folder in folders}
-    own = [one for one, of in owners.items() if of and of.mark == (_way(case, one) or case)]
+    own = [one for one, of in owners.items() if of and _same(of, case, one, told)]
     free = [one for one, of in owners.items() if of is None]
     return [*own, *free, *folders][0]
+
+
+def _parts(case: str) -> tuple[str, ...]:
+    """Names from the root down whose last ones name the folder of a case."""
+    path = Path(os.path.abspath(path_of(case)))
+    if case in names() or is_result(case):
+        return path.parent.parts[1:] if case in names() else path.parts[1:]
+    if path.name == CASE and is_result(str(path.parent.parent)):
+        return (*path.parent.parent.parts[1:-1], f"{path.parent.parent.name}-{path.parent.name}")
+    return (*path.parent.parts[1:], path.stem)
+
+
+def _same(record: Record, case: str, folder: Path, settings: Mapping[str, str]) -> bool:
+    """True if a folder holds the results of a case with the same settings."""
+    return record.mark == (_way(case, folder) or case) and record.settings == settings
+
+
+def _suffix(settings: Mapping[str, str]) -> str:
+    """End of the name of a folder that tells settings from any others."""
+    if not settings:
+        return ""
+    told = ",".join(f"{key}={value}" for key, value in settings.items())
+    plain = _STRANGE.sub("_", told)
+    digest = hashlib.sha256(told.encode()).hexdigest()[:8]
+    spaced = _STRANGE.sub("_", told.replace(" ", "_")) == told.replace(" ", "_")
+    return f"+{plain}" if spaced and len(plain) <= _LONGEST else f"+{plain[:_LONGEST]}-{digest}"
+
+
+_STRANGE = re.compile(r"[^A-Za-z0-9_.,=+-]+", re.ASCII)
+_LONGEST = 80
+"""Characters of the settings in the name of a folder."""
 
 
 def _way(case: str, folder: Path) -> str:

@@ -33,6 +33,7 @@ __all__ = [
     "sole_writer",
     "sweep",
     "without_nan",
+    "write_bytes",
     "write_text",
 ]
 
@@ -132,6 +133,11 @@ def make_folder(folder: Path) -> None:
 def write_text(path: Path, text: str) -> None:
     """Write text the same way; if the power fails, the next run writes it again."""
     _whole(path, text.encode("utf-8"), lasting=False)
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write the copy of a file the same way."""
+    _whole(path, content, lasting=False)
 
 
 def read_bytes(path: Path, most: int) -> bytes:

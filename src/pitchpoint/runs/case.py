@@ -155,9 +155,9 @@ class Case:
 
     def to_toml(self, path: str | Path | None = None) -> str:
         """The case as the text of a case file, which is written where a path is given."""
-        import tomli_w
+        import tomlkit
 
-        text = tomli_w.dumps(self.tables)
+        text = tomlkit.dumps(self.tables)
         if path is not None:
             Path(path).write_text(text, "utf-8")
         return text

@@ -1,4 +1,4 @@
-"""The variants of a case, as a run takes them: from a file, a shipped case or a record."""
+"""The variants of a case, as a run takes them: from a file, a shipped case, a record or a result."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -6,13 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pitchpoint.cases.document import variants
+from pitchpoint.cases.document import read, variants
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.library import as_text, find, path_of
-from pitchpoint.cases.record import Manifest, is_record
+from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.registry import nearest
 
 __all__ = ["variants_of"]
 
@@ -24,6 +25,8 @@ def variants_of(
     own: FrictionLaw | None = None,
 ) -> list[Variant]:
     """Variants of a case, all or those that are named; of a record the one that it holds."""
+    if is_result(case):
+        return _of_result(Path(case), only, settings or {}, own)
     if is_record(case):
         held = _recorded(Path(case), own, settings or {})
     else:
@@ -31,6 +34,38 @@ def variants_of(
         held = Variant(tree, name, "", folder=path_of(case).parent)
     chosen = only or variants(dict(held.tree))
     return [replace(held, variant=one, settings=dict(settings or {}), own=own) for one in chosen]
+
+
+def _of_result(
+    folder: Path, only: Sequence[str], settings: Mapping[str, Any], own: FrictionLaw | None
+) -> list[Variant]:
+    """Variants of the folder of a result, each from the case file that was written beside it."""
+    known = Record.read(folder / RUN).variants
+    for name in only:
+        if name not in known:
+            told = f"'{shorten(name)}' is not a variant of this result{nearest(name, known)}"
+            raise InputError(told, file=visible(as_text(str(folder))))
+    return [
+        replace(
+            _handed_over(folder / name, own, settings),
+            variant=name,
+            settings=dict(settings),
+            own=own,
+        )
+        for name in only or known
+    ]
+
+
+def _handed_over(folder: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:
+    """The variant that a folder holds; where an earlier version left no case file there, its record."""
+    path = folder / CASE
+    if not path.is_file():
+        return _recorded(folder / MANIFEST, own, settings)
+    record = Manifest.read(folder / MANIFEST)
+    name = visible(as_text(f"{folder.name}/{CASE}"))
+    tree = {"variants": {folder.name: read(path)}}
+    told = tuple(record.warning)
+    return Variant(tree, name, folder.name, recorded=record.case, warnings=told, folder=folder)
 
 
 def _recorded(path: Path, own: FrictionLaw | None, settings: Mapping[str, Any]) -> Variant:

@@ -23,9 +23,10 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.failures import apart
+from pitchpoint.cases.handed_over import hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
-from pitchpoint.cases.record import MANIFEST, RUN, Manifest, Record, is_record
+from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
@@ -129,8 +130,8 @@ def run(
     """Compute all parts of a case.
 
     Args:
-        case: name of a shipped case, a file, or the manifest of a result, which repeats that result; a
-            `Case`, or tables as a case file has them.
+        case: name of a shipped case, a file, or the folder or the manifest of a result, which repeat that
+            result; a `Case`, or tables as a case file has them.
         folder: where parts and manifests go; nothing is written without one.
         only: variants to run; all by default.
         settings: values by dotted key that replace those of the file.
@@ -153,8 +154,8 @@ def run(
     made = held(given, only, settings, None if friction is None else _own(friction))
     work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
     where = None if folder is None else Path(folder)
-    name = made[0].name
-    with nullcontext() if where is None else _own_folder(where, given, name, [*work], overwrite):
+    mine = None if where is None else _record(given, made[0], where, [*work])
+    with nullcontext() if mine is None or where is None else _own_folder(where, mine, overwrite):
         return {
             one: run_variant(
                 *prepared,
@@ -166,19 +167,22 @@ def run(
         }
 
 
-@contextmanager
-def _own_folder(
-    folder: Path, case: str | Case, name: str, variants: list[str], overwrite: bool
-) -> Iterator[None]:
-    """Folder of this case and no other, in which no other run writes meanwhile."""
+def _record(case: str | Case, first: Variant, folder: Path, variants: list[str]) -> Record:
+    """Record of a case that runs into a folder."""
     origin = case if isinstance(case, str) else case.origin
-    made = Record.of(origin, name, folder, variants) if origin else None
-    record = made or Record(case=name, variants=variants)
+    if not origin:
+        return Record(case=first.label, variants=variants)
+    return Record.of(origin, first.label, folder, variants, first.settings)
+
+
+@contextmanager
+def _own_folder(folder: Path, record: Record, overwrite: bool) -> Iterator[None]:
+    """Folder of this case and no other, in which no other run writes meanwhile."""
     make_folder(folder)
     with sole_writer(folder) as alone:
         if not overwrite:
             record.demand_own(folder)
-        for place in (folder, *(folder / one for one in variants)) if alone else ():
+        for place in (folder, *(folder / one for one in record.variants)) if alone else ():
             sweep(place)
         record.write(folder)
         yield
@@ -195,6 +199,8 @@ def run_variant(
     """Compute all parts of one variant; finished parts found in the folder are read."""
     built = variant.built({})
     outcome = Outcome(_manifest(variant, built, studies) | {"lacks": _lacking(built)})
+    if folder is not None:
+        _hand_over(variant, outcome.manifest["title"], folder, studies)
     for job in work:
         mark = _mark(outcome.manifest, job)
         outcome.parts[job.name] = part = _part(job, variant, mark, folder, progress)
@@ -231,6 +237,18 @@ def compute_alone(
 def own_law(variant: Variant, function: Callable[..., Any]) -> Variant:
     """The variant under a friction law of the user's own."""
     return replace(variant, own=_own(function))
+
+
+def _hand_over(variant: Variant, title: str, folder: Path, studies: Mapping[str, Study]) -> None:
+    """Leave the case as it is run beside its results; none holds a friction law of the user's own."""
+    if variant.own is not None:
+        (folder / CASE).unlink(missing_ok=True)
+        return
+    document = variant.document()
+    if not _measured(variant):
+        tree = {key: table for key, table in document.tree.items() if key != "targets"}
+        document = replace(document, tree=tree)
+    hand_over(document, folder, title=title, studies=studies)
 
 
 def _own(function: Callable[..., Any]) -> FrictionLaw:
@@ -418,10 +436,16 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
         for row in manifest["inputs"]
         if row["given"]
         and (row["table"] != study or f"study_{row['key']}.".startswith(f"{job.name}."))
+        and not _names_file(row)
     ]
     # What a function of the user's own gave is nobody else's result, nor that of its next version.
     own = uuid4().hex if manifest["own"] else ""
     return fingerprint(surroundings(), manifest["source"], given, job.name, own, *_held(manifest))
+
+
+def _names_file(row: Mapping[str, Any]) -> bool:
+    """True for the name of a file: what it holds counts, see `_held`, not where it lies."""
+    return row["table"] in ("film", "worn") and row["key"].split(".")[-1] == "file"
 
 
 def _held(manifest: Mapping[str, Any]) -> list[str]:

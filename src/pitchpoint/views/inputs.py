@@ -10,13 +10,16 @@ from pitchpoint.errors import InputError
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["given", "input_rows", "number", "set_for_run", "words"]
+__all__ = ["FOLLOWING", "given", "input_rows", "number", "set_for_run", "words"]
 
 _TABLES = {
     DIMENSIONS: "gears as computed",
     SOLIDS: "materials as resolved",
     OIL: "oil as resolved",
 }
+
+FOLLOWING = tuple(_TABLES.values())
+"""Titles of the tables of what follows from the inputs."""
 
 _APART = (STUDIES, "loss_map")
 """Tables that say what is computed, not from what: the results themselves show them."""

@@ -7,6 +7,7 @@ from pitchpoint.views.sections.arc import ARC
 from pitchpoint.views.sections.beside import BESIDE
 from pitchpoint.views.sections.compared import COMPARED
 from pitchpoint.views.sections.cycle import CYCLE
+from pitchpoint.views.sections.designs import DESIGNS
 from pitchpoint.views.sections.drive import DRIVE
 from pitchpoint.views.sections.film import FILM
 from pitchpoint.views.sections.film_squeeze import FILM_SQUEEZE
@@ -36,6 +37,7 @@ __all__ = ["SECTIONS", "in_order", "register_section"]
 
 SECTIONS: Registry[Section] = Registry(
     "section",
+    DESIGNS,
     ANSWER,
     INPUTS,
     STAGES,

@@ -21,26 +21,30 @@ if TYPE_CHECKING:
 __all__ = ["render", "write_report"]
 
 
-def write_report(outcomes: Mapping[str, Outcome], path: str | Path) -> None:
+def write_report(
+    outcomes: Mapping[str, Outcome], path: str | Path, *, designs: bool = False
+) -> None:
     """Write the report; a reader never sees half of it.
 
     Args:
         outcomes: by variant, as `run` and `open_result` give them.
         path: of the HTML file.
+        designs: True if the outcomes are those of several cases, by design, which are compared.
     """
-    write_text(Path(path), render(outcomes))
+    write_text(Path(path), render(outcomes, designs=designs))
 
 
-def render(outcomes: Mapping[str, Outcome]) -> str:
+def render(outcomes: Mapping[str, Outcome], *, designs: bool = False) -> str:
     """The report as text.
 
     Args:
         outcomes: by variant, at least one; parts that were not finished are left out.
+        designs: True if the outcomes are those of several cases, by design, which are compared.
     """
     from markupsafe import Markup
     from plotly.offline import get_plotlyjs
 
-    bare = Page(outcomes, curves(outcomes))
+    bare = Page(outcomes, curves(outcomes), designs=designs)
     lacking = {section: section.lacking(bare) for section in in_order()}
     page = replace(bare, sections=[one for one, why in lacking.items() if why is None])
     made = [_made(section, page) for section in page.sections]
@@ -48,7 +52,10 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
         _environment()
         .get_template("report.html.jinja")
         .render(
-            first=page.first,
+            title=page.title,
+            summary="" if designs else page.first["summary"],
+            cases=page.cases,
+            designs=designs,
             variants=[*outcomes],
             implausible={name: one.manifest["implausible"] for name, one in outcomes.items()},
             cited=any(one.manifest["sources"] for one in outcomes.values()),

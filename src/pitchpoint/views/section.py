@@ -89,11 +89,13 @@ class Page:
         outcomes: results by variant, at least one.
         curves: by variant and friction law.
         sections: those that are shown, in order.
+        designs: True if the outcomes are those of several cases, compared.
     """
 
     outcomes: Mapping[str, Outcome]
     curves: Curves
     sections: "Sequence[Section]" = ()
+    designs: bool = False
 
     @property
     def several(self) -> bool:
@@ -104,6 +106,17 @@ class Page:
     def first(self) -> Mapping[str, Any]:
         """Record of the first variant."""
         return next(iter(self.outcomes.values())).manifest
+
+    @property
+    def title(self) -> str:
+        """What the page is called."""
+        return " · ".join(self.outcomes) if self.designs else str(self.first["title"])
+
+    @property
+    def cases(self) -> str:
+        """Name of the case, or names of those that are compared."""
+        every = (str(one.manifest["case"]) for one in self.outcomes.values())
+        return ", ".join(dict.fromkeys(every)) if self.designs else str(self.first["case"])
 
     @property
     def version(self) -> str:

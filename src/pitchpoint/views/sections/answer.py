@@ -42,7 +42,10 @@ AVERAGES = {
 
 def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
-    yield Drawn("answer.html.jinja", {"variants": variants, "several": page.several})
+    yield Drawn(
+        "answer.html.jinja",
+        {"variants": variants, "several": page.several, "designs": page.designs},
+    )
     for section in page.sections:
         yield from section.closing(page)
 
@@ -235,7 +238,8 @@ def _reactions(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
         elif any(both):
             for body, value, words in zip(manifest["members"], both, told, strict=True):
                 held = "guides" if body in guided else "shaft"
-                yield from [(_ACROSS[held, name].format(body), words)] * (value > 0.0)
+                if value > 0.0:  # guides take nothing along the travel
+                    yield _ACROSS[held, name].format(body), words
 
 
 _LOCKS = "locks from μ"

@@ -20,7 +20,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         "files.html.jinja",
         {
             "version": page.version,
-            "case": page.first["case"],
+            "case": page.cases,
             "settings": {n: set_for_run(one.manifest) for n, one in page.outcomes.items()},
             "several": page.several,
             "parts": _parts(page.outcomes),

@@ -1,0 +1,360 @@
+"""Designs beside each other: results of several cases under one name each, and where they differ."""
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.document import variants
+from pitchpoint.cases.library import as_text, find, names
+from pitchpoint.cases.record import MANIFEST, RUN, is_record
+from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.input.quantities import shown
+from pitchpoint.registry import nearest
+from pitchpoint.results.variable import Variable
+from pitchpoint.results.variables import variable_of
+from pitchpoint.runs.run import Outcome, Progress, open_result, run
+from pitchpoint.units import si_unit
+
+__all__ = [
+    "DESIGNS",
+    "Figure",
+    "Wanted",
+    "as_json",
+    "designs",
+    "differing_inputs",
+    "folder_of",
+    "main_results",
+    "shared_laws",
+    "wanted",
+]
+
+DESIGNS = "designs"
+"""Folder of the results of a comparison, beside its report."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """One reference of a comparison: a case or the folder of a result, and which variant of it.
+
+    Attributes:
+        case: a shipped case, a file, or the folder of a result.
+        variant: its name; None for all of them.
+    """
+
+    case: str
+    variant: str | None = None
+
+    @property
+    def computed(self) -> bool:
+        """True for the folder of a result, which is read as it is."""
+        return (Path(self.case) / RUN).is_file()
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Names from the root down that may stand for it."""
+        if self.case in names():
+            return (self.case,)
+        path = Path(os.path.abspath(self.case))
+        return path.parts[1:] if self.computed else path.with_suffix("").parts[1:]
+
+
+def wanted(reference: str) -> Wanted:
+    """What a reference means: `case`, or `case@variant` where no file has that name.
+
+    Example:
+        >>> wanted("pair.toml@physical")
+        Wanted(case='pair.toml', variant='physical')
+    """
+    case, at, variant = reference.rpartition("@")
+    if not at or os.path.exists(reference):
+        return Wanted(reference)
+    return Wanted(case, variant)
+
+
+def designs(
+    references: Sequence[str],
+    *,
+    folder: Path | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> dict[str, Outcome]:
+    """Results of several designs by name; those that are not there yet are computed.
+
+    Args:
+        references: cases and folders of results, each alone or with `@variant`.
+        folder: where results go that have to be computed, a folder for each case; None to keep none.
+        overwrite: True to replace results of another case there.
+        progress: told about parts and points.
+
+    Raises:
+        InputError: anything wrong with a reference or its case; a design that is named twice.
+    """
+    every = [one for reference in references for one in _each(wanted(reference))]
+    for one in every:
+        if every.count(one) > 1:
+            raise InputError(f"{shown(_told(one))} was named twice; name each design once")
+    titles = _titles(list(dict.fromkeys(one.case for one in every)))
+    found = {
+        case: _results(
+            case,
+            [str(one.variant) for one in every if one.case == case],
+            None if folder is None else folder / _file_name(title),
+            overwrite=overwrite,
+            progress=progress,
+        )
+        for case, title in titles.items()
+    }
+    alone = {case for case in titles if sum(one.case == case for one in every) == 1}
+    asked = {one.case for one in map(wanted, references) if one.variant}
+    return {
+        titles[one.case] + ("" if one.case in alone - asked else f"@{one.variant}"): found[
+            one.case
+        ][str(one.variant)]
+        for one in every
+    }
+
+
+def folder_of(references: Sequence[str], root: Path) -> Path:
+    """Folder of a comparison under that of all results, named after its designs."""
+    every = [wanted(reference) for reference in references]
+    titles = _titles(list(dict.fromkeys(one.case for one in every)))
+    told = [titles[one.case] + (f"@{one.variant}" if one.variant else "") for one in every]
+    return root / _file_name("-".join(told))
+
+
+def _told(one: Wanted) -> str:
+    return f"{one.case}@{one.variant}"
+
+
+def _each(one: Wanted) -> Iterator[Wanted]:
+    """The variants that a reference means, each by name."""
+    known = _variants(one)
+    if one.variant is not None and one.variant not in known:
+        told = f"{shown(one.variant)} is not a variant of this case{nearest(one.variant, known)}"
+        raise InputError(told, file=visible(as_text(one.case)))
+    yield from (replace(one, variant=name) for name in known if one.variant in (None, name))
+
+
+def _variants(one: Wanted) -> list[str]:
+    if one.computed:
+        return [*open_result(one.case)]
+    if is_record(one.case):
+        told = f"is the record of a result; name its folder, without {MANIFEST}"
+        raise InputError(told, file=visible(as_text(one.case)))
+    return variants(find(one.case)[1])
+
+
+def _results(
+    case: str,
+    chosen: Sequence[str],
+    folder: Path | None,
+    *,
+    overwrite: bool,
+    progress: Progress | None,
+) -> Mapping[str, Outcome]:
+    """Results of some variants of one case, by variant."""
+    if Wanted(case).computed:
+        return open_result(case)
+    return run(case, folder=folder, only=chosen, overwrite=overwrite, progress=progress)
+
+
+def _titles(cases: Sequence[str]) -> dict[str, str]:
+    """Names by case, each as short as it tells it from the others."""
+    ways = {case: Wanted(case).parts for case in cases}
+    for count in range(1, max(map(len, ways.values()), default=0) + 1):
+        told = {case: shorten(as_text("/".join(way[-count:]))) for case, way in ways.items()}
+        if len(set(told.values())) == len(told):
+            return told
+    return {case: shorten(as_text(case)) for case in cases}
+
+
+def _file_name(title: str) -> str:
+    return title.replace(os.sep, "-").replace("/", "-")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A main figure of several designs, under one friction law or whatever law each of them has.
+
+    Attributes:
+        part: of the results.
+        name: of the variable.
+        law: that all designs share; empty where the figure has none, or each takes its first.
+        place: of one of several values: a gear, say; empty where there is one.
+        variable: its words and units.
+        values: by design [SI]; none of a design that does not have it.
+    """
+
+    part: str
+    name: str
+    law: str
+    place: str
+    variable: Variable
+    values: Mapping[str, float]
+
+    @property
+    def title(self) -> str:
+        """What it is, with its place."""
+        words = f"{_EXTREMES.get(self.name, '')} {self.variable.long_name}".strip()
+        back = ", back-driving" if self.part == "back_driving" else ""
+        return f"{words}{back}, {self.place}" if self.place else f"{words}{back}"
+
+
+_EXTREMES = {"pressure": "", "film_thickness": "smallest", "lambda_ratio": "smallest"}
+"""What is shown of the mesh cycle: its largest pressure, and where films are thinnest."""
+
+_MORE = {
+    "operation": ("contact_ratio", "circumferential_backlash"),
+    "cycle": tuple(_EXTREMES),
+    "back_driving": ("mean_efficiency",),
+}
+"""Figures beside the main ones of an analysis."""
+
+_FEW = 4
+"""Most values of a figure that are shown one by one."""
+
+Keys = tuple[str, str, str, str, Variable]
+
+
+def main_results(outcomes: Mapping[str, Outcome]) -> list[Figure]:
+    """Main figures of some designs; those that one design alone has stand there for it alone.
+
+    What is zero in all of them is left out.
+
+    Args:
+        outcomes: by design.
+    """
+    shared = shared_laws(outcomes)
+    found: dict[Keys, dict[str, float]] = {}
+    for design, outcome in outcomes.items():
+        for key, value in _of_design(outcome, shared):
+            found.setdefault(key, {})[design] = value
+    order = {name: position for position, name in enumerate(ANALYSES)}
+    every = [Figure(*key, values) for key, values in found.items() if any(values.values())]
+    return sorted(every, key=lambda one: (one.part != "operation", order[one.part]))
+
+
+def shared_laws(outcomes: Mapping[str, Outcome]) -> list[str]:
+    """Friction laws that all designs have, in the order of the first one."""
+    each = [[law["name"] for law in one.manifest["laws"]] for one in outcomes.values()]
+    return [law for law in each[0] if all(law in laws for laws in each)]
+
+
+def _of_design(outcome: Outcome, shared: Sequence[str]) -> Iterator[tuple[Keys, float]]:
+    for name, analysis in ANALYSES.items():
+        data = outcome.parts.get(name)
+        if data is None:
+            continue
+        twice = _EXTREMES if name == "operation" else ()
+        for variable in dict.fromkeys((*_MORE.get(name, ()), *analysis.main)):
+            if variable in data and variable not in twice and data[variable].dtype.kind in "fiu":
+                yield from _of_variable(outcome, name, variable, shared)
+
+
+def _of_variable(
+    outcome: Outcome, part: str, name: str, shared: Sequence[str]
+) -> Iterator[tuple[Keys, float]]:
+    data = outcome.parts[part]
+    described = variable_of(data, name)
+    for law, array in _by_law(data[name], shared):
+        reduced = _extreme(data, array) if part == "cycle" else _there(outcome, array)
+        for place, value in _places(reduced):
+            if np.isfinite(value):
+                yield (part, name, law, place, described), value
+
+
+def _by_law(array: xr.DataArray, shared: Sequence[str]) -> Iterator[tuple[str, xr.DataArray]]:
+    """Values under each law that all designs share, or under the first one without its name."""
+    if "law" not in array.dims:
+        yield "", array
+        return
+    every = [str(law) for law in array["law"].values]
+    there = [law for law in shared if law in every]
+    yield from ((law, array[{"law": every.index(law)}]) for law in there)
+    if not there and every:
+        yield "", array[{"law": 0}]
+
+
+def _extreme(data: xr.Dataset, array: xr.DataArray) -> xr.DataArray:
+    """Largest value over the mesh cycle, or the smallest one of a film, where pairs touch."""
+    touching = array.where(data["active"])
+    return touching.max() if _EXTREMES[str(array.name)] == "" else touching.min()
+
+
+def _there(outcome: Outcome, array: xr.DataArray) -> xr.DataArray:
+    """Values over torque, speed and temperature at the operating point, if it lies among them."""
+    point = {row["key"]: row["value"] for row in outcome.manifest["inputs"] if _given_there(row)}
+    for axis in ("torque", "speed", "temperature"):
+        if axis not in array.dims or axis not in array.coords:
+            continue
+        at, ends = point.get(axis, np.nan), array[axis].values
+        if not ends.min() * (1 - 1e-9) <= at <= ends.max() * (1 + 1e-9):
+            return array
+        array = (
+            array.interp({axis: np.clip(at, ends.min(), ends.max())}) if ends.size > 1 else array
+        )
+    return array
+
+
+def _given_there(row: Mapping[str, Any]) -> bool:
+    return bool(row["table"] == "operation")
+
+
+def _places(array: xr.DataArray) -> Iterator[tuple[str, float]]:
+    """Values by place; none where there are too many to be told one by one."""
+    left = array.squeeze(drop=True)
+    if left.ndim == 0:
+        yield "", float(left)
+    elif left.ndim == 1 and left.size <= _FEW and left.dims[0] in left.coords:
+        dim = str(left.dims[0])
+        for place, value in zip(left[dim].values, left.values, strict=True):
+            told = str(place).replace("_", " ")
+            yield f"{dim} {told}" if told.isdigit() else told, float(value)
+
+
+def differing_inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
+    """Inputs that are not the same in all designs: table, key, unit, and SI values by design.
+
+    A design that has no such input has None.
+    """
+    rows: dict[tuple[str, str], dict[str, Mapping[str, Any]]] = {}
+    for design, outcome in outcomes.items():
+        for row in outcome.manifest["inputs"]:
+            rows.setdefault((row["table"], row["key"]), {})[design] = row
+    return [
+        {
+            "table": table,
+            "key": key,
+            "unit": _unit(each.values()),
+            "values": {one: each[one]["value"] if one in each else None for one in outcomes},
+        }
+        for (table, key), each in rows.items()
+        if len(each) < len(outcomes) or _several(row["value"] for row in each.values())
+    ]
+
+
+def _several(values: Iterable[Any]) -> bool:
+    first, *others = values
+    return any(other != first for other in others)
+
+
+def _unit(rows: Iterable[Mapping[str, Any]]) -> str:
+    """SI unit of an input; empty for texts and tables."""
+    kinds = [row["kind"] for row in rows if isinstance(row["kind"], str) and row["kind"]]
+    return si_unit(kinds[0]) if kinds else ""
+
+
+def as_json(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
+    """A comparison as JSON has it: inputs that differ and main results, in SI by design."""
+    results = [
+        {"result": one.title, "part": one.part, "variable": one.name, "law": one.law}
+        | {"place": one.place, "unit": one.variable.unit, "values": dict(one.values)}
+        for one in main_results(outcomes)
+    ]
+    return {"inputs": differing_inputs(outcomes), "results": results}

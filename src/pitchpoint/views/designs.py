@@ -1,0 +1,141 @@
+"""Designs beside each other in words: inputs that differ, main results and by how much they differ."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pitchpoint import units
+from pitchpoint.analyses.figures import covers
+from pitchpoint.runs.designs import Figure, main_results, shared_laws
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import law_title
+from pitchpoint.views.inputs import FOLLOWING, input_rows
+
+__all__ = ["NOTHING", "Compared", "input_tables", "law_words", "result_table"]
+
+NOTHING = "–"
+"""Stands for what a design does not have."""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A table of a comparison: heads of its columns, and its rows."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
+    """Inputs that differ, and what follows from them: table, key, and words of each design."""
+    rows: dict[tuple[str, str], dict[str, str]] = {}
+    for design, outcome in outcomes.items():
+        for row in input_rows(outcome.manifest):
+            words = show.pretty(row["value"]) or NOTHING
+            rows.setdefault((row["table"], row["key"]), {})[design] = words
+    differing = [
+        (table, key, *(each.get(one, NOTHING) for one in outcomes))
+        for (table, key), each in rows.items()
+        if len({each.get(one, NOTHING) for one in outcomes}) > 1
+    ]
+    head = ("table", "key", *outcomes)
+    following = [row for row in differing if row[0] in FOLLOWING]
+    return Compared(head, [row for row in differing if row not in following]), Compared(
+        head, following
+    )
+
+
+def law_words(outcomes: Mapping[str, Outcome]) -> str:
+    """Under which friction law the designs are compared, as a sentence."""
+    shared = shared_laws(outcomes)
+    if shared:
+        told = [law_title(next(iter(outcomes.values())), law) for law in shared]
+        return f"Friction in every design: {'; '.join(told)}."
+    each = [
+        f"{name}: {law_title(one, one.manifest['laws'][0]['name'])}"
+        for name, one in outcomes.items()
+        if one.manifest["laws"]
+    ]
+    return f"The designs share no friction law; each stands under its first one, {'; '.join(each)}."
+
+
+def result_table(outcomes: Mapping[str, Outcome], *, differences: bool = True) -> Compared:
+    """Main results of the designs, and their differences from the first one.
+
+    Args:
+        outcomes: by design.
+        differences: False to leave these out.
+    """
+    first, *others = outcomes if differences else [*outcomes][:1]
+    figures = main_results(outcomes)
+    by_law = len({one.law for one in figures if one.law}) > 1
+    rows = [
+        (
+            _title(one, by_law),
+            *(_value(one, design) for design in outcomes),
+            *(_difference(one, first, design) for design in others),
+        )
+        for one in figures
+    ]
+    head = ("result", *outcomes, *(f"{one} against {first}" for one in others))
+    return Compared(head, [*_meant(outcomes, len(others)), *rows])
+
+
+def _meant(outcomes: Mapping[str, Outcome], more: int) -> Iterator[tuple[str, ...]]:
+    """What efficiencies and stiffnesses are of, where that is less than the whole of a design."""
+    for words, told in (
+        ("efficiency is that of the", _efficiency),
+        ("stiffness is that of", _yields),
+    ):
+        each = [told(one) for one in outcomes.values()]
+        if any(each):
+            yield (words, *(one or NOTHING for one in each), *("" for _ in range(more)))
+
+
+def _efficiency(outcome: Outcome) -> str:
+    operation = outcome.parts.get("operation")
+    if operation is None or "mean_efficiency" not in operation:
+        return ""
+    return covers(operation).partition(":")[0] or "whole drive"
+
+
+def _yields(outcome: Outcome) -> str:
+    torsion = outcome.parts.get("torsion")
+    if torsion is None:
+        return ""
+    told = torsion["torsional_stiffness"].attrs
+    return f"{told.get('covers', '')}{told.get('assumed', '')}"
+
+
+def _title(figure: Figure, by_law: bool) -> str:
+    unit = show.unit(figure.variable.display)
+    law = f" ({figure.law})" if by_law and figure.law else ""
+    return f"{figure.title}{law} [{unit}]" if unit else f"{figure.title}{law}"
+
+
+def _shown(figure: Figure, value: float) -> float:
+    converted = units.convert(value, figure.variable.display, figure.variable.kind)
+    return 0.0 if abs(converted) < show.NOISE else float(converted)
+
+
+def _value(figure: Figure, design: str) -> str:
+    if design not in figure.values:
+        return NOTHING
+    value = _shown(figure, figure.values[design])
+    return f"{value:.2f}" if figure.variable.display == "%" else show.number(value)
+
+
+def _difference(figure: Figure, first: str, design: str) -> str:
+    """Difference from the first design; in points of a percentage, else in its unit and in percent."""
+    if first not in figure.values or design not in figure.values:
+        return NOTHING
+    before, now = (_shown(figure, figure.values[one]) for one in (first, design))
+    change = now - before
+    if figure.variable.display == "%":
+        return f"{show.signed(change, 2)} points"
+    if abs(change) <= 1e-9 * max(abs(before), abs(now)):
+        return "0"
+    told = show.number(change) if change < 0.0 else f"+{show.number(change)}"
+    part = 100.0 * np.divide(change, abs(before)) if before else np.inf
+    return f"{told} ({show.signed(part, 1)} %)" if abs(part) < 1000.0 else told

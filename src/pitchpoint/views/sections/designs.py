@@ -1,0 +1,36 @@
+"""Designs beside each other: main results, inputs that differ, and what follows from them."""
+
+from collections.abc import Iterator
+
+from pitchpoint.views.designs import Compared, input_tables, law_words, result_table
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
+
+__all__ = ["DESIGNS"]
+
+
+def _blocks(page: Page) -> Iterator[Block]:
+    yield Paragraph(law_words(page.outcomes))
+    results = result_table(page.outcomes)
+    yield Table(results.head, results.rows)
+    given, following = input_tables(page.outcomes)
+    yield from _differing("Inputs that differ", given)
+    yield from _differing("What follows from them", following)
+
+
+def _differing(title: str, table: Compared) -> Iterator[Block]:
+    yield Heading(title)
+    if not table.rows:
+        yield Paragraph("None.")
+        return
+    rows = [(f"{where}, {key}", *told) for where, key, *told in table.rows]
+    yield Table(["input", *table.head[2:]], rows)
+
+
+DESIGNS = Section(
+    name="designs",
+    title="Designs beside each other",
+    short="Designs",
+    order=-1.0,
+    lacks=lambda page: None if page.designs else "",
+    blocks=_blocks,
+)

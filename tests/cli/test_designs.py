@@ -1,0 +1,174 @@
+"""Designs beside each other: what is named, what differs, by how much, and the report of it."""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pitchpoint import cli
+from pitchpoint.errors import InputError
+from pitchpoint.runs.designs import designs, main_results, wanted
+from pitchpoint.runs.run import Outcome, run
+from pitchpoint.views.designs import input_tables, law_words, result_table
+from pitchpoint.views.report import render
+
+PAIR = """
+title = "First of two"
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = "20 mm"
+[lubricant]
+name = "75W90-A"
+[roughness]
+ra = "0.4 um"
+[operation]
+torque = "50 N m"
+speed = "1500 rpm"
+temperature = "60 degC"
+[models]
+friction = ["xu_2007", "frictionless"]
+[loss_map]
+count = 3
+[variants.new]
+title = "First of two, new"
+[variants.worn.roughness]
+ra = "0.8 um"
+"""
+BALL = """
+[gears]
+family = "ball_on_disc"
+ball_radius = "9.525 mm"
+track_radius = "40 mm"
+slide_roll_ratio = 0.1
+[lubricant]
+name = "pao-vg-100"
+[roughness]
+ra = "0.01 um"
+[operation]
+force = "50 N"
+speed = "240 rpm"
+temperature = "40 degC"
+[models]
+friction = { name = "constant", coefficient = 0.04 }
+"""
+
+Outcomes = dict[str, Outcome]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of a pair in two variants and of a test rig, computed once."""
+    folder = tmp_path_factory.mktemp("designs")
+    for name, text in (("pair", PAIR), ("ball", BALL)):
+        (folder / f"{name}.toml").write_text(text)
+        run(str(folder / f"{name}.toml"), folder=folder / "out" / name)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def compared(folder: Path) -> Outcomes:
+    return designs([str(folder / "out" / "pair")])
+
+
+def test_what_a_reference_means(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    Path("a@b.toml").write_text(BALL)
+    assert wanted("a@b.toml").variant is None
+    assert wanted("out/pair@worn") == wanted("out/pair").__class__("out/pair", "worn")
+    assert [*designs(["out/pair@worn", "out/ball"])] == ["pair@worn", "ball"]
+    assert [*designs(["out/pair"])] == ["pair@new", "pair@worn"]
+    for references, words in (
+        (["out/pair", "out/pair@new"], '"out/pair@new" was named twice'),
+        (["out/pair@wron"], "is not a variant of this case; did you mean worn?"),
+        (["out/pair", "nothing"], "neither a shipped case nor a file"),
+    ):
+        with pytest.raises(InputError, match=words.replace("?", r"\?")):
+            designs(references)
+
+
+def test_cases_of_one_name_are_told_apart(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    copy = Path("other/ball")
+    if not copy.exists():
+        copy.parent.mkdir()
+        copy.symlink_to(folder / "out" / "ball")
+    assert [*designs(["out/ball", "other/ball"])] == ["out/ball", "other/ball"]
+
+
+def test_inputs_that_differ(compared: Outcomes) -> None:
+    given, following = input_tables(compared)
+    assert given.head == ("table", "key", "pair@new", "pair@worn")
+    assert given.rows == [("roughness", "ra", "0.4 µm", "0.8 µm")]
+    assert not following.rows
+
+
+def test_differences_are_those_of_the_results(compared: Outcomes) -> None:
+    assert law_words(compared).startswith("Friction in every design: Xu and Kahraman 2007")
+    table = result_table(compared)
+    rows = {row[0]: row[1:] for row in table.rows}
+    data = [one.parts["operation"] for one in compared.values()]
+    efficiency = [100.0 * float(one["mean_efficiency"][0, 0]) for one in data]
+    told = rows["mean efficiency (xu_2007) [%]"]
+    assert told[:2] == tuple(f"{value:.2f}" for value in efficiency)
+    assert told[2] == f"−{abs(efficiency[1] - efficiency[0]):.2f} points"
+    pressure = [float(one.parts["cycle"]["pressure"].max()) / 1e6 for one in compared.values()]
+    figure = next(one for one in main_results(compared) if one.name == "pressure")
+    assert [value / 1e6 for value in figure.values.values()] == pytest.approx(pressure)
+    losses = [float(one["mean_loss"][0, 0]) for one in data]
+    part = 100.0 * (losses[1] / losses[0] - 1.0)
+    assert rows["mean power loss (xu_2007) [W]"][2].endswith(f"(+{part:.1f} %)")
+    assert rows["efficiency is that of the"][:2] == ("teeth alone", "teeth alone")
+
+
+def test_films_count_only_where_pairs_touch(compared: Outcomes) -> None:
+    figures = [one for one in main_results(compared) if one.name == "film_thickness"]
+    for figure in figures:
+        for design, value in figure.values.items():
+            cycle = compared[design].parts["cycle"]
+            law = [str(one) for one in cycle["law"].values].index(figure.law)
+            films = cycle["film_thickness"].values[law][cycle["active"].values]
+            assert value == np.min(films) > 0.0
+
+
+def test_designs_of_other_families(folder: Path) -> None:
+    outcomes = designs([str(folder / "out" / "pair@new"), str(folder / "out" / "ball")])
+    rows = {row[0]: row[1:] for row in result_table(outcomes).rows}
+    assert "share no friction law" in law_words(outcomes)
+    assert rows["mean efficiency [%]"][1:] == ("–", "–")
+    assert "–" not in rows["largest Hertz pressure [MPa]"]
+    page = render(outcomes, designs=True)
+    assert "<h1>pair@new · ball</h1>" in page
+    assert page.index("Designs beside each other") < page.index("The answer")
+    assert "Designs beside each other" not in render(outcomes)
+
+
+def test_the_command(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("COLUMNS", "200")
+
+    def told(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["pitchpoint", "compare", *arguments])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        return int(caught.value.code or 0), *capsys.readouterr()
+
+    status, out, _ = told("out/pair@new", "out/pair@worn", "-o", "beside")
+    assert status == 0
+    assert "−" in out
+    assert "Report: beside/report.html" in out
+    assert "Designs beside each other" in Path("beside/report.html").read_text("utf-8")
+    _, out, _ = told("out/pair", "out/ball", "-o", "beside", "--json")
+    found = json.loads(out)
+    assert [*found["designs"]] == ["pair@new", "pair@worn", "ball"]
+    assert found["designs"]["ball"]["operation"]
+    row = next(one for one in found["inputs"] if one["key"] == "ra")
+    assert row["unit"] == "m"
+    assert [one[0] for one in row["values"].values()] == pytest.approx([4e-7, 8e-7, 1e-8])
+    status, _, err = told("out/pair", "out/ball", "--variant", "new")
+    assert status == 2
+    assert "write case@variant" in err
