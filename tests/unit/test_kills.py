@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis
+from pitchpoint.cases.record import Record
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.store import dataset, load
 from pitchpoint.runs import run as running
@@ -45,14 +46,15 @@ def job(name, *numbers):
 
 JOBS = [job("teeth", 0), job("study_sweep", 1, 2, 3)]
 Variant.built = lambda self, changes: None
-running._manifest = lambda *_: {"implausible": [], "warnings": [], "inputs": [], "source": "", "own": ""}
+TOLD = {"title": "A pair", "implausible": [], "warnings": [], "inputs": [], "source": "", "own": ""}
+running._manifest = lambda *_: dict(TOLD)
 running._lacking = lambda built: {}
 running._rows = lambda *_: []
 variant = Variant({}, "pair.toml", "default")
 
 
 def whole_run(folder):
-    with running._own_folder(folder, "tian2024", "tian2024", ["default"], False):
+    with running._own_folder(folder, Record(case="tian2024", variants=["default"]), False):
         running.run_variant(
             variant, JOBS, folder=folder / "default", studies={}, progress=running.Progress()
         )

@@ -193,7 +193,8 @@ def pairs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run_into(folder: Path, case: str, overwrite: bool = False) -> None:
-    with running._own_folder(folder, case, as_text(Path(case).name), ["default"], overwrite):
+    record = Record.of(case, as_text(Path(case).name), folder, ["default"])
+    with running._own_folder(folder, record, overwrite):
         pass
 
 

@@ -43,7 +43,7 @@ SEAL = 8 + hashlib.sha256().digest_size
 No reader of NetCDF looks there. In the same file as what they vouch for, one rename puts both in place.
 """
 
-_TEMPORARY = re.compile(r"\.[\w.-]+-[a-z0-9_]{8}\.(nc|json|html)", re.ASCII)
+_TEMPORARY = re.compile(r"\.[\w.-]+-[a-z0-9_]{8}\.(nc|json|html|toml|csv|txt|npy)", re.ASCII)
 
 
 def dataset(

@@ -23,7 +23,7 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.failures import apart
-from pitchpoint.cases.handed_over import hand_over
+from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record
@@ -182,7 +182,8 @@ def _own_folder(folder: Path, record: Record, overwrite: bool) -> Iterator[None]
     with sole_writer(folder) as alone:
         if not overwrite:
             record.demand_own(folder)
-        for place in (folder, *(folder / one for one in record.variants)) if alone else ():
+        own = [folder / one for one in record.variants]
+        for place in (folder, *own, *(one / FILES for one in own)) if alone else ():
             sweep(place)
         record.write(folder)
         yield
@@ -299,7 +300,7 @@ def keep(outcomes: Mapping[str, Outcome], folder: Path, *, overwrite: bool = Fal
         InputError: the folder holds another case, or another run is writing there.
     """
     name = str(next(iter(outcomes.values())).manifest["case"])
-    with _own_folder(folder, "", name, [*outcomes], overwrite):
+    with _own_folder(folder, Record(case=name, variants=[*outcomes]), overwrite):
         for variant, outcome in outcomes.items():
             for part, data in outcome.parts.items():
                 save(data, folder / variant / f"{part}.nc")
