@@ -111,6 +111,7 @@ def test_a_run_killed_anywhere_goes_on_bit_for_bit(tmp_path) -> None:
     assert told["ended"] == 0
     assert told["operations"] > 40
     assert told["files"] == [
+        "default/case.toml",
         "default/manifest.json",
         "default/study_sweep.nc",
         "default/teeth.nc",
