@@ -204,6 +204,24 @@ def test_backlash_by_centre_distance(first, second, more) -> None:
     assert ways[0] * cos(first.base_helix_angle) == pytest.approx(play.normal)
 
 
+@pytest.mark.parametrize(
+    ("second", "distance"), [(gear(61, 2.0, 0.0, -0.1), 81.05), (gear(-70, 2.0, 0.0, -0.1), 49.95)]
+)
+def test_backlash_is_the_turn_until_drawn_flanks_meet(second, distance) -> None:
+    """A tooth of gear 1 as points in a space of gear 2, which turns until the first of them touches."""
+    first = gear(20, 2.0, 0.0, 0.1).thinned(-60e-6)
+    rolls = np.linspace(2e-3, 12e-3, 20001)
+    x, y, _ = flank(first, rolls)
+    up = distance * MM - y if second.side > 0.0 else distance * MM + y
+    radius, angle = np.hypot(x, up), np.arctan2(x, up)
+    on = radius > 1.001 * abs(second.base_radius)
+    space = pi / abs(second.teeth) - np.array([second.half_thickness_angle(r) for r in radius[on]])
+    turn = 2.0 * (space - angle[on]).min()  # to either side
+    play = backlash(first, second, distance * MM)
+    assert play.angular[1] == pytest.approx(turn, rel=1e-5)
+    assert turn > 0.0
+
+
 @pytest.mark.parametrize("second", [gear(61, 2.0), gear(-70, 2.0)])
 def test_limits_enclose_every_pair_within_tolerance(second) -> None:
     first, rng = gear(20, 2.0), np.random.default_rng(3)

@@ -1,6 +1,7 @@
 """Inspection of a cylindrical pair as a case asks for it: dataset, section, screen, refusals."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.views.section import Page, Paragraph, Table
 from pitchpoint.views.sections.inspection import INSPECTION as SECTION
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 TABLE = """[gears.inspection]
 upper_thickness_allowance = ["-40 um", "-50 um"]
 lower_thickness_allowance = ["-70 um", "-90 um"]
@@ -97,6 +99,9 @@ def test_the_report_and_the_screen_show_it(asked, data) -> None:
     words = " ".join(str(one.words) for one in blocks if isinstance(one, Paragraph))
     assert "come on top" in words
     assert "0.5 mm do not touch" in words
+    ((term, answer),) = SECTION.answer(outcome)
+    assert term == "Backlash by tolerances"
+    assert answer.endswith("arcmin at gear 2")
     (printed,) = SECTION.screen(outcome)
     assert [row["inspection"] for row in printed.rows] == ["gear 1", "gear 2"]
     assert " to " in printed.rows[0]["W_k [mm]"]
@@ -104,7 +109,14 @@ def test_the_report_and_the_screen_show_it(asked, data) -> None:
 
 def test_the_screen_keeps_silent_where_nobody_asked(plain) -> None:
     outcome = Outcome({}, {"inspection": inspection_part(plain)})
-    assert [*SECTION.screen(outcome)] == []
+    assert [*SECTION.screen(outcome)] == [*SECTION.answer(outcome)] == []
+
+
+def test_balls_stand_out_of_deep_spaces() -> None:
+    """Tall tips hide a ball that touches in the middle of the flank; a larger one is taken."""
+    data = inspection_part(load_case(str(EXAMPLES / "pair_23_61_high_contact_ratio.toml")))
+    assert json.loads(data.attrs["unmeasured"]) == []
+    assert data["over_balls"].notnull().all()
 
 
 def test_teeth_that_can_jam_are_told(built) -> None:

@@ -86,6 +86,9 @@ def test_caveats_stand_beside_the_numbers(plain, asked) -> None:
 
 def test_the_screen_has_a_row_for_each_place(asked) -> None:
     outcome = Outcome({}, {"load_limits": asked})
+    answers = dict(LOAD_LIMITS.answer(outcome))
+    assert answers["Wave generator's bearing"].startswith("3500 h")
+    assert "estimate" in answers["Flexspline"]
     (printed,) = LOAD_LIMITS.screen(outcome)
     assert len(printed.rows) == 2
     assert {"σ_a [MPa]", "τ [MPa]", "S"} <= printed.rows[0].keys()

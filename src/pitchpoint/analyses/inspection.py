@@ -32,6 +32,9 @@ NOTE = (
 CASES = ("nominal", "least", "mean", "largest")
 LIMITS = ("nominal", "upper", "lower")
 
+OUTWARDS = (0.5, 0.6, 0.7, 0.8)
+"""Parts of the active flank at which a ball is tried until it stands out of its space."""
+
 TOLERANCES = ("f_pT", "F_pT", "f_HαT", "f_fαT", "f_HβT", "f_fβT", "F_αT", "F_βT")
 """Symbols of `FlankTolerances`, in its order."""
 
@@ -162,7 +165,6 @@ def _measured(number: int, built: Built, asked: Inspection) -> _Measured:
         _roll(gear, float(drawn[name][number]))
         for name in ("form_radius", "active_root_radius", "tip_radius")
     )
-    middle = (active + end) / 2.0
     given, balls, limits = asked.span_teeth, asked.ball_diameter, asked.allowances or ()
     return _Measured(
         name=f"gear {number + 1}",
@@ -170,10 +172,16 @@ def _measured(number: int, built: Built, asked: Inspection) -> _Measured:
         usable=(min(form, end), max(form, end)),
         tip=tip,
         width=float(mesh.face_width),
-        span=int(given[number]) if given else gear.usual_span(middle),
-        ball=balls[number] if balls else gear.usual_ball(middle),
+        span=int(given[number]) if given else gear.usual_span((active + end) / 2.0),
+        ball=balls[number] if balls else _usual_ball(gear, tip, active, end),
         allowances=(0.0, *(limit[number] for limit in limits)),
     )
+
+
+def _usual_ball(gear: Toothing, tip: float, active: float, end: float) -> float:
+    """Diameter of a ball that touches near the middle of the active flank, further out if it sinks in [m]."""
+    every = [gear.usual_ball(active + part * (end - active)) for part in OUTWARDS]
+    return next((one for one in every if gear.side * (gear.ball_reach(one) - tip) > 0.0), every[0])
 
 
 def _roll(gear: Toothing, radius: float) -> float:

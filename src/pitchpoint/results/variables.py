@@ -77,7 +77,7 @@ VARIABLES: dict[str, Variable] = {
     "disc_inertia": Variable(
         "moment of inertia of a gear as a disc", "J", "kg m2", "kg cm2", "moment of inertia"
     ),
-    "bending_strain": Variable("largest strain by which the wave bends", "ε_b", "1", "%"),
+    "bending_strain": Variable("largest strain by which the wave bends", "ε_b", "1"),
     "alternating_stress": pressure("alternating bending stress of the flexspline", "σ_a"),
     "mean_bending_stress": pressure("mean bending stress of the flexspline", "σ_m"),
     "torsional_stress": pressure("shear stress of the flexspline by its torque", "τ"),

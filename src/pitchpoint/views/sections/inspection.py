@@ -118,6 +118,20 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         yield Table(["tolerance by ISO 1328-1", *titles], _tolerance_rows(data), compact=True)
 
 
+def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """Limits of the backlash, where tolerances are given."""
+    data = outcome.parts.get("inspection")
+    if data is None or data.sizes["case"] == 1:
+        return
+    ends = data.sel(case=["least", "largest"])
+    told = [
+        f"{' to '.join(_each('backlash_angle', ends.sel(gear=gear)))} "
+        f"{show.unit_of('backlash_angle')} at {gear}"
+        for gear in data["gear"].values
+    ]
+    yield "Backlash by tolerances", ", ".join(told)
+
+
 def _printed(outcome: Outcome) -> Iterator[Printed]:
     """What is asked for alone: the screen is short."""
     data = outcome.parts.get("inspection")
@@ -145,5 +159,6 @@ INSPECTION = Section(
     order=105.0,
     parts=("inspection",),
     blocks=_blocks,
+    answer=_answer,
     screen=_printed,
 )

@@ -109,6 +109,24 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         yield Paragraph(_life(data))
 
 
+def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """What follows from strengths and ratings that the case gives."""
+    data = outcome.parts.get("load_limits")
+    if data is None:
+        return
+    if "goodman_safety" in data:
+        safety = show.number(float(data["goodman_safety"].min()), 3)
+        yield (
+            "Flexspline",
+            f"safety {safety} for endless life, an estimate of a smooth ring and tube",
+        )
+    for name, _, margin in limit_rows(data):
+        yield f"Against {name}", f"{margin} times the torque, which the case gives"
+    if "bearing_life" in data:
+        life = show.quantity("bearing_life", float(data["bearing_life"]))
+        yield "Wave generator's bearing", f"{life} by the rating of the case"
+
+
 def _printed(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("load_limits")
     if data is None:
@@ -139,5 +157,6 @@ LOAD_LIMITS = Section(
     order=106.0,
     parts=("load_limits",),
     blocks=_blocks,
+    answer=_answer,
     screen=_printed,
 )
