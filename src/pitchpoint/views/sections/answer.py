@@ -205,7 +205,8 @@ def _reactions(outcome: Outcome, law: int) -> Iterator[tuple[str, str]]:
         elif any(both):
             for body, value, words in zip(manifest["members"], both, told, strict=True):
                 held = "guides" if body in guided else "shaft"
-                yield from [(_ACROSS[held, name].format(body), words)] * (value > 0.0)
+                if value > 0.0:
+                    yield _ACROSS[held, name].format(body), words
 
 
 _LOCKS = "locks from μ"
