@@ -131,10 +131,10 @@ def _row(outcome: Outcome, data: "xr.Dataset", name: str) -> dict[str, Any]:
     if one.dtype.kind not in "fi" or one.size != max(len(several), 1):
         return {}
     values = units.convert(np.ravel(one.values).astype(float), variable.display, variable.kind)
-    under = dict(zip(several, values.tolist(), strict=True)) or dict.fromkeys(
-        laws, float(values[0])
-    )
-    return {"name": variable.long_name, **under, "unit": show.unit(variable.display)}
+    values = np.where(np.abs(values) < show.NOISE, 0.0, values)
+    alone = dict.fromkeys(laws, float(values[0]))
+    under = dict(zip(several, values.tolist(), strict=True)) if several else alone
+    return {"name": variable.long_name, "unit": show.unit(variable.display), **under}
 
 
 def headline(outcome: Outcome) -> str:

@@ -8,6 +8,7 @@ import xarray as xr
 from pitchpoint import units
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
+from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 
 __all__ = ["Units", "demand_units", "in_units", "labelled"]
@@ -53,13 +54,14 @@ def in_units(data: xr.Dataset, unit: Units) -> xr.Dataset:
     made = data.copy()
     for name in [*map(str, data.variables)]:
         if name in VARIABLES and data[name].dtype.kind == "f":
-            made[name] = _as_shown(data, name)
+            known = variable_of(data, name)
+            if known.display != known.unit:
+                made[name] = _as_shown(data, name, known)
     return made
 
 
-def _as_shown(data: xr.Dataset, name: str) -> Any:
+def _as_shown(data: xr.Dataset, name: str, known: Variable) -> Any:
     """A variable in the unit in which it is shown."""
-    known = variable_of(data, name)
     values = units.convert(np.asarray(data[name].values), known.display, known.kind)
     attributes = {**data[name].attrs, "units": known.display}
     return (data[name].dims, values, attributes)
