@@ -123,7 +123,8 @@ def main() -> None:
     try:
         status = app(standalone_mode=False) or 0
     except PitchpointError as error:
-        _complain(f"error: {error}")
+        for one in error.every:
+            _complain(f"error: {one}")
         status = error.exit_code
     except typer.TyperException as error:
         told = error.format_message().rstrip(".")
@@ -189,6 +190,16 @@ def show(
     for issue in manifests[0]["issues"]:
         _console().print(f"- {_plain(issue['where'])}: {_plain(issue['issue'])}. ", end="")
         _console().print(_plain(issue["verdict"]), style="dim")
+
+
+@app.command()
+def check(case: CaseName, variant: Variants = None, set_: Settings = None) -> None:
+    """Tell everything that is wrong with a case, or what warns before it is computed."""
+    from pitchpoint.runs.check import check as checked
+
+    warnings = checked(case, variant or [], _settings(set_ or []))
+    typer.echo("ok")
+    _warn(warnings)
 
 
 @app.command()

@@ -305,7 +305,7 @@ def is_record(case: str) -> bool:
 
 def is_result(case: str) -> bool:
     """True if a case is given by the folder of a result of it."""
-    return case not in names() and (Path(case) / RUN).is_file()
+    return case not in names() and os.path.isfile(os.path.join(case, RUN))
 
 
 def owner(folder: Path) -> Record | None:
