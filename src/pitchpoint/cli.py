@@ -81,6 +81,7 @@ Designs = Annotated[
         autocompletion=_cases_from,
     ),
 ]
+Result = Annotated[str, typer.Argument(metavar="RESULT", help="Folder that `run` wrote.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON to stdout instead of tables.")]
 Variants = Annotated[
     list[str] | None,
@@ -340,6 +341,44 @@ def _compare_with_print(case: str, variant: str | None, json_: bool) -> None:
         _verdicts(rows)
     if any(row.verdict == "miss" for row in rows):
         raise SystemExit(1)
+
+
+@app.command()
+def export(
+    result: Result,
+    csv: Annotated[bool, typer.Option("--csv", help="A file for each table.")] = False,
+    mat: Annotated[bool, typer.Option("--mat", help="A file for MATLAB and Octave.")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="One JSON file.")] = False,
+    xlsx: Annotated[bool, typer.Option("--xlsx", help="A workbook.")] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Default: export in the result."),
+    ] = None,
+    si: Annotated[bool, typer.Option("--si", help="SI units, not those of the report.")] = False,
+) -> None:
+    """Write a result as tables for other programs, with a README.txt that says what is in them."""
+    from pitchpoint.exports.files import export as exported
+    from pitchpoint.runs.run import open_result
+
+    asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx}
+    formats = [name for name, wanted in asked.items() if wanted]
+    for path in exported(open_result(result), output or Path(result) / "export", formats, si=si):
+        typer.echo(visible(str(path)))
+
+
+@app.command("open")
+def open_(
+    result: Result,
+    print_: Annotated[bool, typer.Option("--print", help="Only tell where it is.")] = False,
+) -> None:
+    """Show the report of a result in the browser."""
+    import webbrowser
+
+    report = Path(result) / "report.html"
+    if not report.is_file():
+        raise InputError("holds no report.html; run its case, which writes one", file=result)
+    if print_ or not webbrowser.open(report.resolve().as_uri()):
+        typer.echo(visible(str(report.resolve())))
 
 
 @app.command()

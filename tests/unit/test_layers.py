@@ -40,6 +40,7 @@ FLOW = (
     {"analyses"},
     {"runs"},
     {"views"},
+    {"exports"},
     {"cli"},
     {"__main__"},
 )
