@@ -423,6 +423,32 @@ def models(
     _show(entries(), json_, columns)
 
 
+@app.command()
+def schema(
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
+    ] = None,
+) -> None:
+    """Print the JSON Schema of case files, by which editors complete and check TOML.
+
+    A file names it in its first line: #:schema pitchpoint.json
+    """
+    from pitchpoint.cases.json_schema import case_schema
+
+    _write(json.dumps(case_schema(), indent=1, ensure_ascii=False) + "\n", output)
+
+
+def _write(text: str, path: Path | None) -> None:
+    """Text into a file that is not there yet, or to the screen."""
+    if path is None:
+        typer.echo(text, nl=False)
+        return
+    if path.exists():
+        raise InputError("is there already; give another name", file=str(path))
+    path.write_text(text, "utf-8")
+    typer.echo(visible(str(path)))
+
+
 def _show_matrix(as_json: bool) -> None:
     from pitchpoint.runs.matrix import matrix
 

@@ -38,6 +38,8 @@ __all__ = [
     "bearings_of",
     "keys",
     "quantity_at",
+    "quantity_of",
+    "usual_words",
     "validate",
     "validated",
 ]
@@ -1566,7 +1568,7 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
             known = dict.fromkeys(name for each in fields for name in each)
             raise InputError(f"there is no such key{nearest(part, known)}", key=key)
         if position == len(parts) - 1:
-            return _quantity(holding[0])
+            return quantity_of(holding[0])
         tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
         if part == STAGES:
             tree = None
@@ -1602,13 +1604,24 @@ def _named_tables(info: FieldInfo) -> bool:
     return get_origin(info.annotation) is dict and not numbered
 
 
-def _quantity(info: FieldInfo) -> Quantity | None:
+def quantity_of(info: FieldInfo) -> Quantity | None:
+    """Kind and range of the values of a field, None where they are no quantities."""
     for mark in (*info.metadata, *_marks(info.annotation)):
         if isinstance(mark, Pair):
             return mark.each
         if isinstance(mark, Quantity):
             return mark
     return None
+
+
+def usual_words(info: FieldInfo) -> str:
+    """The value that a quantity has where none is given, in words; empty where there is none."""
+    quantity, usual = quantity_of(info), info.default
+    if quantity is None or usual is None or info.is_required():
+        return ""
+    values = usual if isinstance(usual, tuple) else (usual,)
+    told = dict.fromkeys(quantity.show(value) for value in values if isinstance(value, float))
+    return f"default {' / '.join(told)}" if told else ""
 
 
 def _marks(annotation: Any) -> Iterator[Any]:
@@ -1779,7 +1792,7 @@ def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     info = fields.get(str(location[-1]))
     if info is None:
         return ""
-    quantity = _quantity(info)
+    quantity = quantity_of(info)
     if quantity is not None:
         return f"; write {quantity.example}; {quantity.allowed}"
     if len(location) == 1:
