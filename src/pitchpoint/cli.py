@@ -81,6 +81,7 @@ Designs = Annotated[
         autocompletion=_cases_from,
     ),
 ]
+Result = Annotated[str, typer.Argument(metavar="RESULT", help="Folder that `run` wrote.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON to stdout instead of tables.")]
 Variants = Annotated[
     list[str] | None,
@@ -123,7 +124,8 @@ def main() -> None:
     try:
         status = app(standalone_mode=False) or 0
     except PitchpointError as error:
-        _complain(f"error: {error}")
+        for one in error.every:
+            _complain(f"error: {one}")
         status = error.exit_code
     except typer.TyperException as error:
         told = error.format_message().rstrip(".")
@@ -189,6 +191,16 @@ def show(
     for issue in manifests[0]["issues"]:
         _console().print(f"- {_plain(issue['where'])}: {_plain(issue['issue'])}. ", end="")
         _console().print(_plain(issue["verdict"]), style="dim")
+
+
+@app.command()
+def check(case: CaseName, variant: Variants = None, set_: Settings = None) -> None:
+    """Tell everything that is wrong with a case, or what warns before it is computed."""
+    from pitchpoint.runs.check import check as checked
+
+    warnings = checked(case, variant or [], _settings(set_ or []))
+    typer.echo("ok")
+    _warn(warnings)
 
 
 @app.command()
@@ -332,6 +344,44 @@ def _compare_with_print(case: str, variant: str | None, json_: bool) -> None:
 
 
 @app.command()
+def export(
+    result: Result,
+    csv: Annotated[bool, typer.Option("--csv", help="A file for each table.")] = False,
+    mat: Annotated[bool, typer.Option("--mat", help="A file for MATLAB and Octave.")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="One JSON file.")] = False,
+    xlsx: Annotated[bool, typer.Option("--xlsx", help="A workbook.")] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Default: export in the result."),
+    ] = None,
+    si: Annotated[bool, typer.Option("--si", help="SI units, not those of the report.")] = False,
+) -> None:
+    """Write a result as tables for other programs, with a README.txt that says what is in them."""
+    from pitchpoint.exports.files import export as exported
+    from pitchpoint.runs.run import open_result
+
+    asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx}
+    formats = [name for name, wanted in asked.items() if wanted]
+    for path in exported(open_result(result), output or Path(result) / "export", formats, si=si):
+        typer.echo(visible(str(path)))
+
+
+@app.command("open")
+def open_(
+    result: Result,
+    print_: Annotated[bool, typer.Option("--print", help="Only tell where it is.")] = False,
+) -> None:
+    """Show the report of a result in the browser."""
+    import webbrowser
+
+    report = Path(result) / "report.html"
+    if not report.is_file():
+        raise InputError("holds no report.html; run its case, which writes one", file=result)
+    if print_ or not webbrowser.open(report.resolve().as_uri()):
+        typer.echo(visible(str(report.resolve())))
+
+
+@app.command()
 def cite(
     result: Annotated[
         str,
@@ -371,6 +421,32 @@ def models(
 
     columns = ("kind", "name", "title", "range", "sources", "note")
     _show(entries(), json_, columns)
+
+
+@app.command()
+def schema(
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
+    ] = None,
+) -> None:
+    """Print the JSON Schema of case files, by which editors complete and check TOML.
+
+    A file names it in its first line: #:schema pitchpoint.json
+    """
+    from pitchpoint.cases.json_schema import case_schema
+
+    _write(json.dumps(case_schema(), indent=1, ensure_ascii=False) + "\n", output)
+
+
+def _write(text: str, path: Path | None) -> None:
+    """Text into a file that is not there yet, or to the screen."""
+    if path is None:
+        typer.echo(text, nl=False)
+        return
+    if path.exists():
+        raise InputError("is there already; give another name", file=str(path))
+    path.write_text(text, "utf-8")
+    typer.echo(visible(str(path)))
 
 
 def _show_matrix(as_json: bool) -> None:

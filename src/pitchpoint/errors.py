@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import ClassVar, Self
 
-__all__ = ["ConvergenceError", "InputError", "PitchpointError", "shorten", "visible"]
+__all__ = [
+    "CollectedInputError",
+    "ConvergenceError",
+    "InputError",
+    "PitchpointError",
+    "shorten",
+    "visible",
+]
 
 LONGEST_PLACE = 240
 """Longest file name or key in a sentence [characters]."""
@@ -16,6 +23,11 @@ class PitchpointError(Exception):
     """Base of every error raised on purpose; `exit_code` is what the command line returns."""
 
     exit_code: ClassVar[int] = 1
+
+    @property
+    def every(self) -> tuple[PitchpointError, ...]:
+        """What went wrong, one by one."""
+        return (self,)
 
 
 class InputError(PitchpointError, ValueError):
@@ -61,6 +73,46 @@ class InputError(PitchpointError, ValueError):
         located.file = file if file is not None else self.file
         located.key = key if key is not None else self.key
         return located
+
+
+class CollectedInputError(InputError):
+    """Several things wrong with one input, each told in one sentence on a line of its own.
+
+    Args:
+        errors: at least one, the first one first; file, key, value and what is allowed are those of it.
+
+    Example:
+        >>> wrong = CollectedInputError([InputError("is missing", key=key) for key in ("a", "b")])
+        >>> print(wrong)
+        a: is missing
+        b: is missing
+    """
+
+    def __init__(self, errors: Sequence[InputError]) -> None:
+        first = errors[0]
+        super().__init__(
+            first.message,
+            file=first.file,
+            key=first.key,
+            value=first.value,
+            allowed=first.allowed,
+        )
+        self.errors = tuple(errors)
+
+    @property
+    def every(self) -> tuple[PitchpointError, ...]:
+        """What is wrong, one by one."""
+        return self.errors
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.errors))
+
+    def at(self, *, file: str | None = None, key: str | None = None) -> Self:
+        """Return a copy with the location filled in for each of them."""
+        return type(self)([error.at(file=file, key=key) for error in self.errors])
+
+    def __reduce__(self) -> tuple[type[Self], tuple[tuple[InputError, ...]]]:
+        return type(self), (self.errors,)
 
 
 class ConvergenceError(PitchpointError, RuntimeError):

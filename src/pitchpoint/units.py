@@ -39,7 +39,9 @@ __all__ = [
     "is_quotient",
     "kind_of",
     "kinds",
+    "noun",
     "parse",
+    "plain",
     "si_unit",
     "units_of",
 ]
@@ -393,6 +395,26 @@ def si_unit(kind: str) -> str:
         'N m'
     """
     return _kind(kind).si
+
+
+def noun(kind: str) -> str:
+    """Return what a quantity of a kind is called, with its article.
+
+    Example:
+        >>> noun("torque")
+        'a torque'
+    """
+    return _kind(kind).noun
+
+
+def plain(kind: str) -> bool:
+    """Return True for a kind whose numbers may stand without a unit.
+
+    Example:
+        >>> plain("dimensionless"), plain("length")
+        (True, False)
+    """
+    return "" in _kind(kind).units
 
 
 def example(kind: str) -> str:

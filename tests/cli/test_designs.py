@@ -1,16 +1,21 @@
-"""Designs beside each other: what is named, what differs, by how much, and the report of it."""
+"""Results of several designs beside each other, and given to other programs."""
 
 import json
 import sys
+import webbrowser
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
+from scipy.io import loadmat
 
 from pitchpoint import cli
 from pitchpoint.errors import InputError
+from pitchpoint.exports.files import FORMATS, export
+from pitchpoint.exports.tables import sheets
 from pitchpoint.runs.designs import designs, main_results, wanted
-from pitchpoint.runs.run import Outcome, run
+from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.views.designs import input_tables, law_words, result_table
 from pitchpoint.views.report import render
 
@@ -172,3 +177,87 @@ def test_the_command(
     status, _, err = told("out/pair", "out/ball", "--variant", "new")
     assert status == 2
     assert "write case@variant" in err
+
+
+def test_open(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report = folder / "a report" / "report.html"
+    report.parent.mkdir(exist_ok=True)
+    report.touch()
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", lambda url: bool(opened.append(url)) or len(opened) > 1)
+    for arguments, told in (([], True), ([], False), (["--print"], True)):
+        monkeypatch.setattr(sys, "argv", ["pitchpoint", "open", str(report.parent), *arguments])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        assert caught.value.code == 0
+        assert (str(report) in capsys.readouterr().out) is told  # no browser, one, not asked for
+    assert opened == [report.as_uri()] * 2
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "open", str(folder)])
+    with pytest.raises(SystemExit):
+        cli.main()
+    assert "holds no report.html" in capsys.readouterr().err
+
+
+# ---- the same results for other programs
+
+
+@pytest.fixture(scope="module")
+def written(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("export")
+    export(open_result(folder / "out" / "pair"), out, [*FORMATS])
+    return out / "new"
+
+
+def test_columns_have_units_and_contacts_alone_have_values(
+    written: Path, compared: Outcomes
+) -> None:
+    cycle = compared["pair@new"].parts["cycle"]
+    frame = pd.read_csv(written / "cycle_law_node_pair_slice.csv")
+    assert [*frame.columns[:4]] == ["law", "node", "pair", "slice"]
+    touching = np.broadcast_to(cycle["active"].values, cycle["pressure"].shape).ravel()
+    pressure = frame["pressure [MPa]"].to_numpy()
+    assert np.array_equal(np.isfinite(pressure), touching)
+    expected = cycle["pressure"].values.ravel()[touching]
+    assert pressure[touching] * 1e6 == pytest.approx(expected, rel=1e-12)
+    assert not touching.all()
+    assert "efficiency [%]" in pd.read_csv(written / "cycle_law_node.csv")
+
+
+def test_every_format_has_the_same_numbers(written: Path, compared: Outcomes) -> None:
+    loss = compared["pair@new"].parts["operation"]["mean_loss"].values
+    found = json.loads((written / "result.json").read_text("utf-8"))
+    told = found["parts"]["operation"]["mean_loss"]
+    assert (told["unit"], told["dims"]) == ("W", ["law", "point"])
+    assert np.array_equal(told["values"], loss)
+    matlab = loadmat(written / "result.mat", simplify_cells=True)["operation"]
+    assert np.array_equal(matlab["mean_loss"], loss[:, 0])
+    assert [*matlab["law"]] == ["xu_2007", "frictionless"]
+    assert matlab["units"]["mean_loss"] == "W"
+    sheet = pd.read_excel(written / "result.xlsx", sheet_name="operation")
+    assert sheet["mean_loss [W]"].to_numpy() == pytest.approx(loss[:, 0], rel=1e-14)
+    inputs = pd.read_excel(written / "result.xlsx", sheet_name="inputs")
+    assert "2 mm" in [*inputs[inputs["key"] == "module"]["value"]]
+
+
+def test_the_readme_says_what_every_column_is(written: Path) -> None:
+    text = (written / "README.txt").read_text("utf-8")
+    for path in written.glob("*.csv"):
+        assert f"\n{path.stem}: " in text
+        for head in pd.read_csv(path).columns:
+            assert f"\n  {head}: " in text, path.name
+    assert "  pressure [MPa]: largest Hertz pressure" in text
+
+
+def test_si_and_what_cannot_be_written(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    outcome = open_result(folder / "out" / "ball")["default"]
+    operation = next(one for one in sheets(outcome, si=True) if one.name == "operation")
+    assert "pressure [Pa]" in operation.frame
+    with pytest.raises(InputError, match="give one or several of --csv, --mat, --json, --xlsx"):
+        export({"default": outcome}, tmp_path, [])
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    with pytest.raises(InputError, match=r"install pitchpoint\[xlsx\]"):
+        export({"default": outcome}, tmp_path, ["xlsx"])

@@ -42,6 +42,7 @@ FLOW = (
     {"runs"},
     {"views"},
     {"notebook"},
+    {"exports"},
     {"cli"},
     {"__main__"},
 )

@@ -21,7 +21,7 @@ from pydantic.fields import FieldInfo
 from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.loss_sets import expanded, named_set
-from pitchpoint.errors import InputError, shorten
+from pitchpoint.errors import CollectedInputError, InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
@@ -29,7 +29,7 @@ from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
-from pitchpoint.registry import nearest
+from pitchpoint.registry import alike, nearest
 
 __all__ = [
     "Case",
@@ -39,7 +39,9 @@ __all__ = [
     "in_form",
     "keys",
     "quantity_at",
+    "quantity_of",
     "usual_at",
+    "usual_words",
     "validate",
     "validated",
 ]
@@ -1539,7 +1541,8 @@ def validate(document: Document) -> Case | DriveCase:
     """Case out of a document.
 
     Raises:
-        InputError: the first value that is wrong, with file, key, value and what is allowed.
+        InputError: what is wrong, with file, key, value and what is allowed; a
+            `CollectedInputError` of several things.
     """
     if STAGES not in document.tree:
         return validated(Case, document)
@@ -1566,7 +1569,7 @@ def validated(model: type[Whole], document: Document) -> Whole:
     try:
         return model.model_validate(in_form(document))
     except ValidationError as error:
-        raise _sentence(error, document, model) from None
+        raise _complaint(error, document, model) from None
 
 
 def in_form(document: Document) -> dict[str, Any]:
@@ -1631,7 +1634,7 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
             known = dict.fromkeys(name for each in fields for name in each)
             raise InputError(f"there is no such key{nearest(part, known)}", key=key)
         if position == len(parts) - 1:
-            return _quantity(holding[0])
+            return quantity_of(holding[0])
         tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
         if part == STAGES:
             tree = None
@@ -1686,13 +1689,24 @@ def _named_tables(info: FieldInfo) -> bool:
     return get_origin(info.annotation) is dict and not numbered
 
 
-def _quantity(info: FieldInfo) -> Quantity | None:
+def quantity_of(info: FieldInfo) -> Quantity | None:
+    """Kind and range of the values of a field, None where they are no quantities."""
     for mark in (*info.metadata, *_marks(info.annotation)):
         if isinstance(mark, Pair):
             return mark.each
         if isinstance(mark, Quantity):
             return mark
     return None
+
+
+def usual_words(info: FieldInfo) -> str:
+    """The value that a quantity has where none is given, in words; empty where there is none."""
+    quantity, usual = quantity_of(info), info.default
+    if quantity is None or usual is None or info.is_required():
+        return ""
+    values = usual if isinstance(usual, tuple) else (usual,)
+    told = dict.fromkeys(quantity.show(value) for value in values if isinstance(value, float))
+    return f"default {' / '.join(told)}" if told else ""
 
 
 def _marks(annotation: Any) -> Iterator[Any]:
@@ -1702,9 +1716,77 @@ def _marks(annotation: Any) -> Iterator[Any]:
         yield from _marks(option)
 
 
-def _sentence(error: ValidationError, document: Document, model: type[BaseModel]) -> InputError:
-    """The first complaint of pydantic in gear words."""
-    detail = _clearest(error.errors())
+_MOST_TOLD = 20
+"""Sentences on one file."""
+
+
+def _complaint(error: ValidationError, document: Document, model: type[BaseModel]) -> InputError:
+    """The complaints of pydantic in gear words, the clearest one first, each thing once."""
+    details = error.errors(include_url=False)[:1000]  # of a hostile file, the first ones
+    causes = [_clearest(details), *_causes(details, document)]
+    told = {str(each): each for each in (_sentence(one, document, model) for one in causes)}
+    every = list({each.key: each for each in reversed(told.values())}.values())[::-1]
+    if len(every) > _MOST_TOLD:
+        more = InputError("more is wrong; these first", file=document.name)
+        every = [*every[:_MOST_TOLD], more]
+    return every[0] if len(every) == 1 else CollectedInputError(every)
+
+
+def _causes(details: Sequence[Any], document: Document) -> list[Any]:
+    """What is wrong, each thing once: without what follows from a misspelt key or form.
+
+    Of several complaints about one value the clearest one stands, and none about a value stands beside
+    one about something in it, as a name that was given as a table has it.
+    """
+    places: dict[tuple[str, ...], list[Any]] = {}
+    for one in details:
+        places.setdefault(_place_of(one, document), []).append(one)
+    inside = {place[:end] for place in places for end in range(len(place))}
+    forms_of = {place[:-1] for place, same in places.items() if _misspelt_form(same)}
+    unknown = [place for place, same in places.items() if same[0]["type"] == "extra_forbidden"]
+    return [
+        _clearest(same)
+        for place, same in places.items()
+        if place not in inside
+        and (_misspelt_form(same) or not any(place[:end] in forms_of for end in range(len(place))))
+        and not _left_missing(place, same, unknown)
+        and not _told_with_another(place, same, places)
+    ]
+
+
+def _told_with_another(
+    place: tuple[str, ...], same: Sequence[Any], places: Mapping[tuple[str, ...], Any]
+) -> bool:
+    """True for a missing table whose sentence stands with the first one, and the rest of a wrong list."""
+    if same[0]["type"] != "missing":
+        return False
+    beside = [one for one in places if one[:-1] == place[:-1] and len(one) == len(place)]
+    if len(place) == 1:
+        lacking = (one for one in beside if places[one][0]["type"] == "missing")
+        return place != next(lacking)
+    return place[-1].isdigit() and len(beside) > 1
+
+
+def _place_of(detail: Any, document: Document) -> tuple[str, ...]:
+    words = _words(document, detail)
+    return tuple(str(part) for part in detail["loc"] if str(part) in words)
+
+
+def _misspelt_form(same: Sequence[Any]) -> bool:
+    """True for complaints about a key that decides what the others may be."""
+    return any(one["type"] == "literal_error" and one["loc"][-1] in DECIDING for one in same)
+
+
+def _left_missing(
+    place: tuple[str, ...], same: Sequence[Any], unknown: Sequence[tuple[str, ...]]
+) -> bool:
+    """True for a missing key that stands there in another spelling."""
+    beside = (one[-1] for one in unknown if one[:-1] == place[:-1])
+    return same[0]["type"] == "missing" and any(alike(one, place[-1:]) for one in beside)
+
+
+def _sentence(detail: Any, document: Document, model: type[BaseModel]) -> InputError:
+    """A complaint of pydantic in gear words."""
     words = _words(document, detail)
     key = ".".join(shorten(str(part)) for part in detail["loc"] if str(part) in words)
     cause = detail.get("ctx", {}).get("error")
@@ -1795,7 +1877,7 @@ def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     info = fields.get(str(location[-1]))
     if info is None:
         return ""
-    quantity = _quantity(info)
+    quantity = quantity_of(info)
     if quantity is not None:
         return f"; write {quantity.example}; {quantity.allowed}"
     if len(location) == 1:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
-from pydantic import GetCoreSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from pitchpoint import units
@@ -49,6 +50,32 @@ class Quantity:
     ) -> CoreSchema:
         """One validator from text or number to SI."""
         return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """What editors know of the values."""
+        return self.json_schema
+
+    @property
+    def json_schema(self) -> JsonSchemaValue:
+        """Numbers in their range, or text that begins with one; ranges of those with units in words."""
+        noun, written = units.noun(self.kind), units.units_of(self.kind)
+        told = f"{noun}; {self.allowed}"
+        text = {"type": "string", "pattern": r"^\s*[+-]?\.?\d"}
+        if not units.plain(self.kind):
+            units_told = f"; units: {', '.join(written)}"
+            example = units.example(self.kind).strip('"')
+            return {**text, "description": told + units_told, "examples": [example]}
+        number: JsonSchemaValue = {"type": "number"}
+        if math.isfinite(self.low):
+            number["exclusiveMinimum" if self.open_low else "minimum"] = self.low
+        if math.isfinite(self.high):
+            number["maximum"] = self.high
+        if self.whole:
+            number["multipleOf"] = 1
+            told = f"a whole number; {self.allowed}"
+        return {"anyOf": [number, text], "description": told}
 
     def read(self, value: Any) -> float:
         """SI value of text or number; InputError if it is not what is needed."""
@@ -109,6 +136,15 @@ class Pair:
         """One validator to a tuple of two SI values."""
         return core_schema.no_info_plain_validator_function(self.read)
 
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """What editors know of the values."""
+        each = self.each.json_schema
+        both = {"type": "array", "items": each, "minItems": 2, "maxItems": 2}
+        told = f"{each['description']}; one value for both gears, or a list of two"
+        return {"anyOf": [each, both], "description": told}
+
     def read(self, value: Any) -> tuple[float, float]:
         """SI values of gear 1 and gear 2."""
         if isinstance(value, list | tuple):
@@ -138,6 +174,7 @@ def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], s
             raise InputError(f"{shown(value)} is not a known {kind}{hint}")
         return value
 
+    read.known = registry  # type: ignore[attr-defined]  # what the schema for editors lists
     return read
 
 

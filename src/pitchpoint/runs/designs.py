@@ -12,7 +12,7 @@ import xarray as xr
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import variants
 from pitchpoint.cases.library import as_text, find, names
-from pitchpoint.cases.record import MANIFEST, RUN, is_record
+from pitchpoint.cases.record import MANIFEST, is_record, is_result
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
@@ -53,7 +53,7 @@ class Wanted:
     @property
     def computed(self) -> bool:
         """True for the folder of a result, which is read as it is."""
-        return (Path(self.case) / RUN).is_file()
+        return is_result(self.case)
 
     @property
     def parts(self) -> tuple[str, ...]:

@@ -1,0 +1,169 @@
+"""The schema of case files for editors: JSON Schema, which completes keys and names in TOML."""
+
+import copy
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
+
+from pitchpoint.cases.document import STAGES, STATUSES
+from pitchpoint.cases.loss_sets import SET
+from pitchpoint.cases.schema import Case, DriveCase, usual_words
+from pitchpoint.input.tables import alternatives
+
+__all__ = ["case_schema"]
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+_DEFS = "$defs"
+_PART = "_of_a_variant"
+"""Ends the names of tables of which a variant says only what differs."""
+
+
+class _Names(GenerateJsonSchema):
+    """Lists the names that a key may have."""
+
+    def function_before_schema(
+        self, schema: core_schema.BeforeValidatorFunctionSchema
+    ) -> JsonSchemaValue:
+        """Schema of what is read before it is checked; the names of a registry where it is one."""
+        known: Callable[[], list[str]] | None = getattr(
+            schema["function"]["function"], "known", None
+        )
+        if known is None:
+            return super().function_before_schema(schema)
+        return {"type": "string", "enum": known()}
+
+
+def case_schema() -> dict[str, Any]:
+    """JSON Schema of case files, of one mesh or several, with variants.
+
+    Every value may be a table of the value with its marks. Ranges of quantities with units are told in
+    words, for no schema reads "3 mm"; `pitchpoint check` tells all that a schema cannot.
+    """
+    defs: dict[str, Any] = {}
+    properties: dict[str, Any] = {}
+    wholes = []
+    models = dict(one for model in (Case, DriveCase) for one in _tables(model))
+    for model in (Case, DriveCase):
+        made = model.model_json_schema(schema_generator=_Names, mode="validation")
+        defs |= made.pop(_DEFS)
+        defs[model.__name__] = made
+        wholes.append({"$ref": f"#/{_DEFS}/{model.__name__}"})
+    for name, table in defs.items():
+        _plain(table)
+        _loosen(table, models[name].model_fields)
+    parts = {f"{name}{_PART}": _partial(table) for name, table in defs.items()}
+    for model in (DriveCase, Case):
+        properties |= parts[f"{model.__name__}{_PART}"]["properties"]
+    variant = {"type": "object", "properties": properties, "additionalProperties": False}
+    variants = {
+        "type": "object",
+        "description": "what differs in each variant, by its name",
+        "additionalProperties": {"$ref": f"#/{_DEFS}/variant"},
+    }
+    return {
+        "$schema": DIALECT,
+        "title": "Case file of Pitchpoint",
+        "type": "object",
+        "properties": {**properties, "variants": variants},
+        "additionalProperties": False,
+        "anyOf": [{"required": ["variants"]}, *wholes],
+        _DEFS: {**defs, **parts, "variant": variant, "mark": _mark()},
+    }
+
+
+def _mark() -> dict[str, Any]:
+    """A value with its marks."""
+    return {
+        "type": "object",
+        "description": "a value with how it was come by",
+        "properties": {
+            "value": {},
+            "status": {"enum": list(STATUSES)},
+            "where": {"type": "string", "description": "place in the source"},
+            "note": {"type": "string", "description": "remark"},
+        },
+        "required": ["value"],
+        "additionalProperties": False,
+    }
+
+
+_OF_ONE_OR_SEVERAL = ("friction", "at")
+"""Keys that take one value in place of a list of one."""
+
+
+def _loosen(table: dict[str, Any], fields: Mapping[str, FieldInfo]) -> None:
+    """Takes what the reader takes: marks, one in place of a list, stages in a list, sets of losses."""
+    for key, value in table.get("properties", {}).items():
+        words = _words(value, fields.get(key))
+        options = [value, *_other_ways(key, value), {"$ref": f"#/{_DEFS}/mark"}]
+        table["properties"][key] = {**words, "anyOf": options}
+
+
+def _words(value: dict[str, Any], info: FieldInfo | None) -> dict[str, Any]:
+    """What is told of a key, taken out of the schema of its values; a usual value with its unit."""
+    words = {name: value.pop(name) for name in ("description", "default") if name in value}
+    usual = "" if info is None else usual_words(info)
+    if usual or not isinstance(words.get("default", ""), str | bool):
+        words.pop("default", None)
+    if usual:
+        words["description"] = "; ".join(filter(None, [words.get("description", ""), usual]))
+    return words
+
+
+def _other_ways(key: str, value: dict[str, Any]) -> list[dict[str, Any]]:
+    """Schemas of other ways to write what stands at a key."""
+    if key in _OF_ONE_OR_SEVERAL and "items" in value:
+        inner = copy.deepcopy(value["items"])
+        by_name = [{"$ref": f"{inner['$ref']}/properties/name"}] if "$ref" in inner else []
+        value["items"] = {"anyOf": [copy.deepcopy(inner), *by_name]}
+        return [inner, *by_name]
+    if key == STAGES:
+        return [{"type": "array", "items": copy.deepcopy(value["additionalProperties"])}]
+    if key == "losses":
+        named = [{"type": "string"}, {"$ref": f"#/{_DEFS}/mark"}]
+        value["properties"] = {SET: {"description": "name of a set of losses", "anyOf": named}}
+    return []
+
+
+def _plain(node: Any) -> None:
+    """One of several tables is the first that fits, for a key that decides may be left out; no nulls."""
+    for one in _nodes(node):
+        if "oneOf" in one:
+            one["anyOf"] = one.pop("oneOf")
+            one.pop("discriminator", None)
+        if {"type": "null"} in one.get("anyOf", ()):
+            one["anyOf"].remove({"type": "null"})
+            if len(one["anyOf"]) == 1:
+                one.update(one.pop("anyOf")[0])
+
+
+def _tables(model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
+    """A table and those in it, by name."""
+    yield model.__name__, model
+    for info in model.model_fields.values():
+        for inner in alternatives(info.annotation).values():
+            yield from _tables(inner)
+
+
+def _partial(table: Mapping[str, Any]) -> dict[str, Any]:
+    """The same table where any key may be left out, in it and below."""
+    part = copy.deepcopy(dict(table))
+    for one in _nodes(part):
+        one.pop("required", None)
+        name, slash, inside = one.get("$ref", "").removeprefix(f"#/{_DEFS}/").partition("/")
+        if name and name != "mark" and not name.endswith(_PART):
+            one["$ref"] = f"#/{_DEFS}/{name}{_PART}{slash}{inside}"
+    return part
+
+
+def _nodes(node: Any) -> Iterator[dict[str, Any]]:
+    if isinstance(node, dict):
+        yield node
+    inner = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
+    for one in list(inner):
+        yield from _nodes(one)

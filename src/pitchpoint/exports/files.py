@@ -1,0 +1,179 @@
+"""Results in files for spreadsheets, MATLAB and other programs, with a text that says what is in them."""
+
+import io
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from pitchpoint.errors import InputError
+from pitchpoint.exports.tables import Sheet, exported, sheets
+from pitchpoint.results.store import make_folder, without_nan, write_bytes, write_text
+from pitchpoint.runs.run import Outcome
+
+__all__ = ["FORMATS", "export"]
+
+MOST_ROWS = 1_048_575
+"""Rows of a sheet of a spreadsheet, under its head."""
+
+LONGEST_NAME = 31
+"""Characters of the name of a sheet."""
+
+README = "README.txt"
+
+
+def export(
+    outcomes: Mapping[str, Outcome], folder: Path, formats: list[str], *, si: bool = False
+) -> list[Path]:
+    """Write a result in other formats; each variant of several into a folder of its own.
+
+    Args:
+        outcomes: by variant.
+        folder: where files go.
+        formats: of `FORMATS`.
+        si: True for SI units, else those of report and screen.
+
+    Returns:
+        The files.
+
+    Raises:
+        InputError: no format, a folder that cannot be written to, a library that is missing.
+    """
+    if not formats:
+        told = ", ".join(f"--{name}" for name in FORMATS)
+        raise InputError(f"no format was given; give one or several of {told}")
+    written: list[Path] = []
+    for name, outcome in outcomes.items():
+        place = folder / name if len(outcomes) > 1 else folder
+        make_folder(place)
+        tables = list(sheets(outcome, si=si))
+        for one in formats:
+            written += FORMATS[one](outcome, tables, place, si)
+        write_text(place / README, _readme(outcome, tables, si))
+        written.append(place / README)
+    return written
+
+
+def _csv(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list[Path]:
+    """A file for each table."""
+    paths = [folder / f"{table.name}.csv" for table in tables]
+    for path, table in zip(paths, tables, strict=True):
+        write_bytes(path, table.frame.to_csv(index=False).encode("utf-8"))
+    return paths
+
+
+def _xlsx(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list[Path]:
+    """A workbook with a sheet for each table."""
+    try:
+        import openpyxl  # noqa: F401  # pandas writes through it
+    except ImportError:
+        told = "needs the package openpyxl, which is not installed; install pitchpoint[xlsx]"
+        raise InputError(told, key="--xlsx") from None
+    for table in tables:
+        if len(table.frame) > MOST_ROWS:
+            told = f"{table.name} has {len(table.frame)} rows, more than a sheet holds; take --csv"
+            raise InputError(told, key="--xlsx")
+    image = io.BytesIO()
+    readme = pd.DataFrame({README: _readme(outcome, tables, si).splitlines()})
+    with pd.ExcelWriter(image, engine="openpyxl") as writer:
+        for name, frame in _named({"README": readme, **{one.name: one.frame for one in tables}}):
+            frame.to_excel(writer, sheet_name=name, index=False, freeze_panes=(1, 0))
+    write_bytes(folder / "result.xlsx", image.getvalue())
+    return [folder / "result.xlsx"]
+
+
+def _named(frames: Mapping[str, pd.DataFrame]) -> list[tuple[str, pd.DataFrame]]:
+    """Frames with names that a workbook takes, each once whatever its letters' case."""
+    taken: dict[str, pd.DataFrame] = {}
+    for name, frame in frames.items():
+        short, number = name[:LONGEST_NAME], 1
+        while short.lower() in {one.lower() for one in taken}:
+            number += 1
+            short = f"{name[: LONGEST_NAME - 1 - len(str(number))]}~{number}"
+        taken[short] = frame
+    return list(taken.items())
+
+
+def _json(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list[Path]:
+    """One file with the record of the result and its parts, arrays as nested lists."""
+    parts = {name: exported(data, si=si) for name, data in outcome.parts.items()}
+    content = {
+        "manifest": outcome.manifest,
+        "parts": {
+            name: {str(one): _array(data, str(one)) for one in data.variables}
+            for name, data in parts.items()
+        },
+    }
+    text = json.dumps(without_nan(content), indent=1, ensure_ascii=False, allow_nan=False)
+    write_text(folder / "result.json", text)
+    return [folder / "result.json"]
+
+
+def _array(data: xr.Dataset, name: str) -> dict[str, Any]:
+    one = data[name]
+    return {
+        "long_name": one.attrs["long_name"],
+        "unit": one.attrs["units"],
+        "dims": [str(dim) for dim in one.dims],
+        "values": one.values.tolist(),
+    }
+
+
+def _mat(outcome: Outcome, tables: list[Sheet], folder: Path, si: bool) -> list[Path]:
+    """A file of MATLAB 5 with a struct for each part; `units` and `dims` in it are by variable."""
+    from scipy.io import savemat
+
+    content: dict[str, Any] = {"inputs": _cells(tables[0].frame)}
+    for part, dataset in outcome.parts.items():
+        data = exported(dataset, si=si)
+        names = [str(name) for name in data.variables]
+        content[part] = {
+            **{name: _matlab(data[name].values) for name in names},
+            "units": {name: data[name].attrs["units"] for name in names},
+            "dims": {name: ", ".join(map(str, data[name].dims)) for name in names},
+            "long_names": {name: data[name].attrs["long_name"] for name in names},
+        }
+    image = io.BytesIO()
+    savemat(image, content, long_field_names=True, do_compression=True, oned_as="column")
+    write_bytes(folder / "result.mat", image.getvalue())
+    return [folder / "result.mat"]
+
+
+def _matlab(values: np.ndarray) -> np.ndarray:
+    """Array as MATLAB has it, texts as cells."""
+    return values.astype(object) if values.dtype.kind in "UO" else values
+
+
+def _cells(frame: pd.DataFrame) -> dict[str, np.ndarray]:
+    return {str(name): frame[name].to_numpy(dtype=object) for name in frame.columns}
+
+
+def _readme(outcome: Outcome, tables: list[Sheet], si: bool) -> str:
+    """What was exported, and what stands in every column."""
+    manifest = outcome.manifest
+    lines = [
+        str(manifest["title"]),
+        f"Case {manifest['case']}, variant {manifest['variant']}, computed with Pitchpoint "
+        f"{manifest['surroundings'].get('pitchpoint', '')}.",
+        "Units are SI." if si else "Units are those of the report; --si gives SI.",
+        "Values are missing (NaN, null in JSON) where no pair of teeth touches, or where there is none.",
+    ]
+    lines += [f"Warning: {text}" for text in manifest["warnings"]]
+    for table in tables:
+        rows = len(table.frame)
+        lines += ["", f"{table.name}: {rows} row{'s' * (rows != 1)}"]
+        lines += [f"  {one.head}: {one.words}" for one in table.columns]
+    return "\n".join(lines) + "\n"
+
+
+FORMATS: Mapping[str, Callable[[Outcome, list[Sheet], Path, bool], list[Path]]] = {
+    "csv": _csv,
+    "mat": _mat,
+    "json": _json,
+    "xlsx": _xlsx,
+}
+"""How results are written, by name of the format."""

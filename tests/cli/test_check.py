@@ -1,0 +1,98 @@
+"""All that is wrong with a case file is told at once, each thing in one sentence."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from sound import PAIR
+
+from pitchpoint import cli
+from pitchpoint.errors import CollectedInputError, InputError
+from pitchpoint.runs.run import load_case
+
+Run = Callable[..., tuple[int, str, list[str]]]
+
+
+@pytest.fixture
+def told(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Run:
+    """Run a command on a case file; gives status, standard output and lines on standard error."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(text: str, *arguments: str, command: str = "check") -> tuple[int, str, list[str]]:
+        Path("bad.toml").write_text(text)
+        monkeypatch.setattr(sys, "argv", ["pitchpoint", command, "bad.toml", *arguments])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        out, err = capsys.readouterr()
+        return int(caught.value.code or 0), out, err.splitlines()
+
+    return run
+
+
+WRONG = (
+    PAIR.replace('"2 mm"', '"2 mmm"')
+    .replace('torque = "50 N m"\n', "")
+    .replace('"75W90-A"', '"75W90-X"')
+    .replace("[roughness]", "[rougness]")
+    + '[models]\nfriction = ["xu_2007", "nobody"]\n[film]\nsolver = "lines"\n'
+    + '[materials]\ngear_1 = { young = "206 GPa", poisson = 3 }\ngear_2 = "stel"\n'
+)
+KEYS = [
+    "rougness",  # the clearest one first; that roughness is missing follows from it
+    "gears.module",
+    "materials.gear_1.poisson",
+    "materials.gear_2",
+    "lubricant.name",
+    "models.friction.1",
+    "film.solver",
+]
+
+
+@pytest.mark.parametrize("command", ["check", "show", "run"])
+def test_every_error_has_its_sentence(told: Run, command: str) -> None:
+    status, out, err = told(WRONG, command=command)
+    assert (status, out) == (2, "")
+    assert [line.partition("bad.toml: ")[2].partition(":")[0] for line in err] == KEYS
+    assert err[0] == "error: bad.toml: rougness: is not a known table; did you mean roughness?"
+    assert all(line.startswith("error: ") for line in err)
+
+
+def test_a_misspelt_family_says_nothing_of_its_keys(told: Run) -> None:
+    text = PAIR.replace("[gears]", '[gears]\nfamily = "strain_wav"\ntooth = { set = "liu" }')
+    _, _, err = told(text.replace('"1500 rpm"', '"1500"'))
+    assert [line.split(": ")[2] for line in err] == ["gears.family", "operation.speed"]
+
+
+def test_every_variant_is_checked_and_each_error_told_once(told: Run) -> None:
+    text = PAIR.replace('"60 degC"', '"60 degK"')
+    text += '[variants.a.operation]\nspeed = 3\n[variants.b.gears]\nmodule = "0 mm"\n'
+    status, _, err = told(text)
+    assert status == 2
+    assert [line.split(": ")[2] for line in err] == [
+        "operation.speed",
+        "operation.temperature",
+        "gears.module",
+    ]
+    _, _, err = told(text, "--variant", "b", "--set", "gears.module=2 mm")
+    assert [line.split(": ")[2] for line in err] == ["operation.temperature"]
+
+
+def test_a_sound_case_is_ok_with_what_warns(told: Run) -> None:
+    assert told(PAIR) == (0, "ok\n", [])
+    status, out, _ = told(PAIR.replace("[23, 61]", "[12, 120]"))
+    assert status == 0
+    assert out.startswith("ok\nwarning: The flanks of gear 1 are undercut")
+
+
+def test_from_python_they_are_one_error(tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text(WRONG)
+    with pytest.raises(InputError, match="rougness") as caught:
+        load_case(str(path))
+    assert isinstance(caught.value, CollectedInputError)
+    assert [error.key for error in caught.value.errors] == KEYS
+    assert str(caught.value).count("\n") == len(KEYS) - 1
+    assert caught.value.at(file="other").errors[1].file == "other"

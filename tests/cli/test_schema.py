@@ -1,0 +1,99 @@
+"""The JSON Schema of case files: valid itself, and of one mind with the reader where a schema can be."""
+
+import json
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+from sound import PAIR
+
+from pitchpoint import cli
+from pitchpoint.cases.document import resolve
+from pitchpoint.cases.handed_over import as_toml
+from pitchpoint.cases.json_schema import case_schema
+from pitchpoint.cases.library import find, names, path_of
+from pitchpoint.gears.families import TABLES, sample_of
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+FILES = [*sorted(EXAMPLES.glob("*.toml")), *map(path_of, names()), *map(sample_of, TABLES)]
+
+
+@pytest.fixture(scope="module")
+def schema() -> dict[str, Any]:
+    return case_schema()
+
+
+@pytest.fixture(scope="module")
+def validator(schema: dict[str, Any]) -> Draft202012Validator:
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+def complaints(validator: Draft202012Validator, text: str) -> list[str]:
+    return [error.message for error in validator.iter_errors(tomllib.loads(text))]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_sound_cases_are_valid(path: Path, validator: Draft202012Validator) -> None:
+    assert complaints(validator, path.read_text("utf-8")) == []
+
+
+def test_a_case_that_was_handed_over_is_valid(validator: Draft202012Validator) -> None:
+    name, tree = find("csd25")
+    for case in (name, str(EXAMPLES / "two_stage.toml")):
+        name, tree = find(case)
+        settings = {"operation.temperature": "40 degC"}
+        document = resolve(tree, name=name, variant="default", settings=settings)
+        assert complaints(validator, as_toml(document)) == []
+
+
+@pytest.mark.parametrize(
+    ("sound", "broken"),
+    [
+        ("module =", "modul ="),
+        ('"2 mm"', "2"),
+        ('"2 mm"', '"two mm"'),
+        ('module = "2 mm"\n', ""),
+        ("[roughness]", "[rougness]"),
+        ("[gears]", '[gears]\nfamily = "strain"'),
+        ("[gears]", "[gears]\nprofile_shift = 3.5"),
+        ("[gears]", "[gears]\nprofile_shift = [0.1, 0.2, 0.3]"),
+        ("[operation]", '[models]\nfriction = "nobody_1999"\n[operation]'),
+        ("[operation]", '[models]\nload_sharing = "nobody"\n[operation]'),
+        ('"75W90-A"', '{ value = "75W90-A", status = "guessed" }'),
+    ],
+)
+def test_what_is_wrong_is_not(sound: str, broken: str, validator: Draft202012Validator) -> None:
+    assert not complaints(validator, PAIR)
+    assert sound in PAIR
+    assert complaints(validator, PAIR.replace(sound, broken))
+
+
+def test_variants_say_what_differs(validator: Draft202012Validator) -> None:
+    assert not complaints(validator, PAIR + '[variants.a.gears]\nmodule = "3 mm"\n')
+    assert complaints(validator, PAIR + '[variants.a.gears]\nmodul = "3 mm"\n')
+
+
+def test_editors_show_units_ranges_and_usual_values(schema: dict[str, Any]) -> None:
+    angle = schema["$defs"]["CylindricalGears"]["properties"]["pressure_angle"]
+    assert "an angle; allowed is 5 deg to 45 deg; units: rad, deg" in angle["description"]
+    assert angle["description"].endswith("default 20 deg")
+    oils = schema["$defs"]["Oil"]["properties"]["name"]["anyOf"][0]
+    assert "pao-vg-150" in oils["enum"]
+    assert "null" not in json.dumps(schema)
+
+
+def test_the_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "pitchpoint.json"
+    for status in (0, 2):  # the second time it is there already
+        monkeypatch.setattr(sys, "argv", ["pitchpoint", "schema", "-o", str(path)])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        assert caught.value.code == status
+    assert json.loads(path.read_text("utf-8"))["title"] == "Case file of Pitchpoint"
+    assert "is there already" in capsys.readouterr().err
