@@ -77,7 +77,8 @@ def with_wear(mesh: Mesh, gears: GearsTable, worn: WornTable) -> tuple[Mesh, str
             f" They conform; their contacts are taken to keep {FLATTEST:g} of the relative curvature they "
             "had, and pressures are a guess."
         )
-    return mesh.worn(cells.surfaces(array(gone))), told
+    # Flanks from which nothing is gone are those as new, to the last bit.
+    return mesh.worn(cells.surfaces(array(gone))) if gone.any() else mesh, told
 
 
 def _wrong(name: str, told: str) -> InputError:
