@@ -1,7 +1,6 @@
 """A strain wave gear from its file: every part is computed, kept and shown as for other gears."""
 
 import json
-import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from pages import block
 from sound import PAIR, WAVE
 
 import pitchpoint as pp
@@ -249,14 +249,13 @@ def test_running_without_load(drive: Outcome) -> None:
     assert words["torque without load at 2000\u00a0rpm"] == show.quantity("no_load_torque", told)
 
 
-def test_python_of_the_readme(
+def test_python_of_the_documentation(
     drive: Outcome, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """As it stands there, with the drive at hand in place of the one that it runs."""
-    text = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
-    block = re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)[-1]
+    text = block("guide/python.md", "python", "strain_wave.toml")
     monkeypatch.setattr(pp, "run", lambda case: {"default": drive})
-    exec(compile(block, "README.md", "exec"), {})
+    exec(compile(text, "guide/python.md", "exec"), {})
     told = capsys.readouterr().out
     assert str(PARTS) in told
     assert all(name in told for name in ("wall of the cup", "K1", "starting_torque"))

@@ -1,6 +1,7 @@
-"""Every block of the README runs, but for the two commands that set a clone up."""
+"""Every block of README and documentation runs, but for the two commands that set a clone up."""
 
 import re
+import runpy
 import shlex
 import sys
 import tomllib
@@ -11,24 +12,33 @@ from typing import Any
 import numpy as np
 import pytest
 import typer
+from pages import PAGES, ROOT, block, blocks
 
 from pitchpoint import cli
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.engagement import check_heights
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.height_maps import height_maps
-from pitchpoint.cases.schema import Target, validate
+from pitchpoint.cases.schema import Target, keys, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.store import dataset, save
+from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run
 from pitchpoint.runs.jobs import jobs
 
-README = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
-BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-TOML = [text for kind, text in BLOCKS if kind == "toml"]
-PAIR, MODIFIED, PLASTIC, MOTION, FILM, FINITE, HEIGHTS, WEAR, WORN, *OTHERS = TOML
-RACK, TORUS, WAVE, STAGES, BALL, TARGETS = OTHERS
-SHELL = [line for kind, text in BLOCKS if kind == "sh" for line in text.splitlines()]
+(PAIR,) = blocks("README.md", "toml")
+_, MODIFIED = blocks("guide/pairs.md", "toml")
+(PLASTIC,) = blocks("guide/stiffness.md", "toml")
+(MOTION,) = blocks("guide/motion.md", "toml")
+FILM, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
+WEAR, WORN = blocks("guide/wear.md", "toml")
+(STAGES,) = blocks("guide/stages.md", "toml")
+(TARGETS,) = blocks("guide/targets.md", "toml")
+(RACK,) = blocks("gears/rack_and_pinion.md", "toml")
+(TORUS,) = blocks("gears/torus.md", "toml")
+(WAVE,) = blocks("gears/strain_wave.md", "toml")
+(BALL,) = blocks("gears/ball_on_disc.md", "toml")
+SHELL = [line for page in PAGES for text in blocks(page, "sh") for line in text.splitlines()]
 SET_UP = [
     "sh bootstrap && .venv/bin/pitchpoint run tian2024",
     "sh bootstrap dev && .venv/bin/pytest",
@@ -49,6 +59,15 @@ CASES = {
     "targets": (WAVE, TARGETS),
 }
 """Whole cases: a block that goes on with another stands behind it."""
+
+PYTHON = {
+    ("README.md", "result.summary"),
+    ("guide/films.md", "solve_lines"),
+    ("guide/films.md", "solve_patch"),
+    ("guide/python.md", "write_report"),
+    ("guide/python.md", "strain_wave.toml"),
+}
+"""Blocks of Python by page and by what they alone hold; each is run by a test."""
 
 
 def merged(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
@@ -71,9 +90,37 @@ def tree(name: str) -> dict[str, Any]:
 
 
 def test_every_block_is_known() -> None:
-    assert {kind for kind, _ in BLOCKS} == {"sh", "toml", "python"}
-    assert sum(kind == "python" for kind, _ in BLOCKS) == 4
+    kinds = re.findall(r"^```([^`\s]+)$", "\n".join(PAGES.values()), re.MULTILINE)
+    assert set(kinds) <= {"sh", "toml", "python", "{toctree}"}
+    assert all(block(page, "python", holding) for page, holding in PYTHON)
+    assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 16
+    assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
+
+
+def test_every_link_leads_somewhere() -> None:
+    for page, text in PAGES.items():
+        folder = ROOT if page == "README.md" else (ROOT / "docs" / page).parent
+        for target in re.findall(r"\]\(([^)#]+)", text):
+            assert (folder / target).exists(), (page, target)
+
+
+def test_the_reference_is_that_of_the_code(tmp_path: Path) -> None:
+    """`python docs/generate.py docs/reference` writes it anew."""
+    generate = runpy.run_path(str(ROOT / "docs" / "generate.py"))
+    generate["write"](tmp_path)
+    for path in tmp_path.iterdir():
+        assert path.read_text("utf-8") == (ROOT / "docs/reference" / path.name).read_text("utf-8")
+
+
+def test_every_key_and_variable_has_its_line(tmp_path: Path) -> None:
+    known = (ROOT / "docs/reference/keys.md").read_text("utf-8")
+    assert {key.rpartition(".")[2] for key in keys()} <= set(
+        re.findall(r"^\| `(\w+)`", known, re.M)
+    )
+    listed = (ROOT / "docs/reference/variables.md").read_text("utf-8")
+    assert VARIABLES.keys() <= set(re.findall(r"^\| `(\w+)`", listed, re.M))
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -121,7 +168,10 @@ def test_the_table_of_heights(tmp_path: Path) -> None:
 
 
 def test_the_involute_flexspline_of_the_text() -> None:
-    (found,) = re.findall(r"An involute flexspline is `tooth = (\{.*?\})`", README)
+    (found,) = re.findall(
+        r"An involute flexspline is `tooth = (\{.*?\})`",
+        " ".join(PAGES["gears/strain_wave.md"].split()),
+    )
     given = tree("wave")
     given["gears"]["tooth"] = tomllib.loads(f"value = {found}")["value"]
     assert Variant(given, "README.md", "default").built({}).case.gears.tooth.form == "involute"
@@ -145,7 +195,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("line", [line for line in SHELL if line not in SET_UP])
+@pytest.mark.parametrize("line", dict.fromkeys(line for line in SHELL if line not in SET_UP))
 def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parsed and laid out as far as the computation itself."""
     laid_out = []
@@ -167,13 +217,13 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert laid_out[0]["title"] == "First stage of a robot joint"
 
 
-@pytest.mark.parametrize("sweep", re.findall(r"`--sweep (\S+=\S+)`", README))
+@pytest.mark.parametrize("sweep", re.findall(r"`--sweep (\S+=\S+)`", PAGES["guide/pairs.md"]))
 def test_a_sweep_in_the_text(sweep: str, folder: Path) -> None:
     assert run.describe("pair.toml", studies=cli._studies([sweep]))
 
 
 def test_the_table_of_commands_is_whole() -> None:
-    table = README.partition("### Commands")[2].partition("CASE is")[0]
+    table = PAGES["guide/commands.md"].partition("CASE is")[0]
     listed = {
         words.split()[0]: words for words in re.findall(r"^\| `(.+?)` \|", table, re.MULTILINE)
     }
@@ -184,19 +234,30 @@ def test_the_table_of_commands_is_whole() -> None:
         assert set(re.findall(r"(--?[a-z]+)", words)) <= known
 
 
+def ran(page: str, holding: str) -> dict[str, Any]:
+    """What a block of Python leaves."""
+    left: dict[str, Any] = {}
+    exec(compile(block(page, "python", holding), page, "exec"), left)
+    return left
+
+
+def test_the_python_of_the_readme(folder: Path) -> None:
+    left = ran("README.md", "result.summary")
+    assert left["grid"]["mean_efficiency"].dims[1:] == ("operation.torque", "gears.face_width")
+    assert (folder / "again.html").is_file()
+
+
 def test_films_without_any_gear(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (block,) = (text for kind, text in BLOCKS if kind == "python" and "solve_lines" in text)
-    exec(compile(block, "README.md", "exec"), {})
+    ran("guide/films.md", "solve_lines")
     assert capsys.readouterr().out.splitlines()[-1].startswith("True ")
     assert (tmp_path / "films.nc").is_file()
 
 
 def test_contacts_of_finite_length(capsys: pytest.CaptureFixture[str]) -> None:
-    (block,) = (text for kind, text in BLOCKS if kind == "python" and "solve_patch" in text)
-    exec(compile(block, "README.md", "exec"), {})
+    ran("guide/films.md", "solve_patch")
     told = capsys.readouterr().out
     assert "Code.SOLVED" in told
     assert "not found" not in told
@@ -204,8 +265,7 @@ def test_contacts_of_finite_length(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    block = next(text for kind, text in BLOCKS if kind == "python" and "write_report" in text)
-    exec(compile(block, "README.md", "exec"), {})
+    ran("guide/python.md", "write_report")
     assert (folder / "again.html").stat().st_size > 1_000_000
     out = capsys.readouterr().out
     assert "instantaneous efficiency" in out
@@ -214,6 +274,6 @@ def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_the_parts_of_a_strain_wave_drive_are_those_of_the_text() -> None:
     """What the block reads of them is run beside a drive, in `test_strain_wave_runs`."""
-    (told,) = re.findall(r"print\(list\(drive\.parts\)\)\n# (.*)", README)
+    (told,) = re.findall(r"print\(list\(drive\.parts\)\)\n# (.*)", PAGES["guide/python.md"])
     made = [job.name for job in jobs(Variant(tree("wave"), "README.md", "default"), {})]
     assert told.split(", ") == made

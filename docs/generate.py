@@ -1,0 +1,171 @@
+"""Pages of the reference that come from the schema and the registries: `python docs/generate.py FOLDER`."""
+
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+import pitchpoint
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.cases.schema import Case, _marks, _quantity
+from pitchpoint.input.tables import alternatives
+from pitchpoint.results.variables import VARIABLES
+from pitchpoint.runs.catalogue import entries
+
+__all__ = ["PAGES", "keys_page", "models_page", "variables_page", "write"]
+
+Row = Sequence[str]
+
+
+def keys_page() -> str:
+    """Every key of a case file, by table."""
+    intro = (
+        'Every table of a case file and its keys. A quantity is written with its unit (`"2 mm"`), in that of '
+        "the column or any other of its kind. `pitchpoint show FILE` lists what a file leaves open."
+    )
+    parts = [_page_head("Keys of a case file", intro)]
+    for path, model in _tables("", Case):
+        parts.append(f"## {_titled(path)}\n\n{_words(model.__doc__)}\n")
+        rows = [_key_row(name, info) for name, info in model.model_fields.items()]
+        parts.append(_table(("key", "value", "allowed", "unless given"), rows))
+    return "\n".join(parts)
+
+
+def variables_page() -> str:
+    """Every variable that a result may hold."""
+    own = {name: one for each in ANALYSES.values() for name, one in each.variables.items()}
+    rows = [
+        (f"`{name}`", one.long_name, one.symbol, one.unit, one.display)
+        for name, one in sorted({**VARIABLES, **own}.items())
+    ]
+    intro = (
+        "Names in the datasets of a result, in SI; the last column is the unit in which screen and report "
+        "show them."
+    )
+    head = ("name", "what it is", "symbol", "unit", "shown in")
+    return _page_head("Variables of a result", intro) + "\n" + _table(head, rows)
+
+
+def models_page() -> str:
+    """Every law, oil and material with its range and sources."""
+    parts = [_page_head("Laws, oils and materials", "What a case file may choose by name.")]
+    known = entries()
+    for kind in dict.fromkeys(one["kind"] for one in known):
+        rows = [
+            (f"`{one['name']}`", one["title"], one["range"], one["sources"], one["note"])
+            for one in known
+            if one["kind"] == kind
+        ]
+        parts.append(f"## {kind[0].upper()}{kind[1:]}\n")
+        parts.append(_table(("name", "what it is", "range", "sources", "note"), rows))
+    return "\n".join(parts)
+
+
+def api_page() -> str:
+    """Every public name, from its docstring."""
+    intro = "What `import pitchpoint as pp` has. Names are loaded when they are first asked for."
+    parts = [_page_head("Python", intro)]
+    for name in sorted(pitchpoint._LAZY, key=str.lower):
+        what = getattr(pitchpoint, name)
+        kind = "class" if isinstance(what, type) else "function"
+        options = "\n   :members:" if kind == "class" else ""
+        directive = f".. auto{kind}:: {what.__module__}.{name}{options}"
+        parts.append(f"## pp.{name}\n\n```{{eval-rst}}\n{directive}\n```\n")
+    return "\n".join(parts)
+
+
+PAGES = {
+    "keys.md": keys_page,
+    "variables.md": variables_page,
+    "models.md": models_page,
+    "api.md": api_page,
+}
+
+
+def write(folder: Path) -> None:
+    """Write all pages into a folder, those that have not changed left alone."""
+    folder.mkdir(exist_ok=True)
+    for name, page in PAGES.items():
+        path, text = folder / name, page()
+        if not path.exists() or path.read_text("utf-8") != text:
+            path.write_text(text, "utf-8")
+
+
+def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
+    """Tables below a table, itself first, every form of each."""
+    yield path, model
+    for name, info in model.model_fields.items():
+        below = f"{path}.{name}".strip(".")
+        if get_origin(info.annotation) is dict:
+            inner = alternatives(get_args(info.annotation)[1])
+            below += ".NAME"
+        elif get_origin(info.annotation) is tuple:
+            inner = alternatives(get_args(info.annotation)[0])
+        else:
+            inner = alternatives(info.annotation)
+        for form, each in inner.items():
+            yield from _tables(f"{below} ({form})" if len(inner) > 1 else below, each)
+
+
+def _titled(path: str) -> str:
+    return f"`[{path}]`" if path else "The file itself"
+
+
+def _key_row(name: str, info: FieldInfo) -> Row:
+    quantity = _quantity(info)
+    allowed = quantity.allowed.removeprefix("allowed is ") if quantity else ""
+    return f"`{name}`", _kind(info), allowed, _default(info)
+
+
+def _kind(info: FieldInfo) -> str:
+    """What a value is, in words."""
+    quantity = _quantity(info)
+    if quantity is not None:
+        return "number" if quantity.kind == "dimensionless" else quantity.kind
+    if alternatives(info.annotation):
+        return "table, or a name" if any(_marks(info.annotation)) else "table"
+    names = [repr(one) for one in _literals(info.annotation)]
+    return ", ".join(f'`"{name[1:-1]}"`' for name in names) or "text, a name or a list"
+
+
+def _literals(annotation: Any) -> Iterator[str]:
+    for one in get_args(annotation):
+        if isinstance(one, str):
+            yield one
+        else:
+            yield from _literals(one)
+
+
+def _default(info: FieldInfo) -> str:
+    if info.is_required():
+        return "needed"
+    value = info.default if info.default_factory is None else None
+    if value is None or isinstance(value, Mapping | BaseModel) or value == () or value == "":
+        return ""
+    quantity = _quantity(info)
+    if quantity is not None and isinstance(value, float | int):
+        return quantity.show(float(value))
+    if quantity is not None and isinstance(value, tuple) and len(set(value)) == 1:
+        return quantity.show(float(value[0]))
+    return f"`{value}`"
+
+
+def _page_head(title: str, intro: str) -> str:
+    return f"# {title}\n\n{intro}\n"
+
+
+def _words(doc: str | None) -> str:
+    return " ".join((doc or "").split("Attributes:")[0].split())
+
+
+def _table(head: Row, rows: Sequence[Row]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    cells = ([cell.replace("|", "\\|").replace("\n", " ") for cell in line] for line in lines)
+    return "\n".join(f"| {' | '.join(line)} |" for line in cells) + "\n"
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))
