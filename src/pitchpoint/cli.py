@@ -438,6 +438,33 @@ def schema(
     _write(json.dumps(case_schema(), indent=1, ensure_ascii=False) + "\n", output)
 
 
+def _families_from(incomplete: str) -> list[str]:
+    """Families that begin so."""
+    from pitchpoint.cases.template import FAMILIES
+
+    return [name for name in FAMILIES if name.startswith(incomplete)]
+
+
+@app.command()
+def new(
+    family: Annotated[
+        str,
+        typer.Argument(
+            metavar="FAMILY",
+            help="spur, helical, strain_wave, rack_and_pinion, torus, ball_on_disc or two_stages.",
+            autocompletion=_families_from,
+        ),
+    ],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="Default: the screen.")
+    ] = None,
+) -> None:
+    """Write a case file to begin with: it runs as it is, every optional key is a remark in it."""
+    from pitchpoint.cases.template import template
+
+    _write(template(family), output)
+
+
 def _write(text: str, path: Path | None) -> None:
     """Text into a file that is not there yet, or to the screen."""
     if path is None:

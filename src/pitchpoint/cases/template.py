@@ -1,0 +1,237 @@
+"""Case files to begin with: one for each family, with every optional key as a remark."""
+
+import inspect
+import textwrap
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib import resources
+from typing import Any, Literal, get_args, get_origin
+
+import tomlkit
+from pydantic import BaseModel, BeforeValidator
+from pydantic.fields import FieldInfo
+
+from pitchpoint.cases.document import STAGES, Tree
+from pitchpoint.cases.schema import Case, DriveCase, quantity_of
+from pitchpoint.errors import InputError
+from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.input.quantities import Pair, Quantity
+from pitchpoint.input.tables import alternatives, forms, tag
+from pitchpoint.registry import alike, nearest
+
+__all__ = ["FAMILIES", "template"]
+
+_CYLINDRICAL = {"spur": {}, "helical": {"helix_angle": "15 deg"}}
+"""Kinds of cylindrical gears, and what their table has more."""
+
+_STAGES = "two_stages"
+
+FAMILIES = (*(tag(table) for table in TABLES), *_CYLINDRICAL, _STAGES)
+"""What a case file may begin with."""
+
+_MEANT = ("gears", STAGES, "lubricant", "roughness", "operation", "models")
+"""Tables that stand in it; all others are remarks."""
+
+_LEFT_OUT = ("title", "summary", "source", "targets", "issues", "formulas", "studies")
+_WIDTH = 100
+_FEW = 9
+"""Names that are listed in a remark."""
+
+
+def template(family: str) -> str:
+    """A case file that runs as it is, its optional keys as remarks with kind, range and usual value.
+
+    Args:
+        family: one of `FAMILIES`.
+
+    Raises:
+        InputError: there is no such family.
+    """
+    found = family if family in FAMILIES else next(iter(alike(family, FAMILIES)[:1]), "")
+    if "".join(filter(str.isalnum, found)) != "".join(filter(str.isalnum, family.casefold())):
+        raise InputError(f"'{family[:60]}' is no family of gears{nearest(family, FAMILIES)}")
+    model, tree = _sample(found)
+    lines = [
+        f"# A case of Pitchpoint, {found.replace('_', ' ')}. It runs as it is: pitchpoint run FILE.",
+        "# Keys behind a # are optional; what they say is the usual value, or an example of one.",
+        "# pitchpoint check FILE tells all that is wrong, pitchpoint models every law, oil and material.",
+        f"title = {_toml('My ' + found.replace('_', ' '))}",
+        *(line for key in model.model_fields for line in _of_table(model, key, tree)),
+        "",
+        "# [variants.rough.roughness]  # a variant says what differs",
+        '# ra = "0.8 um"',
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _sample(family: str) -> tuple[type[BaseModel], Tree]:
+    """Sound tables of a family, from the sample beside it."""
+    if family == _STAGES:
+        path = resources.files("pitchpoint.cases") / "stages.toml"
+        return DriveCase, tomllib.loads(path.read_text("utf-8"))
+    name = "cylindrical" if family in _CYLINDRICAL else family
+    table = next(table for table in TABLES if tag(table) == name)
+    tree = tomllib.loads(sample_of(table).read_text("utf-8"))
+    tree["gears"] = {"family": name, **tree["gears"], **_CYLINDRICAL.get(family, {})}
+    return Case, tree
+
+
+def _of_table(model: type[BaseModel], key: str, tree: Tree) -> Iterator[str]:
+    """Lines of a table at the top of the file."""
+    if key in _LEFT_OUT:
+        return
+    info, given = model.model_fields[key], tree.get(key)
+    if key == STAGES:
+        yield from _of_stages(tree[STAGES])
+    elif get_origin(info.annotation) is dict:
+        yield ""
+        yield from (f"# {line}" for line in tomlkit.dumps({key: given or {}}).splitlines() if given)
+    else:
+        meant = forms(info.annotation, given)[0]
+        yield from _lines(meant, key, given or {}, live=key in _MEANT and key in tree)
+
+
+def _of_stages(stages: Sequence[Tree]) -> Iterator[str]:
+    yield from (
+        "",
+        "# From the input to the output; a stage may have materials and models of its own.",
+    )
+    for stage in stages:
+        yield "[[stages]]"
+        yield from (f"{key} = {_toml(value)}" for key, value in stage.items())
+
+
+def _lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -> Iterator[str]:
+    """Lines of a table with all of its keys, then those of the tables in it."""
+    yield ""
+    yield from _remark(model)
+    yield f"{'' if live else '# '}[{path}]"
+    inner = []
+    for key, info in model.model_fields.items():
+        tables = _inner(info, given.get(key))
+        if tables is not None:
+            inner.append((key, tables))
+        elif live and key in given:
+            yield f"{key} = {_toml(given[key])}{_words(info, given[key])}"
+        else:
+            value = _example(info)
+            yield f"# {key} = {_toml(value)}{_words(info, value)}"
+    for key, table in inner:
+        below = live and key in given and key != "deviations"
+        yield from _lines(table, f"{path}.{key}", given.get(key, {}), live=below)
+
+
+def _inner(info: FieldInfo, given: Any) -> type[BaseModel] | None:
+    """The table that stands at a key; None for values, and for what may be a name as well."""
+    tables = alternatives(info.annotation)
+    several = get_origin(info.annotation) in (tuple, dict)
+    by_name = any(_known(one) for option in get_args(info.annotation) for one in _metadata(option))
+    if not tables or several or by_name:
+        return None
+    return forms(info.annotation, given)[0]
+
+
+def _metadata(option: Any) -> tuple[Any, ...]:
+    return tuple(getattr(option, "__metadata__", ()))
+
+
+def _remark(model: type[BaseModel]) -> Iterator[str]:
+    """What the table is, up to its attributes."""
+    words = inspect.getdoc(model) or ""
+    for part in words.partition("\nAttributes:")[0].strip().split("\n\n"):
+        plain = " ".join(part.replace("`", "").split())
+        yield from (f"# {line}" for line in textwrap.wrap(plain, _WIDTH - 2))
+
+
+def _known(mark: Any) -> list[str]:
+    """Names out of a registry that a key takes; none where it takes others."""
+    function = getattr(mark, "func", None) if isinstance(mark, BeforeValidator) else None
+    known: Callable[[], list[str]] | None = getattr(function, "known", None)
+    return [] if known is None else list(known())
+
+
+def _names(info: FieldInfo) -> list[str]:
+    every = [*info.metadata, *(one for opt in get_args(info.annotation) for one in _metadata(opt))]
+    return next(filter(None, map(_known, every)), [])
+
+
+def _options(info: FieldInfo) -> tuple[Any, ...]:
+    each = (info.annotation, *get_args(info.annotation))
+    return next((get_args(one) for one in each if get_origin(one) is Literal), ())
+
+
+def _example(info: FieldInfo) -> Any:
+    """The usual value of a key, or one that it may have."""
+    quantity, usual = quantity_of(info), info.default
+    if quantity is not None:
+        value = _of_quantity(quantity, usual if not info.is_required() else None)
+        listed = get_origin(info.annotation) is tuple and not _pair(info)
+        return [value] if listed else value
+    if isinstance(usual, str | bool) and (usual != "" or not _names(info)):
+        return usual
+    if choices := (_names(info) or _options(info)):
+        return choices[0]
+    tables = alternatives(info.annotation)
+    if tables:
+        table = next(iter(tables.values()))
+        made = {key: _example(one) for key, one in table.model_fields.items() if one.is_required()}
+        return [made] if get_origin(info.annotation) is tuple else made
+    return False if bool in (info.annotation, *get_args(info.annotation)) else "text"
+
+
+def _pair(info: FieldInfo) -> bool:
+    every = [*info.metadata, *(one for opt in get_args(info.annotation) for one in _metadata(opt))]
+    return any(isinstance(one, Pair) for one in every)
+
+
+def _of_quantity(quantity: Quantity, usual: Any) -> Any:
+    """The usual value in the unit in which it is shown, or one in its range."""
+    if isinstance(usual, tuple) and usual and isinstance(usual[0], float):
+        each = [_read(quantity.show(value)) for value in usual]
+        return each[0] if len(set(map(str, each))) == 1 else each
+    if isinstance(usual, float):
+        return _read(quantity.show(usual))
+    number = quantity.example.strip('"').partition(" ")[0]
+    written = "" if quantity.unit == "1" else f" {quantity.unit}"
+    for text in (f"{number}{written}", quantity.show(quantity.high)):
+        try:
+            quantity.read(_read(text))
+        except InputError:
+            continue
+        return _read(text)
+    return _read(quantity.show(quantity.low))
+
+
+def _read(text: str) -> str | float:
+    """A number where the text is one."""
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return int(number) if number == round(number) and abs(number) < 1e9 else number
+
+
+def _words(info: FieldInfo, value: Any) -> str:
+    """What a key takes, as a remark behind it."""
+    quantity, names = quantity_of(info), _names(info)
+    if quantity is not None:
+        told = quantity.allowed
+    elif names:
+        told = f"one of {', '.join(names)}" if len(names) <= _FEW else "see pitchpoint models"
+    elif _options(info):
+        told = f"one of {', '.join(map(str, _options(info)))}" if len(_options(info)) > 1 else ""
+    else:
+        told = ""
+    return f"  # {told}" if told else ""
+
+
+def _toml(value: Any) -> str:
+    """A value as TOML has it, tables in braces."""
+    if isinstance(value, Mapping):
+        inner = ", ".join(
+            f"{tomlkit.key(key).as_string()} = {_toml(one)}" for key, one in value.items()
+        )
+        return f"{{ {inner} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml, value))}]"
+    return str(tomlkit.item(value).as_string())
