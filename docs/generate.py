@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 import pitchpoint
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.schema import Case, _marks, _quantity
+from pitchpoint.cases.schema import Case, _marks, quantity_of
 from pitchpoint.input.tables import alternatives
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
@@ -115,14 +115,14 @@ def _titled(path: str) -> str:
 
 
 def _key_row(name: str, info: FieldInfo) -> Row:
-    quantity = _quantity(info)
+    quantity = quantity_of(info)
     allowed = quantity.allowed.removeprefix("allowed is ") if quantity else ""
     return f"`{name}`", _kind(info), allowed, _default(info)
 
 
 def _kind(info: FieldInfo) -> str:
     """What a value is, in words."""
-    quantity = _quantity(info)
+    quantity = quantity_of(info)
     if quantity is not None:
         return "number" if quantity.kind == "dimensionless" else quantity.kind
     if alternatives(info.annotation):
@@ -145,7 +145,7 @@ def _default(info: FieldInfo) -> str:
     value = info.default if info.default_factory is None else None
     if value is None or isinstance(value, Mapping | BaseModel) or value == () or value == "":
         return ""
-    quantity = _quantity(info)
+    quantity = quantity_of(info)
     if quantity is not None and isinstance(value, float | int):
         return quantity.show(float(value))
     if quantity is not None and isinstance(value, tuple) and len(set(value)) == 1:
