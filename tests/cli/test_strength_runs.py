@@ -114,7 +114,7 @@ def test_the_record_repeats_the_rating(outcome: Outcome, folder: Path) -> None:
 def test_what_is_assumed_stands_beside_the_safeties(outcome: Outcome, folder: Path) -> None:
     data = outcome.parts["strength"]
     (assumed,) = json.loads(data.attrs["assumed"])
-    assert assumed.startswith("Assumed, [strength] has none: f_ZCa = 1.2")
+    assert assumed.startswith("Assumed where [strength] says nothing: f_ZCa = 1.2")
     for given in ("K_A", "K_Hβ", "K_Hα", "K_v", "endless"):
         assert given not in assumed
     (printed,) = STRENGTH.screen(outcome)
@@ -163,7 +163,7 @@ def test_gears_without_cylindrical_pairs_are_refused_with_a_sentence(table: Any)
     sample = str(sample_of(table))
     tree = tomllib.loads(Path(sample).read_text("utf-8"))
     built = Variant(tree, "sample.toml", "default").built({})
-    assert ANALYSIS.lacks(built) == "ISO 6336 rates pairs of cylindrical gears, and these are none"
+    assert ANALYSIS.lacks(built) == "ISO 6336 rates pairs of cylindrical gears, not these"
     with pytest.raises(
         InputError, match="strength: was given; ISO 6336 rates pairs of cylindrical"
     ):

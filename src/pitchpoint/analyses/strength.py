@@ -46,7 +46,7 @@ def _unrated(built: Ready) -> str | None:
     """Why there are no teeth to rate."""
     if any(one.case.gears.rated for one in built.meshes):
         return None
-    return "ISO 6336 rates pairs of cylindrical gears, and these are none"
+    return "ISO 6336 rates pairs of cylindrical gears, not these"
 
 
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
@@ -101,7 +101,7 @@ def _method(pairs: Iterable[Built]) -> str:
 def _assumed(built: Built) -> list[str]:
     """What a rating takes where the case leaves it open, as one sentence."""
     listed = "; ".join(built.rated.assumed)
-    return [f"Assumed, [strength] has none: {listed}."] if listed else []
+    return [f"Assumed where [strength] says nothing: {listed}."] if listed else []
 
 
 def _ring(built: Built) -> bool:

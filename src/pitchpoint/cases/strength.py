@@ -22,7 +22,7 @@ from pitchpoint.strength.treatments import PLASTIC, TREATMENTS, Treatment
 __all__ = ["UNRATED", "Rated", "check_strength", "rated_case"]
 
 _SOURCES = ("iso_6336_2_2019", "iso_6336_3_2019", "iacs_m56_2021")
-UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, and these are none; leave it out"
+UNRATED = "was given; ISO 6336 rates pairs of cylindrical gears, not these; leave it out"
 _ASSUMED_CLASS = 7
 _ROOT_ROUGHNESS = 10e-6  # Rz of the test gears [m]
 _RZ_PER_RA = 6.0  # ISO 6336-2:2006, 12.3; IACS UR M56, 2.10 c
