@@ -79,13 +79,16 @@ def test_goodman_as_in_shigley() -> None:
     assert goodman_safety(alternating=25.0, mean=mean, **strengths) == pytest.approx(1.05, abs=5e-3)
 
 
-def test_the_torque_of_a_safety_of_one() -> None:
+@pytest.mark.parametrize("reversing", [False, True])
+def test_the_torque_of_a_safety_of_one(reversing) -> None:
     strengths = {"endurance_limit": 450e6, "tensile_strength": 1100e6}
     bends = {"alternating": np.array([120e6, 500e6]), "mean_bending": np.array([-30e6, 0.0])}
     shear = np.array([0.4e6, 0.8e6])
-    torque = torque_by_goodman(shear_per_torque=shear, **bends, **strengths)
-    mean = von_mises(normal=bends["mean_bending"], shear=shear * torque)
-    safety = goodman_safety(alternating=bends["alternating"], mean=mean, **strengths)
+    torque = torque_by_goodman(shear_per_torque=shear, **bends, **strengths, reversing=reversing)
+    swing, rest = (shear * torque, 0.0) if reversing else (0.0, shear * torque)
+    alternating = von_mises(normal=bends["alternating"], shear=swing)
+    mean = von_mises(normal=bends["mean_bending"], shear=rest)
+    safety = goodman_safety(alternating=alternating, mean=mean, **strengths)
     assert safety[0] == pytest.approx(1.0)
     assert torque[1] == 0.0
     assert safety[1] < 1.0

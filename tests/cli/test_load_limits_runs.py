@@ -56,12 +56,22 @@ def test_stresses_are_those_of_ring_and_tube(plain, asked) -> None:
     radius = np.sqrt(3.0 * 0.3e-3 * 0.3e-3 / strain[0])
     assert 28e-3 < radius < 30e-3  # the neutral line is below the pitch circle
     assert strain[0] == pytest.approx(2.0 * strain[1])
-    np.testing.assert_allclose(asked["alternating_stress"], 1.5 * plain["alternating_stress"])
+    np.testing.assert_allclose(asked["bending_amplitude"], 1.5 * plain["bending_amplitude"])
+    np.testing.assert_allclose(plain["alternating_stress"], plain["bending_amplitude"])
     np.testing.assert_allclose(
         plain["torsional_stress"], 67.0 / (2 * np.pi * radius**2 * np.array([0.6e-3, 0.3e-3]))
     )
     np.testing.assert_allclose(plain["mean_bending_stress"], 0.0, atol=1.0)
     assert "goodman_safety" not in plain
+
+
+def test_a_torque_that_reverses_makes_shear_alternate(built, plain) -> None:
+    data = load_limits_part(built('[gears.limits]\ntorque = "reversing"\n'))
+    bending, shear = (plain[name].values for name in ("bending_amplitude", "torsional_stress"))
+    np.testing.assert_allclose(data["alternating_stress"], np.hypot(bending, np.sqrt(3) * shear))
+    np.testing.assert_allclose(data["mean_stress"], 0.0, atol=1.0)
+    assert "reversed at its full height" in data.attrs["note"]
+    assert "which is steady" in plain.attrs["note"]
 
 
 def test_margins_and_life_are_those_of_the_case(asked) -> None:

@@ -30,9 +30,9 @@ AGAINST = ("ratcheting", "buckling")
 
 ESTIMATE = (
     "An estimate: a thin smooth ring bent to its wave, E t/2 times the change of its curvature, and a thin "
-    "tube under the torque of the operating point without losses, which is steady. Left out are the teeth, "
+    "tube under the torque of the operating point without losses, which is {}. Left out are the teeth, "
     "which stiffen the rim and notch it, the cone to which the wave bends the cup, its bottom, and tooth "
-    "forces that bend the rim: peaks are higher. A torque that reverses alternates too, and is not covered."
+    "forces that bend the rim: peaks are higher."
 )
 
 
@@ -59,10 +59,13 @@ def load_limits_part(built: Built) -> xr.Dataset:
         {"place": [*PLACES], **({"against": [*AGAINST]} if against else {})},
         title="load limits",
         warnings=[*_failing(stresses, against)],
-        note=ESTIMATE,
+        note=ESTIMATE.format(_SENSES[limits.torque]),
         concentrations=[limits.bending_concentration, limits.shear_concentration],
         scaled=int(limits.catalogue_diameter is not None),
     )
+
+
+_SENSES = {"steady": "steady", "reversing": "reversed at its full height"}
 
 
 def _mesh(built: Built) -> Any:
@@ -82,14 +85,18 @@ def _stresses(built: Built, limits: LoadLimits, torque: float) -> dict[str, np.n
     )
     swing, middle = np.ptp(bent) / 2.0, (bent.max() + bent.min()) / 2.0
     notched = limits.bending_concentration * young
-    alternating = face_stress(young=notched, thickness=thickness, curvature=swing)
+    amplitude = face_stress(young=notched, thickness=thickness, curvature=swing)
     bending = face_stress(young=notched, thickness=thickness, curvature=middle)
     per_torque = limits.shear_concentration * tube_shear(
         torque=1.0, radius=radius, thickness=thickness
     )
-    mean = von_mises(normal=bending, shear=torque * per_torque)
+    reversing = limits.torque == "reversing"
+    swinging, steady = (torque, 0.0) if reversing else (0.0, torque)
+    alternating = von_mises(normal=amplitude, shear=swinging * per_torque)
+    mean = von_mises(normal=bending, shear=steady * per_torque)
     found = {
         "bending_strain": thickness / 2.0 * np.abs(bent).max(),
+        "bending_amplitude": amplitude,
         "alternating_stress": alternating,
         "mean_bending_stress": bending,
         "torsional_stress": torque * per_torque,
@@ -104,10 +111,11 @@ def _stresses(built: Built, limits: LoadLimits, torque: float) -> dict[str, np.n
     return found | {
         "goodman_safety": goodman_safety(alternating=alternating, mean=mean, **strengths),
         "goodman_torque": torque_by_goodman(
-            alternating=alternating,
+            alternating=amplitude,
             mean_bending=bending,
             shear_per_torque=per_torque,
             **strengths,
+            reversing=reversing,
         ),
     }
 

@@ -117,13 +117,15 @@ def torque_by_goodman(
     shear_per_torque: Values,
     endurance_limit: float,
     tensile_strength: float,
+    reversing: bool = False,
 ) -> Values:
-    """Steady torque at which the safety of `goodman_safety` is one [N m]; zero where bending is too much.
+    """Torque at which the safety of `goodman_safety` is one [N m]; zero where bending is too much.
 
     Args:
         alternating, mean_bending: normal stresses, whatever the torque [Pa].
-        shear_per_torque: steady shear stress for a torque of 1 N m [Pa/(N m)].
+        shear_per_torque: shear stress for a torque of 1 N m [Pa/(N m)].
         endurance_limit, tensile_strength: [Pa].
+        reversing: True if the torque changes its sense, and shear alternates; steady by default.
 
     Example:
         >>> round(
@@ -140,9 +142,11 @@ def torque_by_goodman(
         ... )
         23.094
     """
-    left = np.maximum(tensile_strength * (1.0 - alternating / endurance_limit), 0.0)
-    equivalent = np.sqrt(np.maximum(left**2 - np.square(mean_bending), 0.0) / 3.0)
-    return np.asarray(equivalent / shear_per_torque)
+    ends = (endurance_limit, alternating), (tensile_strength, np.abs(mean_bending))
+    (strength, beside), (other, used) = ends if reversing else ends[::-1]
+    left = np.maximum(strength * (1.0 - used / other), 0.0)
+    shear = np.sqrt(np.maximum(left**2 - np.square(beside), 0.0) / 3.0)
+    return np.asarray(shear / shear_per_torque)
 
 
 def flexspline_torque(load: float, loaded: str, teeth: tuple[float, float]) -> float:

@@ -227,12 +227,14 @@ class LoadLimits(Table):
 
     The endurance limit is that of the finished flexspline under fully reversed bending. Torques against
     ratcheting and buckling are a maker's; where they are those of a drive of another size, its pitch diameter
-    stands beside them, and they go with the cube of the size. The life of the bearing goes from its rated
-    life; average torque and speed are those of the operating point where they are left out.
+    stands beside them, and they go with the cube of the size. With a torque that reverses the shear of the
+    flexspline alternates. The life of the bearing goes from its rated life; average torque and speed are
+    those of the operating point where they are left out.
     """
 
     bending_concentration: Annotated[float, CONCENTRATION] = 1.0
     shear_concentration: Annotated[float, CONCENTRATION] = 1.0
+    torque: Literal["steady", "reversing"] = "steady"
     endurance_limit: Annotated[float, STRENGTH] | None = None
     tensile_strength: Annotated[float, STRENGTH] | None = None
     ratcheting_torque: Annotated[float, LIMIT] | None = None

@@ -13,7 +13,7 @@ from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, T
 
 __all__ = ["INSPECTION", "backlash_rows", "measured_rows"]
 
-_SIDES = {"nominal": "", "upper": ", upper limit", "lower": ", lower limit"}
+_SIDES = {"nominal": "", "upper": ", thickest teeth", "lower": ", thinnest teeth"}
 
 _BACKLASH = {
     "backlash_on_circle": "on the pitch circles in operation j_wt",
@@ -22,7 +22,8 @@ _BACKLASH = {
 
 _USUAL = (
     "Unless given, span and balls touch nearest to the middle of the active flank, balls rounded up to two "
-    "digits. Mass and inertia are those of discs from bore to reference circle; a ring lies outside of it."
+    "digits. Mass and inertia are those of discs from bore to reference circle, of a ring from there "
+    "outwards; without bore_diameter a bore is 0.3 of the root circle, a ring ends at 1.2 of it."
 )
 
 Row = tuple[str, ...]

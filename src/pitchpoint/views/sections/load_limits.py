@@ -15,11 +15,12 @@ __all__ = ["LOAD_LIMITS", "limit_rows", "stress_rows"]
 
 _STRESSES = {
     "bending_strain": "largest strain by the wave ε_b",
-    "alternating_stress": "alternating bending stress σ_a",
-    "mean_bending_stress": "mean bending stress σ_m",
+    "bending_amplitude": "alternating bending stress σ_b",
+    "mean_bending_stress": "mean bending stress σ_b0",
     "torsional_stress": "shear stress by the torque τ",
-    "mean_stress": "mean stress, √(σ_m² + 3 τ²)",
-    "goodman_safety": "safety, 1/(σ_a/S_e + mean/S_u)",
+    "alternating_stress": "alternating equivalent stress σ_a, √(σ_b² + 3 τ²) with a torque that reverses",
+    "mean_stress": "mean equivalent stress σ_m, √(σ_b0² + 3 τ²) with one that is steady",
+    "goodman_safety": "safety, 1/(σ_a/S_e + σ_m/S_u)",
     "goodman_torque": "torque at which it is one",
 }
 
