@@ -1,13 +1,14 @@
 """What is said about a mesh cycle, and what is refused: a locked mesh, say."""
 
 from collections.abc import Mapping, Sequence
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails
-from pitchpoint.cases.laws import limits_words
+from pitchpoint.cases.laws import FRICTION, limits_words
 from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.cases.stages import Ready
 from pitchpoint.errors import ConvergenceError, InputError
@@ -100,7 +101,26 @@ def demand_motion(
         raise ConvergenceError(
             f"friction locks the mesh with {laws[law]} {_where(points[min(point, len(points) - 1)])}: "
             f"{jamming_words(float(acting[law, point]), float(limit[law, point]))}; no force carries the load"
+            f"{_far_outside(laws[law], float(acting[law, point]))}"
         )
+
+
+def _far_outside(name: str, acting: float) -> str:
+    """That a law is out of its range where it locks a mesh, as the end of a sentence; empty where it is not.
+
+    Example:
+        >>> _far_outside("constant", 0.9)
+        ''
+        >>> _far_outside("xu_2007", 0.9)[:60]
+        "; steel in oil has at most about 0.2: 'xu_2007' is far out o"
+    """
+    largest = FRICTION[name].largest if name in FRICTION else inf
+    if acting <= largest:
+        return ""
+    return (
+        f"; steel in oil has at most about {largest:g}: '{name}' is far out of its range here, without it in "
+        "models.friction the other laws are computed"
+    )
 
 
 def jamming_words(acting: float, limit: float) -> str:

@@ -30,7 +30,7 @@ from pitchpoint.registry import Registry
 
 __all__ = ["OF_CONTACTS", "OF_RESULTS", "AtWork", "Check", "Result", "implausible", "unlikely"]
 
-PRESSURE = Quantity("pressure", 0.0, 1e15, "GPa")
+GPA, MPA = (Quantity("pressure", 0.0, 1e15, unit) for unit in ("GPa", "MPa"))
 LENGTH = Quantity("length", 0.0, 1e3, "um")
 
 MEAN_PRESSURE: Final[Mapping[Shape, float]] = {"line": pi / 4.0, "ellipse": 2.0 / 3.0}
@@ -142,19 +142,19 @@ def hertz_pressure(at: AtWork) -> str | None:
     )
     if weakest is None or largest <= weakest[0]:
         return None
-    return f"the Hertz pressure reaches {_shown(PRESSURE, largest)}; {weakest[1]}"
+    return f"the Hertz pressure reaches {_pressure(largest)}; {weakest[1]}"
 
 
 def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str]]:
     """Largest Hertz pressures of a material, and what happens there."""
     name, hardness = used.record.name, used.record.hardness
     if (limit := used.bears) is not None:
-        told = f"{name} bears about {PRESSURE.show(limit.value)}, and that a few times only"
+        told = f"{name} bears about {_pressure(limit.value)}, and that a few times only"
         yield limit.value, told
     if hardness is not None:
         most = hardness.value / MEAN_PRESSURE[shape]
-        told = f"from {_shown(PRESSURE, most)} on its mean is more than the hardness of {name}"
-        yield most, f"{told}, {PRESSURE.show(hardness.value)}, by which it is indented"
+        told = f"from {_pressure(most)} on its mean is more than the hardness of {name}"
+        yield most, f"{told}, {_pressure(hardness.value)}, by which it is indented"
 
 
 def contact_strain(at: AtWork) -> str | None:
@@ -163,7 +163,7 @@ def contact_strain(at: AtWork) -> str | None:
     if largest <= SMALL_STRAIN * modulus or hertz_pressure(at):
         return None
     return (
-        f"the Hertz pressure reaches {_shown(PRESSURE, largest)}, {100.0 * largest / modulus:.2g} % of "
+        f"the Hertz pressure reaches {_pressure(largest)}, {100.0 * largest / modulus:.2g} % of "
         "the reduced modulus; elastic contacts with strains as small as the formulas ask for end at "
         f"{100.0 * SMALL_STRAIN:g} %"
     )
@@ -343,6 +343,10 @@ def _shown(kind: Quantity, value: float) -> str:
     return kind.show(float(f"{value:.3g}"))
 
 
+def _pressure(value: float) -> str:
+    return _shown(GPA if value >= 1e9 else MPA, value)
+
+
 def _carried(run: Mapping[str, Any]) -> np.ndarray:
     """Part of the load over the mesh cycle that each contact carries [node, pair, slice]."""
     return _whole(run["load"] * np.reshape(run["weight"], (-1, 1, 1)))
@@ -393,6 +397,12 @@ OF_CONTACTS: Registry[Check[AtWork]] = Registry(
         "own, which building a case checks.",
     ),
     Check(
+        name="flank_speed",
+        title="Speed of pitch circles and flanks",
+        told=flank_speed,
+        note="250 m/s, which the fastest turbo gears reach. The number is assumed.",
+    ),
+    Check(
         name="film_of_atoms",
         title="Film thinner than an atom",
         told=film_of_atoms,
@@ -419,12 +429,6 @@ OF_CONTACTS: Registry[Check[AtWork]] = Registry(
         told=friction,
         note="0.2 for steel in oil, 0.4 with a plastic, for coefficients that are given and laws without a "
         "limit; others are out of their range there. The numbers are assumed.",
-    ),
-    Check(
-        name="flank_speed",
-        title="Speed of pitch circles and flanks",
-        told=flank_speed,
-        note="250 m/s, which the fastest turbo gears reach. The number is assumed.",
     ),
     Check(
         name="conformal_loss",
