@@ -31,7 +31,9 @@ nb_merge_streams = True
 napoleon_custom_sections = ["Validity", "Source"]
 autodoc_typehints = "none"  # docstrings give shapes and units
 autodoc_member_order = "bysource"
-suppress_warnings = ["docutils"]  # shapes such as (*b, 3) look like emphasis to it; links still count
+suppress_warnings = [
+    "docutils"
+]  # shapes such as (*b, 3) look like emphasis to it; links still count
 nitpick_ignore_regex = [("py:.*", ".*")]  # types are words there; links of pages are checked
 
 

@@ -323,8 +323,8 @@ def _title(law: str) -> str:
 
 def edge_load(result: Result) -> str | None:
     """Edges of teeth that carry most of the load."""
-    torsion = result.parts.get("torsion", {})
-    if "edge_share" not in torsion:
+    torsion = result.parts.get("torsion")
+    if torsion is None or "edge_share" not in torsion:
         return None
     at = result.built.case.operation.load
     share = float(np.interp(at, torsion["torque"], torsion["edge_share"]))
@@ -368,7 +368,8 @@ def _part(values: np.ndarray, where: np.ndarray) -> float:
 
 
 def _over(values: np.ndarray, by: np.ndarray) -> np.ndarray:
-    return np.divide(values, by, out=np.zeros_like(values), where=by > 0.0)
+    found: np.ndarray = np.divide(values, by, out=np.zeros_like(values), where=by > 0.0)
+    return found
 
 
 OF_CONTACTS: Registry[Check[AtWork]] = Registry(
