@@ -269,7 +269,7 @@ def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert (folder / "again.html").stat().st_size > 1_000_000
     out = capsys.readouterr().out
     assert "instantaneous efficiency" in out
-    assert "['teeth', 'cycle', 'operation', 'laws', 'strength', 'loss_map', 'back_driving']" in out
+    assert str(["teeth", "inspection", "cycle", "operation", "laws", "strength"])[:-1] in out
 
 
 def test_the_parts_of_a_strain_wave_drive_are_those_of_the_text() -> None:
