@@ -340,7 +340,7 @@ def test_damaged_parts_are_computed_again(
     assert after.json == before.json
     assert not any(piece.exists() for piece in pieces)
     kept = {name for name, stamp in times(folder).items() if stamp == made.get(name)}
-    assert kept == {"inspection", "loss_map", "back_driving", "study_speed", "study_smooth"}
+    assert kept == {*PARTS, "study_speed", "study_smooth"} - {"teeth", "cycle", "operation", "laws"}
 
 
 def test_cite(pitchpoint: Callable[..., Told], finished: Path, tiny: Path) -> None:
