@@ -15,6 +15,8 @@ import xarray as xr
 
 import pitchpoint as pp
 from pitchpoint._jax import jax, jnp
+from pitchpoint.results.labelled import in_units
+from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Progress
 
 SHIFT, TORQUE, WARM = "gears.profile_shift.1", "operation.torque", "operation.temperature"
@@ -105,6 +107,11 @@ def test_units_by_choice(result: pp.Result) -> None:
     assert shown.mean_efficiency.long_name == "mean efficiency"
     with pytest.raises(pp.InputError, match='"SI" was given as units; use "si" or "shown"'):
         result.dataset("cycle", units="SI")
+
+
+def test_what_is_shown_in_its_si_unit_stays_as_it_is() -> None:
+    kept = dataset({"film_damping": (("x",), np.ones(2))}, {"x": [0.0, 1.0]})
+    xr.testing.assert_identical(in_units(kept, "shown"), kept)
 
 
 def test_a_part_as_a_frame(result: pp.Result) -> None:
@@ -320,6 +327,17 @@ def test_units_and_value_stand_beside_the_gradients(result: pp.Result) -> None:
         result.gradients(by=["teeth"])
     with pytest.raises(pp.InputError, match='"mean_los" has no derivatives here; did you mean'):
         result.gradients("mean_los")
+
+
+def test_what_is_not_known_of_a_material_spoils_no_derivative(result: pp.Result) -> None:
+    """Nor does a key that moves nothing else have one."""
+    steel = {"young": 206e9, "poisson": 0.3, "density": 7850.0}  # without hardness
+    table = pp.gradients(
+        PAIR.set({"materials.gear_2": steel}), by=["torque", "materials.gear_2.young"]
+    )
+    assert [*table.index] == [TORQUE, "materials.gear_2.young"]
+    before = result.gradients(by=["torque"])
+    np.testing.assert_allclose(table.derivative[TORQUE], before.derivative[TORQUE], rtol=1e-3)
 
 
 def test_an_optimiser_of_scipy_finds_the_best_profile_shift() -> None:

@@ -1,6 +1,7 @@
 """A rack and pinion from its case file: units of a travel, closed forms of its result, and refusals."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,17 @@ def test_guides_of_the_rack_bear_the_separating_force_alone() -> None:
     expected = FORCE / np.cos(np.radians(20.0)), FORCE * np.tan(np.radians(20.0))
     np.testing.assert_allclose(radial, expected, rtol=1e-12)
     np.testing.assert_array_equal(axial, 0.0)
+
+
+def test_a_thrust_of_helical_teeth_is_that_on_the_shaft_of_the_pinion_alone(
+    outcome: Outcome,
+) -> None:
+    thrust = outcome.parts["operation"].copy(deep=True)
+    thrust["axial_reaction_1"][:] = 5.0
+    helical = replace(outcome, parts={**outcome.parts, "operation": thrust})
+    page = render({"default": helical})
+    assert page.count("axial load on the shaft of the pinion") == 1
+    assert "axial load on the guides" not in page
 
 
 def test_what_travels_has_units_of_its_own(outcome: Outcome) -> None:

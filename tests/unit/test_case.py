@@ -61,6 +61,12 @@ def test_a_whole_table(case: Case) -> None:
     table = {"damping_ratio": 0.05, "profile_error": [{"order": 1, "amplitude": 2e-6}]}
     assert case.set(dynamics=table)["dynamics.profile_error"][0].amplitude == 2e-6
     assert case["dynamics"] is None
+    again = case.set(dynamics=table).set({"dynamics.damping_ratio": 0.1})
+    assert (again["damping_ratio"], again["profile_error"]) == (
+        0.1,
+        case.set(dynamics=table)["profile_error"],
+    )
+    assert again.held[0].document().provenance["dynamics.profile_error"].status == "set"
 
 
 @pytest.mark.parametrize(

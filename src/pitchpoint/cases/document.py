@@ -307,10 +307,18 @@ def put(tree: Tree, key: str, value: Any) -> None:
 def _table(tree: Tree, parents: list[str]) -> Tree:
     node = tree
     for part in parents:
-        node = node.setdefault(part, {})
+        inner = node.setdefault(part, {})
+        if isinstance(inner, dict) and _marked(inner) and isinstance(inner["value"], dict):
+            node[part] = inner = _spread(inner)
+        node = inner
         if not isinstance(node, dict) or _marked(node):
             raise InputError(f"{shown(part)} is a value, not a table")
     return node
+
+
+def _spread(marked: Tree) -> Tree:
+    """A table with a mark as a table of values that have it each."""
+    return {key: {**marked, "value": value} for key, value in marked["value"].items()}
 
 
 def strip(value: Any, provenance: dict[str, Provenance], *, name: str = "", key: str = "") -> Any:

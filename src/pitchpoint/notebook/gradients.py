@@ -202,6 +202,6 @@ def _built_at(base: Variant, here: Leaves, setting: tuple[str, Any]) -> Leaves |
 
 
 def _leaves(built: Built) -> Leaves:
-    """Continuous numbers of the design and the operating point."""
+    """Continuous numbers of the design and the operating point; what is not known stays where it is."""
     numbers = eqx.filter((built.design, built.operation), eqx.is_inexact_array)
-    return [np.asarray(leaf) for leaf in jax.tree.leaves(numbers)]
+    return [np.nan_to_num(np.asarray(leaf), nan=0.0) for leaf in jax.tree.leaves(numbers)]
