@@ -31,7 +31,7 @@ def gear(teeth, module=1.0, helix=0.0, shift=0.0, angle=20.0):
 @pytest.mark.parametrize(
     ("one", "count", "printed"),
     [
-        # KHK, Gear Technical Reference: spur and helical gears of module 3, x = 0.4
+        # KHK, Gear Technical Reference: spur gear of table 5.10; the helical one is recalled from there
         (gear(24, 3.0, 0.0, 0.4), 4, 32.8266),
         (gear(24, 3.0, 25.0, 0.4), 5, 42.0085),
     ],
@@ -41,7 +41,7 @@ def test_spans_as_printed(one, count, printed) -> None:
 
 
 def test_dimension_over_pins_as_printed() -> None:
-    # KHK, Gear Technical Reference: z = 20, module 1, pins of 1.7 mm
+    # KHK, Gear Technical Reference, recalled: z = 20, module 1, pins of 1.7 mm
     assert degrees(gear(20).ball_angle(1.7 * MM)) == pytest.approx(24.1350, abs=6e-5)
     assert gear(20).over_balls(1.7 * MM) / MM == pytest.approx(22.2941, abs=6e-5)
 
