@@ -191,7 +191,8 @@ def pairs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run_into(folder: Path, case: str, overwrite: bool = False) -> None:
-    with running._own_folder(folder, case, as_text(Path(case).name), ["default"], overwrite):
+    record = Record.of(case, as_text(Path(case).name), folder, ["default"])
+    with running._own_folder(folder, record, overwrite):
         pass
 
 
@@ -466,7 +467,7 @@ def test_a_record_that_was_changed(
     (file := tmp_path / "kept.json").write_text(json.dumps(changed))
     with pytest.raises(InputError) as caught:
         describe(str(file))
-    (line,) = str(caught.value).splitlines()
+    line, *_ = str(caught.value).splitlines()  # what is missing elsewhere for it stands behind
     assert "kept.json: " in line
     assert words in line
     assert len(line) < 600
