@@ -540,11 +540,15 @@ def _progress(folder: Path | None) -> "Iterator[Progress]":
     status = console.status("reading", spinner="line") if moving else None
 
     class Shown(Progress):
-        finished = 0
+        begun = expected = 0
+
+        def expect(self, parts: int) -> None:
+            self.expected += parts
 
         def part(self, variant: str, title: str, reused: bool) -> None:
-            self.finished += 1
-            self.title = f"{variant} {title}".strip() + (" (on disk)" if reused else "")
+            self.begun += 1
+            place = _place(self.begun, self.expected)
+            self.title = f"{variant} {title}".strip() + (" (on disk)" if reused else "") + place
             if status is None:
                 _complain(self.title)
             else:
@@ -563,10 +567,17 @@ def _progress(folder: Path | None) -> "Iterator[Progress]":
         if folder is None:
             raise
         _complain(
-            f"interrupted: {max(shown.finished - 1, 0)} finished parts are in {folder}; "
+            f"interrupted: {max(shown.begun - 1, 0)} finished parts are in {folder}; "
             "the same command goes on from there"
         )
         raise SystemExit(_INTERRUPTED) from None
+
+
+def _place(number: int, of: int) -> str:
+    """Which part of how many begins, and the share that is done; empty beyond those that are computed."""
+    if number > of:
+        return ""
+    return f", part {number} of {of}, {100 * (number - 1) // of} %"
 
 
 def _figures(outcome: "Outcome") -> dict[str, Any]:

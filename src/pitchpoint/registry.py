@@ -2,12 +2,12 @@
 
 import difflib
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Protocol, TypeVar
 
 from pitchpoint.errors import InputError, shorten
 
-__all__ = ["Registry", "alike", "listed", "nearest", "unknown_name"]
+__all__ = ["Registry", "alike", "known_as", "letters", "listed", "nearest", "unknown_name"]
 
 _MOST = 24  # names in one sentence
 
@@ -33,13 +33,13 @@ class Registry(Mapping[str, Entry]):
         self._entries = {entry.name: entry for entry in entries}
 
     def __getitem__(self, name: str) -> Entry:
-        """Entry of that name; InputError with the nearest names if there is none."""
-        try:
-            return self._entries[name]
-        except KeyError:
+        """Entry of that name, see `known_as`; InputError with the nearest names if there is none."""
+        found = known_as(name, self._entries)
+        if found is None:
             raise InputError(
                 f"'{shorten(name)}' is not a known {self.kind}{nearest(name, self._entries)}"
-            ) from None
+            )
+        return self._entries[found]
 
     def __contains__(self, name: object) -> bool:
         """True for the name of an entry."""
@@ -62,6 +62,21 @@ class Registry(Mapping[str, Entry]):
         return Registry(self.kind, *self._entries.values(), *entries)
 
 
+def known_as(name: str, known: Collection[str]) -> str | None:
+    """The known name that a name means, whatever its case, spaces, hyphens and underscores.
+
+    None if there is no such name, or more than one.
+
+    Example:
+        >>> known_as("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
+        'pao-vg-150'
+    """
+    if name in known:
+        return name
+    same = [one for one in known if letters(one) == letters(name)] if letters(name) else []
+    return same[0] if len(same) == 1 else None
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """End of a sentence that offers the known names nearest to a wrong one, or all of them."""
     names = [*known]
@@ -78,8 +93,8 @@ def alike(name: str, known: Iterable[str]) -> list[str]:
         >>> alike("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
         ['pao-vg-150']
     """
-    plain = {_letters(one): one for one in known}
-    wanted = _letters(name)
+    plain = {letters(one): one for one in known}
+    wanted = letters(name)
     if wanted in plain:
         return [plain[wanted]]
     return [plain[one] for one in difflib.get_close_matches(wanted, plain, n=3, cutoff=0.6)]
@@ -109,6 +124,6 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(map(shorten, every[:_MOST])) + more
 
 
-def _letters(name: str) -> str:
+def letters(name: str) -> str:
     """Letters and digits of a name in lower case."""
     return re.sub(r"[\W_]", "", name.casefold())

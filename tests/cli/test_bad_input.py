@@ -42,7 +42,7 @@ from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, tag
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.published.xu2021.table import ZoneFilms
-from pitchpoint.published.zhao2022.table import FlankWear
+from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.results.store import dataset, save
 from pitchpoint.runs.jobs import jobs
 
@@ -303,10 +303,16 @@ INVOLUTE["formulas"] = {
     "adsorption_heat": "37 kJ/mol",
     "molecule": "0.3 nm",
     "vibration_period": "3e-12 s",
+    "friction": 0.1,
+    "conductivity": "46 W/m/K",
+    "specific_heat": "460 J/kg/K",
 }
 INVOLUTE["gears"]["clearance"] = 0.35
 INVOLUTE["gears"]["tooth"] = {"form": "involute", "profile_shift": 3.32}
 INVOLUTE["gears"]["circular_spline"] = {"form": "involute", "profile_shift": 3.6}
+
+CONJUGATE = copy.deepcopy(INVOLUTE)
+CONJUGATE["formulas"] = {"form": "conjugate wear", "rate": "5e-18 1/Pa", "cycles": 6.5e9}
 
 RIG = {key: BASE[key] for key in ("lubricant", "roughness")} | tomllib.loads(
     """
@@ -453,6 +459,7 @@ BASES = {
     "drive": DRIVE,
     "strain wave": STRAIN_WAVE,
     "involute": INVOLUTE,
+    "conjugate": CONJUGATE,
     "rack": GANTRY,
     "torus": TORUS,
     "rig": RIG,
@@ -463,6 +470,7 @@ WALKS = [
     ("strain wave", strain_wave.StrainWaveGears, ("gears",)),
     ("strain wave", ZoneFilms, ("formulas",)),
     ("involute", FlankWear, ("formulas",)),
+    ("conjugate", ConjugateWear, ("formulas",)),
     ("involute", strain_wave.InvoluteTooth, ("gears", "tooth")),
     ("involute", strain_wave.InvoluteGroove, ("gears", "circular_spline")),
     ("rack", rack_and_pinion.RackAndPinionGears, ("gears",)),
@@ -1379,10 +1387,10 @@ def test_nothing_to_cite(name: str, refuse: Callable[..., str], tmp_path: Path) 
         (["--variant", "k" * 100_000], ["variants: ", "kkk..."]),
         ([f"--{'k' * 100_000}"], ["No such option: --kkk"]),
         (["--set", "gears.teeth=plenty"], ["gears.teeth: ", 'write a whole number like "20"']),
-        (["--set", "lubricant.name=PAO VG 150"], ["lubricant.name: ", "did you mean pao-vg-150?"]),
+        (["--set", "lubricant.name=PAO VG 15"], ["lubricant.name: ", "did you mean pao-vg-150 "]),
         (["--set", "materials.gear_2=pom"], ["materials.gear_2: ", "did you mean POM-H?"]),
-        (["--set", "materials.gear_2=Steel"], ["materials.gear_2: ", "did you mean steel?"]),
-        (["--set", "models.friction=Xu 2007"], ["models.friction: ", "did you mean xu_2007?"]),
+        (["--set", "materials.gear_2=Stel"], ["materials.gear_2: ", "did you mean steel "]),
+        (["--set", "models.friction=Xu 2006"], ["models.friction: ", "did you mean xu_2007?"]),
         (["--set", "operation.torque=600 kp cm"], ["operation.torque: ", "kgf cm"]),
         (["--set", "operation.torque"], ["--set: ", "operation.torque", "KEY=VALUE"]),
         (["--set", "=3"], ["--set: ", "=3", "KEY=VALUE"]),

@@ -96,3 +96,16 @@ def test_from_python_they_are_one_error(tmp_path: Path) -> None:
     assert [error.key for error in caught.value.errors] == KEYS
     assert str(caught.value).count("\n") == len(KEYS) - 1
     assert caught.value.at(file="other").errors[1].file == "other"
+
+
+def test_names_are_found_however_they_are_spelled(tmp_path: Path) -> None:
+    path = tmp_path / "pair.toml"
+    text = PAIR.replace('"75W90-A"', '"PAO VG 150"')
+    path.write_text(f'{text}[materials]\ngear_1 = "PA 66"\n[models]\nfriction = "Xu-2007"\n')
+    case = load_case(str(path)).case
+    assert case.lubricant.name == "pao-vg-150"
+    assert case.materials.gear_1 == "PA66"
+    assert [choice.name for choice in case.models.friction] == ["xu_2007"]
+    path.write_text(f'{PAIR}[models]\nfriction = ["xu_2007", "XU 2007"]\n')
+    with pytest.raises(InputError, match="given twice"):
+        load_case(str(path))

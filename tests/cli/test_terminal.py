@@ -153,6 +153,18 @@ def test_progress_on_a_terminal_moves_but_is_not_steered(monkeypatch: pytest.Mon
     assert "\x1b]" not in shown
 
 
+def test_progress_counts_parts_and_tells_their_share(capsys: pytest.CaptureFixture[str]) -> None:
+    with cli._progress(None) as progress:
+        progress.expect(2)
+        progress.expect(3)  # of a second design
+        for title in ("teeth", "cycle", "map", "film", "joint", "report"):
+            progress.part("", title, title == "cycle")
+    told = capsys.readouterr().err.splitlines()
+    assert told[0] == "teeth, part 1 of 5, 0 %"
+    assert told[1] == "cycle (on disk), part 2 of 5, 20 %"
+    assert told[4:] == ["joint, part 5 of 5, 80 %", "report"]
+
+
 # ---- version, help, completion
 
 

@@ -332,3 +332,19 @@ def test_factors_that_are_kept_are_those_of_pint(monkeypatch, tmp_path):
         assert {unit: tuple(pair) for unit, pair in again[kind].items()} == each
     assert parse("3 mm", "length") == 0.003
     assert parse("20 degC", "temperature") == pytest.approx(293.15, rel=1e-15)
+
+
+@pytest.mark.parametrize("kind", sorted({*units.kinds()} - {"temperature"}))
+def test_what_is_offered_is_as_large_as_what_was_meant(kind: str) -> None:
+    """Units as people write them, "kgfcm" and "lbf-in", are read or offered as they are meant."""
+    for unit in units.units_of(kind):
+        meant = units.parse(f"1 {unit}", kind)
+        for written in {unit.replace(" ", sign) for sign in "-_"} | {unit.replace(" ", "")}:
+            if "(" in unit:
+                continue
+            try:
+                found = units.parse(f"1 {written}", kind)
+            except units.UnitError as error:
+                offered = re.search(r'did you mean "(.*?)"', str(error))
+                found = meant if offered is None else units.parse(offered[1], kind)
+            assert found == meant, written

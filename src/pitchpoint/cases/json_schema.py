@@ -106,9 +106,8 @@ def _loosen(table: dict[str, Any], fields: Mapping[str, FieldInfo]) -> None:
 
 def _words(value: dict[str, Any], info: FieldInfo | None) -> dict[str, Any]:
     """What is told of a key, taken out of the schema of its values; a usual value with its unit."""
-    words: dict[str, Any] = {
-        name: value.pop(name) for name in ("description", "default") if name in value
-    }
+    told = (name for name in ("description", "default") if name in value)
+    words: dict[str, Any] = {name: value.pop(name) for name in told}
     usual = "" if info is None else usual_words(info)
     if usual or not isinstance(words.get("default", ""), str | bool):
         words.pop("default", None)

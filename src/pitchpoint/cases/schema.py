@@ -29,7 +29,7 @@ from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
-from pitchpoint.registry import alike, nearest
+from pitchpoint.registry import alike, letters, nearest
 
 __all__ = [
     "Case",
@@ -457,8 +457,9 @@ def _choices(value: Any) -> Any:
         raise InputError(f"{len(several)} friction laws were given; allowed are 1 to 12")
     tables = [one if isinstance(one, dict | FrictionChoice) else {"name": one} for one in several]
     names = [str(one.get("name")) for one in tables if isinstance(one, dict)]
+    plain = [letters(name) for name in names]
     for name in names:
-        if names.count(name) > 1:
+        if plain.count(letters(name)) > 1:
             raise InputError(f"{shown(name)} was given twice; name each friction law once")
     return tables
 

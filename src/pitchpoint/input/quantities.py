@@ -162,17 +162,18 @@ def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], s
     """Validator of a name out of a registry that is looked up when it is needed."""
 
     def read(value: Any) -> str:
-        from pitchpoint.registry import listed, nearest
+        from pitchpoint.registry import known_as, listed, nearest
 
         known = registry()
         if not isinstance(value, str):
             raise InputError(
                 f"{shown(value)} is not the name of a {kind}; known are {listed(known)}"
             )
-        if value not in known:
+        found = known_as(value, known)
+        if found is None:
             hint = nearest(value, known)
             raise InputError(f"{shown(value)} is not a known {kind}{hint}")
-        return value
+        return found
 
     read.known = registry  # type: ignore[attr-defined]  # what the schema for editors lists
     return read

@@ -17,7 +17,7 @@ from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_d
 from pitchpoint.materials.pressure_viscosity import gold_2001
 from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
 from pitchpoint.programs import program
-from pitchpoint.registry import unknown_name
+from pitchpoint.registry import known_as, unknown_name
 
 __all__ = [
     "GreaseRecord",
@@ -454,6 +454,7 @@ def find(name: str) -> LubricantRecord:
     Raises:
         InputError: there is no oil of this name; the message has the nearest ones.
     """
-    if name not in _records():
+    found = known_as(name, _records())
+    if found is None:
         raise unknown_name(name, _records(), what="a lubricant")
-    return _records()[name]
+    return _records()[found]

@@ -15,7 +15,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
-from pitchpoint.registry import unknown_name
+from pitchpoint.registry import known_as, unknown_name
 
 __all__ = [
     "ModulusPoint",
@@ -355,6 +355,7 @@ def find(name: str) -> SolidRecord:
     Raises:
         InputError: there is no solid of this name; the message has the nearest ones.
     """
-    if name not in _records():
+    found = known_as(name, _records())
+    if found is None:
         raise unknown_name(name, _records(), what="a material")
-    return _records()[name]
+    return _records()[found]

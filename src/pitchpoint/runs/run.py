@@ -85,6 +85,9 @@ MEETINGS = "all meetings of phases"
 class Progress:
     """What a caller may want to hear; this one is silent."""
 
+    def expect(self, parts: int) -> None:
+        """So many parts more are to come."""
+
     def part(self, variant: str, title: str, reused: bool) -> None:
         """A part begins, or is read from disk."""
 
@@ -154,6 +157,8 @@ def run(
     made = held(given, only, settings, None if friction is None else _own(friction))
     work = {variant.variant: (variant, _jobs(variant, studies or {})) for variant in made}
     where = None if folder is None else Path(folder)
+    watching = progress or Progress()
+    watching.expect(sum(len(parts) for _, parts in work.values()))
     mine = None if where is None else _record(given, made[0], where, [*work])
     with nullcontext() if mine is None or where is None else _own_folder(where, mine, overwrite):
         return {
@@ -161,7 +166,7 @@ def run(
                 *prepared,
                 folder=None if where is None else where / one,
                 studies=studies or {},
-                progress=progress or Progress(),
+                progress=watching,
             )
             for one, prepared in work.items()
         }
@@ -380,11 +385,11 @@ def compare_case(
     work = jobs(made, {})
     demand_parts(built.case.targets, [job.name for job in work], made.name)
     parts = {}
+    chosen = [job for job in work if job.name in needed]
     with (watch or _unwatched)(None) as progress:
-        for job in work:
-            if job.name in needed:
-                progress.part(made.variant, job.title, False)
-                parts[job.name] = _part(job, made, "", None, progress)
+        progress.expect(len(chosen))
+        for job in chosen:
+            parts[job.name] = _part(job, made, "", None, progress)
     return made.label, made.variant, compare(built.case.targets, parts, made.name)
 
 
