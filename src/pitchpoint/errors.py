@@ -82,6 +82,7 @@ class CollectedInputError(InputError):
         errors: at least one, the first one first; file, key, value and what is allowed are those of it.
 
     Example:
+        >>> from pitchpoint.errors import InputError
         >>> wrong = CollectedInputError([InputError("is missing", key=key) for key in ("a", "b")])
         >>> print(wrong)
         a: is missing

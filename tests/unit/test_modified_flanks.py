@@ -59,7 +59,7 @@ def test_limits_of_a_class_by_hand(
 ) -> None:
     names = dict(zip(("diameter", "module", "face_width"), size, strict=True))
     found = flank_tolerances(tolerance_class=tolerance_class, **names)
-    assert [1e6 * value for value in vars(found).values()] == pytest.approx(in_um, rel=1e-12)
+    assert [1e6 * value for value in vars(found).values()][:6] == pytest.approx(in_um, rel=1e-12)
 
 
 @pytest.mark.parametrize("teeth", [17, 61, 120])

@@ -35,7 +35,7 @@ class _Names(GenerateJsonSchema):
         )
         if known is None:
             return super().function_before_schema(schema)
-        return {"type": "string", "enum": known()}
+        return {"type": "string", "enum": [*known()]}
 
 
 def case_schema() -> dict[str, Any]:

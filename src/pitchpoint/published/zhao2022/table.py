@@ -71,6 +71,6 @@ class ConjugateWear(Table):
         cycles: after which depths are told.
     """
 
-    form: Literal["conjugate wear"]
+    form: Literal["conjugate wear"] = "conjugate wear"
     rate: Annotated[float, RATE]
     cycles: Annotated[float, CYCLES]
