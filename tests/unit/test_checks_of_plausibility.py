@@ -95,7 +95,7 @@ SOFT = in_use("rigid", hardness=Datum(value=1e9))
         (at_work(film_thickness=2e-11), "down to 0.02 nm, under 100 % of the load"),
         (at_work(film_thickness=3e-5), "reaches 30 um, 0.3 % of the relative radius"),
         (at_work(ra=20e-6), "mean Ra of the flanks is 20 um"),
-        (at_work(ra=1e-6, radius=1e-4), "1.4 % of their relative radius, 100 um"),
+        (at_work(ra=1e-6, radius=1e-4), "Rq of the flanks, 1.41 um, is more than 1 % of their"),
         (at_work(friction=0.3), "coefficient is 0.3; steel in oil has at most about 0.2"),
         (at_work(PLASTIC, friction=0.5), "plastics have at most about 0.4 even without oil"),
         (at_work(pitch=2.6), "the pitch circles run at 260 m/s"),

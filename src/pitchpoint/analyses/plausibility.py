@@ -51,6 +51,9 @@ FASTEST = 250.0
 ROUGHEST = 12.5e-6
 """Mean Ra of flanks as rough as no cutter leaves them [m]."""
 
+COARSEST = 0.01
+"""Composite Rq over the relative radius beyond which roughness is as large as the flanks."""
+
 THICKEST = 2e-3
 """Film over the relative radius beyond which nothing is left of a film thinner than all else."""
 
@@ -224,12 +227,12 @@ def roughness(at: AtWork) -> str | None:
             f"the mean Ra of the flanks is {_shown(LENGTH, ra)}; roughly cut flanks have at most about "
             f"{LENGTH.show(ROUGHEST)}"
         )
-    radius = float(run["radius"][run["load"] > 0.0].min())
-    if rq <= 0.01 * radius:
+    coarse = rq > COARSEST * run["radius"]
+    if _part(_carried(run), coarse) <= MOST:
         return None
     return (
-        f"the composite Rq of the flanks, {_shown(LENGTH, rq)}, is {100.0 * rq / radius:.2g} % of their "
-        f"relative radius, {_shown(LENGTH, radius)}: that is their shape, no roughness"
+        f"the composite Rq of the flanks, {_shown(LENGTH, rq)}, is more than {100.0 * COARSEST:g} % of their "
+        "relative radius under most of the load: that is their shape, no roughness"
     )
 
 
@@ -368,6 +371,7 @@ def _part(values: np.ndarray, where: np.ndarray) -> float:
 
 
 def _over(values: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """Quotients; zero where there is nothing to divide by."""
     found: np.ndarray = np.divide(values, by, out=np.zeros_like(values), where=by > 0.0)
     return found
 
@@ -421,8 +425,8 @@ OF_CONTACTS: Registry[Check[AtWork]] = Registry(
         name="roughness",
         title="Roughness that flanks may have",
         told=roughness,
-        note="A mean Ra of 12.5 um, or a composite Rq of 1 % of the relative radius. The numbers are "
-        "assumed.",
+        note="A mean Ra of 12.5 um, or under more than half of the load a composite Rq of 1 % of the "
+        "relative radius. The numbers are assumed.",
     ),
     Check(
         name="friction",
