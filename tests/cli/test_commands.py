@@ -313,7 +313,7 @@ def test_damaged_parts_are_computed_again(
     assert after.json == before.json
     assert not any(piece.exists() for piece in pieces)
     kept = {name for name, stamp in times(folder).items() if stamp == made.get(name)}
-    assert kept == {"loss_map", "back_driving", "study_speed", "study_smooth"}
+    assert kept == {"strength", "loss_map", "back_driving", "study_speed", "study_smooth"}
 
 
 def test_cite(pitchpoint: Callable[..., Told], finished: Path, tiny: Path) -> None:
