@@ -1,5 +1,7 @@
 """The report: complete, safe with what a user typed, and its drawn teeth really touch."""
 
+import base64
+import gzip
 import json
 import re
 from collections.abc import Iterator
@@ -12,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from plotly.offline import get_plotlyjs
 from records import entries
 
 from pitchpoint.cases.build import ALONE
@@ -251,7 +254,15 @@ def test_names_of_variants_cannot_end_the_script(published: Outcomes) -> None:
 
 
 def _plotly(page: str) -> str:
-    return max(re.findall(r"<script>(.*?)</script>", page, re.S), key=len)
+    (found,) = re.findall(r'<script type="text/plain" id="plotly">(.*?)</script>', page, re.S)
+    return str(found)
+
+
+def test_the_page_holds_all_of_plotly_in_less_than_half_its_size(page: str) -> None:
+    script = gzip.decompress(base64.b64decode(_plotly(page))).decode()
+    assert script == get_plotlyjs()
+    assert len(_plotly(page)) < 0.45 * len(script)
+    assert len(page.encode()) < 3e6
 
 
 def test_nothing_is_loaded_from_elsewhere(page: str) -> None:
@@ -301,7 +312,7 @@ def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:
 
 def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:
     rows = re.findall(r'<tr class="differs">(.*?)</tr>', page, re.S)
-    keys = {re.sub(r"<[^>]*>", "", row.split("</td>")[0]).strip() for row in rows}
+    keys = {re.sub(r"<[^>]*>", "", re.split("</t[dh]>", row)[0]).strip() for row in rows}
     assert keys == {"friction as_published", "averaging as_published", "physical"}
 
 

@@ -1,5 +1,7 @@
 """The report: one HTML file that opens from disk and says what was computed, with what, and from whom."""
 
+import base64
+import gzip
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -12,7 +14,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import Block, Drawn, Page, Section, said
+from pitchpoint.views.section import Block, Drawn, Heading, Page, Section, Table, Variants, said
 
 if TYPE_CHECKING:
     import jinja2
@@ -38,7 +40,6 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
         outcomes: by variant, at least one; parts that were not finished are left out.
     """
     from markupsafe import Markup
-    from plotly.offline import get_plotlyjs
 
     bare = Page(outcomes, curves(outcomes))
     lacking = {section: section.lacking(bare) for section in in_order()}
@@ -55,7 +56,7 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             absent=_absent(bare, lacking),
             version=page.version,
             data=Markup(_payload(_panels(block for one in made for block in one["blocks"]))),
-            plotly=Markup(get_plotlyjs()),
+            plotly=_packed(),
         )
     )
 
@@ -67,8 +68,24 @@ def _made(section: Section, page: Page) -> dict[str, Any]:
         "name": section.name,
         "title": title,
         "short": short,
-        "blocks": list(section.blocks(page)),
+        "folded": section.folded,
+        "blocks": _captioned(section.blocks(page), title),
     }
+
+
+def _captioned(blocks: Iterable[Block], title: str) -> list[Block]:
+    """Blocks whose tables have the heading above them as caption."""
+    done: list[Block] = []
+    for block in blocks:
+        if isinstance(block, Heading):
+            title = str(block.words)
+        elif isinstance(block, Table) and not block.caption:
+            block = replace(block, caption=title)
+        elif isinstance(block, Variants):
+            each = {name: _captioned(them, f"{title}, {name}") for name, them in block.each.items()}
+            block = Variants(each)
+        done.append(block)
+    return done
 
 
 def _absent(page: Page, lacking: Mapping[Section, str | None]) -> list[tuple[list[str], str]]:
@@ -86,12 +103,23 @@ def _panels(blocks: Iterable[Block]) -> Iterator[Panel]:
             yield block
         elif isinstance(block, Drawn):
             yield from block.panels
+        elif isinstance(block, Variants):
+            for inside in block.each.values():
+                yield from _panels(inside)
 
 
 def _drawn(block: Drawn) -> "markupsafe.Markup":
     from markupsafe import Markup
 
     return Markup(_environment().get_template(f"sections/{block.template}").render(block.values))
+
+
+@cache
+def _packed() -> str:
+    """plotly.js, compressed: it is most of the page."""
+    from plotly.offline import get_plotlyjs
+
+    return base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode()
 
 
 @cache
@@ -106,8 +134,16 @@ def _environment() -> "jinja2.Environment":
         lstrip_blocks=True,
     )
     environment.filters["marked"] = _marked
+    environment.filters["typeset"] = _typeset
     environment.globals["drawn"] = _drawn
     return environment
+
+
+def _typeset(words: str) -> "markupsafe.Markup":
+    """Words, escaped, with the indices of symbols set low."""
+    from markupsafe import Markup, escape
+
+    return Markup(show.subscripts(str(escape(words))))
 
 
 def _marked(words: str) -> "markupsafe.Markup":
