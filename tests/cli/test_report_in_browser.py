@@ -147,10 +147,8 @@ def test_one_variant_at_a_time(wide: Browser) -> None:
 
 
 def test_a_figure_says_its_axes_and_curves_to_a_screen_reader(wide: Browser) -> None:
-    words = wide.wait(
-        "document.getElementById('cycle_efficiency_phase').getAttribute('aria-label')"
-    )
-    assert words.startswith("Instantaneous efficiency over one base pitch, phase of the mesh cycle")
+    words = wide.wait("document.getElementById('cycle_efficiency').getAttribute('aria-label')")
+    assert words.startswith("Instantaneous efficiency over the mesh cycle, phase of the mesh cycle")
     assert "from 0 to 1" in words
     assert "Curves: ISO/TR 14179-2" in words
 

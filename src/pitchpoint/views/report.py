@@ -3,7 +3,7 @@
 import base64
 import gzip
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -45,6 +45,8 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
     lacking = {section: section.lacking(bare) for section in in_order()}
     page = replace(bare, sections=[one for one, why in lacking.items() if why is None])
     made = [_made(section, page) for section in page.sections]
+    panels = list(_panels(block for one in made for block in one["blocks"]))
+    figures = [figure for panel in panels for figure in panel.figures if figure.drawn]
     return (
         _environment()
         .get_template("report.html.jinja")
@@ -55,7 +57,9 @@ def render(outcomes: Mapping[str, Outcome]) -> str:
             sections=made,
             absent=_absent(bare, lacking),
             version=page.version,
-            data=Markup(_payload(_panels(block for one in made for block in one["blocks"]))),
+            pictured=next((one for one in page.sections if one.picture), None),
+            glimpse=next(iter(figures), None),
+            data=Markup(_payload(panels)),
             plotly=_packed(),
         )
     )
@@ -157,9 +161,8 @@ def _marked(words: str) -> "markupsafe.Markup":
     return Markup("").join(code.format(p) if k % 2 else p for k, p in enumerate(parts))
 
 
-def _payload(panels: Iterable[Panel]) -> str:
+def _payload(each: Sequence[Panel]) -> str:
     """Figures and menus for the script, with nothing in it that could end the script element."""
-    each = list(panels)
     content = {
         "figures": {
             figure.name: {"data": figure.data, "layout": figure.layout}

@@ -39,12 +39,10 @@ AVERAGES = {
 
 def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
-    pictured = next((one for one in page.sections if one.picture), None)
     values = {
         "variants": variants,
+        "warnings": _warned(page),
         "several": page.several,
-        "picture": pictured.picture if pictured else "",
-        "picture_in": pictured.name if pictured else "",
         "sums": _sums(page),
         "curves": list(_sums_of_curves(page)),
     }
@@ -104,7 +102,6 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         "operation": _operation(outcome),
         "ratio": "" if single else _ratio(manifest),
         "laws": manifest["laws"],
-        "warnings": _warnings(page, outcome),
         "finished": manifest["finished"],
         "settings": set_for_run(manifest),
         "spread": spread(outcome),
@@ -198,6 +195,15 @@ def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
     return show.span(*ends, [value(end) for end in ends], data)
 
 
+def _warned(page: Page) -> dict[str, list[str]]:
+    """Sentences above every number, each with the variants that it is about."""
+    found: dict[str, list[str]] = {}
+    for name, outcome in page.outcomes.items():
+        for text in _warnings(page, outcome):
+            found.setdefault(text, []).append(name)
+    return found
+
+
 def _warnings(page: Page, outcome: Outcome) -> list[str]:
     """Sentences of the design and of the parts, each once, but for those that a section tells itself."""
     texts = list(outcome.manifest["warnings"])
@@ -235,6 +241,7 @@ _ACROSS = {
     ("shaft", "radial"): "radial load on the shaft of the {}",
     ("shaft", "axial"): "axial load on the shaft of the {}",
     ("guides", "radial"): "load on the guides of the {}, across its travel",
+    ("guides", "axial"): "load on the guides of the {}, along the face",
 }
 
 

@@ -45,7 +45,7 @@
 
   function draw(place) {
     if (drawn.has(place.id)) return drawn.get(place.id);
-    const figure = page.figures[place.id];
+    const figure = structuredClone(page.figures[place.dataset.figure || place.id]);
     // A finger scrolls the page, so it must not start a zoom.
     if (touch) figure.layout.dragmode = false;
     const off = hidden();
@@ -77,6 +77,7 @@
     };
     const curves = [...new Set(place.data.map((trace) => bare(trace.name)).filter(Boolean))];
     const told = curves.length ? ". Curves: " + curves.slice(0, 12).join(", ") : "";
+    place.setAttribute("role", "img");
     place.setAttribute("aria-label", heading(place) + axis("xaxis") + axis("yaxis") + told + ".");
   }
 
@@ -139,10 +140,11 @@
     for (const box of document.querySelectorAll("[data-curve]")) {
       if (box.dataset.curve === key) box.checked = on;
     }
-    for (const [id, ready] of drawn) {
-      const traces = page.figures[id].data;
-      const which = traces.map((trace, k) => (trace.meta === key ? k : -1)).filter((k) => k >= 0);
-      if (which.length) ready.then((place) => Plotly.restyle(place, { visible: on }, which));
+    for (const ready of drawn.values()) {
+      ready.then((place) => {
+        const which = place.data.map((trace, k) => (trace.meta === key ? k : -1)).filter((k) => k >= 0);
+        if (which.length) Plotly.restyle(place, { visible: on }, which);
+      });
     }
   }
 
@@ -432,7 +434,7 @@
     const buttons = panes.map((pane) => {
       const button = document.createElement("button");
       button.type = "button";
-      button.textContent = pane.dataset.pane + (pane.dataset.note ? ` (${pane.dataset.note})` : "");
+      button.textContent = pane.dataset.pane;
       button.addEventListener("click", () => open(pane));
       return button;
     });
