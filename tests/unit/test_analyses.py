@@ -298,7 +298,7 @@ def test_an_analysis_and_a_section_of_ones_own_are_all_that_is_needed(
     assert '<section id="passing">\n<h2>Teeth that pass</h2>' in page
     assert '<div class="plot" id="passing_speed">' in page
     assert "<dt>Teeth</dt><dd>2 speeds</dd>" in page
-    assert '<td>954.93</td><td class="n">2300</td>' in page
+    assert '<th scope="row">954.93</th><td class="n">2300</td>' in page
     assert page.index('id="inputs"') < page.index('id="passing"') < page.index('id="compared"')
     assert command("run", str(case), "-o", str(out), "--json", monkeypatch=monkeypatch) == 0
     told = json.loads(capsys.readouterr().out)["default"]

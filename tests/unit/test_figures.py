@@ -3,7 +3,7 @@
 import numpy as np
 
 from pitchpoint.results.rounding import difference
-from pitchpoint.views.figures import Figure, continued, layout, rounded
+from pitchpoint.views.figures import Choice, Figure, Menu, Panel, continued, layout, rounded
 
 
 def drawn(y: list[float], **axis: object) -> dict[str, object]:
@@ -54,3 +54,25 @@ def test_a_small_jump_is_not_drawn_as_a_line() -> None:
     x = np.array([0.0, 0.5, 0.5, 1.0])
     _, y = continued(x, 79.5 + 1e-6 * np.array([0.0, 1.0, 2.0, 3.0]))
     assert np.isnan(y).sum() == 1
+
+
+def test_a_level_line_says_so_beneath() -> None:
+    level, sloped = ([{"x": [0.0, 1.0], "y": rounded(y)}] for y in ([0.05, 0.05 + 1e-17], [0, 1]))
+    assert Figure("f", "", level, layout("x", "y"), "As given.").remarks == (
+        "As given. The same throughout, but for rounding."
+    )
+    assert Figure("f", "", sloped, layout("x", "y"), "As given.").remarks == "As given."
+
+
+def test_indices_of_symbols_are_set_low_on_axes() -> None:
+    assert layout("x", "T_in [N m]")["yaxis"]["title"]["text"] == "T<sub>in</sub> [N m]"
+    assert layout("gears, face_width", "Δθ_x")["xaxis"]["title"]["text"] == "gears, face_width"
+
+
+def test_two_menus_count_through_all_choices() -> None:
+    labels = [Menu("law", "ab"), Menu("at", "123")]
+    choices = [Choice(f"{law}{at}", {}) for law in "ab" for at in "123"]
+    panel = Panel("", [], choices=choices, menus=labels, at=4)
+    selects = [(step, at) for _, step, at in panel.selects]
+    assert selects == [(3, 1), (1, 1)]
+    assert choices[sum(step * at for step, at in selects)].label == "b2"

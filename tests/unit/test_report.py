@@ -1,5 +1,7 @@
 """The report: complete, safe with what a user typed, and its drawn teeth really touch."""
 
+import base64
+import gzip
 import json
 import re
 from collections.abc import Iterator
@@ -12,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from plotly.offline import get_plotlyjs
 from records import entries
 
 from pitchpoint.cases.build import ALONE
@@ -24,7 +27,7 @@ from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome, open_result, run
 from pitchpoint.views import show
-from pitchpoint.views.figures import rounded
+from pitchpoint.views.figures import curves, rounded
 from pitchpoint.views.lines import gapped
 from pitchpoint.views.path import path_of
 from pitchpoint.views.picture import Body, Picture, picture_of
@@ -32,6 +35,7 @@ from pitchpoint.views.report import render, write_report
 from pitchpoint.views.sections.answer import summary
 from pitchpoint.views.sections.path import loss_places, loss_sentence
 from pitchpoint.views.sections.sliding import specific_sliding
+from pitchpoint.views.sections.studies import study_panels
 from pitchpoint.views.sections.teeth import dimensions
 
 Outcomes = dict[str, Outcome]
@@ -201,7 +205,7 @@ def test_every_figure_has_a_place_and_data(page: str) -> None:
     figures, plots = payload(page)["figures"], Words(page).plots
     assert sorted(plots) == sorted(figures)
     # Specific sliding, path, cycle, study, map.
-    assert len(plots) == 1 + 8 + 6 + 4 + 2
+    assert len(plots) == 1 + 8 + 4 + 4 + 2
     for name, figure in figures.items():
         assert figure["data"], name
         assert all(finite(trace) for trace in figure["data"]), name
@@ -215,6 +219,64 @@ def test_a_menu_changes_traces_that_exist(page: str) -> None:
             traces = content["figures"][name]["data"]
             which = change[2] if len(change) > 2 else range(len(traces))
             assert all(len(values) == len(list(which)) for values in change[0].values())
+
+
+def test_maps_share_one_scale_and_have_lines_with_labels(page: str, published: Outcomes) -> None:
+    content = payload(page)
+    drawn = content["figures"]["map_mean_loss"]["data"][0]
+    every = [choice["map_mean_loss"][0]["z"][0] for choice in content["menus"]["map_mean_loss"]]
+    values = np.array(every, float)
+    assert len(every) == 3 * 3
+    assert drawn["z"] in every
+    assert (drawn["zmin"], drawn["zmax"]) == pytest.approx((values.min(), values.max()), rel=1e-4)
+    assert drawn["type"] == "contour"
+    assert drawn["contours"]["showlabels"]
+    menus = re.findall(
+        r'<select data-menu="map_mean_loss" data-step="(\d)">(.*?)</select>', page, re.S
+    )
+    assert [(int(step), entries.count("<option")) for step, entries in menus] == [(3, 3), (1, 3)]
+
+
+def test_sweeps_of_two_points_are_one_table(published: Outcomes) -> None:
+    cut = {
+        name: replace(
+            one, parts={**one.parts, "study_shape": one.parts["study_shape"].isel(point=[0, 2])}
+        )
+        for name, one in published.items()
+    }
+    page = render(cut)
+    assert not any(name.startswith("study_shape") for name in payload(page)["figures"])
+    (table,) = re.findall(r"<caption>Few values: addendum.*?</table>", page, re.S)
+    assert table.count('<th scope="row">Shape</th>') == 2 * 3
+    data = cut["physical"].parts["study_shape"]
+    for value in data["mean_efficiency"].values[0]:
+        assert f'<td class="n">{100 * value:.2f}</td>' in table
+
+
+def test_sweeps_of_one_key_share_their_figures(published: Outcomes) -> None:
+    again = {
+        name: replace(
+            one,
+            parts={
+                **one.parts,
+                "study_later": one.parts["study_shape"].assign_attrs(title="Later"),
+            },
+        )
+        for name, one in published.items()
+    }
+    (panel,) = study_panels(again, curves(again))
+    assert [menu.words for menu in panel.menus] == ["Study", "Shown against"]
+    assert panel.menus[0].labels == ["Shape", "Later"]
+    assert len(panel.choices) == 4
+    assert len(panel.figures) == 4
+
+
+def test_tables_have_captions_and_scopes(page: str) -> None:
+    tables = re.findall(r"<table.*?</table>", page, re.S)
+    assert len(tables) > 10
+    for table in tables:
+        assert re.search(r"<caption>[^<\s]", table), table[:200]
+        assert not re.search(r"<th(?! scope=)[ >]", table), table[:200]
 
 
 @pytest.mark.parametrize("case", ["published", "idle", "wheel"])
@@ -251,7 +313,15 @@ def test_names_of_variants_cannot_end_the_script(published: Outcomes) -> None:
 
 
 def _plotly(page: str) -> str:
-    return max(re.findall(r"<script>(.*?)</script>", page, re.S), key=len)
+    (found,) = re.findall(r'<script type="text/plain" id="plotly">(.*?)</script>', page, re.S)
+    return str(found)
+
+
+def test_the_page_holds_all_of_plotly_in_less_than_half_its_size(page: str) -> None:
+    script = gzip.decompress(base64.b64decode(_plotly(page))).decode()
+    assert script == get_plotlyjs()
+    assert len(_plotly(page)) < 0.45 * len(script)
+    assert len(page.encode()) < 3e6
 
 
 def test_nothing_is_loaded_from_elsewhere(page: str) -> None:
@@ -301,7 +371,7 @@ def test_misses_come_first_and_kinds_are_counted_apart(page: str) -> None:
 
 def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:
     rows = re.findall(r'<tr class="differs">(.*?)</tr>', page, re.S)
-    keys = {re.sub(r"<[^>]*>", "", row.split("</td>")[0]).strip() for row in rows}
+    keys = {re.sub(r"<[^>]*>", "", re.split("</t[dh]>", row)[0]).strip() for row in rows}
     assert keys == {"friction as_published", "averaging as_published", "physical"}
 
 
@@ -317,7 +387,7 @@ def test_without_power_the_efficiency_is_undefined(idle: Outcomes) -> None:
     page = render(idle)
     assert "undefined, no power mean efficiency" in Words(page).text
     assert "There is no loss." in page
-    assert "cycle_efficiency_phase" not in payload(page)["figures"]
+    assert "cycle_efficiency" not in payload(page)["figures"]
     assert "inf" not in summary(idle["default"]).rows[0].values()
     assert np.isnan(idle["default"].parts["operation"]["min_efficiency"].values).all()
     cycle = idle["default"].parts["cycle"]

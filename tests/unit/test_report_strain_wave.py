@@ -335,7 +335,7 @@ def test_every_figure_has_a_place_and_data(page: str) -> None:
     figures = drawn(page)
     assert sorted(figures) == sorted(re.findall(r'class="plot" id="([^"]*)"', page))
     assert 'class="empty"' not in page
-    assert len(figures) == 2 + 9 + 6 + 7 + 3 + 5 + 2 + 3
+    assert len(figures) == 2 + 9 + 4 + 7 + 3 + 5 + 2 + 3
 
 
 def test_page_speaks_of_the_drive(page: str) -> None:
@@ -509,11 +509,12 @@ def test_a_cycle_that_begins_at_an_event_is_shown_from_zero(whole: Outcome) -> N
     begun["phase"] = begun["phase"] + 0.3
     one = replace(whole, parts={**whole.parts, "cycle": begun})
     panel = cycle_panel({"default": one}, curves({"default": one}))
-    places = [x for x in figure(panel, "efficiency_phase").data[0]["x"] if x is not None]
+    places = [x for x in figure(panel, "cycle_efficiency").data[0]["x"] if x is not None]
     assert places == sorted(places)
     assert min(places) == pytest.approx(0.1)
     assert max(places) == pytest.approx(0.9)
-    times = [x for x in figure(panel, "efficiency_time").data[0]["x"] if x is not None]
+    over_time = panel.choices[1].changes["cycle_efficiency"][0]["x"][0]
+    times = [x for x in over_time if x is not None]
     assert min(times) == 0.0
     assert max(times) == pytest.approx(2e3 * period_of(one).time, rel=1e-4)
 

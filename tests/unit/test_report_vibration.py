@@ -262,7 +262,7 @@ def test_page_has_every_section_and_figure(whole: Outcome) -> None:
     assert sorted(drawn) == sorted(re.findall(r'class="plot" id="([^"]*)"', page))
     assert len(drawn) == 1 + 2 + 3 + 2
     assert not re.search(r"\b(nan|none|inf)\b", text, re.I)
-    for told in ("least 13.64 mm", "damping ratio ξ 0.16 0.16", "equivalent mass m_e 2.200 g"):
+    for told in ("least 13.64 mm", "damping ratio ξ 0.16 0.16", "equivalent mass m e 2.200 g"):
         assert told in text
 
 

@@ -30,6 +30,7 @@ __all__ = [
     "Curves",
     "Figure",
     "Key",
+    "Menu",
     "Panel",
     "Trace",
     "continued",
@@ -100,6 +101,12 @@ class Figure:
             axis.setdefault("range", _around(level, "rangemode" in axis))
 
     @property
+    def remarks(self) -> str:
+        """The remark, and a word where one value is drawn as a line."""
+        flat = "" if _constant(self.data) is None else "The same throughout, but for rounding."
+        return " ".join(filter(None, (self.note, flat)))
+
+    @property
     def drawn(self) -> bool:
         """True if there is a finite value to draw."""
         return any(_finite(trace.get("z") or trace.get("y") or []) for trace in self.data)
@@ -114,10 +121,20 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class Menu:
+    """One of several menus of a panel: its words and the labels of its entries."""
+
+    words: str
+    labels: Sequence[str]
+
+
+@dataclass(frozen=True)
 class Panel:
     """Figures that belong together, with the curves in them and a menu if there is one.
 
     Attributes:
+        menus: where one menu is not enough; the choices are all combinations, those of the last menu next
+            to each other.
         slides: True if the choices are places in order, for a slider in place of a menu.
         at: number of the choice that the figures show at first.
     """
@@ -130,7 +147,17 @@ class Panel:
     menu: str = ""
     slides: bool = False
     at: int = 0
+    menus: Sequence[Menu] = ()
     block: ClassVar[str] = "panel"
+
+    @property
+    def selects(self) -> Iterator[tuple[Menu, int, int]]:
+        """Every menu with the number of choices from one entry to the next, and the entry shown first."""
+        menus = self.menus or [Menu(self.menu, [choice.label for choice in self.choices])]
+        step = len(self.choices)
+        for menu in menus:
+            step //= len(menu.labels)
+            yield menu, step, self.at // step % len(menu.labels)
 
 
 def curves(outcomes: Mapping[str, Outcome]) -> dict[tuple[str, str], Curve]:
@@ -260,8 +287,16 @@ def layout(x: str, y: str, **more: Any) -> dict[str, Any]:
         "separatethousands": True,
     }
     return {
-        "xaxis": {**axis, "title": {"text": x, "standoff": 8}, **more.pop("xaxis", {})},
-        "yaxis": {**axis, "title": {"text": y, "standoff": 8}, **more.pop("yaxis", {})},
+        "xaxis": {
+            **axis,
+            "title": {"text": show.subscripts(x), "standoff": 8},
+            **more.pop("xaxis", {}),
+        },
+        "yaxis": {
+            **axis,
+            "title": {"text": show.subscripts(y), "standoff": 8},
+            **more.pop("yaxis", {}),
+        },
         "showlegend": False,
         "margin": {"l": 62, "r": 14, "t": 24, "b": 48},
         "font": {"family": "system-ui, sans-serif", "size": 12, "color": INK},

@@ -1,7 +1,9 @@
 """The report: one HTML file that opens from disk and says what was computed, with what, and from whom."""
 
+import base64
+import gzip
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -12,7 +14,17 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import Drawn, Page, Section, panels, said
+from pitchpoint.views.section import (
+    Block,
+    Drawn,
+    Heading,
+    Page,
+    Section,
+    Table,
+    Variants,
+    panels,
+    said,
+)
 
 if TYPE_CHECKING:
     import jinja2
@@ -42,12 +54,13 @@ def render(outcomes: Mapping[str, Outcome], *, designs: bool = False) -> str:
         designs: True if the outcomes are those of several cases, by design, which are compared.
     """
     from markupsafe import Markup
-    from plotly.offline import get_plotlyjs
 
     bare = Page(outcomes, curves(outcomes), designs=designs)
     lacking = {section: section.lacking(bare) for section in in_order()}
     page = replace(bare, sections=[one for one, why in lacking.items() if why is None])
     made = [_made(section, page) for section in page.sections]
+    shown = list(panels(block for one in made for block in one["blocks"]))
+    figures = [figure for panel in shown for figure in panel.figures if figure.drawn]
     return (
         _environment()
         .get_template("report.html.jinja")
@@ -62,8 +75,10 @@ def render(outcomes: Mapping[str, Outcome], *, designs: bool = False) -> str:
             sections=made,
             absent=_absent(bare, lacking),
             version=page.version,
-            data=Markup(_payload(panels(block for one in made for block in one["blocks"]))),
-            plotly=Markup(get_plotlyjs()),
+            pictured=next((one for one in page.sections if one.picture), None),
+            glimpse=next(iter(figures), None),
+            data=Markup(_payload(shown)),
+            plotly=_packed(),
         )
     )
 
@@ -75,8 +90,24 @@ def _made(section: Section, page: Page) -> dict[str, Any]:
         "name": section.name,
         "title": title,
         "short": short,
-        "blocks": list(section.blocks(page)),
+        "folded": section.folded,
+        "blocks": _captioned(section.blocks(page), title),
     }
+
+
+def _captioned(blocks: Iterable[Block], title: str) -> list[Block]:
+    """Blocks whose tables have the heading above them as caption."""
+    done: list[Block] = []
+    for block in blocks:
+        if isinstance(block, Heading):
+            title = str(block.words)
+        elif isinstance(block, Table) and not block.caption:
+            block = replace(block, caption=title)
+        elif isinstance(block, Variants):
+            each = {name: _captioned(them, f"{title}, {name}") for name, them in block.each.items()}
+            block = Variants(each)
+        done.append(block)
+    return done
 
 
 def _absent(page: Page, lacking: Mapping[Section, str | None]) -> list[tuple[list[str], str]]:
@@ -95,6 +126,14 @@ def _drawn(block: Drawn) -> "markupsafe.Markup":
 
 
 @cache
+def _packed() -> str:
+    """plotly.js, compressed: it is most of the page."""
+    from plotly.offline import get_plotlyjs
+
+    return base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode()
+
+
+@cache
 def _environment() -> "jinja2.Environment":
     import jinja2
 
@@ -106,8 +145,16 @@ def _environment() -> "jinja2.Environment":
         lstrip_blocks=True,
     )
     environment.filters["marked"] = _marked
+    environment.filters["typeset"] = _typeset
     environment.globals["drawn"] = _drawn
     return environment
+
+
+def _typeset(words: str) -> "markupsafe.Markup":
+    """Words, escaped, with the indices of symbols set low."""
+    from markupsafe import Markup, escape
+
+    return Markup(show.subscripts(str(escape(words))))
 
 
 def _marked(words: str) -> "markupsafe.Markup":
@@ -121,9 +168,8 @@ def _marked(words: str) -> "markupsafe.Markup":
     return Markup("").join(code.format(p) if k % 2 else p for k, p in enumerate(parts))
 
 
-def _payload(panels: Iterable[Panel]) -> str:
+def _payload(each: Sequence[Panel]) -> str:
     """Figures and menus for the script, with nothing in it that could end the script element."""
-    each = list(panels)
     content = {
         "figures": {
             figure.name: {"data": figure.data, "layout": figure.layout}

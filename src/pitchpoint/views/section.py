@@ -19,10 +19,12 @@ __all__ = [
     "Printed",
     "Section",
     "Table",
+    "Variants",
     "by_variant",
     "panels",
     "reason",
     "said",
+    "tabbed",
 ]
 
 
@@ -45,11 +47,17 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Table:
-    """A table: names in the first column, numbers in the others."""
+    """A table: names in the first column, numbers in the others.
+
+    Its caption is the heading above it unless it has one of its own. A wide one keeps its lines whole and
+    scrolls sideways under its first column.
+    """
 
     head: Sequence[str]
     rows: Iterable[Sequence[str]]
     compact: bool = False
+    caption: str = ""
+    wide: bool = False
     block: ClassVar[str] = "table"
 
 
@@ -69,7 +77,15 @@ class Drawn:
     block: ClassVar[str] = "drawn"
 
 
-Block = Heading | Paragraph | Table | Panel | Drawn
+@dataclass(frozen=True)
+class Variants:
+    """Blocks of every variant by its title: the page shows one variant at a time, print shows all."""
+
+    each: Mapping[str, "Sequence[Block]"]
+    block: ClassVar[str] = "variants"
+
+
+Block = Heading | Paragraph | Table | Panel | Drawn | Variants
 
 
 @dataclass(frozen=True)
@@ -143,11 +159,19 @@ class Page:
 def by_variant(
     page: Page, part: str, show: Callable[[int, Outcome], Iterator[Block]]
 ) -> Iterator[Block]:
-    """Blocks of every variant that has a part, under its title where there are several."""
-    for position, title, outcome in page.each(part):
-        if title:
-            yield Heading(title)
-        yield from show(position, outcome)
+    """Blocks of every variant that has a part, see `tabbed`."""
+    return tabbed((title, show(position, outcome)) for position, title, outcome in page.each(part))
+
+
+def tabbed(groups: Iterable[tuple[str, Iterable[Block]]]) -> Iterator[Block]:
+    """Blocks by title of their variant, one variant at a time; one alone stands under its title, if any."""
+    each = {title: tuple(blocks) for title, blocks in groups}
+    if len(each) > 1:
+        yield Variants(each)
+        return
+    for title, blocks in each.items():
+        yield from [Heading(title)] if title else []
+        yield from blocks
 
 
 def panels(blocks: Iterable[Block]) -> Iterator[Panel]:
@@ -157,6 +181,9 @@ def panels(blocks: Iterable[Block]) -> Iterator[Panel]:
             yield block
         elif isinstance(block, Drawn):
             yield from block.panels
+        elif isinstance(block, Variants):
+            for inside in block.each.values():
+                yield from panels(inside)
 
 
 def _has(outcome: Outcome, part: str) -> bool:
@@ -185,6 +212,8 @@ class Section:
         closing: blocks at the end of the answer.
         warns: warnings that stand in the section, not at the top.
         screen: what the command line prints of one variant.
+        folded: True for one that a reader opens.
+        picture: identity of its drawing that stands beside the answer; empty without one.
     """
 
     name: str
@@ -199,6 +228,8 @@ class Section:
     closing: Callable[[Page], Iterable[Block]] = lambda page: ()
     warns: Callable[[Outcome], Iterable[str]] = lambda outcome: ()
     screen: Callable[[Outcome], Iterable[Printed]] = lambda outcome: ()
+    folded: bool = False
+    picture: str = ""
 
     def lacking(self, page: Page) -> str | None:
         """None if the section is shown, else why not."""

@@ -18,6 +18,7 @@ __all__ = [
     "quantity",
     "signed",
     "span",
+    "subscripts",
     "the",
     "unit",
     "unit_of",
@@ -38,6 +39,7 @@ _UNITS = {
 NOISE = 1e-9
 """Value in display units below which one is left by rounding."""
 
+_INDEXED = re.compile(r"(?<![\w`./])(Δ?[^\W\d_])_(\w{1,5})(?![\w(])")
 _LAST_UNIT = re.compile(r"(?<=\d) (um|degC|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
 
 
@@ -54,6 +56,16 @@ def unit(name: str) -> str:
 def pretty(text: str) -> str:
     """Text in which units that follow a number are printed as in a book."""
     return _LAST_UNIT.sub(lambda found: f" {_UNITS[found.group(1)]}", text)
+
+
+def subscripts(text: str) -> str:
+    """Text in which the index of a symbol of one letter is set low, as HTML and plotly.js read it.
+
+    Example:
+        >>> subscripts("pitch diameter d_w of gear_1")
+        'pitch diameter d<sub>w</sub> of gear_1'
+    """
+    return _INDEXED.sub(r"\1<sub>\2</sub>", text)
 
 
 def number(value: float, digits: int = 4, *, trailing: bool = False) -> str:

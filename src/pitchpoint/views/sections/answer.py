@@ -42,12 +42,54 @@ AVERAGES = {
 
 def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, one) for name, one in page.outcomes.items()]
-    yield Drawn(
-        "answer.html.jinja",
-        {"variants": variants, "several": page.several, "designs": page.designs},
-    )
+    values = {
+        "variants": variants,
+        "warnings": _warned(page),
+        "several": page.several,
+        "designs": page.designs,
+        "sums": _sums(page),
+        "curves": list(_sums_of_curves(page)),
+    }
+    yield Drawn("answer.html.jinja", values)
     for section in page.sections:
         yield from section.closing(page)
+
+
+_SUMS = ("mean_efficiency", "mean_loss", "mean_input_torque", "torque_ripple")
+
+
+def _sums(page: Page) -> list[str]:
+    """Heads of the table of all curves: long names with units."""
+    return [show.axis_title(name, _first_operation(page)) for name in _summed(page)]
+
+
+def _summed(page: Page) -> tuple[str, ...]:
+    return CONTACT if of_contact(_first_operation(page) or ()) else _SUMS
+
+
+def _first_operation(page: Page) -> Any:
+    there = page.having("operation").values()
+    return next((one.parts["operation"] for one in there), None)
+
+
+def _sums_of_curves(page: Page) -> Iterator[tuple[Curve, list[str]]]:
+    """Curve and main figures of every law in every variant."""
+    for variant, outcome in page.having("operation").items():
+        data = outcome.parts["operation"]
+        for position, law in enumerate(laws(data)):
+            values = {name: float(data[name].values[position, 0]) for name in _summed(page)}
+            cells = [show.quantity(n, v, with_unit=False, of=data) for n, v in values.items()]
+            yield page.curves[variant, law], cells
+
+
+def _ratio(manifest: Mapping[str, Any]) -> str:
+    """Speed of the driver over that of the loaded member in words; empty where one of them travels."""
+    motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
+    driver, loaded = manifest["driver"], manifest["loaded"]
+    if manifest.get("travels") or not motion.get(loaded) or driver not in motion:
+        return ""
+    ratio = float(motion[driver]) / float(motion[loaded])
+    return f"{show.number(ratio, 6)}, speed of {show.the(driver)} over that of {show.the(loaded)}"
 
 
 def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
@@ -62,8 +104,8 @@ def _variant(page: Page, name: str, outcome: Outcome) -> dict[str, Any]:
         "facts": [fact for section in page.sections for fact in section.answer(outcome)],
         "averaging": "" if single else _averaging(outcome),
         "operation": _operation(outcome),
+        "ratio": "" if single else _ratio(manifest),
         "laws": manifest["laws"],
-        "warnings": _warnings(page, outcome),
         "finished": manifest["finished"],
         "settings": set_for_run(manifest),
         "spread": spread(outcome),
@@ -183,6 +225,15 @@ def _range(data: xr.Dataset, name: str, value: Callable[[str], float]) -> str:
     return show.span(*ends, [value(end) for end in ends], data)
 
 
+def _warned(page: Page) -> dict[str, list[str]]:
+    """Sentences above every number, each with the variants that it is about."""
+    found: dict[str, list[str]] = {}
+    for name, outcome in page.outcomes.items():
+        for text in _warnings(page, outcome):
+            found.setdefault(text, []).append(name)
+    return found
+
+
 def _warnings(page: Page, outcome: Outcome) -> list[str]:
     """Sentences of the design and of the parts, each once, but for those that a section tells itself."""
     texts, known = list(outcome.manifest["warnings"]), outcome.manifest["implausible"]
@@ -221,6 +272,7 @@ _ACROSS = {
     ("shaft", "radial"): "radial load on the shaft of the {}",
     ("shaft", "axial"): "axial load on the shaft of the {}",
     ("guides", "radial"): "load on the guides of the {}, across its travel",
+    ("guides", "axial"): "load on the guides of the {}, along the face",
 }
 
 

@@ -42,7 +42,8 @@ def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
     ordered = sorted(every, key=lambda pair: _ORDER.get(pair[1].verdict, 0))
     table = [{**_row(row), "variant": name} for name, row in ordered]
     return {
-        "table": table,
+        "open": [row for row in table if row["verdict"] != "pass"],
+        "passed": [row for row in table if row["verdict"] == "pass"],
         "counts": [
             {"kind": kind, "verdicts": dict(verdicts), "variant": name}
             for name, rows in by_variant.items()

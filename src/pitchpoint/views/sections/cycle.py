@@ -1,6 +1,7 @@
 """Over the mesh cycle: efficiency and input torque, friction of the pairs."""
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -8,6 +9,7 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
+    Choice,
     Curve,
     Curves,
     Figure,
@@ -28,6 +30,9 @@ __all__ = ["CYCLE", "cycle_panel"]
 
 _FEW = 8
 """Pairs above which the friction of each cannot be told apart."""
+
+_COURSES = ("efficiency", "input_torque")
+Timed = list[tuple[Curve, xr.Dataset, int, Period]]
 
 _PAIR_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
@@ -56,14 +61,40 @@ def cycle_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     if not seen:
         return Panel("Over the mesh cycle", [])
     figures = [
-        _over("efficiency", "phase", seen),
-        _over("input_torque", "phase", seen),
-        _over("efficiency", "time", seen),
-        _over("input_torque", "time", seen),
+        *(_over(name, "phase", seen) for name in _COURSES),
         _against(seen),
         (_pairs if seen[0][1].sizes["pair"] <= _FEW else _count)(seen),
     ]
-    return Panel("Over the mesh cycle", figures, [curve for curve, *_ in seen])
+    choices = [_choice(axis, figures, seen) for axis in ("phase", "time")]
+    return Panel(
+        "Over the mesh cycle",
+        figures,
+        [curve for curve, *_ in seen],
+        choices,
+        menu="Efficiency and torque over",
+    )
+
+
+def _choice(axis: str, figures: list[Figure], seen: Timed) -> Choice:
+    """One period over the phase, or two over time."""
+    others = [_over(name, axis, seen) for name in _COURSES]
+    changes = {
+        drawn.name: _change(other)
+        for drawn, other in zip(figures, others, strict=False)
+        if drawn.drawn
+    }
+    return Choice(_axis(axis, seen[0][3]), changes)
+
+
+def _change(other: Figure) -> list[Any]:
+    x, y = ([trace[of] for trace in other.data] for of in "xy")
+    return [{"x": x, "y": y}, {"xaxis.title.text": other.layout["xaxis"]["title"]["text"]}]
+
+
+def _axis(axis: str, period: Period) -> str:
+    """Title of the axis; time may run against the phase."""
+    against = f", against the phase: {period.against}" if period.backwards else ""
+    return period.axis if axis == "phase" else f"time [ms]{against}"
 
 
 def _timed(
@@ -77,7 +108,7 @@ def _timed(
                 yield known[variant, law], data, position, period
 
 
-def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+def _over(name: str, axis: str, seen: Timed) -> Figure:
     first = seen[0][3]
     abscissa = _phase if axis == "phase" else _time
     like = seen[0][1]
@@ -86,15 +117,11 @@ def _over(name: str, axis: str, seen: list[tuple[Curve, xr.Dataset, int, Period]
     for curve, data, law, period in seen:
         x, y = abscissa(data, data[name].values[law], period)
         traces.append(line(curve, x, display(name, y, data), unit))
-    words = {"phase": first.axis, "time": "time [ms]"}[axis]
-    title = {"phase": f"over one {first.pitch}", "time": f"over time, two {first.pitch}es"}[axis]
-    note = f"Time runs against the phase: {first.against}." if first.backwards else ""
     return Figure(
-        f"cycle_{name}_{axis}",
-        f"{titled(name, like)} {title}",
+        f"cycle_{name}",
+        f"{titled(name, like)} over the mesh cycle",
         traces,
-        layout(words, short_axis(name, like)),
-        note if axis == "time" else "",
+        layout(_axis(axis, first), short_axis(name, like)),
     )
 
 
@@ -110,7 +137,7 @@ def _time(data: xr.Dataset, values: np.ndarray, period: Period) -> Points:
     return x * period.time * 1e3, y
 
 
-def _against(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+def _against(seen: Timed) -> Figure:
     """Efficiency against input torque; curves lie on each other, so the first ones are wider."""
     traces = []
     for position, (curve, data, law, _) in enumerate(seen):
@@ -134,7 +161,7 @@ def _against(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
     )
 
 
-def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+def _pairs(seen: Timed) -> Figure:
     """Friction of all pairs that are in contact at a phase."""
     traces = []
     for curve, data, law, _ in seen:
@@ -162,7 +189,7 @@ def _pairs(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
     )
 
 
-def _count(seen: list[tuple[Curve, xr.Dataset, int, Period]]) -> Figure:
+def _count(seen: Timed) -> Figure:
     """Number of pairs that carry; steps, since it is a whole number."""
     traces = []
     for curve, data, law, period in seen:

@@ -43,8 +43,12 @@ def is_design_chart(data: xr.Dataset) -> bool:
 
 
 def design_charts(outcomes: Mapping[str, Outcome]) -> list[Panel]:
-    """A panel for each study of the profile shift."""
-    return [_chart(name, outcomes, seen) for name, seen in _studies(outcomes)]
+    """A panel for each study of the profile shift with more than two points."""
+    return [
+        _chart(name, outcomes, seen)
+        for name, seen in _studies(outcomes)
+        if any(data.sizes["point"] > 2 for _, data in seen)
+    ]
 
 
 def _studies(outcomes: Mapping[str, Outcome]) -> Iterator[tuple[str, Seen]]:

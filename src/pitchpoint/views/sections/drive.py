@@ -182,4 +182,5 @@ DRIVE = Section(
     parts=_PARTS,
     lacks=lambda page: None if page.having(*_PARTS) else "",
     blocks=_blocks,
+    picture="drive0-close",
 )

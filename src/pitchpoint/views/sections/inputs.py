@@ -71,4 +71,5 @@ INPUTS = Section(
     order=10.0,
     lacks=lambda page: None,
     blocks=_blocks,
+    folded=True,
 )

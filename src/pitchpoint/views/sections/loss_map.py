@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.figures import covered
+from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -18,6 +19,7 @@ from pitchpoint.views.figures import (
     Curves,
     Figure,
     Key,
+    Menu,
     Panel,
     Trace,
     display,
@@ -44,12 +46,40 @@ def map_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
     choices = list(_choices(outcomes, known))
     if not choices:
         return Panel("Loss map", [])
-    _, variant, position, law = min(choices, key=lambda choice: choice[0])
+    first = min(range(len(choices)), key=lambda at: choices[at][0])
+    _, variant, position, law = choices[first]
     data = outcomes[variant].parts["loss_map"]
-    figures = [_figure(name, outcomes[variant], data, law, position) for name in _SHOWN]
-    ordered = sorted(choices, key=lambda choice: choice[1:] != (variant, position, law))
-    menu = [_choice(outcomes, known, *choice[1:]) for choice in ordered]
-    return Panel("Loss map", figures, choices=menu, menu="Shown for")
+    scales = {name: _scale(name, outcomes) for name in _SHOWN}
+    figures = [
+        _figure(name, outcomes[variant], data, law, position, scales[name]) for name in _SHOWN
+    ]
+    menu = [_choice(outcomes, known, *choice[1:]) for choice in choices]
+    menus = _menus(outcomes, known) if len(choices) > 1 else []
+    return Panel("Loss map", figures, choices=menu, menu="Shown for", menus=menus, at=first)
+
+
+def _menus(outcomes: Mapping[str, Outcome], known: Curves) -> list[Menu]:
+    """Menus for law and for temperature; none where variants have their maps at others."""
+    maps = {
+        name: one.parts["loss_map"] for name, one in outcomes.items() if "loss_map" in one.parts
+    }
+    degrees = {tuple(data["temperature"].values.tolist()) for data in maps.values()}
+    labels = [known[name, law].label for name, data in maps.items() for law in laws(data)]
+    if len(degrees) > 1:
+        return []
+    told = [level("temperature", degree) for degree in degrees.pop()]
+    each = [Menu("Friction", labels), Menu("Oil at", told)]
+    return [menu for menu in each if len(menu.labels) > 1]
+
+
+def _scale(name: str, outcomes: Mapping[str, Outcome]) -> dict[str, float]:
+    """Ends of the colour scale that all maps of a quantity share; none where nothing is known."""
+    maps = [one.parts["loss_map"][name] for one in outcomes.values() if "loss_map" in one.parts]
+    values = np.concatenate([display(name, each.values).ravel() for each in maps])
+    values = values[np.isfinite(values)]
+    if not values.size or not np.ptp(values) > ROUNDING * np.abs(values).max():
+        return {}
+    return {"zmin": float(values.min()), "zmax": float(values.max())}
 
 
 def _choices(
@@ -69,13 +99,12 @@ def _choice(
 ) -> Choice:
     data = outcomes[variant].parts["loss_map"]
     curve = known[variant, laws(data)[law]]
-    degree = display("temperature", data["temperature"].values[position])
+    degree = level("temperature", float(data["temperature"].values[position]))
     changes: dict[str, list[Any]] = {}
     for name in _SHOWN:
         heat = _heat(name, data, law, position)
         changes[f"map_{name}"] = [{key: [values] for key, values in heat.items()}, {}, [0]]
-    unit = show.unit(VARIABLES["temperature"].display)
-    return Choice(f"{curve.label}, oil at {show.number(float(degree))} {unit}", changes)
+    return Choice(f"{curve.label}, oil at {degree}", changes)
 
 
 def _heat(name: str, data: xr.Dataset, law: int, temperature: int) -> dict[str, Any]:
@@ -93,15 +122,26 @@ def _thinned(size: int) -> np.ndarray:
     return np.unique(np.linspace(0, size - 1, min(size, _MOST)).round().astype(int))
 
 
-def _figure(name: str, outcome: Outcome, data: xr.Dataset, law: int, temperature: int) -> Figure:
+def _figure(
+    name: str,
+    outcome: Outcome,
+    data: xr.Dataset,
+    law: int,
+    temperature: int,
+    scale: Mapping[str, float],
+) -> Figure:
     variable, fact = VARIABLES[name], operating_point(outcome)
     unit, units = show.unit(variable.display), [show.unit_of(n, data) for n in ("speed", "torque")]
     heat = {
-        "type": "heatmap",
+        "type": "contour",
         **_heat(name, data, law, temperature),
         "colorscale": "Cividis" if name == "mean_efficiency" else "YlOrRd",
         "reversescale": name != "mean_efficiency",
         "hoverongaps": False,
+        **scale,
+        "zauto": not scale,
+        "contours": {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11}},
+        "line": {"color": INK, "width": 0.7},
         "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
         "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}} {units[0]}, %{{y:.4~g}} {units[1]}"
         "<extra></extra>",
@@ -209,8 +249,8 @@ def _blocks(page: Page) -> Iterator[Block]:
     load = show.described("torque", data).long_name
     yield Paragraph(
         f"Mean loss and mean efficiency over driver speed and {load}. At zero {load.split()[-1]} or zero "
-        "speed no power is transmitted and the efficiency is undefined; those cells are blank. Every choice "
-        "has its own colour scale."
+        "speed no power is transmitted and the efficiency is undefined; those cells are blank. All choices "
+        "share one colour scale."
     )
     if alone := covered(one.parts for one in there.values()):
         yield Paragraph(alone, "note")

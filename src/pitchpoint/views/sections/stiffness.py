@@ -25,7 +25,7 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
+from pitchpoint.views.section import Block, Page, Paragraph, Section, Table, tabbed
 
 __all__ = [
     "STIFFNESS",
@@ -163,12 +163,13 @@ def _blocks(page: Page) -> Iterator[Block]:
         "this period, II one period before, and so on; the mesh is their sum."
     )
     yield _table(page)
-    for it in stiffness_panels(page.outcomes):
-        if it.title:
-            yield Heading(it.title)
-        yield it
-        if it.note:
-            yield Paragraph(it.note, "warning")
+    yield from tabbed((it.title, _of_variant(it)) for it in stiffness_panels(page.outcomes))
+
+
+def _of_variant(it: Panel) -> Iterator[Block]:
+    yield it
+    if it.note:
+        yield Paragraph(it.note, "warning")
 
 
 def _answer(outcome: Outcome) -> list[tuple[str, str]]:

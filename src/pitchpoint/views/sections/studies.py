@@ -18,6 +18,7 @@ from pitchpoint.views.figures import (
     Curve,
     Curves,
     Figure,
+    Menu,
     Panel,
     Trace,
     display,
@@ -38,6 +39,7 @@ _SHOWN = ("mean_efficiency", "efficiency_fluctuation", "mean_input_torque", "tor
 _MOVING = ("mean_stiffness", "transmission_error_range", "largest_dynamic_factor")
 """Shown where a case has vibration, the same under every friction law."""
 _TABLE = ("contact_ratio", *MAIN)
+_FEW = 3
 
 _WORDS = {
     "operation.torque": "output torque",
@@ -53,12 +55,29 @@ Seen = list[tuple[Curve, xr.Dataset, int]]
 
 
 def study_panels(outcomes: Mapping[str, Outcome], known: Curves) -> list[Panel]:
-    """A panel for each sweep."""
-    return [_panel(name, seen) for name, seen in _studies(outcomes, known) if "axis" in seen[0][1]]
+    """A panel for the sweeps of each kind: those that draw the same curves over the same key share it."""
+    kinds: dict[Any, list[tuple[str, Seen]]] = {}
+    for name, seen in _studies(outcomes, known):
+        if "axis" in seen[0][1] and not _brief(seen):
+            kinds.setdefault(_kind(seen), []).append((name, seen))
+    return [_panel(each) for each in kinds.values()]
+
+
+def _brief(seen: Seen) -> bool:
+    """True for sweeps of so few points that their numbers say more than a line."""
+    return all(data.sizes["point"] < _FEW for _, data, _ in seen)
+
+
+def _kind(seen: Seen) -> tuple[Any, ...]:
+    """What studies have in common that can share their figures."""
+    data = seen[0][1]
+    same_looks = tuple(curve.key for curve, *_ in seen)
+    return same_looks, data.attrs["sweep_key"], *map(tuple, (_shown(seen), _axes(data)))
 
 
 def _tables(page: Page) -> Iterator[Block]:
-    """Heading and table for each study of a single point."""
+    """Heading and table for each study of a single point, one table for sweeps of the same key."""
+    sweeps: dict[str, list[Seen]] = {}
     for _, seen in _studies(page.outcomes, page.curves):
         if "axis" not in seen[0][1]:
             columns = _columns(seen)
@@ -67,6 +86,39 @@ def _tables(page: Page) -> Iterator[Block]:
                 ["Friction law", *(show.axis_title(name, seen[0][1]) for name in columns)],
                 [(curve.label, *_cells(data, law, columns)) for curve, data, law in seen],
             )
+        elif _brief(seen):
+            sweeps.setdefault(str(seen[0][1].attrs["sweep_key"]), []).append(seen)
+    for key, studies in sweeps.items():
+        yield Heading(f"Few values: {_words_of(key)}")
+        yield Paragraph(f"Swept: {key}.", "note")
+        yield _brief_table(studies)
+
+
+def _brief_table(studies: list[Seen]) -> Table:
+    """Every point of studies of the same key under every law."""
+    like = studies[0][0][1]
+    every = [one for seen in studies for one in seen]
+    columns = [*_columns(every)]
+    if any("tip_thickness_1" in data for _, data, _ in every) and is_design_chart(like):
+        columns.append("tip_thickness_1")
+    titles = (show.axis_title(name, like) for name in columns)
+    return Table(
+        ["Study", _swept(like)[1], "Friction law", *titles],
+        [row for seen in studies for row in _brief_rows(seen, columns)],
+        wide=True,
+    )
+
+
+def _brief_rows(seen: Seen, columns: list[str]) -> Iterator[tuple[str, ...]]:
+    """Every point of a study under every law."""
+    for curve, data, law in seen:
+        for point in range(data.sizes["point"]):
+            place, cells = _valued(data, point), _cells(data, law, columns, point)
+            yield str(data.attrs["title"]), place, curve.label, *cells
+
+
+def _valued(data: xr.Dataset, point: int) -> str:
+    return show.number(float(_swept(data)[0][point]), 6)
 
 
 def _studies(outcomes: Mapping[str, Outcome], known: Curves) -> Iterator[tuple[str, Seen]]:
@@ -93,9 +145,9 @@ def _columns(seen: Seen) -> list[str]:
     return [name for name in (*_TABLE, *more) if any(name in data for _, data, _ in seen)]
 
 
-def _cells(data: xr.Dataset, law: int, columns: list[str]) -> list[str]:
+def _cells(data: xr.Dataset, law: int, columns: list[str], point: int = 0) -> list[str]:
     return [
-        show.quantity(name, float(_valid(data, name)[law, 0]), with_unit=False, of=data)
+        show.quantity(name, float(_valid(data, name)[law, point]), with_unit=False, of=data)
         for name in columns
     ]
 
@@ -110,25 +162,35 @@ def _valid(data: xr.Dataset, name: str) -> np.ndarray:
     return np.asarray(values)
 
 
-def _panel(name: str, seen: Seen) -> Panel:
+def _axes(data: xr.Dataset) -> list[Any]:
+    """What the figures may be drawn against, the first one at first."""
+    return [_ratio, _swept] if _ratio_varies(data) and not is_design_chart(data) else [_swept]
+
+
+def _shown(seen: Seen) -> list[str]:
+    """Quantities that have a figure."""
     data = seen[0][1]
-    chart = is_design_chart(data)
-    axes = [_swept, _ratio] if _ratio_varies(data) and not chart else [_swept]
-    more = _MOVING[2:] if chart else _MOVING
+    more = _MOVING[2:] if is_design_chart(data) else _MOVING
     first = CONTACT if of_contact(data) else _SHOWN
-    every = [*first, *(name for name in more if any(name in data for _, data, _ in seen))]
-    figures = [_figure(f"{name}_{variable}", variable, seen, axes[-1]) for variable in every]
-    choices = []
-    if len(axes) > 1:
-        choices = [_choice(axis, figures, seen) for axis in reversed(axes)]
-    note = f"Swept: {data.attrs['sweep_key']}."
+    return [*first, *(name for name in more if any(name in each for _, each, _ in seen))]
+
+
+def _panel(studies: list[tuple[str, Seen]]) -> Panel:
+    """Figures of studies of one kind, with menus for the study and for what they are drawn against."""
+    name, seen = studies[0]
+    data, axes = seen[0][1], _axes(seen[0][1])
+    figures = [_figure(f"{name}_{variable}", variable, seen, axes[0]) for variable in _shown(seen)]
+    choices = [_choice(axis, figures, each) for _, each in studies for axis in axes]
+    titles = [str(each[0][1].attrs["title"]) for _, each in studies]
+    menus = [Menu("Study", titles)] if len(studies) > 1 else []
+    menus += [Menu("Shown against", [axis(data)[1] for axis in axes])] if len(axes) > 1 else []
     return Panel(
-        str(data.attrs["title"]),
+        titles[0] if len(studies) == 1 else f"Against {_words_of(data.attrs['sweep_key'])}",
         figures,
         [curve for curve, *_ in seen],
-        choices,
-        note,
-        "Shown against",
+        choices if menus else [],
+        f"Swept: {data.attrs['sweep_key']}.",
+        menus=menus,
     )
 
 
@@ -150,23 +212,38 @@ def _trace(curve: Curve, data: xr.Dataset, law: int, variable: str, axis: Any, u
 
 
 def _choice(axis: Any, figures: list[Figure], seen: Seen) -> Choice:
-    x = [_trace(curve, data, law, "mean_loss", axis, "")["x"] for curve, data, law in seen]
     title = axis(seen[0][1])[1]
-    change: list[Any] = [{"x": x}, {"xaxis.title.text": text(title)}]
-    return Choice(title, {figure.name: change for figure in figures})
+    changes = {
+        figure.name: _change(variable, axis, seen)
+        for figure, variable in zip(figures, _shown(seen), strict=True)
+    }
+    return Choice(title, changes)
+
+
+def _change(variable: str, axis: Any, seen: Seen) -> list[Any]:
+    """What a choice changes in a figure: places and values of its curves, and the title of their axis."""
+    traces = [_trace(curve, data, law, variable, axis, "") for curve, data, law in seen]
+    return [
+        {key: [trace[key] for trace in traces] for key in "xy"},
+        {"xaxis.title.text": show.subscripts(text(axis(seen[0][1])[1]))},
+    ]
 
 
 def _swept(data: xr.Dataset) -> tuple[np.ndarray, str]:
     """Values of the swept key in its unit, and the title of their axis."""
     values = data["axis"].values
     key = str(data.attrs["sweep_key"])
-    words = _WORDS.get(key, key.replace("_", " ").replace(".", ", ", 1))
+    words = _words_of(key)
     if not np.isfinite(values).all():
         return np.arange(1.0, values.size + 1.0), f"{words} (number in the list)"
     unit, kind = str(data.attrs["axis_unit"]), str(data.attrs["axis_kind"])
     if kind:
         values = np.asarray(units.convert(values, unit, kind))
     return values, f"{words} [{show.unit(unit)}]" if show.unit(unit) else words
+
+
+def _words_of(key: str) -> str:
+    return _WORDS.get(key, key.replace("_", " ").replace(".", ", ", 1))
 
 
 def _ratio(data: xr.Dataset) -> tuple[np.ndarray, str]:

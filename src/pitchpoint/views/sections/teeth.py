@@ -186,4 +186,5 @@ TEETH = Section(
     order=100.0,
     parts=_PARTS,
     blocks=_blocks,
+    picture="mesh0-close",
 )

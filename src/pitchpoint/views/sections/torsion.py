@@ -29,7 +29,7 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import folded
 from pitchpoint.views.point import Period, operating_point, period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section, Table
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, Table, tabbed
 from pitchpoint.views.way import beside, place_of
 
 __all__ = ["TORSION", "part_rows", "slope_rows", "torsion_answer", "torsion_panels", "wind_up_rows"]
@@ -392,25 +392,27 @@ def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:
 
 def _blocks(page: Page) -> Iterator[Block]:
     panels = torsion_panels(page.outcomes, page.curves)
-    for it, outcome in zip(panels, page.having("torsion").values(), strict=True):
-        if it.title:
-            yield Heading(it.title)
-        note = f"{it.note[0].upper()}{it.note[1:]}." if it.note else ""
-        data = outcome.parts["torsion"]
-        held = (
-            "with the other members held, mean over the mesh cycle"
-            if "tooth_force" in data
-            else "with the input held, while the shafts between them turn: the sum of those of the stages, "
-            "each the mean over its mesh cycle"
-        )
-        yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
-        if left_out := str(data.attrs.get("left_out", "")):
-            yield Paragraph(left_out, "note")
-        yield from _table(_down(slope_rows(outcome)))
-        yield from _table(part_rows(outcome))
-        if "hysteresis_loss" in data:
-            yield Paragraph(_NO_LOOP, "note")
-        yield it
+    there = zip(panels, page.having("torsion").values(), strict=True)
+    return tabbed((it.title, _of_variant(it, outcome)) for it, outcome in there)
+
+
+def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
+    note = f"{it.note[0].upper()}{it.note[1:]}." if it.note else ""
+    data = outcome.parts["torsion"]
+    held = (
+        "with the other members held, mean over the mesh cycle"
+        if "tooth_force" in data
+        else "with the input held, while the shafts between them turn: the sum of those of the stages, "
+        "each the mean over its mesh cycle"
+    )
+    yield Paragraph(f"{_words(data).way.capitalize()} of the loaded member {held}. {note}")
+    if left_out := str(data.attrs.get("left_out", "")):
+        yield Paragraph(left_out, "note")
+    yield from _table(_down(slope_rows(outcome)))
+    yield from _table(part_rows(outcome))
+    if "hysteresis_loss" in data:
+        yield Paragraph(_NO_LOOP, "note")
+    yield it
 
 
 def _answer(outcome: Outcome) -> list[tuple[str, str]]:

@@ -42,6 +42,7 @@ from pitchpoint.views.section import (
     Section,
     Table,
     reason,
+    tabbed,
 )
 
 __all__ = ["VIBRATION", "resonance_panels", "vibration_answer", "vibration_panels"]
@@ -346,19 +347,20 @@ def _gaps(data: xr.Dataset) -> Iterator[str]:
 
 def _blocks(page: Page) -> Iterator[Block]:
     panels = zip(vibration_panels(page.outcomes), page.having("vibration").values(), strict=True)
-    for it, outcome in panels:
-        yield from _steady(it, outcome)
-    for it in resonance_panels(page.outcomes):
-        yield Heading(f"Against speed: {it.title}" if it.title else "Against speed")
-        if it.note:
-            yield Paragraph(it.note, "warning")
-        yield it
+    yield from tabbed((it.title, _steady(it, outcome)) for it, outcome in panels)
+    if swept := resonance_panels(page.outcomes):
+        yield Heading("Against speed")
+        yield from tabbed((it.title, _through_resonance(it)) for it in swept)
+
+
+def _through_resonance(it: Panel) -> Iterator[Block]:
+    if it.note:
+        yield Paragraph(it.note, "warning")
+    yield it
 
 
 def _steady(it: Panel, outcome: Outcome) -> Iterator[Block]:
     data = outcome.parts["vibration"]
-    if it.title:
-        yield Heading(it.title)
     yield Paragraph(
         "Steady state at the operating speed; the motion of one member against the other, measured along "
         f"the line of action. Contact: {data.attrs.get('contact', '')}."

@@ -1,19 +1,134 @@
 "use strict";
-(function () {
-  const page = JSON.parse(document.getElementById("figures").textContent);
+(async function () {
+  const dark = window.matchMedia("(prefers-color-scheme: dark)");
+  const page = JSON.parse(document.getElementById("figures").textContent, dressed);
   const config = { displayModeBar: false, responsive: true, showTips: false };
   const touch = window.matchMedia("(pointer: coarse)").matches;
   const drawn = new Map();
+  const seen = document.documentElement.dataset;
+
+  // Colours are given for white paper; on dark paper light and dark change places, hues stay.
+  function lit(colour) {
+    const full = colour.length === 4 ? colour.replace(/[0-9a-f]/gi, "$&$&") : colour;
+    const [r, g, b] = [1, 3, 5].map((at) => parseInt(full.slice(at, at + 2), 16) / 255);
+    const [low, high] = [Math.min(r, g, b), Math.max(r, g, b)];
+    const [light, span] = [(low + high) / 2, high - low];
+    const share = span ? span / (1 - Math.abs(2 * light - 1)) : 0;
+    const [first, second] = high === r ? [g - b, 0] : high === g ? [b - r, 2] : [r - g, 4];
+    const hue = span ? 60 * (first / span + second) : 0;
+    return `hsl(${hue.toFixed(0)}, ${(80 * share).toFixed(0)}%, ${(100 - 88 * light).toFixed(0)}%)`;
+  }
+
+  function dressed(key, value) {
+    if (dark.matches && key.endsWith("bgcolor")) return getComputedStyle(document.body).getPropertyValue("--paper").trim();
+    const colour = dark.matches && typeof value === "string" && /^#([0-9a-f]{3}){1,2}$/i.test(value);
+    return colour && key !== "name" && key !== "text" ? lit(value) : value;
+  }
+
+  if (dark.matches) {
+    for (const one of document.querySelectorAll('[stroke^="#"], [fill^="#"], [style*="#"]')) {
+      for (const name of ["stroke", "fill", "style"]) {
+        const value = one.getAttribute(name);
+        if (value) one.setAttribute(name, value.replace(/#[0-9a-f]{6}\b/gi, lit));
+      }
+    }
+  }
+  dark.addEventListener("change", () => location.reload());
+
+  async function unpack(id) {
+    const packed = Uint8Array.from(atob(document.getElementById(id).textContent), (one) => one.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const script = document.createElement("script");
+    script.textContent = await new Response(stream).text();
+    document.head.append(script);
+  }
 
   function draw(place) {
     if (drawn.has(place.id)) return drawn.get(place.id);
-    const figure = page.figures[place.id];
+    const figure = structuredClone(page.figures[place.dataset.figure || place.id]);
     // A finger scrolls the page, so it must not start a zoom.
     if (touch) figure.layout.dragmode = false;
     const off = hidden();
     for (const trace of figure.data) trace.visible = !off.has(trace.meta);
-    drawn.set(place.id, Plotly.newPlot(place, figure.data, figure.layout, config));
-    return drawn.get(place.id);
+    offer(place);
+    const ready = Plotly.newPlot(place, figure.data, figure.layout, config).then(() => {
+      tell(place);
+      seen.drawn = seen.drawn || "some";
+      return place;
+    });
+    drawn.set(place.id, ready);
+    return ready;
+  }
+
+  const minus = (number) => String(number).replace(/-/g, "\u2212");
+  const bare = (words) => new DOMParser().parseFromString(words || "", "text/html").body.textContent;
+  const heading = (place) => place.closest("figure").querySelector("figcaption").dataset.title;
+
+  // Title, axes with their ranges and curves of a figure, for those who do not see it.
+  function tell(place) {
+    const layout = place._fullLayout;
+    const axis = (name) => {
+      const one = layout[name];
+      if (!one || !one.range || !one.title) return "";
+      const places = one.range.map((end) => (one.type === "log" ? 10 ** end : end));
+      const digits = Math.floor(Math.log10(Math.abs(places[1] - places[0]) || 1));
+      const ends = places.map((end) => minus(Number(end.toFixed(Math.min(Math.max(3 - digits, 0), 20)))));
+      return `, ${bare(one.title.text)} from ${ends.join(" to ")}`;
+    };
+    const curves = [...new Set(place.data.map((trace) => bare(trace.name)).filter(Boolean))];
+    const told = curves.length ? ". Curves: " + curves.slice(0, 12).join(", ") : "";
+    place.setAttribute("role", "img");
+    place.setAttribute("aria-label", heading(place) + axis("xaxis") + axis("yaxis") + told + ".");
+  }
+
+  // Buttons that save a figure as it is shown.
+  function offer(place) {
+    const caption = place.closest("figure").querySelector("figcaption");
+    caption.dataset.title = caption.textContent.trim();
+    const group = document.createElement("span");
+    group.className = "save";
+    for (const kind of ["svg", "png", "csv"]) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = kind.toUpperCase();
+      button.setAttribute("aria-label", `Save ${caption.dataset.title} as ${button.textContent}`);
+      button.addEventListener("click", () => save(place, kind));
+      group.append(button);
+    }
+    caption.append(group);
+  }
+
+  async function save(place, kind) {
+    const [width, height] = [place.clientWidth, place.clientHeight];
+    const address =
+      kind === "csv"
+        ? URL.createObjectURL(new Blob([table(place)], { type: "text/csv" }))
+        : await Plotly.toImage(place, { format: kind, width, height, scale: kind === "png" ? 3 : 1 });
+    const link = document.createElement("a");
+    link.href = address;
+    link.download = `${place.id}.${kind}`;
+    link.click();
+    if (kind === "csv") setTimeout(() => URL.revokeObjectURL(address), 1000);
+  }
+
+  // Values of the curves that are shown, one point a line.
+  function table(place) {
+    const cell = (value) => {
+      if (value === null || value === undefined) return "";
+      if (typeof value === "number") return String(value);
+      const words = bare(String(value)).replace(/^[=+@-]/, "'$&");
+      return `"${words.replace(/"/g, '""')}"`;
+    };
+    const title = (name) => bare(place.layout[name] && place.layout[name].title && place.layout[name].title.text);
+    const maps = place.data.some((trace) => trace.z);
+    const value = maps ? [heading(place)] : [];
+    const rows = [["curve", title("xaxis") || "x", title("yaxis") || "y", ...value]];
+    for (const trace of place.data.filter((one) => one.visible !== false)) {
+      const name = bare(trace.name);
+      if (!trace.z) trace.x.forEach((x, k) => rows.push([name, x, trace.y[k], ...value.map(() => "")]));
+      else trace.z.forEach((line, row) => line.forEach((z, column) => rows.push([name, trace.x[column], trace.y[row], z])));
+    }
+    return "\ufeff" + rows.map((row) => row.map(cell).join(",")).join("\r\n") + "\r\n";
   }
 
   function hidden() {
@@ -25,10 +140,11 @@
     for (const box of document.querySelectorAll("[data-curve]")) {
       if (box.dataset.curve === key) box.checked = on;
     }
-    for (const [id, ready] of drawn) {
-      const traces = page.figures[id].data;
-      const which = traces.map((trace, k) => (trace.meta === key ? k : -1)).filter((k) => k >= 0);
-      if (which.length) ready.then((place) => Plotly.restyle(place, { visible: on }, which));
+    for (const ready of drawn.values()) {
+      ready.then((place) => {
+        const which = place.data.map((trace, k) => (trace.meta === key ? k : -1)).filter((k) => k >= 0);
+        if (which.length) Plotly.restyle(place, { visible: on }, which);
+      });
     }
   }
 
@@ -36,10 +152,13 @@
     if (menu.dataset.labels) {
       menu.closest(".slider").querySelector("output").textContent = menu.dataset.labels.split(" ")[menu.value];
     }
-    const changes = page.menus[menu.dataset.menu][menu.value];
+    const name = menu.dataset.menu;
+    const parts = [...document.querySelectorAll(`[data-menu="${CSS.escape(name)}"]`)];
+    const chosen = parts.reduce((sum, one) => sum + Number(one.value) * Number(one.dataset.step || 1), 0);
+    const changes = page.menus[name][chosen];
     for (const [id, change] of Object.entries(changes)) {
       const place = document.getElementById(id);
-      if (place) draw(place).then(() => Plotly.update(place, ...change));
+      if (place) draw(place).then(() => Plotly.update(place, ...change)).then(() => tell(place));
     }
   }
 
@@ -305,36 +424,106 @@
     set();
   }
 
-  const places = [...document.querySelectorAll(".plot")];
-  if ("IntersectionObserver" in window) {
-    const watch = new IntersectionObserver(
-      (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => draw(entry.target)),
-      { rootMargin: "600px" }
-    );
-    places.forEach((place) => watch.observe(place));
-  } else {
-    places.forEach(draw);
+  // One variant at a time; without this script, and in print, all of them.
+  function tab(group) {
+    const panes = [...group.children];
+    const bar = document.createElement("div");
+    bar.className = "tabs";
+    bar.setAttribute("role", "group");
+    bar.setAttribute("aria-label", "Variant");
+    const buttons = panes.map((pane) => {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = pane.dataset.pane;
+      button.addEventListener("click", () => open(pane));
+      return button;
+    });
+    function open(wanted) {
+      panes.forEach((pane, k) => {
+        pane.hidden = pane !== wanted;
+        buttons[k].setAttribute("aria-pressed", String(pane === wanted));
+      });
+    }
+    bar.append(...buttons);
+    group.prepend(bar);
+    group.classList.add("tabbed");
+    open(panes[0]);
   }
-  // The rest follows while nobody waits for it, so that a printed page is complete.
-  const later = places.slice();
-  (function next() {
-    const place = later.shift();
-    if (place) draw(place).then(() => setTimeout(next, 30));
-  })();
+
+  // Marks in the contents where the reader is: the last section that began above a third of the window.
+  function follow() {
+    const links = [...document.querySelectorAll("nav a")];
+    const parts = links.map((link) => document.getElementById(link.hash.slice(1)));
+    function mark() {
+      const passed = parts.filter((part) => part && part.getBoundingClientRect().top < innerHeight / 3);
+      const at = Math.max(passed.length - 1, 0);
+      links.forEach((link, k) => {
+        if (k !== at) link.removeAttribute("aria-current");
+        else if (!link.hasAttribute("aria-current")) {
+          link.setAttribute("aria-current", "true");
+          const nav = link.parentNode;
+          nav.scrollLeft = link.offsetLeft - nav.clientWidth / 2;
+        }
+      });
+    }
+    addEventListener("scroll", () => requestAnimationFrame(mark), { passive: true });
+    mark();
+  }
+
+  function unfold() {
+    const part = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    const details = part && part.querySelector(":scope > details");
+    if (details) details.open = true;
+  }
+
+  const visible = (place) => place.offsetParent !== null && (!place.checkVisibility || place.checkVisibility());
+  const places = [...document.querySelectorAll(".plot")];
+  document.querySelectorAll(".variants").forEach(tab);
+  document.querySelectorAll(".mesh").forEach(animate);
+  document.querySelectorAll(".drive").forEach(drive);
+  document.querySelectorAll("[data-plays]").forEach((button) => {
+    const player = document.getElementById(button.dataset.plays).closest(".mesh, .drive").querySelector(".slider button");
+    button.addEventListener("click", () => {
+      player.click();
+      button.textContent = player.textContent;
+    });
+  });
+  follow();
+  unfold();
+  addEventListener("hashchange", unfold);
   document.querySelectorAll("[data-curve]").forEach((box) =>
     box.addEventListener("change", () => show(box.dataset.curve, box.checked))
   );
+  try {
+    await unpack("plotly");
+  } catch (error) {
+    for (const place of places) place.textContent = "This browser is too old to draw this figure.";
+    return;
+  }
   document.querySelectorAll("[data-menu]").forEach((menu) => {
     menu.addEventListener("input", () => choose(menu));
-    menu.value = menu.defaultValue || "0";
+    if (menu.tagName === "INPUT") menu.value = menu.defaultValue || "0";
+    else for (const one of menu.options) one.selected = one.defaultSelected;
   });
-  document.querySelectorAll(".mesh").forEach(animate);
-  document.querySelectorAll(".drive").forEach(drive);
+  const watch = new IntersectionObserver(
+    (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => draw(entry.target)),
+    { rootMargin: "600px" }
+  );
+  places.forEach((place) => watch.observe(place));
+  // The rest follows while nobody waits for it, so that a printed page is complete.
+  const later = places.filter(visible);
+  (function next() {
+    const place = later.shift();
+    if (place) draw(place).then(() => setTimeout(next, 30));
+    else seen.drawn = "all";
+  })();
   window.addEventListener("beforeprint", () => {
     document.querySelectorAll("details").forEach((one) => (one.open = true));
+    document.querySelectorAll(".pane").forEach((one) => (one.hidden = false));
     places.forEach((place) => draw(place).then(() => Plotly.relayout(place, { width: 340, height: 230 })));
   });
   window.addEventListener("afterprint", () => {
+    document.querySelectorAll('.tabs button[aria-pressed="true"]').forEach((one) => one.click());
     places.forEach((place) => Plotly.relayout(place, { width: null, height: null, autosize: true }));
   });
 })();

@@ -1,0 +1,179 @@
+"""The report in a real browser, wide and narrow, light and dark: drawn, driven, saved, a silent console."""
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from browser import CHROMIUM, Browser, browser
+
+from pitchpoint.runs.run import run
+from pitchpoint.views.report import write_report
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
+
+ALL = "document.documentElement.dataset.drawn === 'all'"
+VISIBLE = "[...document.querySelectorAll('.plot')].filter(p => p.offsetParent)"
+CASE = """
+title = "A pair & <b>its</b> loss"
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = "15 mm"
+profile_shift = [0.4, -0.2]
+[lubricant]
+base = "mineral"
+viscosity_40 = "220 mm2/s"
+viscosity_100 = "19 mm2/s"
+[roughness]
+rq = "0.1 um"
+[operation]
+torque = "60 N m"
+speed = "900 rpm"
+temperature = "60 degC"
+[loss_map]
+count = 3
+[variants.one.models]
+friction = ["iso_tr_14179_2", "xu_2007"]
+[variants.other.models]
+friction = "constant"
+[studies.shape]
+title = "Shape"
+sweep = { key = "gears.addendum", start = 1.0, stop = 1.4, count = 3 }
+[studies.wide]
+title = "Two points, a table wider than a narrow screen"
+sweep = { key = "gears.addendum", values = [1.0, 1.2] }
+"""
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("in_browser")
+    (folder / "case.toml").write_text(CASE, encoding="utf-8")
+    write_report(run(str(folder / "case.toml"), folder=folder / "out"), folder / "report.html")
+    return folder / "report.html"
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    with browser() as one:
+        yield one
+
+
+@pytest.fixture
+def wide(chromium: Browser, report: Path) -> Browser:
+    """The report on a wide screen, as the test before has left it."""
+    if chromium.window != (1280, {}):
+        chromium.open(report, 1280)
+        chromium.wait(ALL)
+    return chromium
+
+
+def top(page: Browser, selector: str) -> float:
+    return float(
+        page.run(f"document.querySelector({selector!r}).getBoundingClientRect().top + scrollY")
+    )
+
+
+@pytest.mark.parametrize("width", [1280, 500])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_all_is_drawn_and_the_console_is_silent(
+    chromium: Browser, report: Path, width: int, scheme: str
+) -> None:
+    chromium.open(report, width, prefers_color_scheme=scheme)
+    chromium.wait(ALL)
+    assert chromium.run(f"{VISIBLE}.every(p => p.querySelector('svg'))")
+    assert top(chromium, "main figure svg") < 1200
+    assert top(chromium, ".card .big") < 1200
+    assert chromium.run("document.documentElement.scrollWidth") <= width
+    ground = chromium.run(
+        "getComputedStyle(document.querySelector('.plot .main-svg')).backgroundColor"
+    )
+    assert (ground == "rgb(255, 255, 255)") == (scheme == "light")
+    assert chromium.console == []
+
+
+def test_the_picture_beside_the_answer_moves_with_the_teeth(wide: Browser) -> None:
+    place = "document.querySelector('.mesh .gear').getAttribute('transform')"
+    before = wide.run(place)
+    wide.run("document.querySelector('[data-plays]').click()")
+    wide.wait(f"{place} !== {before!r}")
+    wide.run("document.querySelector('[data-plays]').click()")
+    assert wide.run("document.querySelector('[data-plays]').textContent") == "Play"
+    assert wide.run("document.querySelector('.glance svg').getBoundingClientRect().height") > 200
+
+
+def test_a_slider_moves_the_teeth(wide: Browser) -> None:
+    told = "document.querySelector('.mesh output').textContent"
+    move = "(s => { s.value = 0.75; s.dispatchEvent(new Event('input')) })"
+    wide.run(f"{move}(document.querySelector('.mesh input'))")
+    assert "phase 0.75" in wide.run(told)
+
+
+def test_two_menus_choose_law_and_temperature_of_a_map(wide: Browser) -> None:
+    values = "JSON.stringify(document.getElementById('map_mean_loss').data[0].z)"
+    names = "[...document.querySelectorAll('#map .menu')].map(m => m.firstChild.textContent.trim())"
+    assert wide.run(names) == ["Friction", "Oil at"]
+    given = "JSON.parse(document.getElementById('figures').textContent).menus.map_mean_loss"
+    choose = "(m => { m.selectedIndex = (m.selectedIndex + 1) % 3; m.dispatchEvent(new Event('input')) })"
+    for menu in (0, 1, 0, 1):
+        wide.run(f"{choose}(document.querySelectorAll('#map select')[{menu}])")
+        law, oil = wide.run(
+            "[...document.querySelectorAll('#map select')].map(m => m.selectedIndex)"
+        )
+        wanted = f"{given}[{3 * law + oil}].map_mean_loss[0].z[0]"
+        assert wide.wait(f"JSON.stringify({wanted}) === {values}")
+    ends = "(t => [t.zmin, t.zmax])(document.getElementById('map_mean_loss').data[0])"
+    low, high = wide.run(ends)
+    assert low == 0.0 < high
+    assert wide.console == []
+
+
+def test_contents_stick_and_say_where_one_is(wide: Browser) -> None:
+    here = "document.querySelector('nav [aria-current]').hash"
+    wide.run("scrollTo({top: 0, behavior: 'instant'})")
+    wide.wait(f"{here} === '#answer'")
+    wide.run("document.getElementById('map').scrollIntoView({behavior: 'instant'})")
+    assert wide.wait(f"{here} === '#map'")
+    assert abs(wide.run("document.querySelector('nav').getBoundingClientRect().top")) < 1
+
+
+def test_inputs_are_folded_until_asked_for(wide: Browser) -> None:
+    assert wide.run("document.querySelector('#inputs details').open") is False
+    wide.run("document.querySelector('nav a[href=\"#inputs\"]').click()")
+    assert wide.wait("document.querySelector('#inputs details').open")
+
+
+def test_one_variant_at_a_time(wide: Browser) -> None:
+    shown = "[...document.querySelectorAll('#answer .pane')].filter(p => !p.hidden).map(p => p.dataset.pane)"
+    assert wide.run(shown) == ["one"]
+    wide.run("document.querySelectorAll('#answer .tabs button')[1].click()")
+    assert wide.run(shown) == ["other"]
+
+
+def test_a_figure_says_its_axes_and_curves_to_a_screen_reader(wide: Browser) -> None:
+    words = wide.wait("document.getElementById('cycle_efficiency').getAttribute('aria-label')")
+    assert words.startswith("Instantaneous efficiency over the mesh cycle, phase of the mesh cycle")
+    assert "from 0 to 1" in words
+    assert "Curves: ISO/TR 14179-2" in words
+
+
+@pytest.mark.parametrize("kind", ["svg", "png", "csv"])
+def test_every_figure_can_be_saved(wide: Browser, kind: str, tmp_path: Path) -> None:
+    wide.save_to(tmp_path)
+    saves = "p.closest('figure').querySelectorAll('.save button')"
+    assert wide.run(f"{VISIBLE}.every(p => {saves}.length === 3)")
+    at = ["svg", "png", "csv"].index(kind)
+    figure = "document.getElementById('along_film_thickness')"
+    wide.run(f"{figure}.closest('figure').querySelectorAll('.save button')[{at}].click()")
+    saved = wide.saved(tmp_path / f"along_film_thickness.{kind}")
+    if kind == "svg":
+        assert ElementTree.fromstring(saved).tag.endswith("svg")
+    elif kind == "png":
+        assert saved.startswith(b"\x89PNG")
+    else:
+        rows = list(csv.reader(saved.decode("utf-8-sig").splitlines()))
+        assert len({len(row) for row in rows}) == 1
+        assert all(float(x) is not None for _, x, *_ in rows[1:] if x)
+    assert wide.console == []
