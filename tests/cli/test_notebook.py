@@ -132,12 +132,12 @@ def test_every_figure_of_the_report_is_one_of_plotly(result: pp.Result) -> None:
     for section in dir(result.plot):
         for name in dir(getattr(result.plot, section)):
             assert isinstance(getattr(getattr(result.plot, section), name)(), go.Figure)
-    assert "efficiency_time" in dir(result.plot.cycle)
+    assert dir(result.plot.cycle) == ["against", "efficiency", "friction", "input_torque"]
 
 
 def test_a_figure_stands_by_itself(result: pp.Result) -> None:
     figure = result.plot.cycle()
-    assert figure.layout.title.text == "Instantaneous efficiency over one base pitch"
+    assert figure.layout.title.text == "Instantaneous efficiency over the mesh cycle"
     assert figure.layout.showlegend
     assert len({trace.name for trace in figure.data}) == 2
     menu = result.plot.map("mean_loss").layout.updatemenus[0]

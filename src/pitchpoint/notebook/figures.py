@@ -21,7 +21,7 @@ __all__ = ["Plots", "SectionPlots"]
 class Plots:
     """Figures by section.
 
-    `plot.cycle()` is the first one of a section, `plot.cycle.efficiency_time()` another; `dir(plot)` lists
+    `plot.cycle()` is the first one of a section, `plot.cycle.friction()` another; `dir(plot)` lists
     the sections, `dir(plot.cycle)` the figures of one.
     """
 
