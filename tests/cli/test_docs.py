@@ -24,10 +24,12 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.results.store import dataset, save
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run
+from pitchpoint.runs.designs import wanted
 from pitchpoint.runs.jobs import jobs
 
 (PAIR,) = blocks("README.md", "toml")
 _, MODIFIED = blocks("guide/pairs.md", "toml")
+STRENGTH, INSPECTION, LIMITS = blocks("guide/sizing.md", "toml")
 (PLASTIC,) = blocks("guide/stiffness.md", "toml")
 (MOTION,) = blocks("guide/motion.md", "toml")
 FILM, FINITE, HEIGHTS = blocks("guide/films.md", "toml")
@@ -46,6 +48,8 @@ SET_UP = [
 CASES = {
     "pair": PAIR,
     "modified": (PAIR, MODIFIED),
+    "strength": (PAIR, STRENGTH),
+    "inspection": (PAIR, INSPECTION),
     "plastic": (PAIR, PLASTIC),
     "motion": (PAIR, MOTION),
     "film": (PAIR, FILM),
@@ -54,6 +58,7 @@ CASES = {
     "rack": (PAIR, RACK),
     "torus": (PAIR, TORUS),
     "wave": WAVE,
+    "limits": (WAVE, LIMITS),
     "stages": STAGES,
     "ball": BALL,
     "targets": (WAVE, TARGETS),
@@ -94,7 +99,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", "{toctree}"}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 16
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 19
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
@@ -132,8 +137,9 @@ def test_a_case(name: str) -> None:
     assert ("film" in made) == (name == "film")
     assert ("wear" in made) == (name == "wear")
     assert ("finite_film" in made) == (name == "finite")
-    assert ("running" in made) == (name in ("wave", "targets", "stages"))
-    assert ("kinematic_error" in made) == (name in ("modified", "wave", "targets"))
+    assert ("running" in made) == (name in ("wave", "limits", "targets", "stages"))
+    assert ("load_limits" in made) == (name in ("wave", "limits", "targets"))
+    assert ("kinematic_error" in made) == (name in ("modified", "wave", "limits", "targets"))
 
 
 def test_the_table_of_worn_flanks(tmp_path: Path) -> None:
@@ -195,7 +201,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("line", dict.fromkeys(line for line in SHELL if line not in SET_UP))
+COMPARED = [line for line in SHELL if " compare " in line]
+"""Designs beside each other, computed by tests of their own."""
+
+
+@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED}))
 def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parsed and laid out as far as the computation itself."""
     laid_out = []
@@ -215,6 +225,15 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
         cli.main()
     assert caught.value.code == 0
     assert laid_out[0]["title"] == "First stage of a robot joint"
+
+
+@pytest.mark.parametrize("line", COMPARED)
+def test_designs_that_are_compared(line: str, folder: Path) -> None:
+    program, command, *references = shlex.split(line.partition(" -o ")[0])
+    assert (program, command) == (".venv/bin/pitchpoint", "compare")
+    found = [wanted(one) for one in references]
+    assert [one.variant for one in found] == [None, "physical"]
+    assert all(run.describe(one.case, only=[one.variant] if one.variant else []) for one in found)
 
 
 @pytest.mark.parametrize("sweep", re.findall(r"`--sweep (\S+=\S+)`", PAGES["guide/pairs.md"]))
