@@ -193,7 +193,7 @@ def _of_quantity(quantity: Quantity, usual: Any) -> Any:
         return _read(quantity.show(usual))
     number = quantity.example.strip('"').partition(" ")[0]
     written = "" if quantity.unit == "1" else f" {quantity.unit}"
-    for text in (f"{number}{written}", quantity.show(quantity.high)):
+    for text in (f"{number}{written}", quantity.show(quantity.low), quantity.show(quantity.high)):
         try:
             quantity.read(_read(text))
         except InputError:
