@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 import pitchpoint
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.schema import Case, _marks, quantity_of
+from pitchpoint.cases.schema import Case, _marks, quantity_of, usual_words
 from pitchpoint.input.tables import alternatives
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
@@ -145,12 +145,8 @@ def _default(info: FieldInfo) -> str:
     value = info.default if info.default_factory is None else None
     if value is None or isinstance(value, Mapping | BaseModel) or value == () or value == "":
         return ""
-    quantity = quantity_of(info)
-    if quantity is not None and isinstance(value, float | int):
-        return quantity.show(float(value))
-    if quantity is not None and isinstance(value, tuple) and len(set(value)) == 1:
-        return quantity.show(float(value[0]))
-    return f"`{value}`"
+    usual = usual_words(info).removeprefix("default ")
+    return usual or f"`{value}`"
 
 
 def _page_head(title: str, intro: str) -> str:

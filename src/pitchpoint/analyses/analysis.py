@@ -6,12 +6,23 @@ from typing import Any, Protocol
 
 import xarray as xr
 
+from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.variable import Variable
 
-__all__ = ["ALONE", "Analysis", "Piece", "Progress", "Several", "Subject", "Unasked", "silent"]
+__all__ = [
+    "ALONE",
+    "Analysis",
+    "Piece",
+    "Progress",
+    "Several",
+    "Subject",
+    "Unasked",
+    "of_gears_with",
+    "silent",
+]
 
 Piece = Mapping[str, Any]
 """Where a piece lies, as plain data of less than 1 kB: a torque, a range of points; empty for the whole."""
@@ -33,6 +44,20 @@ def silent(done: int, doing: str = "") -> None:
 
 class Unasked(str):
     """A reason why a part does not exist that lies in what the case file asks for, not in its gears."""
+
+
+def of_gears_with(key: str, told: str) -> Callable[[Built], str | None]:
+    """What an analysis lacks that is for gears whose table `[gears]` has a key, given or not.
+
+    Args:
+        key: of the table.
+        told: why other gears have no such part.
+    """
+
+    def lacks(built: Built) -> str | None:
+        return None if key in type(built.case.gears).model_fields else Unasked(told)
+
+    return lacks
 
 
 @dataclass(frozen=True)

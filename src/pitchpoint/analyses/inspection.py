@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, of_gears_with
 from pitchpoint.analyses.teeth import drawing_of
 from pitchpoint.cases.build import Built
 from pitchpoint.gears.cylindrical.inspection import (
@@ -246,20 +246,12 @@ def _tolerances(table: CylindricalGears, pair: list[_Measured]) -> dict[str, Any
     return {"flank_tolerance": (("gear", "tolerance"), found)}
 
 
-def _unmeasured(built: Built) -> str | None:
-    if "inspection" in type(built.case.gears).model_fields:
-        return None
-    return Unasked("span, balls and backlash by tolerances are those of cylindrical gears")
-
-
-def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
-    return inspection_part(built)
-
-
 INSPECTION = Analysis(
     name="inspection",
     title="inspection",
-    lacks=_unmeasured,
-    compute=_computed,
+    lacks=of_gears_with(
+        "inspection", "span, balls and backlash by tolerances are those of cylindrical gears"
+    ),
+    compute=lambda built, _, __: inspection_part(built),
     main=("backlash_angle", "span_measurement", "over_balls", "disc_mass", "disc_inertia"),
 )

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Analysis, of_gears_with
 from pitchpoint.cases.build import Built
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.load_limits import (
@@ -161,20 +161,10 @@ def _failing(stresses: dict[str, np.ndarray], against: dict[str, np.ndarray]) ->
             yield f"The torque on the flexspline is {1.0 / margin:.2f} times that of {name}."
 
 
-def _unlimited(built: Built) -> str | None:
-    if isinstance(built.case.gears, StrainWaveGears):
-        return None
-    return Unasked("a flexspline is that of a strain wave gear")
-
-
-def _computed(built: Built, _: Piece, __: Progress) -> xr.Dataset:
-    return load_limits_part(built)
-
-
 LOAD_LIMITS = Analysis(
     name="load_limits",
     title="load limits",
-    lacks=_unlimited,
-    compute=_computed,
+    lacks=of_gears_with("limits", "a flexspline is that of a strain wave gear"),
+    compute=lambda built, _, __: load_limits_part(built),
     main=("alternating_stress", "torsional_stress", "mean_stress", "flexspline_torque"),
 )
