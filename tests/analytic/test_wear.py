@@ -24,7 +24,7 @@ from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.runs.run import load_case
 from pitchpoint.wear import film_share, vdi_2736
-from pitchpoint.wear.gradients import depth_gradient, sensitivities
+from pitchpoint.wear.gradients import march_sensitivities
 from pitchpoint.wear.history import Cells, Start, Turn, WearModel, as_new, one_turn
 from pitchpoint.wear.laws import archard_1953
 from pitchpoint.wear.march import Limit, Rate, Reached, after
@@ -267,28 +267,69 @@ def test_without_wear_nothing_changes():
     assert not state.depth.any()
 
 
-def test_derivatives_equal_differences():
-    built = pair("equal")
-    _, cells = begun(built)
-    inputs = built.design, built.operation, WEAR
-    value, slopes = depth_gradient(inputs, built.models[0], cells, PARTS)
-    found = sensitivities(inputs, float(value), slopes)
-    assert float(value) == pytest.approx(of_pair("equal")[0].depth.max(), rel=1e-12)
-    # But for the width that contacts cover, which grows with the load.
-    assert found["load"] == pytest.approx(1.0, abs=1e-3)
-    assert found["speed"] == pytest.approx(0.0, abs=1e-9)
-    assert found["face width"] == pytest.approx(-1.0, abs=1e-3)
-    assert found["coefficient 1"] + found["coefficient 2"] == pytest.approx(1.0)
+def at_depth(built: Built, wear: WearModel, depth: float) -> list[Reached]:
+    """The steps of a march to a depth, short ones."""
+    start, grid = begun(built)
+    given = built.design, built.operation, built.models[0], wear, grid, start
 
-    def wider(part: float) -> float:
-        module = built.design.mesh.module * (1.0 + part)
-        mesh = replace(built.design.mesh, module=module)
-        other = replace(built.design, mesh=mesh), *inputs[1:]
-        return float(depth_gradient(other, built.models[0], cells, PARTS)[0])
+    def rate(depth: np.ndarray) -> Rate:
+        return Rate.of(one_turn(*given, array(depth)))
 
-    step = 1e-5
-    slope = (wider(step) - wider(-step)) / (2.0 * step) / float(value)
-    assert found["module"] == pytest.approx(slope, rel=1e-4)
+    states = [unworn(rate, (2, grid.count, grid.strips))]
+    limit, first = Limit(1e12, depth=depth), states[0].rate.pressure
+    while not states[-1].end:
+        states.append(after(states[-1], rate, limit, start=first, tolerance=1e-5))
+    assert states[-1].end == "depth"
+    return states
+
+
+def more(wear: WearModel, name: str, part: float) -> WearModel:
+    first, second = wear.own
+    return replace(wear, own=({**first, name: first[name] * (1.0 + part)}, second))
+
+
+def test_sensitivities_of_the_life_are_those_of_differences():
+    """Two humps that relieve each other as they deepen, against whole marches of changed inputs."""
+    built, depth, step = pair(), 3e-6, 5e-3
+    states = at_depth(built, WEAR, depth)
+    inputs, (_, cells) = (built.design, built.operation, WEAR), begun(built)
+    turns, worn = (np.stack([getattr(one, name) for one in states]) for name in ("turns", "depth"))
+    found = march_sensitivities(inputs, built.models[0], cells, PARTS, turns, worn)
+
+    def changed(name: str, part: float) -> tuple[Built, WearModel]:
+        operation, solids = built.operation, built.design.solids
+        if name == "load":
+            return replace(
+                built, operation=replace(operation, load=operation.load * (1.0 + part))
+            ), WEAR
+        if name == "module":
+            settings = {
+                "gears.module": f"{1e3 * float(built.design.mesh.module) * (1.0 + part)!r} mm"
+            }
+            given = {"models.load_sharing": "from_stiffness", **settings}
+            return load_case(str(EXAMPLES / "pair_23_61.toml"), settings=given), WEAR
+        if name == "Young's modulus 2":
+            other = replace(solids[1], young=solids[1].young * (1.0 + part))
+            return replace(built, design=replace(built.design, solids=(solids[0], other))), WEAR
+        return built, more(WEAR, name.removesuffix(" 1"), part)
+
+    for name in ("load", "module", "Young's modulus 2", "coefficient 1"):
+        lives = [at_depth(*changed(name, way * step), depth)[-1].turns for way in (1.0, -1.0)]
+        slope = np.log(lives[0] / lives[1]) / np.log((1.0 + step) / (1.0 - step))
+        assert found[name].life == pytest.approx(slope, rel=1e-3, abs=1e-5), name
+    assert found["speed"].life == pytest.approx(0.0, abs=1e-9)
+
+
+def test_sensitivities_of_discs_are_the_powers_of_archard():
+    given = discs()
+    start, cells = as_new(*given, parts=PARTS, count=CELLS)
+    first = np.asarray(one_turn(*given, WEAR, cells, start, jnp.zeros((2, CELLS, 1))).depth)
+    turns, worn = np.array([0.0, 1e8, 3e8]), first * np.array([0.0, 1e8, 3e8])[:, None, None, None]
+    found = march_sensitivities((*given[:2], WEAR), given[2], cells, PARTS, turns, worn)
+    of_sliding = -0.8 / (1.0 - 0.8)
+    powers = {"load": 1.0, "length": -1.0, "speed": 0.0, "speed ratio": of_sliding}
+    for name, power in powers.items():
+        assert found[name] == pytest.approx((power, power, -power), abs=1e-9), name
 
 
 def test_the_march_ends_where_a_measure_of_the_teeth_does():

@@ -292,7 +292,11 @@ def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
     assert "backlash that wear adds" in page
     assert 'data-menu="wear0_flank0"' in page
     assert "Flank as new and worn, gear 2" in page
-    assert "the march itself is not differentiated" in page
+    assert "by derivatives along the steps of the march" in page
+    told = json.loads(outcome.parts["wear"].attrs["sensitivities"])
+    of_load = {name: f"{value:+.3f}".replace("-", "−") for name, value in told["load"].items()}
+    row = f'>load</th><td class="n">{of_load["life"]} %</td><td class="n">{of_load["depth"]} %</td>'
+    assert row in page
     ((name, words),) = SECTION.answer(outcome)
     assert name == "Wear"
     assert "after 3000000 turns of gear 1" in words

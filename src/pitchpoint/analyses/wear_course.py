@@ -21,7 +21,7 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
-from pitchpoint.wear.gradients import depth_gradient, sensitivities
+from pitchpoint.wear.gradients import march_sensitivities
 from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_turn
 from pitchpoint.wear.march import End, Limit, Rate, Reached, after
 from pitchpoint.wear.march import as_new as unworn
@@ -227,7 +227,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         members=_bodies(built),
         driver=built.driver,
         tolerance=asked(built).tolerance,
-        sensitivities=_sensitivities(built),
+        sensitivities=_sensitivities(built, values),
         warnings=_warnings(built, values, deepest, end),
         solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
     )
@@ -270,20 +270,28 @@ def _figures(
     }
 
 
-def _sensitivities(built: Built) -> dict[str, float]:
-    """Relative changes of the largest depth per turn with those of inputs, of flanks as new.
-
-    Not of bodies that couple their teeth, for which derivatives take minutes, nor through solved films.
-    """
-    course = _course(built)
-    if built.design.mesh.couples or course.model.films is not None:
+def _sensitivities(built: Built, values: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """Relative changes of rate, depth and life with those of inputs, along the steps of the march."""
+    course, models = _course(built), built.models[0]
+    if not _sensitive(built):
         return {}
     inputs = built.design, built.operation, course.model
-    given = built.models[0], course.cells, int(asked(built).phases)
-    value, slopes = depth_gradient(inputs, *given)
-    if not float(value) > 0.0:
-        return {}
-    return sensitivities(inputs, float(value), slopes)
+    given = models, course.cells, int(asked(built).phases)
+    found = march_sensitivities(inputs, *given, values["cycles"], values["worn_depth"])
+    return {name: one._asdict() for name, one in found.items()}
+
+
+def _sensitive(built: Built) -> bool:
+    """True if derivatives are taken: never through solved films, on coupled teeth if they are asked for."""
+    wanted = asked(built).sensitivities
+    if wanted is None:
+        wanted = not (built.design.mesh.couples and built.models[0].sharing.by_stiffness)
+    return wanted and not _films(built)
+
+
+def _films(built: Built) -> bool:
+    """True if the load on asperities comes from solved films."""
+    return _course(built).model.films is not None
 
 
 def _warnings(
@@ -297,6 +305,11 @@ def _warnings(
     if end == "no wear":
         told.append(
             "Wear: nothing slides under load, or the law wears nothing off: depths stay zero."
+        )
+    if not _sensitive(built) and asked(built).sensitivities is None and not _films(built):
+        told.append(
+            "Wear: what the life depends on is not told; its derivatives take minutes for teeth that a ring "
+            "couples. Ask for them by wear.sensitivities = true."
         )
     if np.any(values["conforming"]):
         first = float(values["cycles"][int(np.argmax(values["conforming"]))])

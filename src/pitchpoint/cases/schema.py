@@ -1090,7 +1090,8 @@ class WearTable(Table):
     the depth, of the largest pressure over that at the start, of the thickness that is left of a tooth at
     its tip, or of the normal backlash that wear adds. `severe_by` names what tells that wear is severe.
     `cells` lie along each flank, `phases` are those between two events of the mesh cycle, and `tolerance` is
-    the error of a step over the largest depth.
+    the error of a step over the largest depth. Without `sensitivities` those of the life to all inputs are
+    told where they take seconds: not of teeth on a ring that share their load by its stiffness.
     """
 
     law: Annotated[str, BeforeValidator(named(_wear_laws, "wear law"))]
@@ -1111,6 +1112,7 @@ class WearTable(Table):
     cells: Annotated[float, WEAR_CELLS] = 40.0
     phases: Annotated[float, WEAR_PHASES] = 24.0
     tolerance: Annotated[float, WEAR_ERROR] = 3e-4
+    sensitivities: Annotated[bool, BeforeValidator(_flag)] | None = None
 
 
 class WornTable(Table):

@@ -155,6 +155,8 @@ class Mesh(eqx.Module):
         goes_round: of the class; True if every flank of a member takes its turn, see `flanks_in_turn`.
         inner_bearing: of the class; the two bodies between which a bearing sits inside the drive, by name;
             empty without one.
+        chosen: of the class; fields whose numbers are chosen one by one, what follows from them is
+            `completed`.
     """
 
     pitch_point: ClassVar[bool] = False
@@ -165,6 +167,7 @@ class Mesh(eqx.Module):
     counts: ClassVar[Path] = "turn"
     goes_round: ClassVar[bool] = True
     inner_bearing: ClassVar[frozenset[str]] = frozenset()
+    chosen: ClassVar[tuple[str, ...]] = ()
 
     def completed(self) -> Self:
         """The same mesh with dimensions that follow from others computed from them again.

@@ -1,95 +1,205 @@
-"""Derivatives of wear with respect to every continuous input."""
+"""Derivatives of the march of wear with respect to every continuous input."""
 
-import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
-import equinox as eqx
 import numpy as np
-from jaxtyping import Array
+from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint._jax import array, jax, jnp
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
-from pitchpoint.wear.history import Cells, WearModel, midpoints, reached, travelled, wear_of
+from pitchpoint.wear.history import Cells, Start, WearModel, reached, travelled, turn_alone
 
-__all__ = ["Inputs", "depth_gradient", "sensitivities"]
+__all__ = ["Inputs", "Sensitivity", "changed", "march_sensitivities", "varied"]
 
 Inputs = tuple[Design, Operation, WearModel]
+Values = Float[np.ndarray, "..."]
 
 
-def depth_gradient(
-    inputs: Inputs, models: Models, cells: Cells, parts: int
-) -> tuple[Array, Inputs]:
-    """Largest depth that a turn wears off flanks as new [m], and its derivatives.
+class Sensitivity(NamedTuple):
+    """Relative change of a figure over the relative change of an input, d ln y/d ln x.
+
+    Attributes:
+        rate: of the largest depth that a turn wears off flanks as new.
+        depth: of the largest depth at the end of the march, after as many turns.
+        life: of the turns to that depth.
+    """
+
+    rate: float
+    depth: float
+    life: float
+
+
+def varied(inputs: Inputs) -> list[str]:
+    """Names of the inputs that can be changed by a part of themselves: finite ones that are not zero."""
+    named = _named(inputs)
+    known = jax.device_get(named)
+    return [name for name in named if np.isfinite(known[name]) and known[name] != 0.0]
+
+
+def changed(inputs: Inputs, names: Sequence[str], part: Float[Array, " input"] | Values) -> Inputs:
+    """Inputs of which some are larger by a part of themselves; what follows from them follows.
+
+    Args:
+        inputs: design, operating point and how material goes.
+        names: as `varied` has them.
+        part: of each; temperatures count from absolute zero.
+    """
+    own = _named(inputs)
+    values = {name: own[name] * (1.0 + part[k]) for k, name in enumerate(names)}
+    design, operation, wear = inputs
+    solids = [
+        replace(one, young=values.get(f"Young's modulus {k}", one.young))
+        for k, one in enumerate(design.solids, 1)
+    ]
+    rq_1, rq_2 = (values.get(f"Rq {k}", getattr(design.roughness, f"rq_{k}")) for k in (1, 2))
+    constants = [
+        {name: values.get(f"{_words(name)} {k}", one) for name, one in each.items()}
+        for k, each in enumerate(wear.own, 1)
+    ]
+    defect = wear.defect and {
+        name: values.get(_words(name), one) for name, one in wear.defect.items()
+    }
+    return (
+        replace(
+            design,
+            mesh=replace(design.mesh, **_fields(design.mesh, values)).completed(),
+            solids=(solids[0], solids[1]),
+            roughness=replace(design.roughness, rq_1=rq_1, rq_2=rq_2),
+        ),
+        Operation(*(values.get(name, getattr(operation, key)) for key, name in _POINT.items())),
+        replace(wear, own=(constants[0], constants[1]), defect=defect),
+    )
+
+
+_POINT = {"load": "load", "speed": "speed", "temperature": "temperature of the oil"}
+
+
+def _named(inputs: Inputs) -> dict[str, Array]:
+    """Inputs that a designer can choose, by name."""
+    design, operation, wear = inputs
+    rough = design.roughness
+    return {
+        **{name: getattr(operation, key) for key, name in _POINT.items()},
+        **{name: one for name, _, _, one in _of_mesh(design.mesh)},
+        **{f"Young's modulus {k}": one.young for k, one in enumerate(design.solids, 1)},
+        **{f"Rq {k}": one for k, one in enumerate((rough.rq_1, rough.rq_2), 1)},
+        **{
+            f"{_words(name)} {k}": one
+            for k, own in enumerate(wear.own, 1)
+            for name, one in own.items()
+        },
+        **{_words(name): one for name, one in (wear.defect or {}).items()},
+    }
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _of_mesh(mesh: Mesh) -> Iterator[tuple[str, str, int | None, Array]]:
+    """Name, field, member and value of the numbers of a mesh that are chosen."""
+    for field in mesh.chosen:
+        value = getattr(mesh, field)
+        if not np.ndim(value):
+            yield _words(field), field, None, value
+        else:
+            for member in range(2):
+                yield f"{_words(field)} {member + 1}", field, member, value[member]
+
+
+def _fields(mesh: Mesh, values: Mapping[str, Array]) -> dict[str, Array]:
+    """Fields of a mesh with some of its numbers changed."""
+    found: dict[str, Array] = {}
+    for name, field, member, _ in _of_mesh(mesh):
+        if name in values and member is None:
+            found[field] = values[name]
+        elif name in values:
+            found[field] = found.get(field, getattr(mesh, field)).at[member].set(values[name])
+    return found
+
+
+# ---- along the steps of a march
+
+
+def march_sensitivities(
+    inputs: Inputs,
+    models: Models,
+    cells: Cells,
+    parts: int,
+    turns: Float[np.ndarray, " step"],
+    depth: Float[np.ndarray, "step 2 cell strip"],
+) -> dict[str, Sensitivity]:
+    """How the end of a march depends on each input.
 
     Args:
         inputs: design, operating point and how material goes.
         models: sharing of the load, and friction where it warms the contacts.
         cells: on both flanks.
         parts: phases in each stretch between events.
+        turns: of the driver after each step, from zero on.
+        depth: that the march came to there [m].
 
     Returns:
-        The depth, and the same inputs with the derivative in place of each continuous value, in m over its SI
-        unit; None in place of the others. It belongs to the cell that is deepest.
+        Sensitivities by the name of the input; none where nothing wears.
 
-    By automatic differentiation in reverse, no differences are taken.
+    By automatic differentiation of what a turn wears off, and its variational equation along the steps that
+    the march took, by the same method: s' = df/dh s + df/dx for d h/d ln x = s. The turns N to a depth h
+    follow from h(N, x): d ln N/d ln x = - s/(N dh/dN). Both belong to the place that is deepest at the end.
     """
-    value, slopes = _gradient(inputs, models, cells, parts)
-    structure = jax.tree.structure(eqx.filter(inputs, eqx.is_inexact_array))
-    return value, jax.tree.unflatten(structure, slopes)
+    names = tuple(varied(inputs))
+    moved = np.zeros((len(names), *depth.shape[1:]))
+
+    def rate(depth: Values, moved: Values) -> tuple[Values, Values]:
+        found: tuple[Values, Values] = jax.device_get(
+            _rate(inputs, models, cells, parts, names, array(depth), array(moved))
+        )
+        return found
+
+    here, slope = first = rate(depth[0], moved)
+    for step, at, after in zip(np.diff(turns), depth, depth[1:], strict=False):
+        one, two = slope, rate(at + 0.5 * step * here, moved + 0.5 * step * slope)
+        three = rate(at + 0.75 * step * two[0], moved + 0.75 * step * two[1])
+        moved = moved + step * (2.0 * one + 3.0 * two[1] + 4.0 * three[1]) / 9.0
+        here, slope = rate(after, moved)
+    if not float(first[0].max()) > 0.0:
+        return {}
+    start = np.unravel_index(int(np.argmax(first[0])), first[0].shape)
+    place = np.unravel_index(int(np.argmax(depth[-1])), depth[-1].shape)
+    deepest, fast = float(depth[-1][place]), float(here[place])
+    return {
+        name: Sensitivity(
+            rate=float(first[1][k][start] / first[0][start]),
+            depth=float(moved[k][place]) / deepest if deepest > 0.0 else np.nan,
+            life=-float(moved[k][place]) / (turns[-1] * fast) if fast > 0.0 else np.nan,
+        )
+        for k, name in enumerate(names)
+    }
 
 
 @program
-def _gradient(
-    inputs: Inputs, models: Models, cells: Cells, parts: int
-) -> tuple[Array, list[Array]]:
-    """Value and derivatives without the laws between them, by which the program could not be kept."""
+def _rate(
+    inputs: Inputs,
+    models: Models,
+    cells: Cells,
+    parts: int,
+    names: tuple[str, ...],
+    depth: Float[Array, "2 cell strip"],
+    moved: Float[Array, "input 2 cell strip"],
+) -> tuple[Array, Array]:
+    """What a turn wears off, and its derivatives by the logarithm of each input with a depth that moves."""
 
-    def deepest(inputs: Inputs) -> Array:
-        design, operation, wear = inputs
-        design = dataclasses.replace(design, mesh=design.mesh.completed())
-        phase, weight = midpoints(design.mesh.events(), parts)
-        contacts = design.mesh.contacts(phase)
-        share = models.share(design, contacts, operation.load)
-        known = Engagement(phase, weight, contacts, share, None, 1)
+    def turn(part: Array, depth: Array) -> Array:
+        design, operation, wear = changed(inputs, names, part)
+        start = Start.of(design, models, parts)
+        share = models.share(design, start.contacts, operation.load, start.body, start.teeth)
         # Cells follow the flanks.
-        flank, across, span = reached(*travelled(design, operation, models, known))
-        own = dataclasses.replace(cells, flank=flank, across=across, span=span)
-        return jnp.max(wear_of(design, operation, models, wear, own, known).depth)
+        flank, across, span = reached(*travelled(design, operation, models, start.engaged(share)))
+        own = replace(cells, flank=flank, across=across, span=span)
+        return turn_alone(design, operation, models, wear, own, start, depth).depth
 
-    value, slopes = eqx.filter_value_and_grad(deepest)(inputs)
-    return value, jax.tree.leaves(slopes)
-
-
-def sensitivities(inputs: Inputs, value: float, derivatives: Inputs) -> dict[str, float]:
-    """Relative change of a figure over the relative change of an input, by its name.
-
-    Args:
-        inputs: design, operating point and how material goes.
-        value: of the figure.
-        derivatives: of it, as from `depth_gradient`.
-
-    From d ln y/d ln x; temperatures count from absolute zero.
-    """
-    found = {}
-    for name, own, slope in zip(*_named(inputs), _named(derivatives)[1], strict=True):
-        if own is not None and slope is not None and np.ndim(own) == 0:
-            found[name] = float(own) * float(slope) / value
-    return found
-
-
-def _named(inputs: Inputs) -> tuple[list[str], list[Array | None]]:
-    """Inputs that a designer can choose, by name."""
-    design, operation, wear = inputs
-    mesh, rough = design.mesh, design.roughness
-    every: dict[str, Array | None] = {
-        "load": operation.load,
-        "speed": operation.speed,
-        "temperature of the oil": operation.temperature,
-        "module": getattr(mesh, "module", None),
-        "face width": getattr(mesh, "face_width", None),
-        **{f"Young's modulus {k + 1}": one.young for k, one in enumerate(design.solids)},
-        **{f"Rq {k + 1}": one for k, one in enumerate((rough.rq_1, rough.rq_2))},
-        **{f"{name} {k + 1}": v for k, own in enumerate(wear.own) for name, v in own.items()},
-        **{name.replace("_", " "): v for name, v in (wear.defect or {}).items()},
-    }
-    return list(every), list(every.values())
+    value, slope = jax.linearize(turn, jnp.zeros(len(names)), depth)
+    return value, jax.vmap(slope)(jnp.eye(len(names)), moved)

@@ -29,6 +29,7 @@ class BallOnDisc(Rig):
     """
 
     shape: ClassVar[Shape] = "ellipse"
+    chosen: ClassVar[tuple[str, ...]] = ("radius", "track_radius", "slide_roll_ratio")
 
     radius: Float[Array, "2"]
     track_radius: Float[Array, ""]

@@ -188,6 +188,19 @@ class InvolutePair(Mesh):
     toothed: ClassVar[bool] = True
     along_action: ClassVar[bool] = True
     counts: ClassVar[Path] = "action"
+    chosen: ClassVar[tuple[str, ...]] = (
+        "module",
+        "pressure_angle",
+        "helix_angle",
+        "profile_shift",
+        "tip_alteration",
+        "addendum",
+        "dedendum",
+        "fillet_radius",
+        "face_width",
+        "centre_distance",
+        "rim_ratio",
+    )
 
     teeth: Float[Array, "2"]
     module: Float[Array, ""]

@@ -1,5 +1,7 @@
 """Two cylinders that roll and slide on each other."""
 
+from typing import ClassVar
+
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
@@ -20,6 +22,8 @@ class TwinDisc(Rig):
         speed_ratio: surface speed of disc 1 over that of disc 0; 1 rolls without sliding.
         surfaces: how the discs differ from cylinders.
     """
+
+    chosen: ClassVar[tuple[str, ...]] = ("radii", "length", "speed_ratio")
 
     radii: Float[Array, "2"]
     length: Float[Array, ""]

@@ -155,6 +155,7 @@ class StrainWave(Mesh):
     toothed: ClassVar[bool] = True
     couples: ClassVar[bool] = True
     counts: ClassVar[Path] = "wave"
+    chosen: ClassVar[tuple[str, ...]] = ("face_width",)
     inner_bearing: ClassVar[frozenset[str]] = frozenset(MEMBERS[:2])
 
     teeth: Float[Array, "2"]

@@ -37,6 +37,13 @@ class TorusPair(InvolutePair):
     """
 
     shape: ClassVar[Shape] = "ellipse"
+    chosen: ClassVar[tuple[str, ...]] = (
+        *(name for name in InvolutePair.chosen if name != "profile_shift"),
+        "torus_radii",
+        "middle_shift",
+        "axial_offset",
+        "inclination",
+    )
 
     torus_radii: Float[Array, "2"] = eqx.field(kw_only=True)
     widths: Float[Array, "2"] = eqx.field(kw_only=True)

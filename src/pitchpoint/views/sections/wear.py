@@ -87,15 +87,16 @@ def _of_variant(position: int, outcome: Outcome) -> Iterator[Block]:
     yield _life(name, data)
     rows = _sensitive(data)
     if rows:
-        yield Heading("What the depth depends on")
+        yield Heading("What the life depends on")
         yield Paragraph(
-            "By how much the largest depth per turn of flanks as new changes with 1 % more of an input "
-            "alone, by derivatives. The cycles to a depth change by as much the other way as long as worn "
-            "flanks share the load as new ones do; the march itself is not differentiated. Temperatures "
-            "count from absolute zero.",
+            "Changes with 1 % more of an input alone, by derivatives along the steps of the march: of the "
+            "turns to the depth at its end (life), of the depth after as many turns, and of the largest "
+            "depth that a turn wears off flanks as new. Dimensions that follow from others follow; "
+            "temperatures count from absolute zero; less than 0.05 % is left out. Derivatives hold near the "
+            "case: where another pair comes to carry they jump.",
             "note",
         )
-        yield Table(["1 % more of", "depth"], rows, compact=True)
+        yield Table(["1 % more of", "life", "depth", "depth per turn, new"], rows, compact=True)
 
 
 def _said(data: xr.Dataset, words: str) -> str:
@@ -356,11 +357,15 @@ def _course(name: str, data: xr.Dataset, variable: str, keys: tuple[Key, ...]) -
     return Figure(name, titled(variable, data).capitalize(), lines, look, "", keys, _NONE)
 
 
-def _sensitive(data: xr.Dataset) -> list[tuple[str, str]]:
+def _sensitive(data: xr.Dataset) -> list[tuple[str, ...]]:
     """Changes with 1 % of each input, the largest first; what changes nothing is left out."""
     found = json.loads(data.attrs["sensitivities"])
-    order = sorted(found.items(), key=lambda one: -abs(one[1]))
-    return [(name, f"{show.signed(value, 3)} %") for name, value in order if abs(value) >= _DEPENDS]
+    order = sorted(found.items(), key=lambda one: -abs(one[1]["life"]))
+    return [
+        (name, *(f"{show.signed(one[of], 3)} %" for of in ("life", "depth", "rate")))
+        for name, one in order
+        if max(map(abs, one.values())) >= _DEPENDS
+    ]
 
 
 # ---- words
