@@ -548,7 +548,8 @@ def _laid(
 ) -> Depths:
     """Depth of each cell from volumes that contacts leave on their ways over both flanks [m].
 
-    Each is spread evenly along the way, and across as far as the contact reaches.
+    Each is spread evenly along the way, and across as far as the contact reaches. What lies before the edges
+    of the cells is added up over all contacts, and differences of that are what lies in them.
     """
     contacts = at.contacts
     flank = jnp.broadcast_to(contacts.flank, gone.shape)
@@ -563,11 +564,14 @@ def _laid(
 
     def of(member: tuple[Array, ...]) -> Float[Array, "cell strip"]:
         ends, length, place, way, volume = member
-        short = jnp.maximum(way, _SHORT * length)[..., None]
+        each = 1.0 / jnp.maximum(way, _SHORT * length)
         edge = ends[0] + (ends[1] - ends[0]) * inner
-        along = jnp.clip((edge - place[..., None]) / short + 0.5, 0.0, 1.0)
-        volumes = jnp.einsum("...,...c,...s->cs", volume, _parts(along), reaches)
-        return volumes / (length * cells.width)
+        along = jnp.clip(edge * each[..., None] + (0.5 - place * each)[..., None], 0.0, 1.0)
+        before = jnp.einsum("...,...c,...s->sc", volume, along, reaches)
+        total = jnp.einsum("...,...s->s", volume, reaches)[:, None]
+        passed = jnp.concatenate([jnp.zeros_like(total), before, total], axis=1)
+        volumes = jnp.diff(passed, axis=1).T
+        return jnp.where(volumes < 0.0, 0.0, volumes) / (length * cells.width)
 
     # By a loop over the members: fused with what made them, ways would be computed again for every cell.
     found: Depths = jax.lax.map(of, (cells.flank, cells.lengths, flank, ways, gone))
