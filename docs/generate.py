@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 import pitchpoint
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.schema import Case, _marks, quantity_of, usual_words
+from pitchpoint.cases.schema import Case, marks, quantity_of, usual_words
 from pitchpoint.input.tables import alternatives
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
@@ -126,7 +126,7 @@ def _kind(info: FieldInfo) -> str:
     if quantity is not None:
         return "number" if quantity.kind == "dimensionless" else quantity.kind
     if alternatives(info.annotation):
-        return "table, or a name" if any(_marks(info.annotation)) else "table"
+        return "table, or a name" if any(marks(info.annotation)) else "table"
     names = [repr(one) for one in _literals(info.annotation)]
     return ", ".join(f'`"{name[1:-1]}"`' for name in names) or "text, a name or a list"
 

@@ -155,6 +155,8 @@ def test_what_is_saved_is_opened_again(result: pp.Result, tmp_path: Path) -> Non
     for part in result.parts:
         xr.testing.assert_identical(again["default"].parts[part], result["default"].parts[part])
     assert again.gradients(by=[SHIFT]).equals(result.gradients(by=[SHIFT]))
+    case = pp.Case(tmp_path / "out" / "default" / "case.toml")
+    assert case.tables["gears"] == pp.Case(PAIR).tables["gears"]
     (tmp_path / "out" / "run.json").write_text('{"case": "another", "variants": ["default"]}')
     with pytest.raises(pp.InputError, match="holds results of another case, another"):
         result.save(tmp_path / "out")

@@ -38,6 +38,7 @@ __all__ = [
     "bearings_of",
     "in_form",
     "keys",
+    "marks",
     "quantity_at",
     "quantity_of",
     "usual_at",
@@ -1694,7 +1695,7 @@ def _named_tables(info: FieldInfo) -> bool:
 
 def quantity_of(info: FieldInfo) -> Quantity | None:
     """Kind and range of the values of a field, None where they are no quantities."""
-    for mark in (*info.metadata, *_marks(info.annotation)):
+    for mark in (*info.metadata, *marks(info.annotation)):
         if isinstance(mark, Pair):
             return mark.each
         if isinstance(mark, Quantity):
@@ -1712,11 +1713,11 @@ def usual_words(info: FieldInfo) -> str:
     return f"default {' / '.join(told)}" if told else ""
 
 
-def _marks(annotation: Any) -> Iterator[Any]:
+def marks(annotation: Any) -> Iterator[Any]:
     """What is said of the values that a field may hold, alone or in a list."""
     for option in getattr(annotation, "__args__", ()):
         yield from getattr(option, "__metadata__", ())
-        yield from _marks(option)
+        yield from marks(option)
 
 
 _MOST_TOLD = 20

@@ -37,6 +37,7 @@ class Result(Mapping[str, Outcome]):
         outcomes: by variant, at least one.
         origins: by variant what gives its case again.
         friction: law of the user's own under which they were computed.
+        studies: beside those of the case.
 
     Tables and datasets are those of all variants, or of the one that is asked for, by default the first.
     """
@@ -46,8 +47,10 @@ class Result(Mapping[str, Outcome]):
         outcomes: Mapping[str, Outcome],
         origins: Mapping[str, Callable[[], Case]],
         friction: Callable[..., Any] | None = None,
+        studies: Mapping[str, Study] | None = None,
     ) -> None:
         self._outcomes, self._origins, self._friction = dict(outcomes), origins, friction
+        self._studies = studies
 
     def __getitem__(self, variant: str) -> Outcome:
         return self._outcomes[variant]
@@ -142,13 +145,16 @@ class Result(Mapping[str, Outcome]):
         write_report(self, path)
 
     def save(self, folder: str | Path, *, overwrite: bool = False) -> None:
-        """Write the datasets and the record as a run into the folder does; `open_result` reads them.
+        """Write the datasets, the case and the record as a run into the folder does.
 
         Args:
             folder: of the results.
             overwrite: True to replace those of another case.
         """
-        runs.keep(self, Path(folder), overwrite=overwrite)
+        cases = {name: case().held[0] for name, case in self._origins.items()}
+        if self._friction is not None:
+            cases = {name: runs.own_law(one, self._friction) for name, one in cases.items()}
+        runs.keep(self, cases, Path(folder), studies=self._studies, overwrite=overwrite)
 
     def _part(self, part: str, variant: str | None) -> xr.Dataset:
         name = variant or next(iter(self))
@@ -207,7 +213,8 @@ def run(
         overwrite=overwrite,
         progress=progress,
     )
-    return Result(outcomes, {one: partial(_case, case, one, given) for one in outcomes}, friction)
+    origins = {one: partial(_case, case, one, given) for one in outcomes}
+    return Result(outcomes, origins, friction, studies)
 
 
 def open_result(folder: str | Path) -> Result:

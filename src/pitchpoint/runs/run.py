@@ -293,12 +293,21 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
     return opened
 
 
-def keep(outcomes: Mapping[str, Outcome], folder: Path, *, overwrite: bool = False) -> None:
+def keep(
+    outcomes: Mapping[str, Outcome],
+    cases: Mapping[str, Variant],
+    folder: Path,
+    *,
+    studies: Mapping[str, Study] | None = None,
+    overwrite: bool = False,
+) -> None:
     """Write results as a run into a folder does.
 
     Args:
         outcomes: by variant.
+        cases: of which they are, by variant.
         folder: where they go.
+        studies: beside those of the cases.
         overwrite: True to replace the results of another case.
 
     Raises:
@@ -309,6 +318,8 @@ def keep(outcomes: Mapping[str, Outcome], folder: Path, *, overwrite: bool = Fal
         for variant, outcome in outcomes.items():
             for part, data in outcome.parts.items():
                 save(data, folder / variant / f"{part}.nc")
+            title = outcome.manifest["title"]
+            _hand_over(cases[variant], title, folder / variant, studies or {})
             _note(outcome, folder / variant, finished=bool(outcome.manifest["finished"]))
 
 
