@@ -23,7 +23,7 @@ from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.loss_sets import expanded, named_set
 from pitchpoint.errors import CollectedInputError, InputError, shorten
 from pitchpoint.gears.families import Gears
-from pitchpoint.gears.table import BORE, DEVIATION, MASS, Deviation, GearsTable
+from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
@@ -318,11 +318,17 @@ class SolidValues(Table):
     """
 
     young: Annotated[float, MODULUS]
+    """Young's modulus E."""
     poisson: Annotated[float, POISSON]
+    """Poisson's ratio ν."""
     density: Annotated[float, DENSITY] = 7830.0
+    """Density."""
     hardness: Annotated[float, HARDNESS] | None = None
+    """Indentation hardness, as 200 HV, 200 HB or a pressure; for laws that ask for it."""
     conductivity: Annotated[float, SOLID_CONDUCTIVITY] | None = None
+    """Thermal conductivity, for the heat of contacts; not known unless given."""
     specific_heat: Annotated[float, SPECIFIC_HEAT] | None = None
+    """Specific heat, for the heat of contacts; not known unless given."""
 
 
 SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]
@@ -335,7 +341,9 @@ class Materials(Table):
     """
 
     gear_1: SolidValues | SolidName = "steel"
+    """Material of gear 1, by name or by value."""
     gear_2: SolidValues | SolidName = "steel"
+    """Material of gear 2, by name or by value."""
 
 
 class Oil(Table):
@@ -347,19 +355,33 @@ class Oil(Table):
     """
 
     name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
+    """Oil of the catalogue; values beside it take the place of its own."""
     base: Annotated[str, BeforeValidator(named(_bases, "class of base oil"))] | None = None
+    """Class of base oil, for what an oil by value leaves open; needed without a name."""
     viscosity_40: Annotated[float, VISCOSITY] | None = None
+    """Kinematic viscosity at 40 degC; that of the named oil unless given, needed without one."""
     viscosity_100: Annotated[float, VISCOSITY] | None = None
+    """Kinematic viscosity at 100 degC; that of the named oil unless given, needed without one."""
     viscosity_minus_40: Annotated[float, COLD_VISCOSITY] | None = None
+    """Kinematic viscosity at -40 degC, down to which the oil then goes."""
     density: Annotated[float, DENSITY] | None = None
+    """Density at 15 degC; that of the named oil, or usual for the base, unless given."""
     density_slope: Annotated[float, SLOPE] | None = None
+    """Fall of the density per kelvin; that of the named oil, or usual for the base, unless given."""
     pressure_viscosity: Annotated[float, ALPHA] | None = None
+    """Pressure-viscosity coefficient α_p at all temperatures; of oil or base unless given."""
     lubricant_factor: Annotated[float, FACTOR] | None = None
+    """Lubricant factor X_L of mean friction laws; of the named oil or the base unless given."""
     conductivity: Annotated[float, CONDUCTIVITY] | None = None
+    """Thermal conductivity of the oil; 0.14 W/m/K unless given."""
     temperature_min: Annotated[float, TEMPERATURE] | None = None
+    """Lowest temperature of use; that of the named oil, by value 0 degC, unless given."""
     temperature_max: Annotated[float, TEMPERATURE] | None = None
+    """Highest temperature of use; that of the named oil, by value 120 degC, unless given."""
     thickener: Text = ""
+    """Thickener of a grease, in words; the other values are those of its base oil."""
     consistency: Text = ""
+    """Consistency of a grease, its NLGI number as text."""
 
     @model_validator(mode="after")
     def _known(self) -> "Oil":
@@ -382,8 +404,11 @@ class Surface(Table):
     """
 
     ra: Annotated[tuple[float, float], Pair(ROUGHNESS)] | None = None
+    """Arithmetic mean roughness Ra of the flanks; by rq, for Gaussian heights, unless given."""
     rq: Annotated[tuple[float, float], Pair(ROUGHNESS)] | None = None
+    """Root mean square roughness Rq of the flanks; by ra, for Gaussian heights, unless given."""
     composite_rq: Annotated[float, ROUGHNESS] | None = None
+    """Composite Rq of both flanks, sqrt(Rq1² + Rq2²), in place of ra and rq."""
 
     @model_validator(mode="after")
     def _enough(self) -> "Surface":
@@ -412,10 +437,15 @@ class Operating(Table):
     """
 
     torque: Annotated[float, TORQUE] | None = None
+    """Torque on the driven member; needed unless the gears take a force."""
     force: Annotated[float, FORCE] | None = None
+    """Force on a rack, or normal force on a ball, in place of a torque."""
     speed: Annotated[float, SPEED]
+    """Rotational speed of the driving member."""
     temperature: Annotated[float, TEMPERATURE]
+    """Temperature of the oil and around the gears."""
     driver: Text = ""
+    """Member that drives; the first one that is not fixed unless given."""
 
     @property
     def load(self) -> float:
@@ -426,9 +456,10 @@ class Operating(Table):
 class FrictionChoice(BaseModel):
     """A friction law with values for its own parameters."""
 
-    model_config = ConfigDict(extra="allow", frozen=True)
+    model_config = ConfigDict(extra="allow", frozen=True, use_attribute_docstrings=True)
 
     name: Annotated[str, BeforeValidator(named(_friction_laws, "friction law"))]
+    """Friction law; parameters of its own may stand beside it."""
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -480,39 +511,54 @@ class Choices(Table):
     friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(_choices)] = (
         FrictionChoice(name="iso_tr_14179_2"),
     )
+    """Friction laws, one or a list, the first one leading; that usual for the family unless given."""
     load_sharing: Annotated[str, BeforeValidator(named(_sharings, "load sharing model"))] = "equal"
+    """How pairs share the load; from_stiffness where the family or modified flanks ask for it."""
     rolling_resistance: Annotated[str, BeforeValidator(named(_rollings, "rolling resistance"))] = (
         "none"
     )
+    """Law of the rolling resistance of the contacts."""
     film_thickness: Annotated[str, BeforeValidator(named(_films, "film thickness law"))] = (
         "dowson_higginson_1959"
     )
+    """Law of the film thickness; hamrock_dowson_1977 for contacts that are ellipses."""
     inlet_heating: Annotated[str, BeforeValidator(named(_heatings, "inlet heating"))] = "none"
+    """How the heat of shear in the inlet thins films and lowers rolling resistance."""
     asperity_load: Annotated[str, BeforeValidator(named(_asperity_loads, "asperity load law"))] = (
         "none"
     )
+    """Law of the part of the load that asperities carry L_a."""
     elliptic_contact: Annotated[str, BeforeValidator(named(_ellipses, "elliptic contact"))] = (
         "hertz_1881"
     )
+    """How axes and pressure of an elliptic contact follow from its load."""
     tooth_compliance: Annotated[
         str, BeforeValidator(named(_compliances, "tooth compliance model"))
     ] = "beam_foundation_weber"
+    """Model by which teeth yield under load."""
     tooth_temperature: Annotated[
         str, BeforeValidator(named(_tooth_temperatures, "tooth temperature model"))
     ] = "isothermal"
+    """Model of the temperature that their own loss gives plastic teeth."""
     tooth_contact: Annotated[str, BeforeValidator(named(_contact_laws, "law of tooth contact"))] = (
         "linear"
     )
+    """Whether teeth in a vibration never part, or part and meet their back flanks."""
     slices: Annotated[float, SLICES, AfterValidator(_slices)] = 12.0
+    """Slices of each contact line: an even number, or 1 for its middle alone."""
     averaging: Literal["base_pitch", "path"] = "base_pitch"
+    """Whether mean loss and efficiency are those of a mesh cycle, or over the path of one pair."""
 
 
 class Housing(Table):
     """How a plastic gear gets rid of its heat, for models of the tooth temperature."""
 
     thermal_resistance: Annotated[float, THERMAL_RESISTANCE] = 0.0
+    """Resistance of the housing to the passage of heat R; 0 of an open drive."""
     area: Annotated[float, AREA] | None = None
+    """Outer surface of the housing A; needed with a thermal resistance."""
     duty: Annotated[float, RATIO] = 1.0
+    """Share of the time under load ED."""
 
     @model_validator(mode="after")
     def _both(self) -> "Housing":
@@ -533,22 +579,39 @@ class Loss(Table):
     """
 
     between: tuple[Text, Text]
+    """The two bodies that brake each other; one of them may be the housing."""
     bearing: Annotated[str, BeforeValidator(named(_bearing_losses, "bearing loss model"))] = "none"
+    """Model of a rolling bearing between them."""
     mean_diameter: Annotated[float, BORE] | None = None
+    """Mean diameter d_m of bearing or seal lip; needed by models of bearing and breakaway."""
     f0: Annotated[float, BEARING_FACTOR] | None = None
+    """Factor of the lubricant f0 of the bearing model, as the maker has it."""
     f1: Annotated[float, BEARING_FACTOR] | None = None
+    """Factor of the load f1 of the bearing model, as the maker has it."""
     preload: Annotated[float, FORCE] = 0.0
+    """Load on the bearing without any on the teeth, which adds to theirs."""
     position: Annotated[float, PLACE] | None = None
+    """Place of the bearing from the middle of the face along the axis; for two bearings of a body."""
     locating: Annotated[bool, BeforeValidator(_flag)] | None = None
+    """Whether this one of two bearings takes the axial force; the first one unless either says."""
     seal_torque: Annotated[float, TORQUE] = 0.0
+    """Torque of sliding seals, the same at every speed."""
     churning_torque: Annotated[float, TORQUE] = 0.0
+    """Torque of the lubricant that is displaced, at churning_speed."""
     churning_speed: Annotated[float, SPEED] | None = None
+    """Relative speed to which churning_torque belongs; needed with it."""
     churning_exponent: Annotated[float, EXPONENT] = 1.0
+    """Exponent of the relative speed in the churning torque."""
     breakaway_torque: Annotated[float, TORQUE] = 0.0
+    """Torque that holds the bodies at rest, beside bearing and seal; for starting alone."""
     breakaway: Annotated[str, BeforeValidator(named(_breakaways, "breakaway model"))] = "none"
+    """Model of a torque that holds the bodies at rest, which adds to breakaway_torque."""
     breakaway_dry: Annotated[float, OVER_SQUARE] | None = None
+    """Dry part of that model at a preload of 1, over the square of mean_diameter."""
     breakaway_viscous: Annotated[float, OVER_SQUARE] | None = None
+    """Viscous part of that model at 100 mm²/s, over the square of mean_diameter."""
     breakaway_preload: Annotated[float, PRELOAD_RATIO] | None = None
+    """Preload over that to which breakaway_dry belongs; 1 unless given."""
 
     @property
     def factors(self) -> dict[str, float]:
@@ -611,14 +674,22 @@ class ProfileError(Deviation):
     """One order of the composite profile error, repeated with every mesh period; order 0 is constant."""
 
     order: Annotated[float, ORDER]
+    """Order of the mesh frequency; 0 is a constant error."""
+    amplitude: Annotated[float, DEVIATION]
+    """Amplitude along the line of action; a positive error parts the flanks."""
+    phase: Annotated[float, PHASE] = 0.0
+    """Angle of the wave at the beginning of the mesh cycle."""
 
 
 class Speeds(Table):
     """Driver speeds through which resonances are looked for, upwards and downwards."""
 
     start: Annotated[float, SPEED]
+    """Lowest speed of the driver."""
     stop: Annotated[float, SPEED]
+    """Highest speed of the driver."""
     count: Annotated[float, Quantity("dimensionless", 2, 2000, whole=True)] = 60.0
+    """Number of speeds, equally apart."""
 
     @model_validator(mode="after")
     def _rising(self) -> "Speeds":
@@ -637,10 +708,15 @@ class StartUp(Table):
     """
 
     duration: Annotated[float, DURATION]
+    """Time over which the motion is followed."""
     torque: Annotated[float, TORQUE] | None = None
+    """Constant torque that drives; needed unless a motor or a prescribed speed does."""
     rise: Annotated[float, RISE] = 0.0
+    """Time over which the load comes up; 0 has it there at once."""
     speed: Annotated[float, MAP_SPEED] = 0.0
+    """Speed of the driver at the start; 0 is rest."""
     count: Annotated[float, INSTANTS] = 2001.0
+    """Number of instants that are kept, equally apart."""
 
     @model_validator(mode="after")
     def _inside(self) -> "StartUp":
@@ -657,16 +733,27 @@ class MotionTable(Table):
     """
 
     bearing_stiffness: Annotated[tuple[float, float], Pair(STIFFNESS)] | None = None
+    """Stiffness of the bearings of each gear, along and across the line of action; else rigid."""
     bearing_damping: Annotated[tuple[float, float], Pair(DAMPING)] | None = None
+    """Damping of the bearings of each gear; by damping_ratio and mass unless given."""
     mass: Annotated[tuple[float, float], Pair(MASS)] | None = None
+    """Mass of each gear; needed with bearing_stiffness."""
     mesh_damping: Annotated[float, DAMPING] | None = None
+    """Damping along the line of action; by damping_ratio and mean stiffness unless given."""
     pair_path: Annotated[tuple[Annotated[float, ON_PATH], ...], Field(max_length=400)] = ()
+    """Places of a table of pair stiffness, in base pitches, growing from 0 at the entry of a pair."""
     pair_stiffness: Annotated[tuple[Annotated[float, STIFFNESS], ...], Field(max_length=400)] = ()
+    """Stiffness of a pair at these places; that of the tooth compliance unless given."""
     prescribed_speed: Annotated[bool, BeforeValidator(_flag)] = False
+    """Whether the speed of the driver is held; else it has its inertia and a torque."""
     stall_torque: Annotated[float, LOADED] | None = None
+    """Torque of a motor at rest, which falls to 0 at no_load_speed; no motor unless given."""
     no_load_speed: Annotated[float, SPEED] | None = None
+    """Speed at which the motor has no torque; needed with stall_torque."""
     cycles: Annotated[float, CYCLES] = 1.0
+    """Mesh cycles after which the steady motion repeats."""
     start_up: StartUp | None = None
+    """Asks for the motion from a start in time."""
 
     @model_validator(mode="after")
     def _complete(self) -> "MotionTable":
@@ -730,13 +817,21 @@ class Dynamics(Table):
     """Vibration of a pair along its line of action, or of a joint about the axis of its drive."""
 
     damping_ratio: Annotated[float, RATIO] = 0.1
+    """Damping ratio ξ; 0.03 of strain wave gears unless given."""
     inertia: Annotated[tuple[float, float], Pair(INERTIA)] | None = None
+    """Moments of inertia of both gears, discs unless given; of a joint motor and load, needed."""
     profile_error: Annotated[tuple[ProfileError, ...], Field(max_length=41)] = ()
+    """Orders of the composite profile error of the pair; none unless given."""
     backlash: Annotated[float, DEVIATION] | None = None
+    """Free way along the line of action before back flanks meet; endless unless given."""
     torques: Annotated[tuple[Annotated[float, LOADED], ...], Field(max_length=50)] = ()
+    """Torques of the vibration; that of the operating point unless given."""
     forces: Annotated[tuple[Annotated[float, PRESSED], ...], Field(max_length=50)] = ()
+    """Forces of the vibration of a rack; that of the operating point unless given."""
     speeds: Speeds | None = None
+    """Speeds of the driver beside the operating one; none, of a joint its own choice, unless given."""
     motion: MotionTable | None = None
+    """Asks for the motion with the friction of the teeth in it; may be empty."""
 
 
 def _nodes(value: float) -> float:
@@ -761,20 +856,30 @@ class HeightTable(Table):
     """
 
     file: Text
+    """File of the heights beside the case file: .csv, .txt or .npy."""
     step_along: Annotated[float, MAP_STEP]
+    """Distance between columns, along the surface speeds."""
     step_across: Annotated[float, MAP_STEP]
+    """Distance between rows, across the surface speeds."""
     unit: Annotated[float, MAP_UNIT] = 1e-6
+    """What a height of one in the file is."""
     middle_along: Annotated[float, MAP_PLACE] = 0.0
+    """Middle of the map from that of the contact, along the surface speeds."""
     middle_across: Annotated[float, MAP_PLACE] = 0.0
+    """Middle of the map from that of the contact, across the surface speeds."""
     periodic: Annotated[bool, BeforeValidator(_flag)] = False
+    """Whether the map repeats; else it has to cover the contact."""
 
 
 class HeightTables(Table):
     """Height maps of the surfaces in contact, or of both together, which stays where it is."""
 
     gear_1: HeightTable | None = None
+    """Height map of gear 1, which moves along with its surface in films with squeeze."""
     gear_2: HeightTable | None = None
+    """Height map of gear 2, which moves along with its surface in films with squeeze."""
     both: HeightTable | None = None
+    """Height map of both together, which stays where it is."""
 
 
 class FilmTable(Table):
@@ -787,42 +892,70 @@ class FilmTable(Table):
     """
 
     solver: Literal["line", "finite_line", "elliptic"]
+    """Lines without ends, lines of the length that they have, or ellipses."""
     phases: Annotated[float, FILM_PHASES] = 24.0
+    """Least number of states over a mesh cycle."""
     in_series: Annotated[bool, BeforeValidator(_flag)] = False
+    """Whether to tell what films in series take from the torsional stiffness."""
     nodes: Annotated[float, FILM_NODES, AfterValidator(_nodes)] | None = None
+    """Nodes along the motion: 33, 65, 129, ...; 129 for lines without ends, else 65, unless given."""
     cells: Annotated[float, FILM_CELLS, AfterValidator(_cells)] | None = None
+    """Cells across the motion: 32, 64, 128 or 256; one less than nodes unless given."""
     time: Literal["steady", "squeeze"] | None = None
+    """Steady films alone, or one pair followed with squeeze as well; steady unless given."""
     moments: Annotated[float, FILM_MOMENTS] | None = None
+    """Most moments of the engagement with squeeze; 40 unless given."""
     heights: HeightTables | None = None
+    """Measured heights of the surfaces; none unless given."""
     ends: Literal["half_space", "mirrored"] | None = None
+    """Whether bodies go on beyond a line or both end with it; half_space unless given."""
     end_profile: Annotated[str, BeforeValidator(named(_end_profiles, "end profile"))] | None = None
+    """Profile of the ends of contact lines; none unless given."""
     end_length: Annotated[float, END_LENGTH] | None = None
+    """Length of each end along the face, of chamfered and dub_off ends."""
     end_radius: Annotated[float, END_RADIUS] | None = None
+    """Radius of the arc of crowned and dub_off ends."""
     end_angle: Annotated[float, END_ANGLE] | None = None
+    """Angle between bevel and face of chamfered ends."""
     end_line_load: Annotated[float, LINE_LOAD] | None = None
+    """Line load for which log_relieved ends make the pressure even."""
     end_drop: Annotated[float, END_LENGTH] | None = None
+    """Largest drop of log_relieved ends; without bound unless given."""
     viscosity_law: (
         Annotated[str, BeforeValidator(named(_viscosities, "law of viscosity under pressure"))]
         | None
     ) = None
+    """Law of the viscosity under pressure; roelands_1966 unless given."""
     density_law: (
         Annotated[str, BeforeValidator(named(_densities, "law of density under pressure"))] | None
     ) = None
+    """Law of the density under pressure; dowson_higginson_1966 unless given."""
     shear_law: Annotated[str, BeforeValidator(named(_shears, "law of shear stress"))] | None = None
+    """Law of the shear stress; ree_eyring_1955 unless given."""
     eyring_stress: Annotated[float, STRESS] | None = None
+    """Eyring stress of ree_eyring_1955; 5 MPa unless given, assumed."""
     limiting_coefficient: Annotated[float, COEFFICIENT] | None = None
+    """Rise of bair_winer_1979's limiting shear stress with pressure; 0.08 unless given, assumed."""
     limiting_stress: Annotated[float, STRESS] | None = None
+    """Limiting shear stress of bair_winer_1979 without pressure; 2 MPa unless given, assumed."""
     asperities: (
         Annotated[str, BeforeValidator(named(_asperities, "law of asperity contact"))] | None
     ) = None
+    """Law of asperity contact, or none for smooth flanks; greenwood_tripp_1970 unless given."""
     eta_beta_sigma: Annotated[float, SUMMITS] | None = None
+    """Summits per area times their radius times Rq; 0.05 unless given, assumed."""
     sigma_over_beta: Annotated[float, SUMMITS] | None = None
+    """Rq over the radius of summits; 0.01 unless given, assumed."""
     pattern: Annotated[float, PATTERN] | None = None
+    """Peklenik's number γ of the roughness; 1, without a direction, unless given."""
     boundary_friction: Annotated[float, COEFFICIENT] | None = None
+    """Friction coefficient of asperities that touch; 0.1 unless given, assumed."""
     inlet: Annotated[float, INLET] | None = None
+    """Distance ahead of a contact at which oil begins; a module, without teeth flooded, unless given."""
     thermal: (
         Annotated[str, BeforeValidator(named(_thermals, "thermal effect of a film"))] | None
     ) = None
+    """Heat in the film; isothermal unless given."""
 
     @property
     def shear_parameters(self) -> dict[str, float]:
@@ -942,10 +1075,15 @@ class Sweep(Table):
     """Values of one key: from start to stop in equal steps, or a list."""
 
     key: Text
+    """Dotted key whose value is swept, as gears.profile_shift.1."""
     start: Any = None
+    """First value; with stop in place of values."""
     stop: Any = None
+    """Last value; with start in place of values."""
     count: Annotated[float, COUNT] = 19.0
+    """Number of values from start to stop, equally apart."""
     values: tuple[Any, ...] | None = None
+    """List of values in place of start and stop."""
 
     @model_validator(mode="after")
     def _complete(self) -> "Sweep":
@@ -960,8 +1098,11 @@ class Study(Table):
     """One computation of the case: its operating point with changes, swept or not."""
 
     title: Text = ""
+    """Title on screen and in the report; the name of the study unless given."""
     change: dict[str, Any] = Field(default_factory=dict)
+    """What differs from the case, by its tables and keys; nothing unless given."""
     sweep: Sweep | None = None
+    """Values over which one key is swept; one point unless given."""
 
 
 class LossMap(Table):
@@ -971,15 +1112,23 @@ class LossMap(Table):
     """
 
     torque: Annotated[float, TORQUE] | None = None
+    """Largest torque; 1.5 times that of the operating point unless given."""
     force: Annotated[float, FORCE] | None = None
+    """Largest force, where gears take one; 1.5 times that of the operating point unless given."""
     speed: Annotated[float, MAP_SPEED] | None = None
+    """Largest speed of the driver; 1.5 times that of the operating point unless given."""
     temperatures: (
         Annotated[tuple[Annotated[float, TEMPERATURE], ...], Field(max_length=50)] | None
     ) = None
+    """Temperatures of the oil; that of the operating point and 20 K less and more unless given."""
     count: Annotated[float, MAP_COUNT] = 9.0
+    """Points of both axes, from zero on."""
     torque_count: Annotated[float, MAP_COUNT] | None = None
+    """Points of the torque axis; count unless given."""
     force_count: Annotated[float, MAP_COUNT] | None = None
+    """Points of the force axis; count unless given."""
     speed_count: Annotated[float, MAP_COUNT] | None = None
+    """Points of the speed axis; count unless given."""
 
 
 class Target(Table):
@@ -993,20 +1142,35 @@ class Target(Table):
     """
 
     quantity: Text
+    """What the number is, in words."""
     where: Text
+    """Place of the number in its source."""
     kind: Literal["predicted", "fitted", "calibrated", "trend", "reference", "excluded"]
+    """What agreement with the number would show, and whether it is left out."""
     printed: Annotated[float, ANY]
+    """The printed number, in its unit."""
     unit: Unit = "1"
+    """Unit of the printed number; 1 for none."""
     tolerance: Annotated[float, NOT_NEGATIVE] = 0.0
+    """Largest deviation that passes, in the unit of the number."""
     expect: Literal["within", "above", "below"] = "within"
+    """Whether the number is to be met within the tolerance, exceeded or not reached."""
     times: Annotated[float, TIMES] = 1.0
+    """Factor on the printed number of a bound."""
     study: Text = ""
+    """Study that is read; this or a part."""
     part: Text = ""
+    """Part of the result that is read; this or a study."""
     variable: Annotated[str, BeforeValidator(named(_variables, "quantity"))] = ""
+    """Result variable that is read."""
     at: Annotated[tuple[Any, ...], BeforeValidator(_places)] = ()
+    """Places on the axis that are read; all that were computed unless given."""
     reduce: Annotated[str, BeforeValidator(named(_reductions, "reduction"))] = "value"
+    """How one number is made of the values at these places."""
     law: tuple[Annotated[float, POSITION], ...] = (0.0,)
+    """Positions of the friction laws that are read, from 0."""
     reason: Text = ""
+    """Why the number deviates, or is left out."""
 
     @property
     def reads(self) -> str:
@@ -1028,8 +1192,11 @@ class Issue(Table):
     """A misprint or a questionable point of the publication."""
 
     where: Text
+    """Place in the publication."""
     issue: Text
+    """What is wrong or questionable there."""
     verdict: Text
+    """What is taken in its place, or what follows."""
 
 
 def _at_most(most: int) -> Callable[[Any], Any]:
@@ -1096,24 +1263,43 @@ class WearTable(Table):
     """
 
     law: Annotated[str, BeforeValidator(named(_wear_laws, "wear law"))]
+    """Law of the specific wear rate."""
     cycles: Annotated[float, WEAR_TURNS]
+    """Turns of the driver over which flanks wear."""
     coefficient: Annotated[tuple[float, float], Pair(WEAR_COEFFICIENT)] | None = None
+    """Wear coefficient K of Archard's law, of dry sliding; 1e-5 unless given."""
     hardness: Annotated[tuple[float, float], Pair(HARDNESS)] | None = None
+    """Hardness H of the flanks; that of the materials unless given."""
     rate: Annotated[tuple[float, float], Pair(WEAR_RATE)] | None = None
+    """Specific wear rate k of the flanks, for a law that takes it by value."""
     adsorption_heat: Annotated[float, ADSORPTION_HEAT] | None = None
+    """Heat of adsorption E_a of the oil on the flanks; 49 kJ/mol unless given."""
     molecule_diameter: Annotated[float, MOLECULE] | None = None
+    """Diameter X of an adsorbed molecule; 0.3 nm unless given."""
     vibration_period: Annotated[float, VIBRATION] | None = None
+    """Period t_0 of vibration of an adsorbed molecule; 3e-12 s unless given."""
     profile: Literal["updated", "kept"] = "updated"
+    """Whether load sharing, pressure and film follow the worn flanks, or stay as new."""
     load_ratio: Literal["formula", "film"] = "formula"
+    """Where the load on asperities is from: models.asperity_load, or solved films."""
     depth_limit: Annotated[float, WEAR_DEPTH] | None = None
+    """Depth at which the march ends; 0.2 modules of teeth, at the latest, unless given."""
     pressure_limit: Annotated[float, WEAR_PRESSURE] | None = None
+    """Largest pressure over that at the start at which the march ends; none unless given."""
     tip_land_limit: Annotated[float, WEAR_LAND] | None = None
+    """Tip thickness that is left where the march ends; none unless given."""
     backlash_limit: Annotated[float, WEAR_DEPTH] | None = None
+    """Normal backlash that wear adds until the march ends; none unless given."""
     severe_by: Literal["rate", "pressure"] = "rate"
+    """What tells severe wear: half as much again as the least rate, or as the first pressure."""
     cells: Annotated[float, WEAR_CELLS] = 40.0
+    """Cells along each flank."""
     phases: Annotated[float, WEAR_PHASES] = 24.0
+    """Phases between two events of the mesh cycle."""
     tolerance: Annotated[float, WEAR_ERROR] = 3e-4
+    """Error of a step over the largest depth."""
     sensitivities: Annotated[bool, BeforeValidator(_flag)] | None = None
+    """Whether to tell what the life depends on; where it takes seconds unless given."""
 
 
 class WornTable(Table):
@@ -1123,7 +1309,9 @@ class WornTable(Table):
     """
 
     file: Text
+    """File wear.nc of a result with wear of the same gears, beside the case file."""
     cycles: Annotated[float, WORN_TURNS] | None = None
+    """Turns of the driver up to which flanks are worn; all that the file has unless given."""
 
 
 _TREATMENT = named(_treatments, "heat treatment")
@@ -1151,21 +1339,37 @@ class StrengthTable(Table):
     """
 
     application_factor: Annotated[float, LOAD_FACTOR] | None = None
+    """Application factor K_A; 1 unless given."""
     dynamic_factor: Annotated[float, LOAD_FACTOR] | None = None
+    """Dynamic factor K_v; by ISO 6336-1 method C, of plastics 1, unless given."""
     face_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    """Face load factor K_Hβ; 1 unless given."""
     transverse_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    """Transverse load factor K_Hα; 1 unless given."""
     root_face_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    """Face load factor of the root K_Fβ; by K_Hβ unless given."""
     root_transverse_load_factor: Annotated[float, LOAD_FACTOR] | None = None
+    """Transverse load factor of the root K_Fα; K_Hα unless given."""
     accuracy_class: Annotated[float, ACCURACY] | None = None
+    """Class of ISO 1328-1 for K_v; that of gears.deviations, without it 7, unless given."""
     profile_correction: Annotated[float, LOAD_FACTOR] | None = None
+    """Factor f_ZCa for the profile modification of helical gears; 1.2, none, unless given."""
     life: Annotated[float, LIFE] | None = None
+    """Time under load; the teeth are to endure unless given."""
     sigma_hlim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
+    """Allowable stress number for contact σ_Hlim; that of the materials unless given."""
     sigma_flim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
+    """Nominal stress number for bending σ_Flim; that of the materials unless given."""
     treatment: Annotated[tuple[str, str], BeforeValidator(_of_both)] | None = None
+    """Heat treatment of both gears; that of the materials unless given."""
     work_hardening: Annotated[tuple[float, float], Pair(HARDENING)] | None = None
+    """Work hardening factor Z_W; 1 unless given."""
     mean_stress_factor: Annotated[tuple[float, float], Pair(REVERSED)] | None = None
+    """Mean stress factor Y_M of teeth loaded both ways; 1 unless given."""
     flank_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
+    """Mean peak-to-valley roughness Rz of the flanks; 6 Ra unless given."""
     root_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
+    """Mean peak-to-valley roughness Rz of the roots; 10 µm unless given."""
 
 
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
@@ -1177,26 +1381,47 @@ class Case(Table):
     """A whole case file, one variant of it."""
 
     title: Text = ""
+    """Title of the case."""
     summary: Text = ""
+    """What the case is, in a sentence or two."""
     source: Text = ""
+    """Key of the publication that the case is from, in the bibliography."""
     gears: Gears
+    """Gears of the mesh; their family decides what keys the table has."""
     materials: Materials = Materials()
+    """Materials of both gears; steel unless given."""
     lubricant: Oil
+    """Oil, or base oil of a grease, by name or by value."""
     roughness: Surface
+    """Roughness of the flanks."""
     operation: Operating
+    """Operating point: load, speed, temperature, and what drives."""
     models: Choices = Choices()
+    """Laws that are taken."""
     housing: Housing = Housing()
+    """How heat leaves the housing, for the temperature of plastic teeth."""
     losses: Losses = Field(default_factory=dict)
+    """Losses beside the teeth, by names of one's own or a named set; none unless given."""
     dynamics: Dynamics | None = None
+    """Asks for vibration; none unless given."""
     film: FilmTable | None = None
+    """Asks for films solved over the mesh cycle; none unless given."""
     wear: WearTable | None = None
+    """Asks for wear over the life of the drive; none unless given."""
     worn: WornTable | None = None
+    """Flanks worn by an earlier result; as new unless given."""
     strength: StrengthTable | None = None
+    """Load factors and limits of the rating by ISO 6336; those assumed unless given."""
     studies: Studies = Field(default_factory=dict)
+    """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
+    """Axes of the loss map; up to 1.5 times the operating point unless given."""
     formulas: Formulas | None = None
+    """Inputs that only the equations of one paper take."""
     targets: Targets = ()
+    """Printed numbers that computed ones are compared with."""
     issues: Issues = ()
+    """Misprints and questionable points of the publication."""
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -1249,23 +1474,28 @@ class StageTable(Table):
 
     Its losses are those between two of its own bodies; those of shafts against the housing are the
     drive's.
-
-    Attributes:
-        driver: member that the stage before it drives; the first one that is not fixed, by default.
-        place: of the middle of its face along the shafts.
-        turn: angle of its line of centres about the shafts.
     """
 
     gears: Gears
+    """Gears of the stage; their family decides what keys the table has."""
     driver: Text = ""
+    """Member that the stage before drives; the first one that is not fixed unless given."""
     materials: Materials = Materials()
+    """Materials of its gears; those of the drive unless given."""
     lubricant: Oil | None = None
+    """Oil of the stage; that of the drive unless given."""
     roughness: Surface | None = None
+    """Roughness of its flanks; that of the drive unless given."""
     models: Choices = Choices()
+    """Laws of the stage, key by key; those of the drive unless given."""
     strength: StrengthTable | None = None
+    """Load factors and limits of the stage, key by key; those of the drive unless given."""
     losses: Losses = Field(default_factory=dict)
+    """Losses between two of its own bodies; none unless given."""
     place: Annotated[float, PLACE] = 0.0
+    """Place of the middle of its face along the shafts."""
     turn: Annotated[float, TURN] = 0.0
+    """Angle of its line of centres about the shafts, counter-clockwise."""
 
 
 class _Numbered:
@@ -1302,21 +1532,37 @@ class DriveCase(Table):
     """
 
     title: Text = ""
+    """Title of the case."""
     summary: Text = ""
+    """What the case is, in a sentence or two."""
     source: Text = ""
+    """Key of the publication that the case is from, in the bibliography."""
     stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), _Numbered()]
+    """Meshes from the input to the output, each a table [[stages]]; at most 5."""
     materials: Materials = Materials()
+    """Materials of both gears; steel unless given."""
     lubricant: Oil
+    """Oil, or base oil of a grease, by name or by value."""
     roughness: Surface
+    """Roughness of the flanks."""
     operation: Operating
+    """Operating point: load of the output, speed of the input, temperature."""
     models: Choices = Choices()
+    """Laws that are taken."""
     housing: Housing = Housing()
+    """How heat leaves the housing, for the temperature of plastic teeth."""
     losses: DriveLosses = Field(default_factory=dict)
+    """Losses between shafts, or of shafts against the housing; none unless given."""
     strength: StrengthTable | None = None
+    """Load factors and limits of the rating by ISO 6336; those assumed unless given."""
     studies: Studies = Field(default_factory=dict)
+    """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
+    """Axes of the loss map; up to 1.5 times the operating point unless given."""
     targets: Targets = ()
+    """Printed numbers that computed ones are compared with."""
     issues: Issues = ()
+    """Misprints and questionable points of the publication."""
 
     @property
     def bodies(self) -> tuple[str, ...]:

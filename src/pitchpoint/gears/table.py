@@ -19,6 +19,7 @@ __all__ = [
     "HELIX",
     "MASS",
     "MODULE",
+    "PHASE",
     "RACK",
     "SHIFT",
     "WIDTH",
@@ -118,8 +119,11 @@ class Deviation(Table):
     """A wave of a deviation along the normal of the flanks, so many times around the member."""
 
     order: Annotated[float, WAVES]
+    """Waves around the member; 1 is an eccentricity."""
     amplitude: Annotated[float, DEVIATION]
+    """Amplitude of the missing height along the normal of the flanks."""
     phase: Annotated[float, PHASE] = 0.0
+    """Angle of the wave where the angle of the member is zero."""
 
 
 WavesAround = Annotated[tuple[Deviation, ...], Field(max_length=200)]
@@ -129,7 +133,9 @@ class PairDeviations(Table):
     """How far flanks lie behind their places, as waves around each gear; they make the kinematic error."""
 
     gear_1: WavesAround = ()
+    """Waves around gear 1, each with order, amplitude and phase; none unless given."""
     gear_2: WavesAround = ()
+    """Waves around gear 2, each with order, amplitude and phase; none unless given."""
 
     @property
     def each(self) -> dict[str, tuple[Deviation, ...]]:

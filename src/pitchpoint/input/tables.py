@@ -12,9 +12,12 @@ DECIDING = ("family", "form")
 
 
 class Table(BaseModel):
-    """A table of a case file: no unknown keys, values fixed once read."""
+    """A table of a case file: no unknown keys, values fixed once read.
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    The sentence under a key is what the reference, editors and new case files say of it.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
 
 def by(key: str, *tables: type[Table]) -> Discriminator:

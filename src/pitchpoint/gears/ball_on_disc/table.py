@@ -32,10 +32,15 @@ class BallOnDiscRig(GearsTable):
     }
 
     family: Literal["ball_on_disc"] = "ball_on_disc"
+    """Family of these gears: a test rig with a ball on a disc."""
     ball_radius: Annotated[float, BALL]
+    """Radius of the ball along the track."""
     transverse_radius: Annotated[float, BALL] | None = None
+    """Radius across the track, which makes a barrel; that along it unless given."""
     track_radius: Annotated[float, TRACK]
+    """Radius of the track on the disc."""
     slide_roll_ratio: Annotated[float, SLIDE_ROLL] = 0.0
+    """Sliding over mean surface speed, positive where the disc is faster; 0 is pure rolling."""
 
     @property
     def drivers(self) -> tuple[str, ...]:

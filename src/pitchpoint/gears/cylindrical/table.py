@@ -69,13 +69,21 @@ class FlankModifications(Table):
     """
 
     tip_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    """Tip relief C_αa at the tip circle; none unless given."""
     tip_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+    """Roll length of the tip relief; up to where one pair less is in contact unless given."""
     root_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    """Root relief C_αf at the start of the active profile; none unless given."""
     root_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+    """Roll length of the root relief; up to where one pair less is in contact unless given."""
     relief_shape: Literal["linear", "parabolic"] = "linear"
+    """How all reliefs grow towards their ends."""
     crowning: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    """Lead crowning C_β at the ends of the face; none unless given."""
     end_relief: Annotated[tuple[float, float], Pair(RELIEF)] | None = None
+    """End relief C_βI = C_βII at both ends of the face; none unless given."""
     end_relief_length: Annotated[tuple[float, float], Pair(RELIEF_LENGTH)] | None = None
+    """Length of each end relief; a module, at most a tenth of the face, unless given."""
 
     @property
     def amounts(self) -> dict[str, tuple[float, float]]:
@@ -101,7 +109,9 @@ class GearDeviations(PairDeviations):
     """
 
     iso_class: Annotated[tuple[float, float], Pair(TOLERANCE_CLASS)] | None = None
+    """Flank tolerance class of ISO 1328-1 at whose limits gears are drawn; none unless given."""
     seed: Annotated[float, SEED] = 1.0
+    """Number from which gears at the limits of the class are drawn; the same one gives the same gears."""
 
 
 class Inspection(Table):
@@ -114,14 +124,21 @@ class Inspection(Table):
     """
 
     upper_thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
+    """Upper allowance of the normal tooth thickness; needed with the lower one."""
     lower_thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
+    """Lower allowance of the normal tooth thickness; needed with the upper one."""
     centre_distance_deviation: Annotated[float, DEVIATION] | None = None
+    """Deviation of the centre distance to either side; none unless given."""
     centre_distance_field: (
         Annotated[str, BeforeValidator(named(lambda: FIELDS, "symmetrical tolerance field"))] | None
     ) = None
+    """Tolerance field of the centre distance by ISO 286, in place of a deviation."""
     span_teeth: Annotated[tuple[float, float], Pair(SPAN)] | None = None
+    """Teeth k under a span; those that touch nearest to mid-flank unless given."""
     ball_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
+    """Diameter D_M of the measuring balls; one that touches near mid-flank unless given."""
     iso_class: Annotated[tuple[float, float], Pair(TOLERANCE_CLASS)] | None = None
+    """Class of the tolerances by ISO 1328-1; that of the deviations unless given."""
 
     @property
     def allowances(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
@@ -174,24 +191,43 @@ class CylindricalGears(GearsTable):
     friction: ClassVar[str] = "iso_tr_14179_2"
 
     family: Literal["cylindrical"] = "cylindrical"
+    """Family of these gears: a pair of cylindrical gears on parallel axes."""
     teeth: Annotated[tuple[float, float], Pair(TEETH), AfterValidator(_teeth)]
+    """Numbers of teeth z1, z2; negative for a ring as gear 2."""
     module: Annotated[float, MODULE]
+    """Normal module m_n."""
     face_width: Annotated[float, WIDTH]
+    """Common face width b."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
+    """Normal pressure angle α_n of the basic rack."""
     helix_angle: Annotated[float, HELIX] = 0.0
+    """Helix angle β on the reference cylinder; 0 for spur gears."""
     profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] = (0.0, 0.0)
+    """Profile shift coefficients x1, x2."""
     addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
+    """Addendum of both basic racks, in modules."""
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
+    """Dedendum of both basic racks, in modules; addendum + 0.25 unless given."""
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
+    """Fillet radius ρ_fP of both basic racks in modules; 0.38 if it fits, of a ring 0.2, unless given."""
     tip_alteration: Annotated[tuple[float, float], Pair(TIP)] | None = None
+    """Tip alteration coefficients k1, k2; those that keep the tip clearance unless given."""
     least_tip_thickness: Annotated[float, LEAST_TIP] | None = None
+    """Tip thickness that shortening keeps, in modules; helical 0.25, spur 0, unless given."""
     centre_distance: Annotated[float, DISTANCE] | None = None
+    """Centre distance a; that without backlash unless given."""
     bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
+    """Bore diameters, of a ring its outer one; 0.3, of a ring 1.2, root diameters unless given."""
     flank: Literal["left", "right"] = "left"
+    """Flanks that touch, as seen with the tooth's tip up."""
     misalignment: Annotated[float, MISALIGNMENT] | None = None
+    """Misalignment f_Σβ over the face, positive where flanks part at the end z > 0; none unless given."""
     modifications: FlankModifications | None = None
+    """Modifications of the flanks; none unless given."""
     deviations: GearDeviations | None = None
+    """Deviations from tooth to tooth, which make the kinematic error; none unless given."""
     inspection: Inspection | None = None
+    """Allowances, tolerances and measuring dimensions of the drawing; none unless given."""
 
     @property
     def opposed(self) -> "CylindricalGears":

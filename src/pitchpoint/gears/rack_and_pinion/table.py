@@ -38,19 +38,33 @@ class RackAndPinionGears(GearsTable):
     friction: ClassVar[str] = "iso_tr_14179_2"
 
     family: Literal["rack_and_pinion"] = "rack_and_pinion"
+    """Family of these gears: a pinion that drives a rack."""
     teeth: Annotated[float, TEETH]
+    """Number of teeth z of the pinion."""
     module: Annotated[float, MODULE]
+    """Normal module m_n."""
     face_width: Annotated[float, WIDTH]
+    """Common face width b."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
+    """Normal pressure angle α_n of the rack."""
     helix_angle: Annotated[float, HELIX] = 0.0
+    """Helix angle β on the reference cylinder of the pinion; 0 for spur teeth."""
     profile_shift: Annotated[float, SHIFT] = 0.0
+    """Profile shift coefficient x of the pinion."""
     addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
+    """Addendum of the pinion's basic rack and of the rack, in modules."""
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
+    """Dedendum of the pinion's basic rack and of the rack, in modules; addendum + 0.25 unless given."""
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
+    """Fillet radius of the pinion's basic rack and of the rack in modules; 0.38 if it fits, unless given."""
     mounting_distance: Annotated[float, DISTANCE] | None = None
+    """From the pinion's axis to the rack's reference line; without backlash unless given."""
     bore_diameter: Annotated[float, BORE] | None = None
+    """Bore diameter of the pinion; 0.3 root diameters unless given."""
     mass: Annotated[float, MASS] | None = None
+    """Mass of the rack and of all that moves with it; needed for a vibration."""
     flank: Literal["left", "right"] = "left"
+    """Flanks that touch, as seen with the tooth's tip up."""
 
     @property
     def opposed(self) -> "RackAndPinionGears":

@@ -81,15 +81,25 @@ class DoubleArcTooth(Table):
     """
 
     form: Literal["double arc"] = "double arc"
+    """Form of the flexspline's teeth: two arcs and their tangent."""
     set: Annotated[str, BeforeValidator(named(_double_arcs, "double-arc tooth"))] | None = None
+    """Named set of dimensions, for those that are not given; liu unless given."""
     convex_radius: Annotated[float, ARC] | None = None
+    """Radius ρ_a of the convex arc at the tip, in modules; that of the set unless given."""
     convex_offset: Annotated[float, OFFSET] | None = None
+    """Centre of the convex arc beyond the axis of the tooth l_a, in modules; else of the set."""
     convex_shift: Annotated[float, OFFSET] | None = None
+    """Centre of the convex arc below the pitch line e_a, in modules; else of the set."""
     concave_radius: Annotated[float, ARC] | None = None
+    """Radius ρ_f of the concave arc at the root, in modules; that of the set unless given."""
     concave_offset: Annotated[float, OFFSET] | None = None
+    """Centre of the concave arc beyond mid-space l_f, in modules; else of the set."""
     concave_shift: Annotated[float, OFFSET] | None = None
+    """Centre of the concave arc above the pitch line e_f, in modules; else of the set."""
     addendum: Annotated[float, RACK] | None = None
+    """Addendum above the pitch line, in modules; 0.55 unless given."""
     dedendum: Annotated[float, RACK] | None = None
+    """Dedendum below the pitch line, in modules; 0.75 unless given."""
 
     @model_validator(mode="after")
     def _whole(self) -> "DoubleArcTooth":
@@ -106,26 +116,37 @@ class InvoluteTooth(Table):
     """An involute flexspline tooth by the basic rack that cuts it, in modules."""
 
     form: Literal["involute"] = "involute"
+    """Form of the flexspline's teeth: involutes."""
     profile_shift: Annotated[float, SPLINE_SHIFT]
+    """Profile shift coefficient x1 of the flexspline."""
     addendum: Annotated[float, RACK] = 1.0
+    """Addendum of the basic rack, in modules."""
     dedendum: Annotated[float, RACK] = 1.35
+    """Dedendum of the basic rack, in modules."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
+    """Pressure angle α of the basic rack."""
 
 
 class ConjugateGroove(Table):
     """A circular spline whose flanks are those that the flexspline's teeth sweep."""
 
     form: Literal["conjugate"] = "conjugate"
+    """Form of the circular spline: the flanks that the flexspline's teeth sweep."""
 
 
 class InvoluteGroove(Table):
     """A circular spline with involute teeth, in modules."""
 
     form: Literal["involute"] = "involute"
+    """Form of the circular spline: involutes."""
     profile_shift: Annotated[float, SPLINE_SHIFT]
+    """Profile shift coefficient x2 of the circular spline."""
     addendum: Annotated[float, RACK] = 1.0
+    """Addendum of the basic rack, in modules."""
     dedendum: Annotated[float, RACK] = 1.35
+    """Dedendum of the basic rack, in modules."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
+    """Pressure angle α of the basic rack."""
 
 
 class BallBearing(Table):
@@ -136,9 +157,13 @@ class BallBearing(Table):
     """
 
     balls: Annotated[float, BALLS] | None = None
+    """Number of balls; 23 unless given, assumed."""
     ball_diameter: Annotated[float, BORE] | None = None
+    """Diameter of a ball; 0.078 pitch diameters unless given, assumed."""
     race_thickness: Annotated[float, THICKNESS] | None = None
+    """Thickness of the outer race; 0.0125 pitch diameters unless given, assumed."""
     play: Annotated[float, EITHER_PLAY] = 0.0
+    """Radial play between ball and races where the ring has its wave; negative is a preload."""
 
 
 class WaveGenerator(Table):
@@ -149,10 +174,15 @@ class WaveGenerator(Table):
     """
 
     shape: Annotated[str, BeforeValidator(named(_wave_shapes, "wave shape"))] = "cosine"
+    """Shape into which the flexspline is bent, by name."""
     weights: tuple[Annotated[float, AMPLITUDE], ...] = ()
+    """Amplitudes of cos 2p, cos 4p, ... in place of a shape; only their ratios count."""
     deflection: Annotated[float, DEFLECTION] = 1.0
+    """Deflection w0 on the long axis, over half the module times the tooth difference."""
     force_angle: Annotated[float, FORCE_ANGLE] = pi / 6
+    """Angle between the long axis and the forces of the shape four_forces."""
     bearing: BallBearing | None = None
+    """Balls between wave generator and flexspline; without this table the ring is held all round."""
 
     @model_validator(mode="after")
     def _one(self) -> "WaveGenerator":
@@ -170,10 +200,15 @@ class Flexspline(Table):
     """
 
     walls: Literal["two modules", "bending strain"] = "two modules"
+    """What a rim thickness that is not given follows from."""
     rim_thickness: Annotated[float, THICKNESS] | None = None
+    """Thickness of the rim under the teeth; by walls unless given, assumed."""
     wall_thickness: Annotated[float, THICKNESS] | None = None
+    """Thickness of the wall of the cup; half of the rim unless given, assumed."""
     cup_length: Annotated[float, BORE] | None = None
+    """From the teeth to the flange; half of the pitch diameter unless given, assumed."""
     support_stiffness: Annotated[float, SUPPORT] | None = None
+    """Radial stiffness of the bearing per length of circumference of the ring; rigid unless given."""
 
 
 class Yielding(Table):
@@ -184,21 +219,37 @@ class Yielding(Table):
     """
 
     cup_bottom: Literal["disc", "rigid"] = "disc"
+    """How the bottom of the cup yields: as a disc in torsion, or not at all."""
     cup_bottom_stiffness: Annotated[float, TWIST] | None = None
+    """Torsional stiffness of the bottom of the cup, in place of its model."""
     bottom_thickness: Annotated[float, THICKNESS] | None = None
+    """Thickness of the bottom of the cup; that of the rim unless given."""
     flange_diameter: Annotated[float, BORE] | None = None
+    """Diameter at which the bottom of the cup begins; 0.5 pitch diameters unless given."""
     flange: Literal["bolts", "rigid"] = "bolts"
+    """How the flange joint yields: by the shear of its bolts, or not at all."""
     flange_stiffness: Annotated[float, TWIST] | None = None
+    """Torsional stiffness of the flange joint, in place of its model."""
     bolts: Annotated[float, SEVERAL] | None = None
+    """Number of bolts of the flange; 8 unless given."""
     bolt_diameter: Annotated[float, BORE] | None = None
+    """Diameter of a bolt; 0.06 pitch diameters unless given."""
     bolt_circle: Annotated[float, BORE] | None = None
+    """Diameter of the circle of bolts; 0.4 pitch diameters unless given."""
     wave_generator: Literal["shaft", "rigid"] = "shaft"
+    """How the wave generator yields: by the torsion of its shaft, or not at all."""
     wave_generator_stiffness: Annotated[float, TWIST] | None = None
+    """Torsional stiffness of the wave generator's shaft, in place of its model."""
     shaft_diameter: Annotated[float, BORE] | None = None
+    """Diameter of that shaft; 0.17 pitch diameters unless given."""
     shaft_length: Annotated[float, BORE] | None = None
+    """Length of that shaft up to the input; 0.4 pitch diameters unless given."""
     circular_spline: Literal["ring", "rigid"] = "ring"
+    """How the circular spline yields: as a ring under its teeth, or not at all."""
     circular_spline_stiffness: Annotated[float, TWIST] | None = None
+    """Torsional stiffness of the circular spline, in place of its model."""
     outside_diameter: Annotated[float, BORE] | None = None
+    """Outer diameter of the circular spline; 1.35 pitch diameters unless given."""
 
     @model_validator(mode="after")
     def _one_each(self) -> "Yielding":
@@ -233,18 +284,31 @@ class LoadLimits(Table):
     """
 
     bending_concentration: Annotated[float, CONCENTRATION] = 1.0
+    """Stress concentration of bending over that of a smooth ring."""
     shear_concentration: Annotated[float, CONCENTRATION] = 1.0
+    """Stress concentration of shear over that of a smooth tube."""
     torque: Literal["steady", "reversing"] = "steady"
+    """Whether the torque is steady, or reverses at its full height so that its shear alternates."""
     endurance_limit: Annotated[float, STRENGTH] | None = None
+    """Endurance limit of the finished flexspline under fully reversed bending; none unless given."""
     tensile_strength: Annotated[float, STRENGTH] | None = None
+    """Tensile strength of the flexspline; needed with the endurance limit."""
     ratcheting_torque: Annotated[float, LIMIT] | None = None
+    """Torque at which teeth ratchet, as the maker has it; no margin unless given."""
     buckling_torque: Annotated[float, LIMIT] | None = None
+    """Torque at which the flexspline buckles, as the maker has it; no margin unless given."""
     catalogue_diameter: Annotated[float, BORE] | None = None
+    """Pitch diameter of the drive to which both torques belong; that of this one unless given."""
     rated_torque: Annotated[float, LIMIT] | None = None
+    """Rated torque of the bearing's life; needed with rated_life."""
     rated_speed: Annotated[float, TURNING] | None = None
+    """Rated speed of the bearing's life; needed with rated_life."""
     rated_life: Annotated[float, LIFE] | None = None
+    """Life of the wave generator's bearing at rated torque and speed; no life unless given."""
     average_torque: Annotated[float, LIMIT] | None = None
+    """Cubic mean torque on the flexspline; that of the operating point unless given."""
     average_speed: Annotated[float, TURNING] | None = None
+    """Mean speed of the wave generator; that of the operating point unless given."""
 
     @model_validator(mode="after")
     def _together(self) -> "LoadLimits":
@@ -272,7 +336,9 @@ class SplineDeviations(Table):
     """
 
     flexspline: WavesAround = ()
+    """Waves around the flexspline, each with order, amplitude and phase; none unless given."""
     circular_spline: WavesAround = ()
+    """Waves around the circular spline, each with order, amplitude, phase; none unless given."""
 
     @property
     def each(self) -> dict[str, tuple[Deviation, ...]]:
@@ -309,26 +375,47 @@ class StrainWaveGears(GearsTable):
     }
 
     family: Literal["strain_wave"] = "strain_wave"
+    """Family of these gears: a strain wave gear with two lobes."""
     teeth: Annotated[tuple[float, float], Pair(SPLINE_TEETH)]
+    """Numbers of teeth z1, z2 of flexspline and circular spline; their difference is even."""
     module: Annotated[float, MODULE]
+    """Module m."""
     face_width: Annotated[float, WIDTH]
+    """Face width of the teeth b."""
     fixed: Literal["wave generator", "flexspline", "circular spline"] = "circular spline"
+    """Member that does not turn."""
     clearance: Annotated[float, BOTTOM] = 0.25
+    """From the circular spline's tips to the flexspline's roots on the long axis, in modules."""
     disengagement: Annotated[float, LEAVING] = 50 * pi / 180
+    """Angle from the long axis at which teeth leave their spaces at the latest."""
     tip_rounding: Annotated[float, ROUNDING] = 0.1
+    """Radius of the edges of all tips, in modules."""
     tip_relief: Annotated[float, RELIEF] = 0.005
+    """Relief of the tips of both splines where their rounding begins, in modules."""
     relief_length: Annotated[float, RELIEF_LENGTH] = 0.1
+    """Length of this relief along the flank, in modules."""
     bottom_clearance: Annotated[float, BOTTOM] = 0.15
+    """From the flexspline's tips to the bottom of the spaces on the long axis, in modules."""
     edges: Literal["clear", "carry"] = "clear"
+    """Whether the rounded edges of the flexspline's tips may carry."""
     backlash: Annotated[float, PLAY] = 0.0
+    """Circumferential play beyond the groove that just lets the teeth through."""
     tooth: Tooth = DoubleArcTooth(set="liu")
+    """Tooth of the flexspline; the double-arc tooth liu unless given."""
     wave_generator: WaveGenerator = WaveGenerator()
+    """How the wave generator bends the flexspline; a cosine with deflection 1 unless given."""
     flexspline: Flexspline = Flexspline()
+    """Rim and cup of the flexspline."""
     yielding: Yielding | None = None
+    """What yields behind teeth, rim and wall of the cup; nothing unless given."""
     slopes: tuple[Annotated[float, SLOPE], Annotated[float, SLOPE]] | None = None
+    """Torques T1, T2 at which the slopes K1, K2 end; 20 and 70 % of the operating torque unless given."""
     circular_spline: CircularSpline = ConjugateGroove()
+    """Flanks of the circular spline; those that the flexspline's teeth sweep unless given."""
     deviations: SplineDeviations = SplineDeviations()
+    """Deviations of the flanks around both splines, for the kinematic error; none unless given."""
     limits: LoadLimits = LoadLimits()
+    """What flexspline and bearing bear, for load limits."""
 
     @property
     def tooth_numbers(self) -> tuple[float, float]:

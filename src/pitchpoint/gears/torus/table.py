@@ -47,22 +47,39 @@ class TorusGears(GearsTable):
     film_thickness: ClassVar[str] = "hamrock_dowson_1977"
 
     family: Literal["torus"] = "torus"
+    """Family of these gears: a torus-involute pair."""
     teeth: Annotated[tuple[float, float], Pair(TEETH)]
+    """Numbers of teeth z1, z2."""
     module: Annotated[float, MODULE]
+    """Module m."""
     face_width: Annotated[tuple[float, float], Pair(WIDTH)]
+    """Face widths b1, b2."""
     torus_radius: Annotated[tuple[float, float], Pair(RADIUS)]
+    """Radius of the arc that each reference surface is in the axial section."""
     torus_offset: Annotated[tuple[float, float], Pair(OFFSET)] | None = None
+    """From each axis to the centre of its arc; by profile shift and torus radius unless given."""
     pressure_angle: Annotated[float, ANGLE] = pi / 9
+    """Pressure angle α of the basic rack."""
     profile_shift: Annotated[tuple[float, float], Pair(SHIFT)] | None = None
+    """Profile shift coefficients in mid-face; by the torus offset, without it 0, unless given."""
     addendum: Annotated[tuple[float, float], Pair(RACK)] = (1.0, 1.0)
+    """Addendum of both basic racks, in modules."""
     dedendum: Annotated[tuple[float, float], Pair(RACK)] | None = None
+    """Dedendum of both basic racks, in modules; addendum + 0.25 unless given."""
     fillet_radius: Annotated[tuple[float, float], Pair(FILLET)] | None = None
+    """Fillet radius ρ_fP of both basic racks in modules; 0.38 if it fits, unless given."""
     centre_distance: Annotated[float, DISTANCE] | None = None
+    """Centre distance a; that without backlash unless given."""
     bore_diameter: Annotated[tuple[float, float], Pair(BORE)] | None = None
+    """Bore diameters; 0.3 root diameters unless given."""
     flank: Literal["left", "right"] = "left"
+    """Flanks that touch, as seen with the tooth's tip up."""
     axial_offset: Annotated[float, SLIDE] = 0.0
+    """Middle plane of gear 2 from that of gear 1, along the axis z."""
     inclination: Annotated[float, INCLINATION] = 0.0
+    """Tilt of the axes along the line of action; positive parts flanks towards positive z."""
     deviations: PairDeviations | None = None
+    """Deviations from tooth to tooth, which make the kinematic error; none unless given."""
 
     @property
     def opposed(self) -> "TorusGears":

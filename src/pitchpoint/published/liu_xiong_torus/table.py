@@ -29,37 +29,36 @@ Springs = Annotated[
 
 
 class TorusFormulas(Table):
-    """Inputs of the motion in six coordinates, eqs. 1 to 20.
-
-    Attributes:
-        form: "motion".
-        bearing_stiffness, bearing_damping: K_B and damping ratio of each gear on both ways.
-        mesh_damping: damping ratio xi_m of eq. 9.
-        error: amplitude e_s of the static transmission error.
-        mesh_cycles: from rest on, over which the tables take means and extremes.
-        radius_factor: c of R' = c rho_1, the effective radius of the torus pair.
-        roughness: composite Rq S of eq. 22.
-        torus_roll, torus_stiffness: of a pair of teeth against the roll angle of the pinion.
-        standard_roll, standard_stiffness: the same for the standard pair, at fewer places.
-        standard_scale: by which the latter is multiplied.
-        steady_pinion: asks for the motion in steady state by the corrected equations as well, of a pinion
-            that a constant torque drives, or of one whose speed is held.
-    """
+    """Inputs of the motion in six coordinates, eqs. 1 to 20."""
 
     form: Literal["motion"] = "motion"
+    """Equations that take these inputs: the motion of a torus pair by Liu and Xiong."""
     bearing_stiffness: Annotated[float, STIFFNESS]
+    """Bearing stiffness K_B of each gear on both ways."""
     bearing_damping: Annotated[float, RATIO]
+    """Damping ratio of the bearings of each gear on both ways."""
     mesh_damping: Annotated[float, RATIO]
+    """Damping ratio ξ_m of the mesh, eq. 9."""
     error: Annotated[float, AMPLITUDE]
+    """Amplitude e_s of the static transmission error."""
     mesh_cycles: Annotated[float, CYCLES]
+    """Mesh cycles from rest on, over which the tables take means and extremes."""
     radius_factor: Annotated[float, FACTOR]
+    """Factor c of R' = c ρ_1, the effective radius of the torus pair."""
     roughness: Annotated[float, ROUGHNESS]
+    """Composite Rq S of eq. 22."""
     torus_roll: Rolls
+    """Roll angles of the pinion at which the stiffness of the torus pair is given."""
     torus_stiffness: Springs
+    """Stiffness of a pair of teeth of the torus pair at these roll angles."""
     standard_roll: Rolls
+    """Roll angles of the pinion at which the stiffness of the standard pair is given."""
     standard_stiffness: Springs
+    """Stiffness of a pair of teeth of the standard pair at these roll angles."""
     standard_scale: Annotated[float, FACTOR]
+    """Factor on the stiffness of the standard pair."""
     steady_pinion: Literal["driven", "held"] | None = None
+    """Asks for steady motion by the corrected equations, of a pinion driven or held at speed."""
 
     @model_validator(mode="after")
     def _paired(self) -> "TorusFormulas":

@@ -22,26 +22,24 @@ _MOST = 100
 
 
 class ZoneFilms(Table):
-    """Contacts of one tooth at points A, at its root, and B, at its tip, eqs. 7 to 16.
-
-    Attributes:
-        form: "films".
-        load: of the tooth at both points.
-        radius: relative radius of curvature R at A and B.
-        entrainment: mean surface speed at A and B at the speed of the operating point.
-        speeds: of the wave generator at which films are solved, rising.
-        eta_beta_sigma, sigma_over_beta: of the asperities.
-        nodes: of the grid along the motion; across the face there is one cell less.
-    """
+    """Contacts of one tooth at points A, at its root, and B, at its tip, eqs. 7 to 16."""
 
     form: Literal["films"] = "films"
+    """Equations that take these inputs: the films of the meshing zone by Xu et al."""
     load: Annotated[float, FORCE]
+    """Load of the tooth at both points."""
     radius: tuple[Annotated[float, RADIUS], Annotated[float, RADIUS]]
+    """Relative radius of curvature R at the points A and B."""
     entrainment: tuple[Annotated[float, SPEED], Annotated[float, SPEED]]
+    """Mean surface speed at A and B at the speed of the operating point."""
     speeds: Annotated[tuple[Annotated[float, TURNS], ...], Field(min_length=2, max_length=_MOST)]
+    """Speeds of the wave generator at which films are solved, rising."""
     eta_beta_sigma: Annotated[float, FACTOR]
+    """Summits per area times their radius times Rq."""
     sigma_over_beta: Annotated[float, FACTOR]
+    """Rq over the radius of summits."""
     nodes: Annotated[float, NODES]
+    """Nodes of the grid along the motion: 33, 65, 129 or 257; across the face one cell less."""
 
     @model_validator(mode="after")
     def _rising(self) -> "ZoneFilms":

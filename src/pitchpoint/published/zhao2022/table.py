@@ -24,53 +24,48 @@ RATE = Quantity("specific wear rate", 0.0, 1.0, "1/Pa", open_low=True)
 
 
 class FlankWear(Table):
-    """Wear of the flexspline's flank by the discrete model of eqs. 11 to 33.
-
-    Attributes:
-        form: "wear".
-        coefficient: K psi L_a / 100 of eq. 11, held through all cycles.
-        hardness: H.
-        cycles: after which depths are told.
-        points: of the flank, one pitch step apart in the paper.
-        flank_length: over which the points lie, from the tip [modules].
-        severe_depth: at which wear is severe unless the tip land is gone before [modules].
-        area: that carries the force of a point, its strip or all from the tip to it, eq. 26.
-        offset: of the mesh by the oval ring, eq. 28: the mean of both sides, or none.
-        asperity_share: L_a / 100.
-        adsorption_heat: E_a of eq. 10.
-        molecule: diameter alpha_x of an adsorbed molecule.
-        vibration_period: t_0 of it.
-        friction: coefficient of the heat that warms the contacts, T_s of eq. 10.
-        conductivity, specific_heat: of the flank that the heat flows into.
-    """
+    """Wear of the flexspline's flank by the discrete model of eqs. 11 to 33."""
 
     form: Literal["wear"] = "wear"
+    """Equations that take these inputs: the discrete model of flank wear by Zhao et al."""
     coefficient: Annotated[float, COEFFICIENT]
+    """K ψ L_a / 100 of eq. 11, held through all cycles."""
     hardness: Annotated[float, HARDNESS]
+    """Hardness H of the flank."""
     cycles: Annotated[float, CYCLES]
+    """Cycles after which depths are told."""
     points: Annotated[float, POINTS]
+    """Points of the flank, one pitch step apart in the paper."""
     flank_length: Annotated[float, LENGTH]
+    """Length of the flank over which the points lie, from the tip, in modules."""
     severe_depth: Annotated[float, DEPTH]
+    """Depth at which wear is severe unless the tip land is gone before, in modules."""
     area: Literal["strip", "cumulative"] = "strip"
+    """Area that carries the force of a point: its strip, or all from the tip to it, eq. 26."""
     offset: Literal["mean", "none"] = "mean"
+    """Offset of the mesh by the oval ring, eq. 28: the mean of both sides, or none."""
     asperity_share: Annotated[float, SHARE]
+    """Part of the load on asperities, L_a / 100."""
     adsorption_heat: Annotated[float, HEAT]
+    """Heat of adsorption E_a of eq. 10."""
     molecule: Annotated[float, SIZE]
+    """Diameter α_x of an adsorbed molecule."""
     vibration_period: Annotated[float, PERIOD]
+    """Period t_0 of vibration of an adsorbed molecule."""
     friction: Annotated[float, FRICTION]
+    """Friction coefficient of the heat that warms the contacts, T_s of eq. 10."""
     conductivity: Annotated[float, CONDUCTIVITY]
+    """Thermal conductivity of the flank that the heat flows into."""
     specific_heat: Annotated[float, SPECIFIC_HEAT]
+    """Specific heat of the flank that the heat flows into."""
 
 
 class ConjugateWear(Table):
-    """Wear of the flexspline's flank by the kinematics of its envelope, with loads by the closed cosine.
-
-    Attributes:
-        form: "conjugate wear".
-        rate: specific wear rate k.
-        cycles: after which depths are told.
-    """
+    """Wear of the flexspline's flank by the kinematics of its envelope, with loads by the closed cosine."""
 
     form: Literal["conjugate wear"] = "conjugate wear"
+    """Equations that take these inputs: wear by the kinematics of the envelope."""
     rate: Annotated[float, RATE]
+    """Specific wear rate k."""
     cycles: Annotated[float, CYCLES]
+    """Cycles after which depths are told."""
