@@ -1,7 +1,7 @@
 """Pages of the reference that come from the schema and the registries: `python docs/generate.py FOLDER`."""
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -10,7 +10,9 @@ from pydantic.fields import FieldInfo
 
 import pitchpoint
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.schema import Case, marks, quantity_of, usual_words
+from pitchpoint.cases.document import MARKS, STATUSES
+from pitchpoint.cases.loss_sets import SET, SET_TOLD
+from pitchpoint.cases.schema import Case, DriveCase, StageTable, quantity_of, usual_words
 from pitchpoint.input.tables import alternatives
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
@@ -28,10 +30,34 @@ def keys_page() -> str:
     )
     parts = [_page_head("Keys of a case file", intro)]
     for path, model in _tables("", Case):
-        parts.append(f"## {_titled(path)}\n\n{_words(model.__doc__)}\n")
-        rows = [_key_row(name, info) for name, info in model.model_fields.items()]
-        parts.append(_table(("key", "value", "allowed", "unless given"), rows))
+        if path.startswith("losses"):
+            parts += _section("`[losses]`", LOSSES, [(f"`{SET}`", SET_TOLD, "a name", "", "")])
+        parts += _of_table(_titled(path), model)
+    parts += _of_table("A file of several stages", DriveCase)
+    parts += _of_table("`[[stages]]`", StageTable)
+    rows = [("`value`", "The value itself.", "as without marks", "", "needed")]
+    kinds = {"status": ", ".join(f'`"{one}"`' for one in STATUSES)}
+    rows += [(f"`{key}`", told, kinds.get(key, "text"), "", "") for key, told in MARKS.items()]
+    parts += _section("A value with marks", OF_MARKS, rows)
     return "\n".join(parts)
+
+
+LOSSES = "Losses beside the teeth, each a table under a name of one's own, or those of a named set."
+OF_MARKS = (
+    "In place of any value may stand a table with the value and how it was come by, "
+    '`module = { value = "2 mm", status = "printed", where = "Table 1" }`. Tables under '
+    "`[variants.NAME]` say what differs in a variant, by the same keys."
+)
+
+
+def _of_table(title: str, model: type[BaseModel]) -> list[str]:
+    rows = [_key_row(name, info) for name, info in model.model_fields.items()]
+    return _section(title, _words(model.__doc__), rows)
+
+
+def _section(title: str, words: str, rows: Sequence[Row]) -> list[str]:
+    head = ("key", "what it is", "value", "allowed", "unless given")
+    return [f"## {title}\n\n{words}\n", _table(head, rows)]
 
 
 def variables_page() -> str:
@@ -117,7 +143,7 @@ def _titled(path: str) -> str:
 def _key_row(name: str, info: FieldInfo) -> Row:
     quantity = quantity_of(info)
     allowed = quantity.allowed.removeprefix("allowed is ") if quantity else ""
-    return f"`{name}`", _kind(info), allowed, _default(info)
+    return f"`{name}`", info.description or "", _kind(info), allowed, _default(info)
 
 
 def _kind(info: FieldInfo) -> str:
@@ -125,28 +151,32 @@ def _kind(info: FieldInfo) -> str:
     quantity = quantity_of(info)
     if quantity is not None:
         return "number" if quantity.kind == "dimensionless" else quantity.kind
+    every = [*_inside(info.annotation)]
+    kinds = {dict: "table", tuple: "list", bool: "`true` or `false`", Any: "any value"}
+    literals = [f'`"{one}"`' for one in every if isinstance(one, str)]
+    several = next((told for kind, told in kinds.items() if kind in every), "text")
+    by_name = any(hasattr(getattr(one, "func", None), "known") for one in (*info.metadata, *every))
     if alternatives(info.annotation):
-        return "table, or a name" if any(marks(info.annotation)) else "table"
-    names = [repr(one) for one in _literals(info.annotation)]
-    return ", ".join(f'`"{name[1:-1]}"`' for name in names) or "text, a name or a list"
+        table = "list of tables" if tuple in every else "table"
+        return f"{table}, or a name" if by_name else table
+    return "a name" if by_name else ", ".join(literals) or several
 
 
-def _literals(annotation: Any) -> Iterator[str]:
+def _inside(annotation: Any) -> Iterator[Any]:
+    """Types that an annotation is made of, what they are made of, and what is said of them."""
+    yield get_origin(annotation) or annotation
     for one in get_args(annotation):
-        if isinstance(one, str):
-            yield one
-        else:
-            yield from _literals(one)
+        yield from _inside(one)
 
 
 def _default(info: FieldInfo) -> str:
     if info.is_required():
         return "needed"
     value = info.default if info.default_factory is None else None
-    if value is None or isinstance(value, Mapping | BaseModel) or value == () or value == "":
-        return ""
     usual = usual_words(info).removeprefix("default ")
-    return usual or f"`{value}`"
+    if usual or not isinstance(value, str | bool) or value == "":
+        return usual
+    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
 
 
 def _page_head(title: str, intro: str) -> str:

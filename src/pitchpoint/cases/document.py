@@ -14,7 +14,9 @@ from pitchpoint.input.quantities import shown, text
 from pitchpoint.registry import nearest
 
 __all__ = [
+    "MARKS",
     "STAGES",
+    "STATUSES",
     "Document",
     "Provenance",
     "check_name",
@@ -55,7 +57,14 @@ STATUSES = (
 )
 
 Tree = dict[str, Any]
-_MARKS = {"status", "where", "note"}
+
+MARKS = {
+    "status": "How the value was come by; given unless said.",
+    "where": "Place of the value in its source.",
+    "note": "Remark on the value.",
+}
+"""What may stand beside a value, `{ value = ..., status = ... }`, and what it says."""
+
 _BETWEEN_KEYS = re.compile(r"[=,{}\[\]\n]")
 _MANY_DOTS = 500  # more than any remark has
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,60}", re.ASCII)
@@ -339,7 +348,7 @@ def strip(value: Any, provenance: dict[str, Provenance], *, name: str = "", key:
 
 def _marked(table: Tree) -> bool:
     """True for a value with its marks, false for a table of values."""
-    return "value" in table and set(table) <= _MARKS | {"value"}
+    return "value" in table and set(table) <= {*MARKS, "value"}
 
 
 def leaves(tree: Tree, prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -9,9 +9,9 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
-from pitchpoint.cases.document import STAGES, STATUSES
-from pitchpoint.cases.loss_sets import SET
-from pitchpoint.cases.schema import Case, DriveCase, usual_words
+from pitchpoint.cases.document import MARKS, STAGES, STATUSES
+from pitchpoint.cases.loss_sets import SET, SET_TOLD
+from pitchpoint.cases.schema import Case, DriveCase, measure_of, usual_words
 from pitchpoint.input.tables import alternatives
 
 __all__ = ["case_schema"]
@@ -83,9 +83,8 @@ def _mark() -> dict[str, Any]:
         "description": "a value with how it was come by",
         "properties": {
             "value": {},
-            "status": {"enum": list(STATUSES)},
-            "where": {"type": "string", "description": "place in the source"},
-            "note": {"type": "string", "description": "remark"},
+            "status": {"enum": list(STATUSES), "description": MARKS["status"]},
+            **{key: {"type": "string", "description": MARKS[key]} for key in ("where", "note")},
         },
         "required": ["value"],
         "additionalProperties": False,
@@ -99,21 +98,27 @@ _OF_ONE_OR_SEVERAL = ("friction", "at")
 def _loosen(table: dict[str, Any], fields: Mapping[str, FieldInfo]) -> None:
     """Takes what the reader takes: marks, one in place of a list, stages in a list, sets of losses."""
     for key, value in table.get("properties", {}).items():
-        words = _words(value, fields.get(key))
+        words = _words(value, fields[key])
         options = [value, *_other_ways(key, value), {"$ref": f"#/{_DEFS}/mark"}]
         table["properties"][key] = {**words, "anyOf": options}
 
 
-def _words(value: dict[str, Any], info: FieldInfo | None) -> dict[str, Any]:
-    """What is told of a key, taken out of the schema of its values; a usual value with its unit."""
-    told = (name for name in ("description", "default") if name in value)
-    words: dict[str, Any] = {name: value.pop(name) for name in told}
-    usual = "" if info is None else usual_words(info)
-    if usual or not isinstance(words.get("default", ""), str | bool):
-        words.pop("default", None)
-    if usual:
-        words["description"] = "; ".join(filter(None, [words.get("description", ""), usual]))
-    return words
+def _words(value: dict[str, Any], info: FieldInfo) -> dict[str, Any]:
+    """What is told of a key in place of what is told of its values; a usual value with its unit."""
+    value.pop("description", None)
+    default, usual = value.pop("default", None), usual_words(info)
+    kept = isinstance(default, str | bool) and not usual
+    told = " ".join(filter(None, [info.description, _measured(value, info)]))
+    return {"description": told, **({"default": default} if kept else {})}
+
+
+def _measured(value: dict[str, Any], info: FieldInfo) -> str:
+    """Kind, range and units of the values of a key, and the usual one."""
+    measure = measure_of(info)
+    if measure is None:
+        return ""
+    told = f"each {measure.told}" if value.get("type") == "array" else measure.told
+    return "; ".join(filter(None, [told[0].upper() + told[1:], usual_words(info)]))
 
 
 def _other_ways(key: str, value: dict[str, Any]) -> list[dict[str, Any]]:
@@ -127,7 +132,7 @@ def _other_ways(key: str, value: dict[str, Any]) -> list[dict[str, Any]]:
         return [{"type": "array", "items": copy.deepcopy(value["additionalProperties"])}]
     if key == "losses":
         named = [{"type": "string"}, {"$ref": f"#/{_DEFS}/mark"}]
-        value["properties"] = {SET: {"description": "name of a set of losses", "anyOf": named}}
+        value["properties"] = {SET: {"description": SET_TOLD, "anyOf": named}}
     return []
 
 

@@ -13,10 +13,24 @@ from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.quantities import SIValue, named
 from pitchpoint.registry import Registry
 
-__all__ = ["SET", "LossSet", "expanded", "loss_sets", "marks_of", "named_set", "set_sources"]
+__all__ = [
+    "SET",
+    "SET_TOLD",
+    "LossSet",
+    "expanded",
+    "loss_sets",
+    "marks_of",
+    "named_set",
+    "set_sources",
+]
 
 SET = "set"
 """Key of [losses] that names a set, in place of a table of that name."""
+
+SET_TOLD = (
+    "Named set of losses, scaled to the gears; what is given beside it stands before its own."
+)
+"""What it is, as the tables say it of their keys."""
 
 
 @dataclass(frozen=True)

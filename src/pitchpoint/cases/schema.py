@@ -39,6 +39,7 @@ __all__ = [
     "in_form",
     "keys",
     "marks",
+    "measure_of",
     "quantity_at",
     "quantity_of",
     "usual_at",
@@ -408,7 +409,7 @@ class Surface(Table):
     rq: Annotated[tuple[float, float], Pair(ROUGHNESS)] | None = None
     """Root mean square roughness Rq of the flanks; by ra, for Gaussian heights, unless given."""
     composite_rq: Annotated[float, ROUGHNESS] | None = None
-    """Composite Rq of both flanks, sqrt(Rq1² + Rq2²), in place of ra and rq."""
+    """Composite Rq of both flanks, sqrt(Rq1^2 + Rq2^2), in place of ra and rq."""
 
     @model_validator(mode="after")
     def _enough(self) -> "Surface":
@@ -511,7 +512,7 @@ class Choices(Table):
     friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(_choices)] = (
         FrictionChoice(name="iso_tr_14179_2"),
     )
-    """Friction laws, one or a list, the first one leading; that usual for the family unless given."""
+    """Friction laws, a name or a list, the first one leading; that usual for the family unless given."""
     load_sharing: Annotated[str, BeforeValidator(named(_sharings, "load sharing model"))] = "equal"
     """How pairs share the load; from_stiffness where the family or modified flanks ask for it."""
     rolling_resistance: Annotated[str, BeforeValidator(named(_rollings, "rolling resistance"))] = (
@@ -609,7 +610,7 @@ class Loss(Table):
     breakaway_dry: Annotated[float, OVER_SQUARE] | None = None
     """Dry part of that model at a preload of 1, over the square of mean_diameter."""
     breakaway_viscous: Annotated[float, OVER_SQUARE] | None = None
-    """Viscous part of that model at 100 mm²/s, over the square of mean_diameter."""
+    """Viscous part of that model at 100 mm2/s, over the square of mean_diameter."""
     breakaway_preload: Annotated[float, PRELOAD_RATIO] | None = None
     """Preload over that to which breakaway_dry belongs; 1 unless given."""
 
@@ -892,7 +893,7 @@ class FilmTable(Table):
     """
 
     solver: Literal["line", "finite_line", "elliptic"]
-    """Lines without ends, lines of the length that they have, or ellipses."""
+    """Contacts that are solved: lines without ends, lines as long as they are, or ellipses."""
     phases: Annotated[float, FILM_PHASES] = 24.0
     """Least number of states over a mesh cycle."""
     in_series: Annotated[bool, BeforeValidator(_flag)] = False
@@ -1164,7 +1165,7 @@ class Target(Table):
     variable: Annotated[str, BeforeValidator(named(_variables, "quantity"))] = ""
     """Result variable that is read."""
     at: Annotated[tuple[Any, ...], BeforeValidator(_places)] = ()
-    """Places on the axis that are read; all that were computed unless given."""
+    """Places on the axis that are read, one or a list; all that were computed unless given."""
     reduce: Annotated[str, BeforeValidator(named(_reductions, "reduction"))] = "value"
     """How one number is made of the values at these places."""
     law: tuple[Annotated[float, POSITION], ...] = (0.0,)
@@ -1361,7 +1362,7 @@ class StrengthTable(Table):
     sigma_flim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
     """Nominal stress number for bending σ_Flim; that of the materials unless given."""
     treatment: Annotated[tuple[str, str], BeforeValidator(_of_both)] | None = None
-    """Heat treatment of both gears; that of the materials unless given."""
+    """Heat treatment, one name or a list of two; that of the materials unless given."""
     work_hardening: Annotated[tuple[float, float], Pair(HARDENING)] | None = None
     """Work hardening factor Z_W; 1 unless given."""
     mean_stress_factor: Annotated[tuple[float, float], Pair(REVERSED)] | None = None
@@ -1369,7 +1370,7 @@ class StrengthTable(Table):
     flank_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
     """Mean peak-to-valley roughness Rz of the flanks; 6 Ra unless given."""
     root_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None
-    """Mean peak-to-valley roughness Rz of the roots; 10 µm unless given."""
+    """Mean peak-to-valley roughness Rz of the roots; 10 um unless given."""
 
 
 Studies = Annotated[dict[str, Study], BeforeValidator(_at_most(200))]
@@ -1397,7 +1398,7 @@ class Case(Table):
     operation: Operating
     """Operating point: load, speed, temperature, and what drives."""
     models: Choices = Choices()
-    """Laws that are taken."""
+    """Laws by which the case is computed, by name."""
     housing: Housing = Housing()
     """How heat leaves the housing, for the temperature of plastic teeth."""
     losses: Losses = Field(default_factory=dict)
@@ -1411,7 +1412,7 @@ class Case(Table):
     worn: WornTable | None = None
     """Flanks worn by an earlier result; as new unless given."""
     strength: StrengthTable | None = None
-    """Load factors and limits of the rating by ISO 6336; those assumed unless given."""
+    """Load factors and limits for the strength by ISO 6336; what is left out is assumed, and told."""
     studies: Studies = Field(default_factory=dict)
     """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
@@ -1548,13 +1549,13 @@ class DriveCase(Table):
     operation: Operating
     """Operating point: load of the output, speed of the input, temperature."""
     models: Choices = Choices()
-    """Laws that are taken."""
+    """Laws by which the case is computed, by name."""
     housing: Housing = Housing()
     """How heat leaves the housing, for the temperature of plastic teeth."""
     losses: DriveLosses = Field(default_factory=dict)
     """Losses between shafts, or of shafts against the housing; none unless given."""
     strength: StrengthTable | None = None
-    """Load factors and limits of the rating by ISO 6336; those assumed unless given."""
+    """Load factors and limits for the strength by ISO 6336; what is left out is assumed, and told."""
     studies: Studies = Field(default_factory=dict)
     """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
@@ -1941,12 +1942,14 @@ def _named_tables(info: FieldInfo) -> bool:
 
 def quantity_of(info: FieldInfo) -> Quantity | None:
     """Kind and range of the values of a field, None where they are no quantities."""
-    for mark in (*info.metadata, *marks(info.annotation)):
-        if isinstance(mark, Pair):
-            return mark.each
-        if isinstance(mark, Quantity):
-            return mark
-    return None
+    found = measure_of(info)
+    return found.each if isinstance(found, Pair) else found
+
+
+def measure_of(info: FieldInfo) -> Quantity | Pair | None:
+    """The same, of both gears together where a field holds a value for each."""
+    every = (*info.metadata, *marks(info.annotation))
+    return next((one for one in every if isinstance(one, Quantity | Pair)), None)
 
 
 def usual_words(info: FieldInfo) -> str:

@@ -212,7 +212,7 @@ def _read(text: str) -> str | float:
 
 
 def _words(info: FieldInfo, value: Any) -> str:
-    """What a key takes, as a remark behind it."""
+    """What a key is, and what it takes, as a remark behind it."""
     quantity, names = quantity_of(info), _names(info)
     if quantity is not None:
         told = quantity.allowed
@@ -222,7 +222,8 @@ def _words(info: FieldInfo, value: Any) -> str:
         told = f"one of {', '.join(map(str, _options(info)))}" if len(_options(info)) > 1 else ""
     else:
         told = ""
-    return f"  # {told}" if told else ""
+    words = "; ".join(filter(None, [(info.description or "").rstrip("."), told]))
+    return f"  # {words}" if words else ""
 
 
 def _toml(value: Any) -> str:

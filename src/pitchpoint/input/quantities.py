@@ -60,13 +60,10 @@ class Quantity:
     @property
     def json_schema(self) -> JsonSchemaValue:
         """Numbers in their range, or text that begins with one; ranges of those with units in words."""
-        noun, written = units.noun(self.kind), units.units_of(self.kind)
-        told = f"{noun}; {self.allowed}"
         text = {"type": "string", "pattern": r"^\s*[+-]?\.?\d"}
         if not units.plain(self.kind):
-            units_told = f"; units: {', '.join(written)}"
             example = units.example(self.kind).strip('"')
-            return {**text, "description": told + units_told, "examples": [example]}
+            return {**text, "description": self.told, "examples": [example]}
         number: JsonSchemaValue = {"type": "number"}
         if math.isfinite(self.low):
             number["exclusiveMinimum" if self.open_low else "minimum"] = self.low
@@ -74,8 +71,15 @@ class Quantity:
             number["maximum"] = self.high
         if self.whole:
             number["multipleOf"] = 1
-            told = f"a whole number; {self.allowed}"
-        return {"anyOf": [number, text], "description": told}
+        return {"anyOf": [number, text], "description": self.told}
+
+    @property
+    def told(self) -> str:
+        """Kind, range and units in words."""
+        if units.plain(self.kind):
+            noun = "a whole number" if self.whole else units.noun(self.kind)
+            return f"{noun}; {self.allowed}"
+        return f"{units.noun(self.kind)}; {self.allowed}; units: {', '.join(units.units_of(self.kind))}"
 
     def read(self, value: Any) -> float:
         """SI value of text or number; InputError if it is not what is needed."""
@@ -142,8 +146,12 @@ class Pair:
         """What editors know of the values."""
         each = self.each.json_schema
         both = {"type": "array", "items": each, "minItems": 2, "maxItems": 2}
-        told = f"{each['description']}; one value for both gears, or a list of two"
-        return {"anyOf": [each, both], "description": told}
+        return {"anyOf": [each, both], "description": self.told}
+
+    @property
+    def told(self) -> str:
+        """Kind, range and units in words."""
+        return f"{self.each.told}; one value for both gears, or a list of two"
 
     def read(self, value: Any) -> tuple[float, float]:
         """SI values of gear 1 and gear 2."""
