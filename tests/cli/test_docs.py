@@ -17,10 +17,12 @@ from pages import PAGES, ROOT, block, blocks
 from pitchpoint import cli
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.engagement import check_heights
+from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.height_maps import height_maps
-from pitchpoint.cases.schema import Target, keys, validate
+from pitchpoint.cases.schema import Case, DriveCase, Target, keys, validate
 from pitchpoint.cases.variant import Variant
+from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset, save
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run
@@ -119,13 +121,22 @@ def test_the_reference_is_that_of_the_code(tmp_path: Path) -> None:
         assert path.read_text("utf-8") == (ROOT / "docs/reference" / path.name).read_text("utf-8")
 
 
-def test_every_key_and_variable_has_its_line(tmp_path: Path) -> None:
-    known = (ROOT / "docs/reference/keys.md").read_text("utf-8")
-    assert {key.rpartition(".")[2] for key in keys()} <= set(
-        re.findall(r"^\| `(\w+)`", known, re.M)
-    )
-    listed = (ROOT / "docs/reference/variables.md").read_text("utf-8")
-    assert VARIABLES.keys() <= set(re.findall(r"^\| `(\w+)`", listed, re.M))
+def test_every_key_and_variable_has_its_line() -> None:
+    generate = runpy.run_path(str(ROOT / "docs" / "generate.py"))
+    lines = rows(generate["keys_page"]())
+    for table in (Case, DriveCase):
+        assert {key.rpartition(".")[2] for key in keys(table)} <= {line[0] for line in lines}
+    assert all(told.endswith(".") for _, told, *_ in lines)
+    own = [one.variables for one in (*ANALYSES.values(), *PUBLICATIONS.values())]
+    listed = {name: line for name, *line in rows(generate["variables_page"]())}
+    assert {name for each in (VARIABLES, *own) for name in each} == listed.keys()
+    assert all(told and unit and shown for told, _, unit, shown in listed.values())
+
+
+def rows(page: str) -> list[list[str]]:
+    """Cells of the tables of a page, the name of each row without its quotes."""
+    lines = [line for line in page.splitlines() if line.startswith("| `")]
+    return [re.findall(r"\| `?((?:\\.|[^|\\])*?)`? (?=\|)", line) for line in lines]
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -66,6 +66,16 @@ def test_every_key_stands_in_it(family: str) -> None:
         assert key in told or f"[{key}]" in text or f"{name.rpartition('.')[2]} = " in text, key
 
 
+@pytest.mark.parametrize("family", FAMILIES)
+def test_what_a_key_is_stands_behind_it(family: str) -> None:
+    text = template(family)
+    assert re.search(
+        r'^temperature = ".*"  # Temperature of the oil and around the gears; allowed', text, re.M
+    )
+    # Sent to a file where the screen has an old encoding, these would make it no UTF-8.
+    assert not re.search("[\x80-\xff]", text)
+
+
 def test_helical_gears_are_helical() -> None:
     assert tomllib.loads(template("helical"))["gears"]["helix_angle"] == "15 deg"
     assert "helix_angle" not in tomllib.loads(template("spur"))["gears"]

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
+from pydantic import BaseModel
 from sound import PAIR
 
 from pitchpoint import cli
@@ -15,7 +16,9 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.handed_over import as_toml
 from pitchpoint.cases.json_schema import case_schema
 from pitchpoint.cases.library import find, names, path_of
+from pitchpoint.cases.schema import Case, DriveCase
 from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.input.tables import alternatives
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = [*sorted(EXAMPLES.glob("*.toml")), *map(path_of, names()), *map(sample_of, TABLES)]
@@ -77,10 +80,38 @@ def test_variants_say_what_differs(validator: Draft202012Validator) -> None:
     assert complaints(validator, PAIR + '[variants.a.gears]\nmodul = "3 mm"\n')
 
 
+def tables(model: type[BaseModel]) -> dict[str, type[BaseModel]]:
+    """A table of the schema and all below it, by name."""
+    found = {model.__name__: model}
+    for info in model.model_fields.values():
+        for inner in alternatives(info.annotation).values():
+            found |= tables(inner)
+    return found
+
+
+def test_every_key_says_what_it_is_and_editors_show_it(schema: dict[str, Any]) -> None:
+    """In one sentence under it in its table."""
+    known = tables(Case) | tables(DriveCase)
+    assert len(known) > 50
+    for name, model in known.items():
+        for key, info in model.model_fields.items():
+            told = info.description or ""
+            assert told.endswith(".") and told[0].isupper() and len(told) <= 110, (name, key, told)
+            shown = schema["$defs"][name]["properties"][key]["description"]
+            assert shown.startswith(told), (name, key)
+    whole, losses = schema["properties"], schema["$defs"]["Case"]["properties"]["losses"]
+    assert whole["gears"]["description"].startswith("Gears of the mesh; ")
+    assert losses["anyOf"][0]["properties"]["set"]["description"].startswith("Named set of losses")
+
+
 def test_editors_show_units_ranges_and_usual_values(schema: dict[str, Any]) -> None:
     angle = schema["$defs"]["CylindricalGears"]["properties"]["pressure_angle"]
-    assert "an angle; allowed is 5 deg to 45 deg; units: rad, deg" in angle["description"]
+    assert "rack. An angle; allowed is 5 deg to 45 deg; units: rad, deg" in angle["description"]
     assert angle["description"].endswith("default 20 deg")
+    slopes = schema["$defs"]["StrainWaveGears"]["properties"]["slopes"]
+    assert "unless given. Each a torque; allowed is above 0 N m" in slopes["description"]
+    flank = schema["$defs"]["CylindricalGears"]["properties"]["flank"]
+    assert flank["default"] == "left"
     oils = schema["$defs"]["Oil"]["properties"]["name"]["anyOf"][0]
     assert "pao-vg-150" in oils["enum"]
     assert "null" not in json.dumps(schema)
