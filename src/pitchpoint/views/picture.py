@@ -209,6 +209,7 @@ class Picture:
             "where": [_where(body, self.bodies) for body in self.bodies],
             "moves": self._moves(),
             "alike": self._alike(),
+            "helical": self.path.helical,
             "legend": _LEGENDS[all(body.turns for body in self.bodies)],
         }
 
