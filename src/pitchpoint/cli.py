@@ -17,7 +17,7 @@ import typer
 from pitchpoint.errors import InputError, PitchpointError, shorten, visible
 
 if TYPE_CHECKING:
-    from pitchpoint.cases.schema import Study
+    from pitchpoint.cases.schema import Study, Sweep
     from pitchpoint.results.target_rows import Row
     from pitchpoint.runs.run import Outcome, Progress
     from pitchpoint.views.section import Printed
@@ -240,6 +240,51 @@ def run(
     for name, rows in measured.items():
         _verdicts(rows, f"{name}, " if len(measured) > 1 else "")
     _console().print(f"Report: {_plain(str(folder / 'report.html'))}")
+
+
+@app.command()
+def explore(
+    case: CaseName,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Default: results/CASE/explorer.html."),
+    ] = None,
+    variant: Annotated[
+        str | None,
+        typer.Option("--variant", help="The first one by default.", autocompletion=_variants_from),
+    ] = None,
+    set_: Settings = None,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--over",
+            metavar="KEY=START:STOP:COUNT",
+            help="What is on a slider; load, speed and one key of the gears by default.",
+            autocompletion=_keys_from,
+        ),
+    ] = None,
+) -> None:
+    """Write one page that opens offline: the teeth moving, inputs on sliders, figures that follow.
+
+    The page holds figures that were computed beforehand, and interpolates between them.
+    """
+    from pitchpoint.cases.record import default_folder
+    from pitchpoint.results.store import make_folder
+    from pitchpoint.runs.explore import explore as compute
+    from pitchpoint.views.explorer import Reader, write_explorer
+
+    settings, sweeps = _settings(set_ or []), list(_sweeps(over or [], "--over"))
+    path = output or default_folder(case, Path("results"), settings) / "explorer.html"
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise InputError("is no name of a page; give one that ends in .html", file=str(path))
+    read = Reader()
+    with _progress(None) as progress:
+        found = compute(
+            case, sweeps, read=read, variant=variant, settings=settings, progress=progress
+        )
+    make_folder(path.parent)
+    write_explorer(found, read.drawings, path)
+    typer.echo(visible(str(path)))
 
 
 @app.command()
@@ -504,24 +549,31 @@ def _value(text: str) -> Any:
 
 
 def _studies(texts: list[str]) -> dict[str, "Study"]:
-    from pitchpoint.cases.schema import Study, Sweep
+    from pitchpoint.cases.schema import Study
     from pitchpoint.input.quantities import shown
 
     studies: dict[str, Study] = {}
+    for sweep in _sweeps(texts, "--sweep"):
+        name = f"sweep_{sweep.key.replace('.', '_')}"
+        if name in studies:
+            raise InputError(f"{shown(sweep.key)} is swept twice", key="--sweep")
+        studies[name] = Study(title=f"Sweep of {sweep.key}", sweep=sweep)
+    return studies
+
+
+def _sweeps(texts: list[str], option: str) -> "Iterator[Sweep]":
+    from pitchpoint.cases.schema import Sweep
+    from pitchpoint.input.quantities import shown
+
     for text in texts:
         given = _SWEEP.fullmatch(text)
         if given is None:
             raise InputError(
                 f"{shown(text)} is not KEY=START:STOP:COUNT with a count of 1 to 100000",
-                key="--sweep",
+                key=option,
             )
         key, start, stop, count = map(str.strip, given.groups())
-        sweep = Sweep(key=key, start=start, stop=stop, count=float(count))
-        name = f"sweep_{key.replace('.', '_')}"
-        if name in studies:
-            raise InputError(f"{shown(key)} is swept twice", key="--sweep")
-        studies[name] = Study(title=f"Sweep of {key}", sweep=sweep)
-    return studies
+        yield Sweep(key=key, start=start, stop=stop, count=float(count))
 
 
 def _write_report(outcomes: "dict[str, Outcome]", folder: Path, *, designs: bool = False) -> None:

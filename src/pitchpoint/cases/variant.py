@@ -60,13 +60,13 @@ class Variant:
         )
 
     @cached_property
-    def _computed(self) -> "Variant":
-        """The tables that a point is computed from: a sweep reads them for every point."""
+    def computed(self) -> "Variant":
+        """The tables that a point is computed from, without targets and studies: a sweep reads them often."""
         return replace(self, tree=_without(self.tree))
 
     def built(self, changes: Mapping[str, Any]) -> Ready:
         """Case with some values changed."""
-        document = (self._computed if changes else self).document(**changes)
+        document = (self.computed if changes else self).document(**changes)
         return ready(validate(document), document, self.own)
 
 

@@ -60,6 +60,8 @@ class GearsTable(Table):
         meaningless: by key of the models why they say nothing about these gears.
         drivers: members that may drive, the usual one first.
         damping_ratio: of a vibration where none is given.
+        explored: the key by which an explorer changes the gears, inside the table, and how far to either
+            side of its value [SI].
         sources: keys of the bibliography for what is given.
     """
 
@@ -71,6 +73,7 @@ class GearsTable(Table):
     friction: ClassVar[str] = "constant"
     film_thickness: ClassVar[str] = "dowson_higginson_1959"
     damping_ratio: ClassVar[float] = 0.1
+    explored: ClassVar[tuple[str, float] | None] = None
     meaningless: ClassVar[Mapping[str, str]] = {}
     family: str
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import jinja2
     import markupsafe
 
-__all__ = ["render", "write_report"]
+__all__ = ["environment", "packed_plotly", "render", "write_report"]
 
 
 def write_report(
@@ -62,7 +62,7 @@ def render(outcomes: Mapping[str, Outcome], *, designs: bool = False) -> str:
     shown = list(panels(block for one in made for block in one["blocks"]))
     figures = [figure for panel in shown for figure in panel.figures if figure.drawn]
     return (
-        _environment()
+        environment()
         .get_template("report.html.jinja")
         .render(
             title=page.title,
@@ -78,7 +78,7 @@ def render(outcomes: Mapping[str, Outcome], *, designs: bool = False) -> str:
             pictured=next((one for one in page.sections if one.picture), None),
             glimpse=next(iter(figures), None),
             data=Markup(_payload(shown)),
-            plotly=_packed(),
+            plotly=packed_plotly(),
         )
     )
 
@@ -122,11 +122,11 @@ def _absent(page: Page, lacking: Mapping[Section, str | None]) -> list[tuple[lis
 def _drawn(block: Drawn) -> "markupsafe.Markup":
     from markupsafe import Markup
 
-    return Markup(_environment().get_template(f"sections/{block.template}").render(block.values))
+    return Markup(environment().get_template(f"sections/{block.template}").render(block.values))
 
 
 @cache
-def _packed() -> str:
+def packed_plotly() -> str:
     """plotly.js, compressed: it is most of the page."""
     from plotly.offline import get_plotlyjs
 
@@ -134,20 +134,21 @@ def _packed() -> str:
 
 
 @cache
-def _environment() -> "jinja2.Environment":
+def environment() -> "jinja2.Environment":
+    """Templates of pages, with what they ask for."""
     import jinja2
 
-    environment = jinja2.Environment(
+    made = jinja2.Environment(
         loader=jinja2.PackageLoader("pitchpoint.views"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["marked"] = _marked
-    environment.filters["typeset"] = _typeset
-    environment.globals["drawn"] = _drawn
-    return environment
+    made.filters["marked"] = _marked
+    made.filters["typeset"] = _typeset
+    made.globals["drawn"] = _drawn
+    return made
 
 
 def _typeset(words: str) -> "markupsafe.Markup":

@@ -14,6 +14,7 @@ __all__ = [
     "Block",
     "Drawn",
     "Heading",
+    "Moving",
     "Page",
     "Paragraph",
     "Printed",
@@ -83,6 +84,26 @@ class Variants:
 
     each: Mapping[str, "Sequence[Block]"]
     block: ClassVar[str] = "variants"
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A drawing that moves by itself, for a page that has nothing else to say of the teeth.
+
+    Attributes:
+        kind: of the drawing: its macros in `drawings.html.jinja`, and what the script of the page moves it by.
+        picture: what the macros draw.
+        words: what its slider counts.
+        span, step: length of that slider and of a step on it.
+        acting: what changes with the load, as JSON has it; None where nothing does.
+    """
+
+    kind: str
+    picture: Mapping[str, Any]
+    words: str
+    span: float
+    step: float
+    acting: Any = None
 
 
 Block = Heading | Paragraph | Table | Panel | Drawn | Variants
@@ -214,6 +235,7 @@ class Section:
         screen: what the command line prints of one variant.
         folded: True for one that a reader opens.
         picture: identity of its drawing that stands beside the answer; empty without one.
+        moving: that drawing of one outcome which has its parts, by the name that it gets in a page.
     """
 
     name: str
@@ -230,6 +252,7 @@ class Section:
     screen: Callable[[Outcome], Iterable[Printed]] = lambda outcome: ()
     folded: bool = False
     picture: str = ""
+    moving: Callable[[Outcome, str], Moving] | None = None
 
     def lacking(self, page: Page) -> str | None:
         """None if the section is shown, else why not."""

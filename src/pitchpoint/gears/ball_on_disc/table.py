@@ -26,6 +26,7 @@ class BallOnDiscRig(GearsTable):
     carries: ClassVar[str] = "a test rig is loaded by a normal force"
     transmits: ClassVar[bool] = False
     film_thickness: ClassVar[str] = "hamrock_dowson_1977"
+    explored: ClassVar[tuple[str, float]] = ("slide_roll_ratio", 0.1)
     meaningless: ClassVar[Mapping[str, str]] = {
         "slices": "the contact of a ball is not divided into slices",
         "averaging": "the contact of a ball does not travel along a path",

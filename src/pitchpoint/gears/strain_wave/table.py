@@ -368,6 +368,7 @@ class StrainWaveGears(GearsTable):
 
     members: ClassVar[tuple[str, ...]] = MEMBERS
     damping_ratio: ClassVar[float] = 0.03
+    explored: ClassVar[tuple[str, float]] = ("wave_generator.deflection", 0.1)
     meaningless: ClassVar[Mapping[str, str]] = {
         "slices": "contacts of strain-wave teeth are not divided into slices",
         "averaging": "the path of one pair does not stand for strain-wave teeth, many of which touch at "

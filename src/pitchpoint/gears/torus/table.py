@@ -45,6 +45,7 @@ class TorusGears(GearsTable):
     members: ClassVar[tuple[str, ...]] = MEMBERS
     friction: ClassVar[str] = "xu_2007"
     film_thickness: ClassVar[str] = "hamrock_dowson_1977"
+    explored: ClassVar[tuple[str, float]] = ("inclination", 5e-3)
 
     family: Literal["torus"] = "torus"
     """Family of these gears: a torus-involute pair."""

@@ -18,7 +18,7 @@ from pitchpoint.views import show
 from pitchpoint.views.inputs import words
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import of_geometry
-from pitchpoint.views.section import Block, Drawn, Page, Section
+from pitchpoint.views.section import Block, Drawn, Moving, Page, Section
 from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.way import place_of
 
@@ -174,6 +174,13 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield Drawn("drive.html.jinja", {"d": values}, [gap])
 
 
+def _moving(outcome: Outcome, name: str) -> Moving:
+    """Teeth over a turn of what turns fastest."""
+    drawn = picture(outcome, name)
+    acting = json.loads(drawn["motion_json"])["arcs"]
+    return Moving("drive", drawn, f"Angle, {drawn['turns']}", 360.0, 0.5, acting)
+
+
 DRIVE = Section(
     name="drive",
     title="Drive and path of the teeth",
@@ -183,4 +190,5 @@ DRIVE = Section(
     lacks=lambda page: None if page.having(*_PARTS) else "",
     blocks=_blocks,
     picture="drive0-close",
+    moving=_moving,
 )

@@ -14,7 +14,7 @@ from pitchpoint.views.inputs import words
 from pitchpoint.views.path import PathOfContact, path_of
 from pitchpoint.views.picture import picture_of
 from pitchpoint.views.point import of_geometry
-from pitchpoint.views.section import Block, Drawn, Page, Section
+from pitchpoint.views.section import Block, Drawn, Moving, Page, Section
 from pitchpoint.views.sections.plane_of_action import plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 
@@ -38,6 +38,11 @@ def _blocks(page: Page) -> Iterator[Block]:
             "internal": _internal(outcome.parts["teeth"]),
         }
         yield Drawn("teeth.html.jinja", {"t": values}, [sliding])
+
+
+def _moving(outcome: Outcome, name: str) -> Moving:
+    """Teeth in mesh over one period, in frames as close as those of the report."""
+    return Moving("mesh", picture_of(outcome).svg(name), "Phase", 1.0, 1.0 / 48.0)
 
 
 def _internal(teeth: xr.Dataset) -> bool:
@@ -187,4 +192,5 @@ TEETH = Section(
     parts=_PARTS,
     blocks=_blocks,
     picture="mesh0-close",
+    moving=_moving,
 )

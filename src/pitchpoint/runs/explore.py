@@ -1,0 +1,260 @@
+"""A case explored: its figures over a few inputs, computed beforehand for a page that has sliders."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+from itertools import product
+from math import prod
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint.analyses.analysis import Analysis
+from pitchpoint.analyses.figures import main_figures
+from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.studies import sweep_values
+from pitchpoint.cases.document import STAGES
+from pitchpoint.cases.schema import Sweep, quantity_at
+from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.cases.variant import Variant
+from pitchpoint.errors import InputError, PitchpointError
+from pitchpoint.input.quantities import Quantity, shown
+from pitchpoint.results.rounding import ROUNDING
+from pitchpoint.runs.case import Case, CaseLike, written
+from pitchpoint.runs.jobs import Job
+from pitchpoint.runs.run import Outcome, Progress, run_variant
+from pitchpoint.runs.study import study
+
+__all__ = ["MOST", "Axis", "Explored", "explore", "usual"]
+
+MOST = 600
+"""Points of a grid that one page holds."""
+
+SHARES = (0.25, 0.5, 0.75, 1.0, 1.25, 1.5)
+"""Loads and speeds over those of the case."""
+
+FEW_SHARES = (0.5, 1.0, 1.5)
+"""The same where films are solved at every point."""
+
+VALUES = 5
+"""Values of the key of the gears."""
+
+PARTS = ("teeth", "cycle", "stiffness")
+"""Parts of a result that are computed at every point, where they exist."""
+
+WITHOUT_CYCLE = ("operation",)
+"""The same of a case that has no mesh cycle of its own: what is said of it stands there."""
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Values of one key, for a slider.
+
+    Attributes:
+        key: dotted.
+        quantity: what its values are.
+        values: rising, at least two [SI].
+        own: of the case, or next to it within the values [SI].
+    """
+
+    key: str
+    quantity: Quantity
+    values: np.ndarray
+    own: float
+
+    @property
+    def middles(self) -> np.ndarray:
+        """Places half way between values, at both ends and in the middle; values where only these count [SI]."""
+        between = 0.5 * (self.values[1:] + self.values[:-1])
+        places = self.values if self.quantity.whole else between
+        found: np.ndarray = places[np.unique([0, len(places) // 2, len(places) - 1])]
+        return found
+
+
+@dataclass(frozen=True)
+class Explored(Generic[T]):
+    """What was computed of a case over a grid.
+
+    Attributes:
+        own: the case itself, with the parts `PARTS`.
+        axes: in the order of the dimensions of the figures.
+        figures: of a `study` of the grid.
+        seen: what was read of the parts at every point, the last axis running fastest; None where they
+            could not be computed.
+        refused: why not, by number of the point.
+        errors: of linear interpolation, by main figure: the largest at the midpoints over the value there.
+        midpoints: number of places between points where figures were computed to tell.
+    """
+
+    own: Outcome
+    axes: tuple[Axis, ...]
+    figures: xr.Dataset
+    seen: Sequence[T | None]
+    refused: Mapping[int, str]
+    errors: Mapping[str, float]
+    midpoints: int
+
+
+def explore(
+    case: CaseLike,
+    over: Sequence[Sweep] = (),
+    *,
+    read: Callable[[Outcome], T],
+    variant: str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    progress: Progress | None = None,
+) -> Explored[T]:
+    """Compute a case over a grid of a few inputs.
+
+    Args:
+        case: a `Case`, or what makes one.
+        over: keys and their values; load and speed, and the key that the table of the gears names, by default.
+        read: what is kept of the parts at a point, which are too large to be kept whole.
+        variant: of the case, the first one by default.
+        settings: values by dotted key that replace those of the case.
+        progress: told about points.
+
+    Raises:
+        InputError: anything wrong with the case, a key without numbers, too many points, or none that can be
+            computed.
+        ConvergenceError: the case itself has no balance.
+    """
+    told = progress or Progress()
+    whole = Case(case, variant=variant) if not isinstance(case, Case) or variant else case
+    chosen = whole.set(settings or {})
+    base = chosen.held[0].computed
+    axes = tuple(_given(chosen, over) if over else usual(base))
+    count = prod(len(axis.values) for axis in axes)
+    if not axes or count > MOST:
+        raise InputError(
+            f"{count} points were asked for; a page holds {MOST} at most", file=base.name, key="--over"
+        )
+    told.expect(4)
+    told.part("", "the case itself", False)
+    own = _computed(base)
+    told.part("", f"{count} designs", False)
+    figures = study(chosen, {axis.key: axis.values for axis in axes})
+    told.part("", "places between them", False)
+    errors, midpoints = _errors(chosen, axes, figures)
+    told.part("", "teeth and mesh cycles", False)
+    refused: dict[int, str] = {}
+    seen = list(_seen(base, axes, read, refused, told))
+    return Explored(own, axes, figures, seen, refused, errors, midpoints)
+
+
+def usual(variant: Variant) -> Iterator[Axis]:
+    """Keys that are explored where none are given, those that change the gears first.
+
+    Neighbours of one design have its contacts in common, so that the speed runs fastest.
+    """
+    built = variant.built({})
+    solved = any(law.films is not None for law in built.laws)
+    yield from _of_gears(built, 3 if solved else VALUES)
+    point, shares = built.case.operation, np.array(FEW_SHARES if solved else SHARES)
+    for name, value in ((built.carried.kind, point.load), ("speed", point.speed)):
+        quantity = quantity_at(key := f"operation.{name}")
+        if value and quantity is not None:
+            yield Axis(key, quantity, value * shares, value)
+
+
+def _of_gears(built: Ready, count: int) -> Iterator[Axis]:
+    """The key that the table of the gears names, of the first stage of a drive; none where it is left open."""
+    first = built.meshes[0]
+    if (named := first.case.gears.explored) is None:
+        return
+    inside, reach = named
+    table = f"{STAGES}.{built.numbers[0]}." if isinstance(built, BuiltDrive) else ""
+    key = f"{table}gears.{inside}"
+    quantity, own = quantity_at(key), reduce(_at, inside.split("."), first.case.gears)
+    if quantity is None or own is None:
+        return
+    values = np.clip(own + reach * np.linspace(-1.0, 1.0, count), quantity.low, quantity.high)
+    yield Axis(key, quantity, np.unique(values.round(12)), float(own))
+
+
+def _at(node: Any, part: str) -> Any:
+    return node[int(part) - 1] if part.isdecimal() else getattr(node, part)
+
+
+def _given(case: Case, over: Sequence[Sweep]) -> Iterator[Axis]:
+    variant = case.held[0]
+    for sweep in over:
+        values, quantity = sweep_values(sweep, "--over", variant.name, variant.document().tree)
+        several = np.unique(np.array(values, float))
+        if len(several) < 2:
+            raise InputError(
+                f"{sweep.key} was given {len(several)} value; a slider needs two at least",
+                file=variant.name,
+                key="--over",
+            )
+        own = case[sweep.key]
+        number = float(own) if isinstance(own, float | int) else float(several[len(several) // 2])
+        yield Axis(sweep.key, quantity, several, float(np.clip(number, several[0], several[-1])))
+
+
+def _computed(variant: Variant, changes: Mapping[str, Any] | None = None) -> Outcome:
+    """A case at one point of the grid, with those of the parts that exist."""
+    one = replace(variant, settings={**variant.settings, **(changes or {})})
+    built = one.built({})
+    there = _there(built, PARTS)
+    if all(one.name != "cycle" for one in there):
+        there += _there(built, WITHOUT_CYCLE)
+    work = [Job(one, built) for one in there]
+    return run_variant(one, work, folder=None, studies={}, progress=Progress())
+
+
+def _there(built: Ready, names: Sequence[str]) -> list[Analysis]:
+    """Analyses among some that a case has."""
+    every = [ANALYSES[name] for name in names]
+    return [one for one in every if isinstance(one, Analysis) and one.why_not(built) is None]
+
+
+def _seen(
+    variant: Variant,
+    axes: Sequence[Axis],
+    read: Callable[[Outcome], T],
+    refused: dict[int, str],
+    progress: Progress,
+) -> Iterator[T | None]:
+    """What is read at every point; the sentence of those that cannot be computed goes into `refused`."""
+    texts = [[*written(axis.key, axis.values)] for axis in axes]
+    for number, row in enumerate(product(*texts)):
+        try:
+            found = read(_computed(variant, dict(zip((a.key for a in axes), row, strict=True))))
+        except PitchpointError as error:
+            refused[number] = getattr(error, "message", str(error))
+            found = None
+        yield found
+        progress.points(number + 1)
+
+
+def _errors(
+    case: Case, axes: Sequence[Axis], figures: xr.Dataset
+) -> tuple[dict[str, float], int]:
+    """Largest relative errors of linear interpolation at places between points, and how many of these count."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    each = [axis.middles for axis in axes]
+    middle = [places[len(places) // 2] for places in each]
+    ends = product(*([*dict.fromkeys(places[[0, -1]])] for places in each))
+    rows = np.array([*dict.fromkeys([*map(tuple, ends), tuple(middle)])])
+    try:
+        columns = {axis.key: rows[:, k] for k, axis in enumerate(axes)}
+        true = study(case, columns, how="zip")
+    except InputError:  # none of them can be computed
+        return {}, 0
+    errors, known = {}, np.zeros(len(rows), bool)
+    for name in main_figures(figures):
+        for law in range(figures.sizes["law"]):
+            over = RegularGridInterpolator([a.values for a in axes], figures[name].values[law])
+            expected = true[name].values[law]
+            off = np.abs(over(rows) - expected)
+            least = ROUNDING * np.nanmax(np.abs(figures[name].values[law]), initial=0.0)
+            counts = np.isfinite(off) & (np.abs(expected) > least)
+            known |= counts
+            worst = np.max(off[counts] / np.abs(expected[counts]), initial=0.0)
+            errors[name] = max(errors.get(name, 0.0), float(worst))
+    return errors, int(known.sum())

@@ -1,0 +1,369 @@
+"""The explorer: one HTML file whose sliders change inputs of a case, from points computed beforehand."""
+
+import base64
+import gzip
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from pitchpoint import units
+from pitchpoint.analyses.figures import covers, main_figures
+from pitchpoint.results.store import write_text
+from pitchpoint.runs.explore import Axis, Explored
+from pitchpoint.runs.run import Outcome
+from pitchpoint.views import show
+from pitchpoint.views.figures import PALETTE, display, law_title, laws, layout, rounded, short_axis
+from pitchpoint.views.lines import folded, gapped, titled
+from pitchpoint.views.point import period_of
+from pitchpoint.views.registry import in_order
+from pitchpoint.views.report import environment, packed_plotly
+from pitchpoint.views.section import Moving
+
+__all__ = ["Point", "Reader", "render", "write_explorer"]
+
+_COURSES = {
+    "cycle": ("efficiency", "input_torque"),
+    "stiffness": ("mesh_stiffness", "static_transmission_error"),
+}
+"""Courses over the mesh cycle that are shown, by part."""
+
+_NODES = 72
+"""Points of a course that a page needs."""
+
+_OF_SOLUTIONS = ("residual", "nearest_friction", "nearest_jamming_coefficient", "turns")
+_OF_SOLUTIONS += ("turns_change", "vibration_status")
+"""Figures that tell how a solution was found."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """One course over the mesh cycle.
+
+    Attributes:
+        title, axis, abscissa: words of the figure and of its axes.
+        x: phases; None at gaps.
+        y: values in their display unit, by law, or one row where all have the same.
+    """
+
+    title: str
+    axis: str
+    abscissa: str
+    x: list[Any]
+    y: list[list[Any]]
+
+
+@dataclass(frozen=True)
+class Point:
+    """What the page shows of a case at one point.
+
+    Attributes:
+        courses: by name.
+        implausible, warnings: sentences.
+        drawing: number of its drawing; None without one.
+        acting: see `Moving`.
+    """
+
+    courses: Mapping[str, Course]
+    implausible: Sequence[str]
+    warnings: Sequence[str]
+    drawing: int | None
+    acting: Any
+
+
+class Reader:
+    """Reads points, and keeps every drawing once.
+
+    Attributes:
+        drawings: in order.
+    """
+
+    def __init__(self) -> None:
+        self.drawings: list[Moving] = []
+        self._known: dict[str, int] = {}
+
+    def __call__(self, outcome: Outcome) -> Point:
+        """What the page shows of a case at one point."""
+        number, acting = self._drawing(outcome)
+        told = outcome.manifest
+        return Point(_courses(outcome), told["implausible"], told["warnings"], number, acting)
+
+    def _drawing(self, outcome: Outcome) -> tuple[int | None, Any]:
+        made = next(_movings(outcome, f"drawing{len(self.drawings)}"), None)
+        if made is None:
+            return None, None
+        teeth = outcome.parts["teeth"]
+        digest = sha256(b"".join(np.ascontiguousarray(one.values).tobytes() for one in teeth.values()))
+        number = self._known.setdefault(digest.hexdigest(), len(self.drawings))
+        if number == len(self.drawings):
+            self.drawings.append(made)
+        return number, made.acting
+
+
+def _movings(outcome: Outcome, name: str) -> Iterator[Moving]:
+    """Drawings of the sections that have one and whose parts are there."""
+    for section in in_order():
+        if section.moving is not None and all(_has(outcome, part) for part in section.parts):
+            yield section.moving(outcome, name)
+
+
+def _has(outcome: Outcome, part: str) -> bool:
+    name, _, variable = part.partition(".")
+    return name in outcome.parts and (not variable or variable in outcome.parts[name])
+
+
+def _courses(outcome: Outcome) -> dict[str, Course]:
+    return {
+        name: _course(outcome, outcome.parts[part], name)
+        for part, names in _COURSES.items()
+        if part in outcome.parts
+        for name in names
+    }
+
+
+def _course(outcome: Outcome, data: xr.Dataset, name: str) -> Course:
+    values = np.atleast_2d(display(name, data[name].values, data))
+    each = [_thinned(*gapped(*folded(data["phase"].values, row))) for row in values]
+    return Course(
+        title=f"{titled(name, data)} over the mesh cycle",
+        axis=short_axis(name, data),
+        abscissa=period_of(outcome).axis,
+        x=rounded(each[0][0], 5),
+        y=[rounded(y) for _, y in each],
+    )
+
+
+def _thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fewer points, with those on both sides of every gap, which repeats the place before it."""
+    kept = np.arange(x.size) % max(x.size // _NODES, 1) == 0
+    gaps = np.flatnonzero(np.diff(x) == 0.0) + 1
+    for beside in (gaps - 1, gaps, gaps[gaps + 1 < x.size] + 1):
+        kept[beside] = True
+    return x[kept], y[kept]
+
+
+def write_explorer(found: Explored[Point], drawings: Sequence[Moving], path: str | Path) -> None:
+    """Write the page; a reader never sees half of it.
+
+    Args:
+        found: read by a `Reader`.
+        drawings: of that reader.
+        path: of the HTML file.
+    """
+    write_text(Path(path), render(found, drawings))
+
+
+def render(found: Explored[Point], drawings: Sequence[Moving]) -> str:
+    """The page as text.
+
+    Args:
+        found: read by a `Reader`.
+        drawings: of that reader.
+    """
+    manifest, data = found.own.manifest, found.figures
+    axes = [_axis(axis, found) for axis in found.axes]
+    figures = list(_figures(found))
+    main = main_figures(data)
+    courses = _drawn_courses(found)
+    content = {
+        "laws": [
+            {"title": law_title(found.own, law), "colour": PALETTE[k % len(PALETTE)]}
+            for k, law in enumerate(laws(data))
+        ],
+        "axes": axes,
+        "figures": figures,
+        **_sentences(found),
+        "courses": courses,
+        "drawing": [None if one is None else one.drawing for one in found.seen],
+        "acting": [None if one is None else one.acting for one in found.seen],
+        "over": layout("", ""),
+    }
+    return (
+        environment()
+        .get_template("explorer.html.jinja")
+        .render(
+            title=manifest["title"],
+            case=manifest["case"],
+            variant=manifest["variant"],
+            version=data.attrs["version"],
+            covers=covers(data),
+            axes=axes,
+            laws=content["laws"],
+            first=figures[0],
+            main=[(k, one) for k, one in enumerate(figures) if one["name"] in main],
+            others=[(k, one) for k, one in enumerate(figures) if one["name"] not in main],
+            courses=courses,
+            drawings=drawings,
+            undrawn=manifest["lacks"].get("teeth", "there are no teeth to draw"),
+            uncoursed=manifest["lacks"].get("cycle", ""),
+            points=len(found.seen),
+            impossible=int(sum(np.all(data["reason"].values != "", axis=0).ravel())),
+            errors=_error_words(found),
+            midpoints=found.midpoints,
+            explored=_packed(content),
+            plotly=packed_plotly(),
+        )
+    )
+
+
+def _packed(content: Mapping[str, Any]) -> str:
+    text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+
+
+def _axis(axis: Axis, found: Explored[Point]) -> dict[str, Any]:
+    """What a slider needs, in the unit in which a case file shows the values."""
+    quantity = axis.quantity
+    values, own = (_shown(axis, one) for one in (axis.values, np.array([axis.own])))
+    gaps = np.diff(values)
+    return {
+        "key": axis.key,
+        "words": _words(axis.key, found.own.manifest),
+        "unit": show.unit(quantity.unit),
+        "values": values,
+        "own": own[0],
+        "step": _plain(gaps.min() / 20.0),
+        "whole": quantity.whole,
+        "shapes": _shapes(axis, found),
+    }
+
+
+def _shown(axis: Axis, values: np.ndarray) -> list[float]:
+    quantity = axis.quantity
+    if quantity.unit != "1":
+        values = np.asarray(units.convert(values, quantity.unit, quantity.kind))
+    return [_plain(value) for value in values]
+
+
+def _plain(value: float) -> float:
+    """A number without what a change of units leaves behind its twelfth digit."""
+    return float(f"{value:.12g}")
+
+
+_ENDS = {"torque": "loaded", "force": "loaded", "speed": "driver"}
+
+
+def _words(key: str, manifest: Mapping[str, Any]) -> str:
+    """What a slider changes, in words.
+
+    Example:
+        >>> _words("operation.speed", {"driver": "gear 1", "loaded": "gear 2"})
+        'speed, gear 1'
+        >>> _words("gears.profile_shift.1", {})
+        'profile shift, gear 1'
+        >>> _words("stages.2.gears.wave_generator.deflection", {})
+        'stage 2, wave generator, deflection'
+    """
+    table, *inside = key.split(".")
+    if table == "operation":
+        end = _ENDS.get(inside[0])
+        return ", ".join([inside[0].replace("_", " "), *([str(manifest[end])] if end else [])])
+    stage = [f"stage {inside[0]}"] if table == "stages" else []
+    inside = inside[2:] if stage else inside
+    return ", ".join([*stage, *(f"gear {one}" if one.isdecimal() else one.replace("_", " ") for one in inside)])
+
+
+def _shapes(axis: Axis, found: Explored[Point]) -> bool:
+    """True if the teeth, or the phases at which pairs come and go, change along an axis."""
+    where = [one.key for one in found.axes].index(axis.key)
+    numbers = np.moveaxis(
+        np.arange(len(found.seen)).reshape([len(one.values) for one in found.axes]), where, 0
+    ).reshape(len(axis.values), -1)
+    return any(
+        _differ(found.seen[a], found.seen[b])
+        for before, after in zip(numbers, numbers[1:], strict=False)
+        for a, b in zip(before, after, strict=True)
+    )
+
+
+def _differ(one: Point | None, other: Point | None) -> bool:
+    if one is None or other is None:
+        return False
+    phases = ([course.x for course in point.courses.values()] for point in (one, other))
+    return one.drawing != other.drawing or len({*map(str, phases)}) > 1
+
+
+def _figures(found: Explored[Point]) -> Iterator[dict[str, Any]]:
+    """Figures of the study with a finite value, the main ones first, at all points of the grid."""
+    data, main = found.figures, main_figures(found.figures)
+    others = sorted(map(str, data.data_vars), key=lambda name: (name not in main, name))
+    for name in (*main, *(one for one in others if one not in main)):
+        one = data[name]
+        if one.dtype.kind != "f" or one.dims[:1] != ("law",) or name in _OF_SOLUTIONS:
+            continue
+        extra = one.dims[1 + len(found.axes) :]
+        for number, label in enumerate(one[extra[0]].values if extra else [""]):
+            values = one.values[..., number] if extra else one.values
+            flat = display(name, values.reshape(values.shape[0], -1), data)
+            if np.isfinite(flat).any():
+                yield _figure(name, str(label), flat, found)
+
+
+def _figure(name: str, label: str, values: np.ndarray, found: Explored[Point]) -> dict[str, Any]:
+    variable = show.described(name, found.figures)
+    finite = values[np.isfinite(values)]
+    told = [variable.long_name, *([label.replace("_", " ")] if label else [])]
+    return {
+        "name": name,
+        "words": ", ".join(told),
+        "axis": short_axis(name, found.figures),
+        "unit": show.unit(variable.display),
+        "range": rounded([finite.min(), finite.max()]),
+        "error": _percent(found.errors[name]) if name in found.errors else "",
+        "values": rounded(values, 6),
+    }
+
+
+def _percent(share: float) -> str:
+    return f"{show.number(100.0 * share, 2)} %" if share >= 5e-6 else "below 0.001 %"
+
+
+def _error_words(found: Explored[Point]) -> str:
+    """How far interpolated figures are off, the worst one first."""
+    each = sorted(found.errors.items(), key=lambda one: -one[1])
+    named = {show.described(name, found.figures).long_name: _percent(off) for name, off in each}
+    return ", ".join(f"{told} {words}" for words, told in named.items())
+
+
+def _sentences(found: Explored[Point]) -> dict[str, Any]:
+    """Sentences once, and by point and law which of them say why there are no figures, or warn."""
+    known: dict[str, int] = {"": 0}
+
+    def number(text: str) -> int:
+        return known.setdefault(show.pretty(text), len(known))
+
+    reasons = found.figures["reason"].values
+    why = [[number(str(text)) for text in row.ravel()] for row in reasons]
+    told = [
+        [[], []] if one is None else [[*map(number, one.implausible)], [*map(number, one.warnings)]]
+        for one in found.seen
+    ]
+    absent = [number(found.refused.get(k, "")) for k in range(len(found.seen))]
+    return {"why": why, "told": told, "absent": absent, "sentences": [*known]}
+
+
+def _drawn_courses(found: Explored[Point]) -> list[dict[str, Any]]:
+    """Courses that have a finite value somewhere, phases once."""
+    names = dict.fromkeys(name for one in found.seen if one is not None for name in one.courses)
+    drawn = []
+    for name in names:
+        each = [None if one is None else one.courses.get(name) for one in found.seen]
+        first = next(one for one in each if one is not None)
+        if not any(y is not None for one in each if one for row in one.y for y in row):
+            continue
+        known: dict[str, int] = {}
+        phases: list[list[Any]] = []
+        points: list[Any] = []
+        for one in each:
+            if one is not None and (key := str(one.x)) not in known:
+                known[key] = len(phases)
+                phases.append(one.x)
+            points.append(None if one is None else [known[str(one.x)], one.y])
+        look = layout(first.abscissa, first.axis)
+        drawn.append({"name": name, "title": first.title, "phases": phases, "points": points, "layout": look})
+    return drawn
