@@ -19,7 +19,7 @@ from pitchpoint.cases.schema import Sweep, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
-from pitchpoint.input.quantities import Quantity, shown
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.runs.case import Case, CaseLike, written
 from pitchpoint.runs.jobs import Job
@@ -66,12 +66,12 @@ class Axis:
     own: float
 
     @property
-    def middles(self) -> np.ndarray:
-        """Places half way between values, at both ends and in the middle; values where only these count [SI]."""
-        between = 0.5 * (self.values[1:] + self.values[:-1])
-        places = self.values if self.quantity.whole else between
-        found: np.ndarray = places[np.unique([0, len(places) // 2, len(places) - 1])]
-        return found
+    def between(self) -> np.ndarray:
+        """Places half way between values; the values themselves where only whole ones count [SI]."""
+        if self.quantity.whole:
+            return self.values
+        middles: np.ndarray = 0.5 * (self.values[1:] + self.values[:-1])
+        return middles
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,8 @@ def explore(
 
     Args:
         case: a `Case`, or what makes one.
-        over: keys and their values; load and speed, and the key that the table of the gears names, by default.
+        over: keys and their values; by default load and speed, and the key that the table of the gears
+            names.
         read: what is kept of the parts at a point, which are too large to be kept whole.
         variant: of the case, the first one by default.
         settings: values by dotted key that replace those of the case.
@@ -130,7 +131,9 @@ def explore(
     count = prod(len(axis.values) for axis in axes)
     if not axes or count > MOST:
         raise InputError(
-            f"{count} points were asked for; a page holds {MOST} at most", file=base.name, key="--over"
+            f"{count} points were asked for; a page holds {MOST} at most",
+            file=base.name,
+            key="--over",
         )
     told.expect(4)
     told.part("", "the case itself", False)
@@ -161,14 +164,15 @@ def usual(variant: Variant) -> Iterator[Axis]:
 
 
 def _of_gears(built: Ready, count: int) -> Iterator[Axis]:
-    """The key that the table of the gears names, of the first stage of a drive; none where it is left open."""
+    """The key that the table of the gears of the first stage names; none where its value is left open."""
     first = built.meshes[0]
     if (named := first.case.gears.explored) is None:
         return
     inside, reach = named
     table = f"{STAGES}.{built.numbers[0]}." if isinstance(built, BuiltDrive) else ""
     key = f"{table}gears.{inside}"
-    quantity, own = quantity_at(key), reduce(_at, inside.split("."), first.case.gears)
+    quantity = quantity_at(key)
+    own: Any = reduce(_at, inside.split("."), first.case.gears)
     if quantity is None or own is None:
         return
     values = np.clip(own + reach * np.linspace(-1.0, 1.0, count), quantity.low, quantity.high)
@@ -181,8 +185,14 @@ def _at(node: Any, part: str) -> Any:
 
 def _given(case: Case, over: Sequence[Sweep]) -> Iterator[Axis]:
     variant = case.held[0]
+    keys = [sweep.key for sweep in over]
     for sweep in over:
+        if keys.count(sweep.key) > 1:
+            raise InputError(f"{sweep.key} is given twice", file=variant.name, key="--over")
         values, quantity = sweep_values(sweep, "--over", variant.name, variant.document().tree)
+        if quantity is None:
+            told = f"{sweep.key} takes names; a slider needs numbers"
+            raise InputError(told, file=variant.name, key="--over")
         several = np.unique(np.array(values, float))
         if len(several) < 2:
             raise InputError(
@@ -231,22 +241,21 @@ def _seen(
         progress.points(number + 1)
 
 
-def _errors(
-    case: Case, axes: Sequence[Axis], figures: xr.Dataset
-) -> tuple[dict[str, float], int]:
-    """Largest relative errors of linear interpolation at places between points, and how many of these count."""
+def _errors(case: Case, axes: Sequence[Axis], figures: xr.Dataset) -> tuple[dict[str, float], int]:
+    """Largest relative errors of linear interpolation at places between points, and how many there are."""
     from scipy.interpolate import RegularGridInterpolator
 
-    each = [axis.middles for axis in axes]
-    middle = [places[len(places) // 2] for places in each]
-    ends = product(*([*dict.fromkeys(places[[0, -1]])] for places in each))
-    rows = np.array([*dict.fromkeys([*map(tuple, ends), tuple(middle)])])
+    cells = _outermost(axes, figures)
+    rows = np.stack([axis.between[cells[:, k]] for k, axis in enumerate(axes)], axis=-1)
+    if not len(rows):
+        return {}, 0
+    columns = {axis.key: rows[:, k] for k, axis in enumerate(axes)}
     try:
-        columns = {axis.key: rows[:, k] for k, axis in enumerate(axes)}
         true = study(case, columns, how="zip")
     except InputError:  # none of them can be computed
         return {}, 0
-    errors, known = {}, np.zeros(len(rows), bool)
+    errors: dict[str, float] = {}
+    known = np.zeros(len(rows), bool)
     for name in main_figures(figures):
         for law in range(figures.sizes["law"]):
             over = RegularGridInterpolator([a.values for a in axes], figures[name].values[law])
@@ -258,3 +267,20 @@ def _errors(
             worst = np.max(off[counts] / np.abs(expected[counts]), initial=0.0)
             errors[name] = max(errors.get(name, 0.0), float(worst))
     return errors, int(known.sum())
+
+
+def _outermost(axes: Sequence[Axis], figures: xr.Dataset) -> np.ndarray:
+    """Cells of the grid with figures at all corners [cell, axis]: those farthest out, and a middle one."""
+    whole = np.all(figures["reason"].values == "", axis=0)
+    for k, axis in enumerate(axes):
+        if not axis.quantity.whole:
+            count = len(axis.values) - 1
+            whole = np.take(whole, range(count), k) & np.take(whole, range(1, count + 1), k)
+    cells = np.argwhere(whole)
+    if not len(cells):
+        return cells
+    place = cells / np.maximum(np.array(whole.shape) - 1, 1)
+    ways = np.array([*product((-1.0, 1.0), repeat=len(axes))])
+    middle = np.argmin(np.sum((place - 0.5) ** 2, axis=1))
+    found: np.ndarray = cells[np.unique([*np.argmax(place @ ways.T, axis=0), middle])]
+    return found

@@ -5,7 +5,7 @@ import gzip
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from hashlib import sha256
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -36,8 +36,14 @@ _COURSES = {
 _NODES = 72
 """Points of a course that a page needs."""
 
-_OF_SOLUTIONS = ("residual", "nearest_friction", "nearest_jamming_coefficient", "turns")
-_OF_SOLUTIONS += ("turns_change", "vibration_status")
+_OF_SOLUTIONS = (
+    "residual",
+    "nearest_friction",
+    "nearest_jamming_coefficient",
+    "turns",
+    "turns_change",
+    "vibration_status",
+)
 """Figures that tell how a solution was found."""
 
 
@@ -97,9 +103,8 @@ class Reader:
         made = next(_movings(outcome, f"drawing{len(self.drawings)}"), None)
         if made is None:
             return None, None
-        teeth = outcome.parts["teeth"]
-        digest = sha256(b"".join(np.ascontiguousarray(one.values).tobytes() for one in teeth.values()))
-        number = self._known.setdefault(digest.hexdigest(), len(self.drawings))
+        mark = json.dumps({**made.picture, "name": ""})
+        number = self._known.setdefault(mark, len(self.drawings))
         if number == len(self.drawings):
             self.drawings.append(made)
         return number, made.acting
@@ -265,7 +270,9 @@ def _words(key: str, manifest: Mapping[str, Any]) -> str:
         return ", ".join([inside[0].replace("_", " "), *([str(manifest[end])] if end else [])])
     stage = [f"stage {inside[0]}"] if table == "stages" else []
     inside = inside[2:] if stage else inside
-    return ", ".join([*stage, *(f"gear {one}" if one.isdecimal() else one.replace("_", " ") for one in inside)])
+    return ", ".join(
+        [*stage, *(f"gear {one}" if one.isdecimal() else one.replace("_", " ") for one in inside)]
+    )
 
 
 def _shapes(axis: Axis, found: Explored[Point]) -> bool:
@@ -276,7 +283,7 @@ def _shapes(axis: Axis, found: Explored[Point]) -> bool:
     ).reshape(len(axis.values), -1)
     return any(
         _differ(found.seen[a], found.seen[b])
-        for before, after in zip(numbers, numbers[1:], strict=False)
+        for before, after in pairwise(numbers)
         for a, b in zip(before, after, strict=True)
     )
 
@@ -339,7 +346,7 @@ def _sentences(found: Explored[Point]) -> dict[str, Any]:
 
     reasons = found.figures["reason"].values
     why = [[number(str(text)) for text in row.ravel()] for row in reasons]
-    told = [
+    told: list[list[list[int]]] = [
         [[], []] if one is None else [[*map(number, one.implausible)], [*map(number, one.warnings)]]
         for one in found.seen
     ]
@@ -365,5 +372,7 @@ def _drawn_courses(found: Explored[Point]) -> list[dict[str, Any]]:
                 phases.append(one.x)
             points.append(None if one is None else [known[str(one.x)], one.y])
         look = layout(first.abscissa, first.axis)
-        drawn.append({"name": name, "title": first.title, "phases": phases, "points": points, "layout": look})
+        drawn.append(
+            {"name": name, "title": first.title, "phases": phases, "points": points, "layout": look}
+        )
     return drawn

@@ -60,7 +60,8 @@ class Period:
     @property
     def axis(self) -> str:
         """Title of an axis of the phase."""
-        return f"phase of the mesh cycle [{self.pitch}es]"
+        several = "es" if self.pitch.endswith("h") else "s"
+        return f"phase of the mesh cycle [{self.pitch}{several}]"
 
 
 def operating_point(outcome: Outcome) -> OperatingPoint:

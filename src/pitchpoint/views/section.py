@@ -91,7 +91,7 @@ class Moving:
     """A drawing that moves by itself, for a page that has nothing else to say of the teeth.
 
     Attributes:
-        kind: of the drawing: its macros in `drawings.html.jinja`, and what the script of the page moves it by.
+        kind: of the drawing: its macros in `drawings.html.jinja`, and the function of the page that moves it.
         picture: what the macros draw.
         words: what its slider counts.
         span, step: length of that slider and of a step on it.

@@ -189,7 +189,7 @@ class CylindricalGears(GearsTable):
     members: ClassVar[tuple[str, ...]] = MEMBERS
     rated: ClassVar[bool] = True
     friction: ClassVar[str] = "iso_tr_14179_2"
-    explored: ClassVar[tuple[str, float]] = ("profile_shift.1", 0.4)
+    explored: ClassVar[tuple[str, float]] = ("profile_shift.1", 0.2)
 
     family: Literal["cylindrical"] = "cylindrical"
     """Family of these gears: a pair of cylindrical gears on parallel axes."""

@@ -36,7 +36,7 @@ class RackAndPinionGears(GearsTable):
     load: ClassVar[Load] = "force"
     carries: ClassVar[str] = "a rack carries a force"
     friction: ClassVar[str] = "iso_tr_14179_2"
-    explored: ClassVar[tuple[str, float]] = ("profile_shift", 0.4)
+    explored: ClassVar[tuple[str, float]] = ("profile_shift", 0.2)
 
     family: Literal["rack_and_pinion"] = "rack_and_pinion"
     """Family of these gears: a pinion that drives a rack."""

@@ -177,8 +177,11 @@ def _blocks(page: Page) -> Iterator[Block]:
 def _moving(outcome: Outcome, name: str) -> Moving:
     """Teeth over a turn of what turns fastest."""
     drawn = picture(outcome, name)
-    acting = json.loads(drawn["motion_json"])["arcs"]
-    return Moving("drive", drawn, f"Angle, {drawn['turns']}", 360.0, 0.5, acting)
+    motion = json.loads(drawn["motion_json"])
+    still = {"motion_json": json.dumps({**motion, "arcs": []}), "loaded": True}
+    return Moving(
+        "drive", {**drawn, **still}, f"Angle, {drawn['turns']}", 360.0, 0.5, motion["arcs"]
+    )
 
 
 DRIVE = Section(
