@@ -214,9 +214,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 COMPARED = [line for line in SHELL if " compare " in line]
 """Designs beside each other, computed by tests of their own."""
+EXPLORED = [line for line in SHELL if " explore " in line]
 
 
-@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED}))
+@pytest.mark.parametrize("line", sorted({*SHELL} - {*SET_UP, *COMPARED, *EXPLORED}))
 def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parsed and laid out as far as the computation itself."""
     laid_out = []
@@ -245,6 +246,17 @@ def test_designs_that_are_compared(line: str, folder: Path) -> None:
     found = [wanted(one) for one in references]
     assert [one.variant for one in found] == [None, "physical"]
     assert all(run.describe(one.case, only=[one.variant] if one.variant else []) for one in found)
+
+
+@pytest.mark.parametrize("line", EXPLORED)
+def test_a_page_with_sliders(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    program, *arguments = shlex.split(line)
+    assert program == ".venv/bin/pitchpoint"
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", *arguments])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert caught.value.code == 0
+    assert "First stage of a robot joint" in (folder / "pair.html").read_text("utf-8")
 
 
 @pytest.mark.parametrize("sweep", re.findall(r"`--sweep (\S+=\S+)`", PAGES["guide/pairs.md"]))

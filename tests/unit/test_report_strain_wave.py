@@ -20,6 +20,7 @@ from pitchpoint.gears.strain_wave.family import FAMILY
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
+from pitchpoint.views.explorer import Reader
 from pitchpoint.views.figures import Figure, Panel, curves
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point, period_of
@@ -304,6 +305,20 @@ def whole() -> Outcome:
             "loss_map": loss_map(),
         }
     )
+
+
+def test_an_explorer_keeps_one_drawing_and_which_teeth_carry_at_each_load(whole: Outcome) -> None:
+    read = Reader()
+    lighter = cycle()
+    lighter["load"] = lighter["load"].where(lighter["load"] > 20.0, 0.0)
+    heavy, light = (
+        read(outcome({"teeth": teeth(), "cycle": one})) for one in (cycle(), lighter)
+    )
+    assert (heavy.drawing, light.drawing, len(read.drawings)) == (0, 0, 1)
+    assert read.drawings[0].kind == "drive"
+    assert heavy.acting == loaded_arcs(whole)
+    assert heavy.acting[0][0] < light.acting[0][0] < light.acting[-1][1] < heavy.acting[-1][1]
+    assert {*heavy.courses} == {"efficiency", "input_torque"}
 
 
 @pytest.fixture(scope="module")
