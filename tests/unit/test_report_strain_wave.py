@@ -311,9 +311,7 @@ def test_an_explorer_keeps_one_drawing_and_which_teeth_carry_at_each_load(whole:
     read = Reader()
     lighter = cycle()
     lighter["load"] = lighter["load"].where(lighter["load"] > 20.0, 0.0)
-    heavy, light = (
-        read(outcome({"teeth": teeth(), "cycle": one})) for one in (cycle(), lighter)
-    )
+    heavy, light = (read(outcome({"teeth": teeth(), "cycle": one})) for one in (cycle(), lighter))
     assert (heavy.drawing, light.drawing, len(read.drawings)) == (0, 0, 1)
     assert read.drawings[0].kind == "drive"
     assert heavy.acting == loaded_arcs(whole)
