@@ -183,7 +183,7 @@ def test_a_pinion_of_steel_and_a_wheel_of_plastic() -> None:
     }
     given = strength_of(path, {**limits, "strength.treatment": "case_hardened"})
     stress, safety = given["root_stress"].values, given["root_safety"].values
-    assert safety[1] == pytest.approx(30e6 / stress[1], rel=1e-12)
+    assert safety[1] == pytest.approx(2.0 * 30e6 / stress[1], rel=1e-12)  # Y_St = 2
     assert json.loads(given.attrs["withheld"]) == []
 
 

@@ -154,7 +154,7 @@ def _strengths(table: StrengthTable, used: Used, plastic: tuple[bool, bool]) -> 
         solids=(used[0].solid, used[1].solid),
         flank=array(_limits(table.sigma_hlim, "sigma_hlim", used)),
         root=array(_limits(table.sigma_flim, "sigma_flim", used)),
-        constants=Constants.of(first, second, plastic),
+        constants=Constants.of(first, second),
         plastic=array(plastic),
         work_hardening=array(table.work_hardening or (1.0, 1.0)),
         mean_stress=array(table.mean_stress_factor or (1.0, 1.0)),

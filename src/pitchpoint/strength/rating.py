@@ -225,8 +225,15 @@ def _flank(
     stress = single * found["nominal_contact_stress"] * jnp.sqrt(load)
     limiting = _flank_factors(pair, speed, strengths, finish, duty)
     limit = strengths.flank * _product(limiting)
-    safety = {"contact_stress": stress, "contact_limit": limit, "flank_safety": limit / stress}
-    return found | limiting | safety
+    return {
+        **found,
+        **limiting,
+        "flank_endurance": strengths.flank,
+        "flank_cycles": jnp.where(strengths.plastic, jnp.nan, duty.cycles_flank),
+        "contact_stress": stress,
+        "contact_limit": limit,
+        "flank_safety": limit / stress,
+    }
 
 
 def _product(factors: Rating) -> Both:
@@ -291,20 +298,21 @@ def _flank_factors(
     softer = jnp.nanmin(jnp.where(metal, strengths.flank, jnp.nan))
     rolling = pair.base_radii * jnp.tan(pair.working_pressure_angle)
     level, few, many = strengths.constants.flank
+    first, slope, least = strengths.constants.flank_size
+    share = limits.endurance_share(cycles=duty.cycles_flank, few=few, many=many)
     found = {
-        "flank_life_factor": limits.life_factor(
-            cycles=duty.cycles_flank, level=level, few=few, many=many
-        ),
         "lubricant_factor": flank.lubricant_factor(viscosity=finish.viscosity, limit=softer),
         "velocity_factor": flank.velocity_factor(speed=speed, limit=softer),
         "roughness_factor": flank.roughness_factor(
             roughness=finish.flank, radius=jnp.prod(rolling) / jnp.sum(rolling), limit=softer
         ),
-        "work_hardening_factor": strengths.work_hardening,
-        "flank_size_factor": flank.size_factor(
-            module=pair.module, slope=strengths.constants.flank_size
-        ),
+        "flank_size_factor": flank.size_factor(module=pair.module, a=first, b=slope, least=least),
     }
+    found = {
+        name: limits.at_life(endurance=one, static=1.0, share=share) for name, one in found.items()
+    }
+    life = limits.life_factor(cycles=duty.cycles_flank, level=level, few=few, many=many)
+    found |= {"flank_life_factor": life, "work_hardening_factor": strengths.work_hardening}
     return {name: jnp.where(metal, one, 1.0) for name, one in found.items()}
 
 
@@ -328,13 +336,15 @@ def _root(
     load = k["application_factor"] * k["dynamic_factor"]
     load *= k["root_face_load_factor"] * k["root_transverse_load_factor"]
     stress = nominal * load
-    notch = dimensions["notch_parameter"]
+    notch = dimensions["notch_parameter"], shape["stress_correction_factor"]
     limiting = _root_limit_factors(pair, notch, strengths, finish, duty)
-    limit = strengths.root * strengths.constants.test_gear * _product(limiting)
+    limit = strengths.root * limits.STRESS_CORRECTION * _product(limiting)
     return {
         **dimensions,
         **shape,
         **limiting,
+        "root_endurance": strengths.root,
+        "root_cycles": jnp.where(strengths.plastic, jnp.nan, duty.cycles_root),
         "nominal_root_stress": nominal,
         "root_stress": stress,
         "root_limit": limit,
@@ -423,23 +433,32 @@ def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Ra
 
 
 def _root_limit_factors(
-    pair: RatedPair, notch: Both, strengths: Strengths, finish: Finish, duty: Duty
+    pair: RatedPair,
+    notch: tuple[Both, Both],
+    strengths: Strengths,
+    finish: Finish,
+    duty: Duty,
 ) -> Rating:
+    """Factors at the number of cycles, from q_s and Y_S of both gears."""
     own, metal = strengths.constants, ~strengths.plastic
     level, few, many = own.root
     a, b, n, smooth = own.surface
     first, slope, least = own.root_size
+    share = limits.endurance_share(cycles=duty.cycles_root, few=few, many=many)
+    parameter, correction = notch
+    notched = limits.notch_sensitivity_factor(notch=parameter, slip_layer=own.slip_layer)
+    static = limits.static_notch_sensitivity_factor(
+        stress_correction=correction, slope=own.static_notch
+    )
+    surface = limits.surface_factor(roughness=finish.root, a=a, b=b, n=n, smooth=smooth)
+    size = limits.size_factor(module=pair.module, a=first, b=slope, least=least)
     found = {
         "root_life_factor": limits.life_factor(
             cycles=duty.cycles_root, level=level, few=few, many=many
         ),
-        "notch_sensitivity_factor": limits.notch_sensitivity_factor(
-            notch=notch, slip_layer=own.slip_layer
-        ),
-        "surface_factor": limits.surface_factor(
-            roughness=finish.root, a=a, b=b, n=n, smooth=smooth
-        ),
-        "root_size_factor": limits.size_factor(module=pair.module, a=first, b=slope, least=least),
+        "notch_sensitivity_factor": limits.at_life(endurance=notched, static=static, share=share),
+        "surface_factor": limits.at_life(endurance=surface, static=1.0, share=share),
+        "root_size_factor": limits.at_life(endurance=size, static=1.0, share=share),
     }
     found = {name: jnp.where(metal, one, 1.0) for name, one in found.items()}
     return {**found, "mean_stress_factor": strengths.mean_stress}
