@@ -92,7 +92,7 @@ def duty(load: float, rpm: float, flank: float = 5e7, root: float = 3e6) -> Duty
     return Duty(numbers(load), numbers(speed), numbers(flank, flank), numbers(root, root))
 
 
-FINISH = Finish(numbers(1.8e-6), numbers(20e-6, 20e-6), numbers(90.02e-6))
+FINISH = Finish(numbers(0.0, 0.0), numbers(1.8e-6), numbers(20e-6, 20e-6), numbers(90.02e-6))
 
 
 def rating(
@@ -220,13 +220,15 @@ def test_a_plastic_wheel_by_vdi_2736(base: CylindricalPair) -> None:
     assert found["root_stress"][1] / 1e6 == pytest.approx(77.896, rel=3e-3)
     assert found["form_factor"][1] == pytest.approx(2.211, abs=1.5e-3)  # Y_Fa of STplus
     assert found["stress_correction_factor"][1] == pytest.approx(1.904, abs=1e-3)
-    assert found["root_safety"][1] == pytest.approx(2.0 * 35e6 / found["root_stress"][1])  # Y_St = 2
+    assert found["root_safety"][1] == pytest.approx(
+        2.0 * 35e6 / found["root_stress"][1]
+    )  # Y_St = 2
     assert found["flank_safety"][1] == pytest.approx(80e6 / found["contact_stress"][1])
 
 
 # Example 1 of ISO/TR 6336-30: dimensions and duty stand in two public repositories, tkuhn39/semesterthesis
-# (2022 edition, annex A) and gfsReboucas/Drivetrain (MATISO_6336.m, 2017 edition). The factors and stresses of
-# the flank are printed in the latter only, beside that program's own.
+# (2022 edition, annex A) and gfsReboucas/Drivetrain (MATISO_6336.m, 2017 edition). The factors and stresses
+# of the flank are printed in the latter only, beside that program's own.
 
 
 @pytest.fixture(scope="module")
@@ -249,7 +251,7 @@ def example_1(base: CylindricalPair) -> Found:
     asked = duty(9000.0 * 103.0 / 17.0, 360.0)
     asked = replace(asked, cycles_flank=numbers(1.080e9, 1.783e8))
     loads = factors(dynamic=1.003, face=1.16, correction=1.0)
-    finish = Finish(numbers(6e-6), numbers(6e-6, 6e-6), numbers(320e-6))
+    finish = Finish(numbers(0.0, 0.0), numbers(6e-6), numbers(6e-6, 6e-6), numbers(320e-6))
     return rating(pair, 1.54909, asked, loads, both, finish)
 
 
@@ -284,7 +286,9 @@ def test_example_1_of_iso_tr_6336_30(example_1: Found, name: str) -> None:
 
 def test_face_load_factor_of_the_root_of_example_1() -> None:
     """From its tip and root diameters, those of teeth cut with x_E."""
-    factor = root_face_load_factor(flank=1.16, face_width=0.1, height=(159.66e-3 - 120.825e-3) / 2.0)
+    factor = root_face_load_factor(
+        flank=1.16, face_width=0.1, height=(159.66e-3 - 120.825e-3) / 2.0
+    )
     assert float(factor) == pytest.approx(1.12803, abs=2e-5)
 
 
@@ -302,8 +306,8 @@ def kisssoft(**changed: Any) -> Strengths:
 def test_a_helical_stage_as_kisssoft_prints_it(base: CylindricalPair) -> None:
     """Third stage. The edition of 2019 has f_eps in Y_F and a cube of the cosine in Y_beta beside it.
 
-    The angle of the force is 0.015 and 0.009 deg more there, and with it the arm 0.2 % longer; spur gears have
-    all digits, as the helical pinion of the FVA Workbench below.
+    The angle of the force is 0.015 and 0.009 deg more there, and with it the arm 0.2 % longer; spur gears
+    have all digits, as the helical pinion of the FVA Workbench below.
     """
     helix, ratio = radians(10.0), 61.276 / 41.891
     pair = with_circles(
@@ -320,7 +324,7 @@ def test_a_helical_stage_as_kisssoft_prints_it(base: CylindricalPair) -> None:
     cycles = numbers(12255.788e6, 3096.199e6)
     asked = replace(asked, cycles_flank=cycles, cycles_root=cycles)
     loads = factors(application=1.25, dynamic=1.092, face=1.15, transverse=1.069, correction=1.0)
-    finish = Finish(numbers(4.8e-6), numbers(20e-6, 20e-6), numbers(220e-6))
+    finish = Finish(numbers(0.0, 0.0), numbers(4.8e-6), numbers(20e-6, 20e-6), numbers(220e-6))
     found = rating(pair, ratio, asked, loads, kisssoft(), finish)
     for name, printed, within in (
         ("reference_force", 240064.4, 10.0),
@@ -383,7 +387,7 @@ def test_sun_and_planet_as_kisssoft_prints_them(base: CylindricalPair) -> None:
     asked = duty(779454.877 * 0.765 / 2.0, 60.0 * 1.60 / pi / 0.855)
     cycles = numbers(1124.7e6, 419.0e6)
     asked = replace(asked, cycles_flank=cycles, cycles_root=cycles)
-    finish = Finish(numbers(4.8e-6), numbers(20e-6, 20e-6), numbers(220e-6))
+    finish = Finish(numbers(0.0, 0.0), numbers(4.8e-6), numbers(20e-6, 20e-6), numbers(220e-6))
     found = rating(pair, 1.115, asked, factors(), kisssoft(mean_stress=numbers(1.0, 0.7)), finish)
     for name, printed, within in (
         ("tangential_force", 731585.690, 10.0),

@@ -24,7 +24,7 @@ from pitchpoint.cases.loss_sets import expanded, named_set
 from pitchpoint.errors import CollectedInputError, InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, Deviation, GearsTable
-from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
+from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.xu2021.table import ZoneFilms
@@ -1129,16 +1129,6 @@ class WornTable(Table):
 _TREATMENT = named(_treatments, "heat treatment")
 
 
-def _of_both(value: Any) -> tuple[str, str]:
-    """Heat treatments of gear 1 and gear 2 from one name or a list of two."""
-    given = value if isinstance(value, list | tuple) else [value, value]
-    if len(given) != 2:
-        raise InputError(
-            f"{shown(value)} has {len(given)} values; give one for both gears, or a list of two"
-        )
-    return _TREATMENT(given[0]), _TREATMENT(given[1])
-
-
 class StrengthTable(Table):
     """What the strength of a pair of cylindrical gears depends on beside its dimensions and its load.
 
@@ -1161,7 +1151,7 @@ class StrengthTable(Table):
     life: Annotated[float, LIFE] | None = None
     sigma_hlim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
     sigma_flim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
-    treatment: Annotated[tuple[str, str], BeforeValidator(_of_both)] | None = None
+    treatment: Annotated[tuple[str, str], BeforeValidator(for_both(_TREATMENT))] | None = None
     work_hardening: Annotated[tuple[float, float], Pair(HARDENING)] | None = None
     mean_stress_factor: Annotated[tuple[float, float], Pair(REVERSED)] | None = None
     flank_roughness: Annotated[tuple[float, float], Pair(PEAK_TO_VALLEY)] | None = None

@@ -46,6 +46,10 @@ STRENGTH: Final = {
     "form_factor": _factor("tooth form factor", "Y_F"),
     "stress_correction_factor": _factor("stress correction factor", "Y_S"),
     "root_helix_factor": _factor("helix angle factor of the root", "Y_β"),
+    "rim_backup": _factor(
+        "thickness of the rim over the height of the teeth, of a ring over the module",
+        "s_R/h, s_R/m_n",
+    ),
     "rim_factor": _factor("rim thickness factor", "Y_B"),
     "root_contact_ratio_factor": _factor(
         "deep tooth factor, contact ratio factor of plastic gears", "Y_DT"

@@ -82,14 +82,16 @@ class Strengths(eqx.Module):
 
 
 class Finish(eqx.Module):
-    """Surfaces and oil.
+    """How the teeth are finished, and the oil.
 
     Attributes:
+        thickness: allowance of the normal tooth thickness of both gears, 0 for nominal teeth [m].
         flank: mean Rz of both flanks [m].
         root: Rz of the root fillets of both gears [m].
         viscosity: nu_40 of the oil [m2/s].
     """
 
+    thickness: Both
     flank: One
     root: Both
     viscosity: One
@@ -325,7 +327,7 @@ def _root(
     finish: Finish,
     duty: Duty,
 ) -> Rating:
-    shape, dimensions = _tooth_form(pair, strengths)
+    shape, dimensions = _tooth_form(_cut(pair, finish), strengths)
     shape |= _root_factors(pair, factors, strengths)
     nominal = root.nominal_root_stress(
         force=forces.reference,
@@ -343,6 +345,7 @@ def _root(
         **dimensions,
         **shape,
         **limiting,
+        "rim_backup": _backup(pair),
         "root_endurance": strengths.root,
         "root_cycles": jnp.where(strengths.plastic, jnp.nan, duty.cycles_root),
         "nominal_root_stress": nominal,
@@ -350,6 +353,12 @@ def _root(
         "root_limit": limit,
         "root_safety": limit / stress,
     }
+
+
+def _cut(pair: RatedPair, finish: Finish) -> RatedPair:
+    """The pair with the shifts x_E with which its teeth are cut, x + A_sn/(2 m_n tan(alpha_n))."""
+    thinner = finish.thickness / (2.0 * pair.module * jnp.tan(pair.pressure_angle))
+    return dataclasses.replace(pair, profile_shift=pair.profile_shift + thinner)
 
 
 def _virtual(pair: RatedPair) -> tuple[Both, One]:
@@ -415,10 +424,9 @@ def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Ra
     """Y_beta, Y_B, Y_DT; Y_eps in the place of the last of plastic gears, whose force is at the tip."""
     _, ratio = _virtual(pair)
     skew = {"helix_angle": pair.helix_angle, "overlap_ratio": pair.overlap_ratio}
+    backup = _backup(pair)
     rim = jnp.where(
-        pair.teeth < 0.0,
-        root.ring_rim_factor(thickness=pair.rim_thickness, module=pair.module),
-        root.rim_factor(thickness=pair.rim_thickness, height=_heights(pair)),
+        pair.teeth < 0.0, root.ring_rim_factor(backup=backup), root.rim_factor(backup=backup)
     )
     deep = root.deep_tooth_factor(virtual_contact_ratio=ratio, accurate=factors.accurate)
     several = vdi_2736.contact_ratio_factor(virtual_contact_ratio=ratio)
@@ -430,6 +438,11 @@ def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Ra
         "rim_factor": jnp.where(plastic, 1.0, rim),
         "root_contact_ratio_factor": jnp.where(plastic, several, deep),
     }
+
+
+def _backup(pair: RatedPair) -> Both:
+    """Rim thickness over tooth height, of a ring over the module."""
+    return pair.rim_thickness / jnp.where(pair.teeth < 0.0, pair.module, _heights(pair))
 
 
 def _root_limit_factors(

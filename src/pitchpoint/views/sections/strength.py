@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import xarray as xr
 
+from pitchpoint.cases.failures import apart
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
@@ -60,6 +61,7 @@ _ROOT = (
     "form_factor",
     "stress_correction_factor",
     "root_helix_factor",
+    "rim_backup",
     "rim_factor",
     "root_contact_ratio_factor",
     "nominal_root_stress",
@@ -155,7 +157,8 @@ def _blocks(page: Page) -> Iterator[Block]:
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("strength")
     if data is not None:
-        line = " ".join([*_told(data, "warnings"), *_caveats(data)])
+        doubts = apart(_told(data, "warnings"))["warnings"]  # what fails stands first
+        line = " ".join([*doubts, *_caveats(data)])
         yield Printed("Strength of the teeth", strength_rows(outcome), line)
 
 
