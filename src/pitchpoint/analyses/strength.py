@@ -13,6 +13,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails, in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.results.store import dataset
+from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import rated
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
 
@@ -27,7 +28,6 @@ _MAIN = (
     "root_stress",
     "root_safety",
 )
-_SUBCRITICAL = 10.0  # m/s
 _SHARED = 2.0
 _LEAST_NOTCH, _MOST_NOTCH = 1.0, 8.0
 _DEEPEST = 2.5
@@ -39,7 +39,9 @@ _RING = (
     "The root of the ring is rated on its own fillet, an arc, where tangents make 60 degrees with the middle "
     "of the tooth; a pinion cutter leaves another one."
 )
-_THINNED = "Roots are those of the thinnest teeth that [gears.inspection] allows; flanks and forces are nominal."
+_THINNED = (
+    "Roots are those of the thinnest teeth that [gears.inspection] allows; all else is nominal."
+)
 _SINGLE = "Forces and stresses are those without friction and losses, for the load at the output."
 
 _PARTS = {
@@ -146,10 +148,11 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
     )
     given = built.case.strength is not None and built.case.strength.dynamic_factor is not None
     steel = not any(used.plastic for used in built.solids)
-    if resonance >= _SUBCRITICAL and steel and not given:
+    if resonance > MOST_RESONANCE and steel and not given:
         yield (
-            f"K_v by method C holds below resonance, for less than {_SUBCRITICAL:g} m/s; this pair is at "
-            f"{resonance:.3g} m/s: give dynamic_factor in [strength]."
+            f"K_v by method C holds well below resonance, up to (v z_1/100) sqrt(u²/(1 + u²)) = "
+            f"{MOST_RESONANCE:.2g} m/s, at which it stays; this pair is at {resonance:.3g} m/s: give "
+            "dynamic_factor in [strength]."
         )
     for gear, notch in enumerate(found["notch_parameter"], 1):
         if not _LEAST_NOTCH <= notch < _MOST_NOTCH:
@@ -162,8 +165,8 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
         least, of = (THINNEST_RING, "modules") if ring else (THINNEST_RIM, "tooth heights")
         if backup < least:
             yield (
-                f"The rim of gear {gear} is {backup:.3g} {of} thick and Y_B is known down to {least:g}: its root "
-                "stress is higher, and the rim itself may break."
+                f"The rim of gear {gear} is {backup:.3g} {of} thick and Y_B is known down to {least:g}: its "
+                "root stress is higher, and the rim itself may break."
             )
     if _SHARED < float(ratio) <= _DEEPEST and not getattr(built.case.gears, "helix_angle", 0.0):
         yield (

@@ -125,7 +125,8 @@ def _class(table: StrengthTable, case: Case) -> tuple[int, str]:
         taken,
         ""
         if taken == worse
-        else f"K_v of accuracy class {taken}, the nearest that is known, for gears of class {worse}",
+        else f"K_v of accuracy class {taken} for gears of class {worse}"
+        + ", which have more" * (taken < worse),
     )
 
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from math import inf
 
 import xarray as xr
 
@@ -99,10 +100,12 @@ def strength_rows(outcome: Outcome) -> list[dict[str, str]]:
 
 
 def _cell(data: xr.Dataset, name: str, gear: int) -> str:
-    """Value of a gear, or of both; a dash where it is withheld."""
+    """Value of a gear, or of both; a dash where it is withheld, without load a safety without end."""
     values = data[name].values
     value = float(values[gear] if values.ndim else values)
-    return "–" if value != value else shown(name, value, data)
+    if value != value:
+        return "–"
+    return "∞" if value == inf else shown(name, value, data)
 
 
 def _told(data: xr.Dataset, name: str) -> list[str]:
