@@ -20,6 +20,7 @@ from pitchpoint.materials import solids
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 from pitchpoint.results.strength import STRENGTH
+from pitchpoint.results.variables import VARIABLES
 from pitchpoint.strength.limits import Constants
 from pitchpoint.strength.load_factors import CLASSES, root_face_load_factor
 from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths, rated
@@ -587,6 +588,7 @@ def test_the_root_of_a_rack_is_a_straight_tooth(base: CylindricalPair) -> None:
 
 def test_every_number_has_its_name(fzg: Found) -> None:
     assert fzg.keys() == STRENGTH.keys()
+    assert all(VARIABLES[name] == one for name, one in STRENGTH.items())  # no other takes its name
     assert all(value.shape in ((), (2,)) for value in fzg.values())
 
 

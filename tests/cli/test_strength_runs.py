@@ -230,7 +230,7 @@ def test_thin_rims_and_fast_pairs_are_told(pair_file: Path) -> None:
     (fast,) = told(strength_of(pair_file, {"operation.speed": "20000 rpm"}))
     assert "give dynamic_factor" in fast
     numbers = [
-        float(strength_of(pair_file, {"operation.speed": f"{rpm} rpm"})["dynamic_factor"])
+        float(strength_of(pair_file, {"operation.speed": f"{rpm} rpm"})["rated_dynamic_factor"])
         for rpm in (1000, 4000, 7000, 50_000)
     ]
     assert numbers == sorted(numbers)  # the formula falls, below 1 in the end
@@ -271,7 +271,7 @@ def test_stages_are_rated_each_by_itself() -> None:
         .replace('"50 N m"', '"300 N m"')
     )
     one = computed(alone, None, "strength", **{"operation.speed": f"{1500.0 * 23 / 61} rpm"})
-    for name in ("tangential_force", "contact_stress", "root_stress", "dynamic_factor"):
+    for name in ("tangential_force", "contact_stress", "root_stress", "rated_dynamic_factor"):
         values = data[name].sel(stage=2).values
         np.testing.assert_allclose(values, one.parts["strength"][name].values, rtol=1e-10)
     told = json.loads(data.attrs["withheld"])

@@ -86,7 +86,7 @@ def check(data: xr.Dataset) -> None:
     known = data["flank_endurance"].notnull()
     assert (data["flank_safety"].notnull() == known).all()
     assert (data["root_safety"].notnull() == data["root_endurance"].notnull()).all()
-    assert (data["dynamic_factor"] >= 1.0).all()
+    assert (data["rated_dynamic_factor"] >= 1.0).all()
     assert (data["single_contact_factor"] >= 1.0).all()
     failing = (data["flank_safety"] < 1.0).sum() + (data["root_safety"] < 1.0).sum()
     told = [text for text in json.loads(data.attrs["warnings"]) if text.startswith("Fails: ")]
@@ -113,7 +113,7 @@ def explore(examples: int) -> None:
             check(found)
 
     draw()
-    assert counts["rated"] > examples / 6
+    assert counts["rated"] > examples / 10  # most of the others have gears that cannot run
 
 
 def test_random_ratings() -> None:

@@ -33,7 +33,10 @@ _LEAST_NOTCH, _MOST_NOTCH = 1.0, 8.0
 _DEEPEST = 2.5
 _HELIX = np.radians(30.0)
 
-_METHOD = "ISO 6336-2:2019 and ISO 6336-3:2019, method B"
+_METHOD = (
+    "ISO 6336-2:2019 and ISO 6336-3:2019, method B; K_v by method C of ISO 6336-1 unless it is given, the "
+    "other load factors as given"
+)
 _PLASTIC = "the root of plastic gears by VDI 2736 Part 2, force at the tip"
 _RING = (
     "The root of the ring is rated on its own fillet, an arc, where tangents make 60 degrees with the middle "

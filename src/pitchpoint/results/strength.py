@@ -21,7 +21,7 @@ STRENGTH: Final = {
         "speed against resonance, (v z_1/100) sqrt(u^2/(1 + u^2))", "N*", "m/s", "m/s", "velocity"
     ),
     "application_factor": _factor("application factor", "K_A"),
-    "dynamic_factor": _factor("dynamic factor", "K_v"),
+    "rated_dynamic_factor": _factor("dynamic factor", "K_v"),
     "face_load_factor": _factor("face load factor of the flank", "K_Hβ"),
     "transverse_load_factor": _factor("transverse load factor of the flank", "K_Hα"),
     "root_face_load_factor": _factor("face load factor of the root", "K_Fβ"),
@@ -48,11 +48,11 @@ STRENGTH: Final = {
     "root_helix_factor": _factor("helix angle factor of the root", "Y_β"),
     "rim_backup": _factor(
         "thickness of the rim over the height of the teeth, of a ring over the module",
-        "s_R/h, s_R/m_n",
+        "s_R/h",
     ),
     "rim_factor": _factor("rim thickness factor", "Y_B"),
     "root_contact_ratio_factor": _factor(
-        "deep tooth factor, contact ratio factor of plastic gears", "Y_DT"
+        "deep tooth factor, contact ratio factor of plastic gears", "Y_DT, Y_ε"
     ),
     "root_chord": length("chord of the root at the critical section", "s_Fn"),
     "bending_arm": length("arm of the force above that section", "h_F"),

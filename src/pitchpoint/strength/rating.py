@@ -15,6 +15,9 @@ from pitchpoint.strength.forces import ToothForces, tooth_forces
 
 __all__ = ["Duty", "Factors", "Finish", "Strengths", "rate", "rated"]
 
+_SHARPEST = 1e-3
+"""Radius in modules of a ring's fillet without one: its notch lies beyond the standard, and is told."""
+
 Both = Float[Array, "2"]
 One = Float[Array, ""]
 Rating = dict[str, Float[Array, "..."]]
@@ -194,7 +197,7 @@ def _load_factors(pair: RatedPair, forces: ToothForces, speed: One, factors: Fac
     return {
         "resonance_number": resonance,
         "application_factor": factors.application,
-        "dynamic_factor": _or(factors.dynamic, dynamic),
+        "rated_dynamic_factor": _or(factors.dynamic, dynamic),
         "face_load_factor": factors.face,
         "transverse_load_factor": factors.transverse,
         "root_face_load_factor": _or(factors.root_face, root_face),
@@ -222,7 +225,7 @@ def _flank(
 ) -> Rating:
     found = _nominal_contact(pair, forces, strengths)
     found["single_contact_factor"] = single = _single_contact(pair, factors, strengths)
-    load = k["application_factor"] * k["dynamic_factor"]
+    load = k["application_factor"] * k["rated_dynamic_factor"]
     load *= k["face_load_factor"] * k["transverse_load_factor"]
     stress = single * found["nominal_contact_stress"] * jnp.sqrt(load)
     limiting = _flank_factors(pair, speed, strengths, finish, duty)
@@ -335,7 +338,7 @@ def _root(
         module=pair.module,
         factors=_product(shape),
     )
-    load = k["application_factor"] * k["dynamic_factor"]
+    load = k["application_factor"] * k["rated_dynamic_factor"]
     load *= k["root_face_load_factor"] * k["root_transverse_load_factor"]
     stress = nominal * load
     notch = dimensions["notch_parameter"], shape["stress_correction_factor"]
@@ -411,7 +414,11 @@ def _sections(pair: RatedPair, teeth: Both) -> root.RootSection:
         generating_shift=pair.profile_shift,
     )
     half, distance, radius = pair.ring_section
-    ring = root.ring_section(half_chord=half, distance=distance, fillet_radius=radius)
+    ring = root.ring_section(
+        half_chord=half,
+        distance=distance,
+        fillet_radius=jnp.maximum(radius, _SHARPEST * pair.module),
+    )
     is_ring = pair.teeth < 0.0
     return root.RootSection(
         jnp.where(is_ring, ring.chord, cut.chord),

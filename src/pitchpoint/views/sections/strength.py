@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from math import inf
 
+import numpy as np
 import xarray as xr
 
 from pitchpoint.cases.failures import apart
@@ -28,7 +29,7 @@ _STRESSES = ("contact_stress", "flank_safety", "root_stress", "root_safety")
 
 _LOAD = (
     "application_factor",
-    "dynamic_factor",
+    "rated_dynamic_factor",
     "face_load_factor",
     "transverse_load_factor",
     "root_face_load_factor",
@@ -79,6 +80,9 @@ _ROOT = (
 )
 
 
+_COUNTED = ("flank_cycles", "root_cycles")
+
+
 def _pairs(data: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
     """Ratings of each stage with its name; one without a name of a pair by itself."""
     if "stage" not in data.dims:
@@ -105,6 +109,8 @@ def _cell(data: xr.Dataset, name: str, gear: int) -> str:
     value = float(values[gear] if values.ndim else values)
     if value != value:
         return "–"
+    if name in _COUNTED:
+        return f"{value:.4g}"
     return "∞" if value == inf else shown(name, value, data)
 
 
@@ -132,9 +138,8 @@ def _words(name: str, data: xr.Dataset) -> str:
 
 
 def _values(name: str, data: xr.Dataset) -> tuple[str, ...]:
-    """Values of both gears, or the one that they share."""
-    both = range(2) if data[name].values.ndim else range(1)
-    return tuple(_cell(data, name, gear) for gear in both)
+    """Values of both gears, also where they share one."""
+    return tuple(_cell(data, name, gear) for gear in range(2))
 
 
 def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
@@ -157,6 +162,20 @@ def _blocks(page: Page) -> Iterator[Block]:
     return by_variant(page, "strength", _blocks_of)
 
 
+def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """The least safeties, where they are known."""
+    data = outcome.parts.get("strength")
+    if data is None:
+        return
+    for term, name in (("Flanks", "flank_safety"), ("Roots", "root_safety")):
+        found = data[name].where(np.isfinite(data[name]))
+        if not found.isnull().all():
+            least = found.isel(found.argmin([*found.dims]))
+            place = [str(least["gear"].values)]
+            place += [f"stage {least['stage'].values}"] if "stage" in least.coords else []
+            yield f"{term}, least safety", f"{float(least):.3g}, {', '.join(place)}"
+
+
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("strength")
     if data is not None:
@@ -172,6 +191,7 @@ STRENGTH = Section(
     order=140.0,
     parts=("strength",),
     blocks=_blocks,
+    answer=_answer,
     warns=lambda one: _told(one.parts["strength"], "warnings") if "strength" in one.parts else (),
     screen=_screen,
 )
