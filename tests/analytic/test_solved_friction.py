@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sound import PAIR, WAVE
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.loss_map import LOSS_MAP
@@ -104,6 +104,18 @@ def test_films_and_forces_agree_as_in_a_loop_of_ones_own(spur):
     np.testing.assert_allclose(held, coefficients * carries, rtol=3e-6, atol=1e-9)
     lost = 1.0 - float(own.mean_efficiency)
     assert lost == pytest.approx(1.0 - float(found.mean_efficiency), rel=1e-6)
+
+
+def test_without_load_there_is_no_film_to_solve(spur):
+    case, found, _ = spur
+    models = case.models[0]
+    idle = case.operation.__class__(**{**vars(case.operation), "load": array(0.0)})
+    known = one_engagement(case.design, case.operation.load, models.without_friction, NODES)
+    at_rest = in_turns(case.design, idle, models, known)
+    assert Code(int(at_rest.status.code)).ok
+    assert int(at_rest.status.iterations) == 1
+    assert np.all(np.asarray(at_rest.balance.load) == 0.0)
+    assert np.any(np.asarray(found.balance.load) > 0.0)
 
 
 def test_the_energy_closes(spur):

@@ -10,6 +10,7 @@ from sound import PAIR
 from pitchpoint._jax import array
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.errors import InputError
+from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.views.section import Page, Paragraph, Table
 from pitchpoint.views.sections.inspection import INSPECTION as SECTION
@@ -71,6 +72,30 @@ def test_limits_of_backlash_are_those_of_thickness_and_distance(data) -> None:
     assert (most - least) / 2.0 == pytest.approx(35e-6 + 2 * np.tan(np.pi / 9) * 17.5e-6, rel=2e-3)
     first = data["backlash_angle"].sel(gear="gear 1").values[1:]
     np.testing.assert_allclose(first * 23e-3, [least, mean, most], rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("diameter", "upper", "lower"),
+    [
+        (0.341183, -130.0, -190.0),
+        (0.855, -175.0, -255.0),
+        (0.765, -175.0, -255.0),
+        (2.520, -430.0, -590.0),
+    ],
+)
+def test_allowances_as_kisssoft_prints_them(diameter: float, upper: float, lower: float) -> None:
+    """cd25 of four gears in @NREL_5MW/stage_01.rtf and stage_03.rtf of gfsReboucas/Drivetrain."""
+    found = thickness_allowances(field="cd25", diameter=diameter)
+    assert [1e6 * one for one in found] == pytest.approx([upper, lower])
+
+
+def test_a_field_of_din_3967_goes_by_the_reference_circle(built) -> None:
+    """46 mm and 122 mm, the numbers first as on drawings, or letters in capitals."""
+    data = inspection_part(built('[gears.inspection]\nthickness_field = ["25cd", "C 24"]\n'))
+    thickness = data["normal_thickness"].values
+    allowances = 1e6 * (thickness[:, 1:] - thickness[:, :1])
+    np.testing.assert_allclose(allowances, [[-54.0, -84.0], [-85.0, -110.0]], rtol=1e-9)
+    assert data.sizes["case"] == 4
 
 
 def test_discs_are_those_of_a_vibration(plain) -> None:
@@ -139,6 +164,13 @@ def test_teeth_that_can_jam_are_told(built) -> None:
             "of gear 1 is above its upper allowance",
         ),
         ('centre_distance_field = "h7"', "known symmetrical tolerance field"),
+        ('thickness_field = "cd35"', "not a known tolerance field of the tooth thickness"),
+        ('thickness_field = ["cd25"]', "has 1 values; give one for both gears"),
+        (
+            'thickness_field = "cd25"\nupper_thickness_allowance = "-40 um"\n'
+            'lower_thickness_allowance = "-60 um"',
+            "were both given; give one",
+        ),
         (
             'centre_distance_field = "js7"\ncentre_distance_deviation = "10 um"',
             "were both given; give one",

@@ -183,8 +183,78 @@ def test_a_pinion_of_steel_and_a_wheel_of_plastic() -> None:
     }
     given = strength_of(path, {**limits, "strength.treatment": "case_hardened"})
     stress, safety = given["root_stress"].values, given["root_safety"].values
-    assert safety[1] == pytest.approx(30e6 / stress[1], rel=1e-12)
+    assert safety[1] == pytest.approx(2.0 * 30e6 / stress[1], rel=1e-12)  # Y_St = 2
     assert json.loads(given.attrs["withheld"]) == []
+
+
+def told(data: Any) -> list[str]:
+    return [str(text) for text in json.loads(data.attrs["warnings"])]
+
+
+@pytest.fixture(scope="module")
+def pair_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("pair") / "pair.toml"
+    path.write_text(PAIR + RATED)
+    return path
+
+
+def test_teeth_that_do_not_bear_their_stress_stand_first(pair_file: Path) -> None:
+    fine = strength_of(pair_file, {"operation.torque": "200 N m"})
+    assert told(fine) == []
+    flanks = strength_of(pair_file, {"operation.torque": "500 N m", "strength.life": "9000 h"})
+    first, second = told(flanks)
+    stress, limit = flanks["contact_stress"].values / 1e6, flanks["contact_limit"].values / 1e6
+    assert first == (
+        f"Fails: the flanks of gear 1 bear {limit[0]:.4g} MPa and have {stress[0]:.4g} MPa (safety "
+        f"{limit[0] / stress[0]:.3g}): they pit within the life that is asked."
+    )
+    assert second.startswith("Fails: the flanks of gear 2 bear ")
+    both = told(strength_of(pair_file, {"operation.torque": "9000 N m"}))
+    assert [text.split(" bear ")[0] for text in both] == [
+        f"Fails: the {part} of gear {gear}" for gear in (1, 2) for part in ("flanks", "roots")
+    ]
+    assert all(text.endswith("sooner or later.") for text in both)
+
+
+def test_without_load_safeties_have_no_end() -> None:
+    idle = computed(PAIR + RATED, None, "strength", **{"operation.torque": "0 N m"})
+    rows = strength_rows(idle)
+    assert {row[name] for row in rows for name in row if name.startswith("S_")} == {"∞"}
+
+
+def test_thin_rims_and_fast_pairs_are_told(pair_file: Path) -> None:
+    thin = strength_of(pair_file, {"gears.bore_diameter": ["40 mm", "20 mm"]})
+    (rim,) = told(thin)
+    assert rim.startswith("The rim of gear 1 is 0.")
+    assert thin["rim_factor"].values == pytest.approx([1.6 * np.log(2.242 / 0.5), 1.0])
+    (fast,) = told(strength_of(pair_file, {"operation.speed": "20000 rpm"}))
+    assert "give dynamic_factor" in fast
+    numbers = [
+        float(strength_of(pair_file, {"operation.speed": f"{rpm} rpm"})["rated_dynamic_factor"])
+        for rpm in (1000, 4000, 7000, 50_000)
+    ]
+    assert numbers == sorted(numbers)  # the formula falls, below 1 in the end
+
+
+def test_roots_are_those_of_the_thinnest_teeth(pair_file: Path) -> None:
+    """By the field c26 of DIN 3967 for both gears, as a pair that is cut with x_E = x + A_sni/(2 m_n tan)."""
+    thin = strength_of(pair_file, {"gears.inspection.thickness_field": "26c"})
+    nominal = strength_of(pair_file)
+    allowances = np.array([65.0 + 50.0, 115.0 + 80.0]) * 1e-6  # of 47.6 and 126.3 mm
+    shifts = -allowances / (2.0 * 2e-3 * np.tan(np.radians(20.0)))
+    same = strength_of(
+        pair_file,
+        {
+            "gears.profile_shift": [float(one) for one in shifts],
+            "gears.centre_distance": f"{84.0 / float(np.cos(np.radians(15.0)))!r} mm",
+            "gears.tip_alteration": [float(-one) for one in shifts],
+        },
+    )
+    for name in ("root_chord", "root_fillet_radius", "load_angle", "bending_arm"):
+        np.testing.assert_allclose(thin[name], same[name], rtol=1e-9, err_msg=name)
+    assert (thin["root_stress"] > 1.03 * nominal["root_stress"]).all()
+    assert float(thin["nominal_contact_stress"]) == float(nominal["nominal_contact_stress"])
+    assert "thinnest teeth" in json.loads(thin.attrs["remarks"])[0]
 
 
 def test_stages_are_rated_each_by_itself() -> None:
@@ -201,7 +271,7 @@ def test_stages_are_rated_each_by_itself() -> None:
         .replace('"50 N m"', '"300 N m"')
     )
     one = computed(alone, None, "strength", **{"operation.speed": f"{1500.0 * 23 / 61} rpm"})
-    for name in ("tangential_force", "contact_stress", "root_stress", "dynamic_factor"):
+    for name in ("tangential_force", "contact_stress", "root_stress", "rated_dynamic_factor"):
         values = data[name].sel(stage=2).values
         np.testing.assert_allclose(values, one.parts["strength"][name].values, rtol=1e-10)
     told = json.loads(data.attrs["withheld"])

@@ -118,9 +118,9 @@ def inspection_part(built: Built) -> xr.Dataset:
     table = built.case.gears
     assert isinstance(table, CylindricalGears)
     asked = table.inspection or Inspection()
-    pair = [_measured(number, built, asked) for number in (0, 1)]
+    pair = [_measured(number, built, table, asked) for number in (0, 1)]
     each = [one.values() for one in pair]
-    plays = _plays(pair, asked, float(built.dimensions["centre_distance"]))
+    plays = _plays(pair, table, asked, float(built.dimensions["centre_distance"]))
     over = {0: ("gear",), 1: ("gear", "limit")}
     told = [
         f"The least backlash by tolerances is {1e6 * one.normal:.3g} um: the teeth can jam."
@@ -154,7 +154,7 @@ def inspection_part(built: Built) -> xr.Dataset:
     )
 
 
-def _measured(number: int, built: Built, asked: Inspection) -> _Measured:
+def _measured(number: int, built: Built, table: CylindricalGears, asked: Inspection) -> _Measured:
     mesh: Any = built.design.mesh
     drawn, angles = drawing_of(built), (float(mesh.pressure_angle), float(mesh.helix_angle))
     gear = Toothing(
@@ -165,7 +165,8 @@ def _measured(number: int, built: Built, asked: Inspection) -> _Measured:
         _roll(gear, float(drawn[name][number]))
         for name in ("form_radius", "active_root_radius", "tip_radius")
     )
-    given, balls, limits = asked.span_teeth, asked.ball_diameter, asked.allowances or ()
+    given, balls = asked.span_teeth, asked.ball_diameter
+    limits = table.thickness_allowances or ()
     return _Measured(
         name=f"gear {number + 1}",
         toothing=gear,
@@ -189,13 +190,15 @@ def _roll(gear: Toothing, radius: float) -> float:
     return sqrt(max(radius**2 - gear.base_radius**2, 0.0))
 
 
-def _plays(pair: list[_Measured], asked: Inspection, distance: float) -> list[Backlash]:
+def _plays(
+    pair: list[_Measured], table: CylindricalGears, asked: Inspection, distance: float
+) -> list[Backlash]:
     """Backlash of the nominal gears, and least, mean and largest one where tolerances are given."""
     gears, deviation = [one.toothing for one in pair], _deviation(asked, distance)
-    nominal = backlash(gears[0], gears[1], distance)
-    if asked.allowances is None and deviation is None:
+    nominal, allowed = backlash(gears[0], gears[1], distance), table.thickness_allowances
+    if allowed is None and deviation is None:
         return [nominal]
-    upper, lower = asked.allowances or ((0.0, 0.0), (0.0, 0.0))
+    upper, lower = allowed or ((0.0, 0.0), (0.0, 0.0))
     limits = backlash_limits(
         gears[0], gears[1], distance, upper=upper, lower=lower, deviation=deviation or 0.0
     )

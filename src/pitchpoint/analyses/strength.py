@@ -10,10 +10,12 @@ from pitchpoint._jax import array, jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.cases.build import Built
-from pitchpoint.cases.failures import in_stage
+from pitchpoint.cases.failures import fails, in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.results.store import dataset
+from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import rated
+from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
 
 __all__ = ["STRENGTH"]
 
@@ -26,18 +28,29 @@ _MAIN = (
     "root_stress",
     "root_safety",
 )
-_SUBCRITICAL = 10.0  # m/s
+_SHARED = 2.0
 _LEAST_NOTCH, _MOST_NOTCH = 1.0, 8.0
 _DEEPEST = 2.5
 _HELIX = np.radians(30.0)
 
-_METHOD = "ISO 6336-2:2019 and ISO 6336-3:2019, method B"
+_METHOD = (
+    "ISO 6336-2:2019 and ISO 6336-3:2019, method B; K_v by method C of ISO 6336-1 unless it is given, the "
+    "other load factors as given"
+)
 _PLASTIC = "the root of plastic gears by VDI 2736 Part 2, force at the tip"
 _RING = (
     "The root of the ring is rated on its own fillet, an arc, where tangents make 60 degrees with the middle "
     "of the tooth; a pinion cutter leaves another one."
 )
+_THINNED = (
+    "Roots are those of the thinnest teeth that [gears.inspection] allows; all else is nominal."
+)
 _SINGLE = "Forces and stresses are those without friction and losses, for the load at the output."
+
+_PARTS = {
+    "flanks": ("flank_safety", "contact_stress", "contact_limit", "pit"),
+    "roots": ("root_safety", "root_stress", "root_limit", "break"),
+}
 
 Numbers = Mapping[str, np.ndarray]
 
@@ -70,8 +83,8 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         method=_method([one for _, one in stages]),
         assumed=told(lambda one, _: _assumed(one)),
         withheld=told(lambda one, _: one.rated.withheld),
-        remarks=told(lambda one, _: [_RING] * _ring(one)) + [_SINGLE] * several,
-        warnings=told(_doubts),
+        remarks=told(lambda one, _: [*_remarks(one)]) + [_SINGLE] * several,
+        warnings=told(lambda one, found: [*_failing(one, found), *_doubts(one, found)]),
     )
     return data if several else data.isel(stage=0, drop=True)
 
@@ -108,6 +121,28 @@ def _ring(built: Built) -> bool:
     return min(getattr(built.case.gears, "teeth", (0.0,))) < 0.0
 
 
+def _remarks(built: Built) -> Iterator[str]:
+    if getattr(built.case.gears, "thickness_allowances", None) is not None:
+        yield _THINNED
+    if _ring(built):
+        yield _RING
+
+
+def _failing(built: Built, found: Numbers) -> Iterator[str]:
+    """Which teeth do not bear their stress."""
+    endless = built.case.strength is None or built.case.strength.life is None
+    when = "sooner or later" if endless else "within the life that is asked"
+    for at, gear in enumerate(("gear 1", "gear 2")):
+        for part, (safety, stress, limit, how) in _PARTS.items():
+            reached = float(found[safety][at])
+            if reached < 1.0:
+                bears, has = (found[name][at] / 1e6 for name in (limit, stress))
+                yield fails(
+                    f"the {part} of {gear} bear {bears:.4g} MPa and have {has:.4g} MPa (safety "
+                    f"{reached:.3g}): they {how} {when}."
+                )
+
+
 def _doubts(built: Built, found: Numbers) -> Iterator[str]:
     """Where a rating lies outside what the standards cover."""
     resonance, ratio = (
@@ -116,10 +151,11 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
     )
     given = built.case.strength is not None and built.case.strength.dynamic_factor is not None
     steel = not any(used.plastic for used in built.solids)
-    if resonance >= _SUBCRITICAL and steel and not given:
+    if resonance > MOST_RESONANCE and steel and not given:
         yield (
-            f"K_v by method C holds below resonance, for less than {_SUBCRITICAL:g} m/s; this pair is at "
-            f"{resonance:.3g} m/s: give dynamic_factor in [strength]."
+            f"K_v by method C holds well below resonance, up to (v z_1/100) sqrt(u²/(1 + u²)) = "
+            f"{MOST_RESONANCE:.2g} m/s, at which it stays; this pair is at {resonance:.3g} m/s: give "
+            "dynamic_factor in [strength]."
         )
     for gear, notch in enumerate(found["notch_parameter"], 1):
         if not _LEAST_NOTCH <= notch < _MOST_NOTCH:
@@ -127,6 +163,19 @@ def _doubts(built: Built, found: Numbers) -> Iterator[str]:
                 f"The notch parameter of gear {gear}, {notch:.3g}, is outside 1 to 8, for which Y_S was "
                 "derived."
             )
+    for gear, backup in enumerate(found["rim_backup"], 1):
+        ring = _ring(built) and gear == 2
+        least, of = (THINNEST_RING, "modules") if ring else (THINNEST_RIM, "tooth heights")
+        if backup < least:
+            yield (
+                f"The rim of gear {gear} is {backup:.3g} {of} thick and Y_B is known down to {least:g}: its "
+                "root stress is higher, and the rim itself may break."
+            )
+    if _SHARED < float(ratio) <= _DEEPEST and not getattr(built.case.gears, "helix_angle", 0.0):
+        yield (
+            "Above a transverse contact ratio of 2 Z_B and Z_D are 1 here; ISO 6336-2 has the inner point of "
+            "double contact."
+        )
     if float(ratio) > _DEEPEST:
         yield f"A transverse contact ratio of {float(ratio):.3g} is above the 2.5 that ISO 6336-2 covers."
     if getattr(built.case.gears, "helix_angle", 0.0) > _HELIX:

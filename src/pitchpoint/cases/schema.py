@@ -24,7 +24,7 @@ from pitchpoint.cases.loss_sets import expanded, named_set
 from pitchpoint.errors import CollectedInputError, InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
-from pitchpoint.input.quantities import Pair, Quantity, named, shown, text
+from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.xu2021.table import ZoneFilms
@@ -123,7 +123,7 @@ VIBRATION = Quantity("time", 1e-15, 1e-6, "s")
 LOAD_FACTOR = Quantity("dimensionless", 1.0, 10.0)
 ACCURACY = Quantity("dimensionless", 3, 8, whole=True)
 LIFE = Quantity("time", 0.0, 4e9, "h", open_low=True)
-ENDURED = Quantity("pressure", 1e6, 1e10, "MPa")
+ENDURED = Quantity("pressure", 1e6, 2.5e9, "MPa")
 HARDENING = Quantity("dimensionless", 0.5, 2.0)
 REVERSED = Quantity("dimensionless", 0.1, 1.0)
 PEAK_TO_VALLEY = Quantity("length", 0.0, 4e-4, "um", open_low=True)
@@ -1318,16 +1318,6 @@ class WornTable(Table):
 _TREATMENT = named(_treatments, "heat treatment")
 
 
-def _of_both(value: Any) -> tuple[str, str]:
-    """Heat treatments of gear 1 and gear 2 from one name or a list of two."""
-    given = value if isinstance(value, list | tuple) else [value, value]
-    if len(given) != 2:
-        raise InputError(
-            f"{shown(value)} has {len(given)} values; give one for both gears, or a list of two"
-        )
-    return _TREATMENT(given[0]), _TREATMENT(given[1])
-
-
 class StrengthTable(Table):
     """What the strength of a pair of cylindrical gears depends on beside its dimensions and its load.
 
@@ -1361,7 +1351,7 @@ class StrengthTable(Table):
     """Allowable stress number for contact σ_Hlim; that of the materials unless given."""
     sigma_flim: Annotated[tuple[float, float], Pair(ENDURED)] | None = None
     """Nominal stress number for bending σ_Flim; that of the materials unless given."""
-    treatment: Annotated[tuple[str, str], BeforeValidator(_of_both)] | None = None
+    treatment: Annotated[tuple[str, str], BeforeValidator(for_both(_TREATMENT))] | None = None
     """Heat treatment, one name or a list of two; that of the materials unless given."""
     work_hardening: Annotated[tuple[float, float], Pair(HARDENING)] | None = None
     """Work hardening factor Z_W; 1 unless given."""

@@ -101,7 +101,7 @@ def rated_case(case: Case, used: Used, oil: LubricantRecord, roughness: Roughnes
     return Rated(
         factors,
         strengths,
-        _finish(table, oil, roughness),
+        _finish(table, oil, roughness, _thinning(case)),
         tuple(_assumed(table, of_grade, plastic, helical=_helical(case))),
         tuple(_withheld(strengths, used)),
     )
@@ -123,7 +123,10 @@ def _class(table: StrengthTable, case: Case) -> tuple[int, str]:
     taken = min(max(worse, min(CLASSES)), max(CLASSES))
     return (
         taken,
-        "" if taken == worse else f"K_v of accuracy class {taken} for gears of class {worse}",
+        ""
+        if taken == worse
+        else f"K_v of accuracy class {taken} for gears of class {worse}"
+        + ", which have more" * (taken < worse),
     )
 
 
@@ -154,7 +157,7 @@ def _strengths(table: StrengthTable, used: Used, plastic: tuple[bool, bool]) -> 
         solids=(used[0].solid, used[1].solid),
         flank=array(_limits(table.sigma_hlim, "sigma_hlim", used)),
         root=array(_limits(table.sigma_flim, "sigma_flim", used)),
-        constants=Constants.of(first, second, plastic),
+        constants=Constants.of(first, second),
         plastic=array(plastic),
         work_hardening=array(table.work_hardening or (1.0, 1.0)),
         mean_stress=array(table.mean_stress_factor or (1.0, 1.0)),
@@ -194,10 +197,22 @@ def _treatment(table: StrengthTable, used: SolidInUse, gear: int) -> Treatment:
     return TREATMENTS["case_hardened"]  # without limits its factors lead to no safety
 
 
-def _finish(table: StrengthTable, oil: LubricantRecord, roughness: Roughness) -> Finish:
+def _thinning(case: Case) -> tuple[float, float] | None:
+    """Allowances of the thinnest teeth of both gears [m]; None where the case gives none."""
+    allowed = getattr(case.gears, "thickness_allowances", None)
+    return None if allowed is None else allowed[1]
+
+
+def _finish(
+    table: StrengthTable,
+    oil: LubricantRecord,
+    roughness: Roughness,
+    thinning: tuple[float, float] | None,
+) -> Finish:
     usual = _RZ_PER_RA * float(roughness.ra_1 + roughness.ra_2) / 2.0
     flank = usual if table.flank_roughness is None else sum(table.flank_roughness) / 2.0
     return Finish(
+        thickness=array(thinning or (0.0, 0.0)),
         flank=array(max(flank, 1e-7)),  # a perfectly smooth flank has no roughness factor
         root=array(table.root_roughness or (_ROOT_ROUGHNESS, _ROOT_ROUGHNESS)),
         viscosity=array(oil.nu_1.value),

@@ -98,8 +98,10 @@ def _change(held: np.ndarray, before: np.ndarray) -> float:
 
 
 def _asked(solver: Solver, at: dict[str, np.ndarray], before: np.ndarray) -> np.ndarray:
-    """Coefficients and rolling resistances at the contacts that carry; elsewhere as before."""
+    """Coefficients and rolling resistances at the contacts that carry, if any; elsewhere as before."""
     carries = at.pop("carries")
+    if not carries.any():
+        return before
     values = {name: np.broadcast_to(value, carries.shape)[carries] for name, value in at.items()}
     answer = np.asarray(solver(**values), dtype=float)
     _demand(solver, answer, len(before), int(carries.sum()))

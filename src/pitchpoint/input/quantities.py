@@ -13,7 +13,7 @@ from pydantic_core import CoreSchema, core_schema
 from pitchpoint import units
 from pitchpoint.errors import InputError, shorten
 
-__all__ = ["Pair", "Quantity", "SIValue", "named", "shown", "text"]
+__all__ = ["Pair", "Quantity", "SIValue", "for_both", "named", "shown", "text"]
 
 
 TOO_LONG = 10**40
@@ -185,6 +185,20 @@ def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], s
 
     read.known = registry  # type: ignore[attr-defined]  # what the schema for editors lists
     return read
+
+
+def for_both(read: Callable[[Any], str]) -> Callable[[Any], tuple[str, str]]:
+    """Validator of a name for gear 1 and gear 2, from one name or a list of two."""
+
+    def read_both(value: Any) -> tuple[str, str]:
+        given = value if isinstance(value, list | tuple) else [value, value]
+        if len(given) != 2:
+            raise InputError(
+                f"{shown(value)} has {len(given)} values; give one for both gears, or a list of two"
+            )
+        return read(given[0]), read(given[1])
+
+    return read_both
 
 
 def text(value: Any) -> str:

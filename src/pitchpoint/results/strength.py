@@ -21,7 +21,7 @@ STRENGTH: Final = {
         "speed against resonance, (v z_1/100) sqrt(u^2/(1 + u^2))", "N*", "m/s", "m/s", "velocity"
     ),
     "application_factor": _factor("application factor", "K_A"),
-    "dynamic_factor": _factor("dynamic factor", "K_v"),
+    "rated_dynamic_factor": _factor("dynamic factor", "K_v"),
     "face_load_factor": _factor("face load factor of the flank", "K_Hβ"),
     "transverse_load_factor": _factor("transverse load factor of the flank", "K_Hα"),
     "root_face_load_factor": _factor("face load factor of the root", "K_Fβ"),
@@ -33,6 +33,8 @@ STRENGTH: Final = {
     "single_contact_factor": _factor("single pair contact factor", "Z_B, Z_D"),
     "nominal_contact_stress": pressure("nominal contact stress at the pitch point", "σ_H0"),
     "contact_stress": pressure("contact stress", "σ_H"),
+    "flank_endurance": pressure("contact stress that test gears endure", "σ_Hlim"),
+    "flank_cycles": _factor("load cycles of the flank", "N_L"),
     "flank_life_factor": _factor("life factor of the flank", "Z_NT"),
     "lubricant_factor": _factor("lubricant factor", "Z_L"),
     "velocity_factor": _factor("velocity factor", "Z_v"),
@@ -44,9 +46,13 @@ STRENGTH: Final = {
     "form_factor": _factor("tooth form factor", "Y_F"),
     "stress_correction_factor": _factor("stress correction factor", "Y_S"),
     "root_helix_factor": _factor("helix angle factor of the root", "Y_β"),
+    "rim_backup": _factor(
+        "thickness of the rim over the height of the teeth, of a ring over the module",
+        "s_R/h",
+    ),
     "rim_factor": _factor("rim thickness factor", "Y_B"),
     "root_contact_ratio_factor": _factor(
-        "deep tooth factor, contact ratio factor of plastic gears", "Y_DT"
+        "deep tooth factor, contact ratio factor of plastic gears", "Y_DT, Y_ε"
     ),
     "root_chord": length("chord of the root at the critical section", "s_Fn"),
     "bending_arm": length("arm of the force above that section", "h_F"),
@@ -55,12 +61,14 @@ STRENGTH: Final = {
     "notch_parameter": _factor("notch parameter", "q_s"),
     "nominal_root_stress": pressure("nominal root stress", "σ_F0"),
     "root_stress": pressure("root stress", "σ_F"),
+    "root_endurance": pressure("nominal root stress that test gears endure", "σ_Flim"),
+    "root_cycles": _factor("load cycles of the root", "N_L"),
     "root_life_factor": _factor("life factor of the root", "Y_NT"),
     "notch_sensitivity_factor": _factor("relative notch sensitivity factor", "Y_δrelT"),
     "surface_factor": _factor("relative surface factor", "Y_RrelT"),
     "root_size_factor": _factor("size factor of the root", "Y_X"),
     "mean_stress_factor": _factor("factor of load in both directions", "Y_M"),
-    "root_limit": pressure("permissible root stress with safety 1", "σ_FP"),
+    "root_limit": pressure("permissible root stress with safety 1, Y_ST = 2 in it", "σ_FP"),
     "root_safety": _factor("root safety", "S_F"),
 }
 """Variables of a rating."""

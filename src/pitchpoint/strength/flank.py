@@ -158,7 +158,7 @@ def single_contact_factor(
         own_tip, other_tip: sqrt((d_a/d_b)^2 - 1) of the gear and its mate, shape (...) [1].
         own_teeth, other_teeth: z, negative for a ring, shape (...) [1].
         working_pressure_angle: alpha_wt, shape (...) [rad].
-        transverse_contact_ratio: eps_alpha; above 2 the factor is 1, shape (...) [1].
+        transverse_contact_ratio: eps_alpha; above 2 that of spur gears is 1, shape (...) [1].
         overlap_ratio: eps_beta; above 1 as 1, shape (...) [1].
         correction: f_ZCa of helical gears, shape (...) [1].
 
@@ -178,8 +178,8 @@ def single_contact_factor(
     other = other_tip - (ratio - 1.0) * 2.0 * jnp.pi / other_teeth
     curved = jnp.maximum(own * other, 1e-12)
     spur = jnp.maximum(jnp.tan(working_pressure_angle) / jnp.sqrt(curved), 1.0)
-    helical = jnp.sqrt(correction)
-    return jnp.where(ratio > 2.0, 1.0, spur + overlap * (helical - spur))
+    spur = jnp.where(ratio > 2.0, 1.0, spur)
+    return spur + overlap * (jnp.sqrt(correction) - spur)
 
 
 def _softness(limit: Each, low: float, high: float) -> Found:
@@ -240,18 +240,19 @@ def roughness_factor(*, roughness: Each, radius: Each, limit: Each) -> Found:
     return (3.0 / relative) ** _softness(limit, 0.15, 0.08)
 
 
-def size_factor(*, module: Each, slope: Each) -> Found:
-    """Size factor of the flank Z_X = 1.05 - s m_n with m_n in mm, between 0.9 and 1 [1].
+def size_factor(*, module: Each, a: Each, b: Each, least: Each) -> Found:
+    """Size factor of the flank Z_X = a - b m_n with m_n in mm, from `least` to 1 [1].
 
     Args:
         module: normal module m_n, shape (...) [m].
-        slope: s, 0.005 for case-hardened and induction-hardened gears, 0 for those whose factor is 1,
-            shape (...) [1].
+        a, b, least: constants of the material, shape (...) [1].
 
-    Source: ISO 6336-2:2006, table 4, as two public programs have it.
+    Source: DIN 3990-11:1989, table 4.2: case-hardened gears above m_n = 10 mm, nitrided ones above 7.5 mm.
+    Public programs give the former as ISO 6336-2:2006 too; KISSsoft 03/2017 prints 1 by ISO 6336:2006 for
+    case-hardened gears of m_n = 14 and 45 mm.
 
     Example:
-        >>> round(float(size_factor(module=16e-3, slope=0.005)), 3)
+        >>> round(float(size_factor(module=16e-3, a=1.05, b=0.005, least=0.9)), 3)
         0.97
     """
-    return jnp.clip(1.05 - 1e3 * jnp.asarray(module) * slope, 0.9, 1.0)
+    return jnp.clip(a - b * 1e3 * jnp.asarray(module), least, 1.0)

@@ -11,10 +11,14 @@ from pitchpoint.factored import Numbers
 from pitchpoint.strength.treatments import Life, Treatment
 
 __all__ = [
+    "STRESS_CORRECTION",
     "Constants",
+    "at_life",
+    "endurance_share",
     "life_factor",
     "notch_sensitivity_factor",
     "size_factor",
+    "static_notch_sensitivity_factor",
     "surface_factor",
 ]
 
@@ -23,7 +27,9 @@ Found = Float[Array, "..."]
 
 _LONG, _LEAST = 1e10, 0.85
 _REFERENCE_NOTCH = 2.5
-_STRESS_CORRECTION = 2.0
+
+STRESS_CORRECTION = 2.0
+"""Y_ST, stress correction of the gears on which sigma_Flim was measured; also Y_St of VDI 2736, eq. 13."""
 
 
 class Constants(eqx.Module):
@@ -32,37 +38,32 @@ class Constants(eqx.Module):
     Attributes:
         flank, root: level, few and many cycles of the life factors.
         slip_layer: [mm].
+        static_notch: slope of the static notch sensitivity over Y_S.
         surface: a, b, n, and the factor of smooth roots.
         root_size: a, b, least.
-        flank_size: [1/mm].
-        test_gear: Y_ST, stress correction of the gears on which sigma_Flim was measured.
+        flank_size: level, and slope [1/mm], least.
     """
 
     flank: Float[Array, "3 2"]
     root: Float[Array, "3 2"]
     slip_layer: Float[Array, "2"]
+    static_notch: Float[Array, "2"]
     surface: Float[Array, "4 2"]
     root_size: Float[Array, "3 2"]
-    flank_size: Float[Array, "2"]
-    test_gear: Float[Array, "2"]
+    flank_size: Float[Array, "3 2"]
 
     @classmethod
-    def of(cls, first: Treatment, second: Treatment, plastic: tuple[bool, bool]) -> Self:
-        """Constants of two gears.
-
-        Args:
-            first, second: treatment of each.
-            plastic: True for a gear whose limits are those of VDI 2736.
-        """
+    def of(cls, first: Treatment, second: Treatment) -> Self:
+        """Constants of two gears by the treatment of each."""
         both = (first, second)
         return cls(
             flank=array(np.array([_life(one.flank) for one in both]).T),
             root=array(np.array([_life(one.root) for one in both]).T),
             slip_layer=array([one.slip_layer for one in both]),
+            static_notch=array([one.static_notch for one in both]),
             surface=array(np.array([(*one.surface, one.smooth) for one in both]).T),
             root_size=array(np.array([one.root_size for one in both]).T),
-            flank_size=array([one.flank_size for one in both]),
-            test_gear=array([1.0 if one else _STRESS_CORRECTION for one in plastic]),
+            flank_size=array(np.array([one.flank_size for one in both]).T),
         )
 
 
@@ -94,6 +95,58 @@ def life_factor(*, cycles: Each, level: Each, few: Each, many: Each) -> Found:
     short = jnp.log(level) * jnp.maximum(ends - number, 0.0) / (ends - begins)
     beyond = jnp.log(_LEAST) * jnp.maximum(number - ends, 0.0) / (long - ends)
     return jnp.exp(short + beyond)
+
+
+def endurance_share(*, cycles: Each, few: Each, many: Each) -> Found:
+    """Where a number of cycles lies between static strength and endurance, in their logarithms: 0 to 1 [1].
+
+    Args:
+        cycles: load cycles N_L, shape (...) [1].
+        few, many: load cycles where static strength ends and endurance begins, few < many, shape (...) [1].
+
+    Example:
+        >>> round(float(endurance_share(cycles=1e6, few=1e5, many=1e7)), 3)
+        0.5
+    """
+    begins, ends = jnp.log(few), jnp.log(many)
+    return jnp.clip((jnp.log(cycles) - begins) / (ends - begins), 0.0, 1.0)
+
+
+def at_life(*, endurance: Each, static: Each | float, share: Each) -> Found:
+    """Factor of a permissible stress at a limited life [1].
+
+    Args:
+        endurance, static: the factor for endurance and for static strength, shape (...) [1].
+        share: see `endurance_share`, shape (...) [1].
+
+    The permissible stress of both standards is a line in the logarithms of stress and cycles from the static
+    strength to endurance, so each of its factors is.
+
+    Source: ISO 6336-2:2006, 5.4, and ISO 6336-3:2006, 5.5, as DIN 3990-11:1989, 4.1.2 and 5.1.3.
+
+    Example:
+        >>> round(float(at_life(endurance=0.81, static=1.0, share=0.5)), 3)
+        0.9
+    """
+    return jnp.asarray(endurance) ** share * jnp.asarray(static) ** (1.0 - jnp.asarray(share))
+
+
+def static_notch_sensitivity_factor(*, stress_correction: Each, slope: Each) -> Found:
+    """Relative notch sensitivity factor for static strength, 1 + s (Y_S - 2) [1].
+
+    Args:
+        stress_correction: Y_S, shape (...) [1].
+        slope: s of the material, shape (...) [1].
+
+    Source: DIN 3990-11:1989, 5.6: 0.44 Y_S + 0.12 of case-hardened steel, 0.20 Y_S + 0.60 of nitrided steel;
+    (1 + k (Y_S - 1))/(1 + k) of others, k = 0.82 (300/sigma_0.2)^(1/4) of through-hardened and
+    0.93 (200/sigma_S)^(1/4) of normalised steel.
+
+    Example:
+        >>> round(float(static_notch_sensitivity_factor(stress_correction=1.7, slope=0.44)), 3)
+        0.868
+    """
+    return 1.0 + slope * (jnp.asarray(stress_correction) - 2.0)
 
 
 def notch_sensitivity_factor(*, notch: Each, slip_layer: Each) -> Found:

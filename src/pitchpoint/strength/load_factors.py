@@ -7,7 +7,13 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers
 
-__all__ = ["CLASSES", "dynamic_factor", "resonance_number", "root_face_load_factor"]
+__all__ = [
+    "CLASSES",
+    "MOST_RESONANCE",
+    "dynamic_factor",
+    "resonance_number",
+    "root_face_load_factor",
+]
 
 Each = Float[Numbers, "*#b"]
 Found = Float[Array, "..."]
@@ -24,6 +30,10 @@ CLASSES: Mapping[int, tuple[float, float]] = {
 
 _SPUR, _HELICAL = 0.0193, 0.0087
 _LEAST_LOAD = 100.0  # N/mm
+_THIRD, _FALL = 2.071, 0.357
+
+MOST_RESONANCE = _THIRD / (2.0 * _FALL)
+"""Resonance number up to which K_v rises, 2.9 m/s: above it method C has no meaning, and K_v stays [m/s]."""
 
 
 def resonance_number(*, speed: Each, teeth: Each, ratio: Each) -> Found:
@@ -34,8 +44,7 @@ def resonance_number(*, speed: Each, teeth: Each, ratio: Each) -> Found:
         teeth: z_1 of the pinion, shape (...) [1].
         ratio: u = z_2/z_1 of wheel over pinion, shape (...) [1].
 
-    Source: IACS UR M56 Rev.4 (2021), 1.6.3, after ISO 6336-1 method C; below 10 m/s a pair of heavy steel
-    gears runs below its resonance.
+    Source: IACS UR M56 Rev.4 (2021), 1.6.3, after ISO 6336-1 method C.
 
     Example:
         >>> round(float(resonance_number(speed=5.0, teeth=20.0, ratio=3.0)), 4)
@@ -51,13 +60,14 @@ def dynamic_factor(
     """Dynamic factor K_v of ISO 6336-1, method C [1].
 
     Args:
-        resonance: see `resonance_number`, shape (...) [m/s].
+        resonance: see `resonance_number`; above `MOST_RESONANCE` as that, shape (...) [m/s].
         line_load: K_A F_t/b, counted as at least 100 N/mm, shape (...) [N/m].
         overlap_ratio: eps_beta, between spur and helical gears up to 1, shape (...) [1].
         spur, helical: K_1 of both by class, see `CLASSES`, shape (...) [N/mm].
 
     Validity:
-        Steel gears below resonance: a resonance number below 10 m/s, helix angles up to 30 deg.
+        Steel gears well below resonance: a resonance number below 3 m/s, from where on the formula would
+        fall and give less than 1 above 5.8 m/s; helix angles up to 30 deg.
 
     Source: IACS UR M56 Rev.4 (2021), 1.6.3: K_v = 1 + (K_1/(K_A F_t/b) + K_2) N K_3 with
     K_3 = 2.071 - 0.357 N, at most 2.
@@ -68,8 +78,8 @@ def dynamic_factor(
         1.154
     """
     load = jnp.maximum(jnp.asarray(line_load) / 1e3, _LEAST_LOAD)
-    number = jnp.asarray(resonance)
-    third = jnp.minimum(2.071 - 0.357 * number, 2.0)
+    number = jnp.minimum(resonance, MOST_RESONANCE)
+    third = jnp.minimum(_THIRD - _FALL * number, 2.0)
     straight, inclined = (
         1.0 + (first / load + second) * number * third
         for first, second in ((spur, _SPUR), (helical, _HELICAL))

@@ -15,6 +15,9 @@ from pitchpoint.strength.forces import ToothForces, tooth_forces
 
 __all__ = ["Duty", "Factors", "Finish", "Strengths", "rate", "rated"]
 
+_SHARPEST = 1e-3
+"""Radius in modules of a ring's fillet without one: its notch lies beyond the standard, and is told."""
+
 Both = Float[Array, "2"]
 One = Float[Array, ""]
 Rating = dict[str, Float[Array, "..."]]
@@ -82,14 +85,16 @@ class Strengths(eqx.Module):
 
 
 class Finish(eqx.Module):
-    """Surfaces and oil.
+    """How the teeth are finished, and the oil.
 
     Attributes:
+        thickness: allowance of the normal tooth thickness of both gears, 0 for nominal teeth [m].
         flank: mean Rz of both flanks [m].
         root: Rz of the root fillets of both gears [m].
         viscosity: nu_40 of the oil [m2/s].
     """
 
+    thickness: Both
     flank: One
     root: Both
     viscosity: One
@@ -192,7 +197,7 @@ def _load_factors(pair: RatedPair, forces: ToothForces, speed: One, factors: Fac
     return {
         "resonance_number": resonance,
         "application_factor": factors.application,
-        "dynamic_factor": _or(factors.dynamic, dynamic),
+        "rated_dynamic_factor": _or(factors.dynamic, dynamic),
         "face_load_factor": factors.face,
         "transverse_load_factor": factors.transverse,
         "root_face_load_factor": _or(factors.root_face, root_face),
@@ -220,13 +225,20 @@ def _flank(
 ) -> Rating:
     found = _nominal_contact(pair, forces, strengths)
     found["single_contact_factor"] = single = _single_contact(pair, factors, strengths)
-    load = k["application_factor"] * k["dynamic_factor"]
+    load = k["application_factor"] * k["rated_dynamic_factor"]
     load *= k["face_load_factor"] * k["transverse_load_factor"]
     stress = single * found["nominal_contact_stress"] * jnp.sqrt(load)
     limiting = _flank_factors(pair, speed, strengths, finish, duty)
     limit = strengths.flank * _product(limiting)
-    safety = {"contact_stress": stress, "contact_limit": limit, "flank_safety": limit / stress}
-    return found | limiting | safety
+    return {
+        **found,
+        **limiting,
+        "flank_endurance": strengths.flank,
+        "flank_cycles": jnp.where(strengths.plastic, jnp.nan, duty.cycles_flank),
+        "contact_stress": stress,
+        "contact_limit": limit,
+        "flank_safety": limit / stress,
+    }
 
 
 def _product(factors: Rating) -> Both:
@@ -291,20 +303,21 @@ def _flank_factors(
     softer = jnp.nanmin(jnp.where(metal, strengths.flank, jnp.nan))
     rolling = pair.base_radii * jnp.tan(pair.working_pressure_angle)
     level, few, many = strengths.constants.flank
+    first, slope, least = strengths.constants.flank_size
+    share = limits.endurance_share(cycles=duty.cycles_flank, few=few, many=many)
     found = {
-        "flank_life_factor": limits.life_factor(
-            cycles=duty.cycles_flank, level=level, few=few, many=many
-        ),
         "lubricant_factor": flank.lubricant_factor(viscosity=finish.viscosity, limit=softer),
         "velocity_factor": flank.velocity_factor(speed=speed, limit=softer),
         "roughness_factor": flank.roughness_factor(
             roughness=finish.flank, radius=jnp.prod(rolling) / jnp.sum(rolling), limit=softer
         ),
-        "work_hardening_factor": strengths.work_hardening,
-        "flank_size_factor": flank.size_factor(
-            module=pair.module, slope=strengths.constants.flank_size
-        ),
+        "flank_size_factor": flank.size_factor(module=pair.module, a=first, b=slope, least=least),
     }
+    found = {
+        name: limits.at_life(endurance=one, static=1.0, share=share) for name, one in found.items()
+    }
+    life = limits.life_factor(cycles=duty.cycles_flank, level=level, few=few, many=many)
+    found |= {"flank_life_factor": life, "work_hardening_factor": strengths.work_hardening}
     return {name: jnp.where(metal, one, 1.0) for name, one in found.items()}
 
 
@@ -317,7 +330,7 @@ def _root(
     finish: Finish,
     duty: Duty,
 ) -> Rating:
-    shape, dimensions = _tooth_form(pair, strengths)
+    shape, dimensions = _tooth_form(_cut(pair, finish), strengths)
     shape |= _root_factors(pair, factors, strengths)
     nominal = root.nominal_root_stress(
         force=forces.reference,
@@ -325,21 +338,30 @@ def _root(
         module=pair.module,
         factors=_product(shape),
     )
-    load = k["application_factor"] * k["dynamic_factor"]
+    load = k["application_factor"] * k["rated_dynamic_factor"]
     load *= k["root_face_load_factor"] * k["root_transverse_load_factor"]
     stress = nominal * load
-    notch = dimensions["notch_parameter"]
+    notch = dimensions["notch_parameter"], shape["stress_correction_factor"]
     limiting = _root_limit_factors(pair, notch, strengths, finish, duty)
-    limit = strengths.root * strengths.constants.test_gear * _product(limiting)
+    limit = strengths.root * limits.STRESS_CORRECTION * _product(limiting)
     return {
         **dimensions,
         **shape,
         **limiting,
+        "rim_backup": _backup(pair),
+        "root_endurance": strengths.root,
+        "root_cycles": jnp.where(strengths.plastic, jnp.nan, duty.cycles_root),
         "nominal_root_stress": nominal,
         "root_stress": stress,
         "root_limit": limit,
         "root_safety": limit / stress,
     }
+
+
+def _cut(pair: RatedPair, finish: Finish) -> RatedPair:
+    """The pair with the shifts x_E with which its teeth are cut, x + A_sn/(2 m_n tan(alpha_n))."""
+    thinner = finish.thickness / (2.0 * pair.module * jnp.tan(pair.pressure_angle))
+    return dataclasses.replace(pair, profile_shift=pair.profile_shift + thinner)
 
 
 def _virtual(pair: RatedPair) -> tuple[Both, One]:
@@ -392,7 +414,11 @@ def _sections(pair: RatedPair, teeth: Both) -> root.RootSection:
         generating_shift=pair.profile_shift,
     )
     half, distance, radius = pair.ring_section
-    ring = root.ring_section(half_chord=half, distance=distance, fillet_radius=radius)
+    ring = root.ring_section(
+        half_chord=half,
+        distance=distance,
+        fillet_radius=jnp.maximum(radius, _SHARPEST * pair.module),
+    )
     is_ring = pair.teeth < 0.0
     return root.RootSection(
         jnp.where(is_ring, ring.chord, cut.chord),
@@ -405,10 +431,9 @@ def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Ra
     """Y_beta, Y_B, Y_DT; Y_eps in the place of the last of plastic gears, whose force is at the tip."""
     _, ratio = _virtual(pair)
     skew = {"helix_angle": pair.helix_angle, "overlap_ratio": pair.overlap_ratio}
+    backup = _backup(pair)
     rim = jnp.where(
-        pair.teeth < 0.0,
-        root.ring_rim_factor(thickness=pair.rim_thickness, module=pair.module),
-        root.rim_factor(thickness=pair.rim_thickness, height=_heights(pair)),
+        pair.teeth < 0.0, root.ring_rim_factor(backup=backup), root.rim_factor(backup=backup)
     )
     deep = root.deep_tooth_factor(virtual_contact_ratio=ratio, accurate=factors.accurate)
     several = vdi_2736.contact_ratio_factor(virtual_contact_ratio=ratio)
@@ -422,24 +447,38 @@ def _root_factors(pair: RatedPair, factors: Factors, strengths: Strengths) -> Ra
     }
 
 
+def _backup(pair: RatedPair) -> Both:
+    """Rim thickness over tooth height, of a ring over the module."""
+    return pair.rim_thickness / jnp.where(pair.teeth < 0.0, pair.module, _heights(pair))
+
+
 def _root_limit_factors(
-    pair: RatedPair, notch: Both, strengths: Strengths, finish: Finish, duty: Duty
+    pair: RatedPair,
+    notch: tuple[Both, Both],
+    strengths: Strengths,
+    finish: Finish,
+    duty: Duty,
 ) -> Rating:
+    """Factors at the number of cycles, from q_s and Y_S of both gears."""
     own, metal = strengths.constants, ~strengths.plastic
     level, few, many = own.root
     a, b, n, smooth = own.surface
     first, slope, least = own.root_size
+    share = limits.endurance_share(cycles=duty.cycles_root, few=few, many=many)
+    parameter, correction = notch
+    notched = limits.notch_sensitivity_factor(notch=parameter, slip_layer=own.slip_layer)
+    static = limits.static_notch_sensitivity_factor(
+        stress_correction=correction, slope=own.static_notch
+    )
+    surface = limits.surface_factor(roughness=finish.root, a=a, b=b, n=n, smooth=smooth)
+    size = limits.size_factor(module=pair.module, a=first, b=slope, least=least)
     found = {
         "root_life_factor": limits.life_factor(
             cycles=duty.cycles_root, level=level, few=few, many=many
         ),
-        "notch_sensitivity_factor": limits.notch_sensitivity_factor(
-            notch=notch, slip_layer=own.slip_layer
-        ),
-        "surface_factor": limits.surface_factor(
-            roughness=finish.root, a=a, b=b, n=n, smooth=smooth
-        ),
-        "root_size_factor": limits.size_factor(module=pair.module, a=first, b=slope, least=least),
+        "notch_sensitivity_factor": limits.at_life(endurance=notched, static=static, share=share),
+        "surface_factor": limits.at_life(endurance=surface, static=1.0, share=share),
+        "root_size_factor": limits.at_life(endurance=size, static=1.0, share=share),
     }
     found = {name: jnp.where(metal, one, 1.0) for name, one in found.items()}
     return {**found, "mean_stress_factor": strengths.mean_stress}

@@ -13,6 +13,8 @@ from pitchpoint.factored import Numbers
 from pitchpoint.gears.involute import involute
 
 __all__ = [
+    "THINNEST_RIM",
+    "THINNEST_RING",
     "LoadPoint",
     "RootSection",
     "bending_arm",
@@ -34,6 +36,9 @@ Each = Float[Numbers, "*#b"]
 Found = Float[Array, "..."]
 
 _STEPS = 12
+
+THINNEST_RIM, THINNEST_RING = 0.5, 1.75
+"""Rim thickness over tooth height, of a ring over the module, down to which Y_B is known."""
 
 
 class RootSection(eqx.Module):
@@ -264,12 +269,11 @@ def helix_factor(*, helix_angle: Each, overlap_ratio: Each) -> Found:
     return (1.0 - jnp.minimum(overlap_ratio, 1.0) * jnp.rad2deg(beta) / 120.0) / jnp.cos(beta) ** 3
 
 
-def rim_factor(*, thickness: Each, height: Each) -> Found:
+def rim_factor(*, backup: Each) -> Found:
     """Rim thickness factor Y_B of an external gear, 1.6 ln(2.242 h/s_R) below s_R/h = 1.2 [1].
 
     Args:
-        thickness: s_R of the rim under the teeth, shape (...) [m].
-        height: h of the teeth, shape (...) [m].
+        backup: s_R/h, thickness of the rim under the teeth over their height, shape (...) [1].
 
     Validity:
         s_R/h above 0.5; at and below, the value at 0.5 stands and thinner rims are to be avoided.
@@ -277,19 +281,18 @@ def rim_factor(*, thickness: Each, height: Each) -> Found:
     Source: ISO 6336-3:2019, clause 9; IACS UR M56 Rev.4 (2021), 3.6.
 
     Example:
-        >>> round(float(rim_factor(thickness=4e-3, height=5e-3)), 3)
+        >>> round(float(rim_factor(backup=0.8)), 3)
         1.649
     """
-    backup = jnp.maximum(jnp.asarray(thickness) / height, 0.5)
+    backup = jnp.maximum(backup, THINNEST_RIM)
     return jnp.where(backup < 1.2, 1.6 * jnp.log(2.242 / backup), 1.0)
 
 
-def ring_rim_factor(*, thickness: Each, module: Each) -> Found:
+def ring_rim_factor(*, backup: Each) -> Found:
     """Rim thickness factor Y_B of a ring, 1.15 ln(8.324 m_n/s_R) below s_R/m_n = 3.5 [1].
 
     Args:
-        thickness: s_R of the rim behind the teeth, shape (...) [m].
-        module: normal module m_n, shape (...) [m].
+        backup: s_R/m_n, thickness of the rim behind the teeth over the normal module, shape (...) [1].
 
     Validity:
         s_R/m_n above 1.75; at and below, the value at 1.75 stands and thinner rims are to be avoided.
@@ -297,10 +300,10 @@ def ring_rim_factor(*, thickness: Each, module: Each) -> Found:
     Source: ISO 6336-3:2019, clause 9; IACS UR M56 Rev.4 (2021), 3.6.
 
     Example:
-        >>> round(float(ring_rim_factor(thickness=5e-3, module=2e-3)), 3)
+        >>> round(float(ring_rim_factor(backup=2.5)), 3)
         1.383
     """
-    backup = jnp.maximum(jnp.asarray(thickness) / module, 1.75)
+    backup = jnp.maximum(backup, THINNEST_RING)
     return jnp.where(backup < 3.5, 1.15 * jnp.log(8.324 / backup), 1.0)
 
 

@@ -2,7 +2,7 @@
 
 Equation 10 was taken from one public program (tkuhn39 2026), whose tests hold it against the report of a
 commercial program; the guideline itself was not at hand. It is the stress of DIN 3990 method C, with the
-force at the tip.
+force at the tip. The limit is Y_St sigma_FlimN with Y_St = 2, equation 13, in that program and in GEARpie.
 """
 
 from jaxtyping import Array, Float

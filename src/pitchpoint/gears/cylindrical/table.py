@@ -1,13 +1,12 @@
 """The table [gears] of a pair of cylindrical gears."""
 
-from math import pi
-from typing import Annotated, ClassVar, Literal
+from math import cos, pi
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, model_validator
 
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical import MEMBERS
-from pitchpoint.gears.cylindrical.iso_286 import FIELDS
+from pitchpoint.gears.cylindrical import MEMBERS, din_3967, iso_286
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
@@ -22,7 +21,7 @@ from pitchpoint.gears.table import (
     GearsTable,
     PairDeviations,
 )
-from pitchpoint.input.quantities import Pair, Quantity, named
+from pitchpoint.input.quantities import Pair, Quantity, for_both, named
 from pitchpoint.input.tables import Table
 
 __all__ = ["CylindricalGears", "FlankModifications", "GearDeviations", "Inspection"]
@@ -114,23 +113,41 @@ class GearDeviations(PairDeviations):
     """Number from which gears at the limits of the class are drawn; the same one gives the same gears."""
 
 
+Limits = tuple[float, float]
+
+_FIELD = named(lambda: din_3967.FIELDS, "tolerance field of the tooth thickness")
+
+
+def _field(value: Any) -> str:
+    """A field of DIN 3967, also with its numbers first, as drawings have it."""
+    text = value.strip() if isinstance(value, str) else value
+    numbers = text[:2] if isinstance(text, str) and text[:2].isdigit() else ""
+    return _FIELD(f"{text[2:].strip()}{numbers}" if numbers else text)
+
+
 class Inspection(Table):
     """What the drawing of each gear says of its teeth; the gears that are computed stay the nominal ones.
 
-    Allowances are those of the tooth thickness in the normal section, negative ones make teeth thinner. The
-    centre distance deviates to either side, by value or by a field of ISO 286. A span is over the number of
-    teeth that has it touch nearest to the middle of the active flank, and a ball touches there, unless they
-    are given. Tolerances are those of a class of ISO 1328-1, that of the deviations where it is left out.
+    Allowances are those of the tooth thickness in the normal section, negative ones make teeth thinner, by
+    value or by a field of DIN 3967 such as cd25. The centre distance deviates to either side, by value or
+    by a field of ISO 286. A span is over the number of teeth that has it touch nearest to the middle of the
+    active flank, and a ball touches there, unless they are given. Tolerances are those of a class of ISO
+    1328-1, that of the deviations where it is left out.
     """
 
     upper_thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
     """Upper allowance of the normal tooth thickness; needed with the lower one."""
     lower_thickness_allowance: Annotated[tuple[float, float], Pair(ALLOWANCE)] | None = None
     """Lower allowance of the normal tooth thickness; needed with the upper one."""
+    thickness_field: Annotated[tuple[str, str], BeforeValidator(for_both(_field))] | None = None
+    """Fields of the tooth thickness by DIN 3967, one or a list of two, in place of allowances."""
     centre_distance_deviation: Annotated[float, DEVIATION] | None = None
     """Deviation of the centre distance to either side; none unless given."""
     centre_distance_field: (
-        Annotated[str, BeforeValidator(named(lambda: FIELDS, "symmetrical tolerance field"))] | None
+        Annotated[
+            str, BeforeValidator(named(lambda: iso_286.FIELDS, "symmetrical tolerance field"))
+        ]
+        | None
     ) = None
     """Tolerance field of the centre distance by ISO 286, in place of a deviation."""
     span_teeth: Annotated[tuple[float, float], Pair(SPAN)] | None = None
@@ -140,9 +157,18 @@ class Inspection(Table):
     iso_class: Annotated[tuple[float, float], Pair(TOLERANCE_CLASS)] | None = None
     """Class of the tolerances by ISO 1328-1; that of the deviations unless given."""
 
-    @property
-    def allowances(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
-        """Upper and lower allowances of both gears [m]; None where none are given."""
+    def allowances(self, diameters: Limits) -> tuple[Limits, Limits] | None:
+        """Upper and lower allowances of both gears [m]; None where none are given.
+
+        Args:
+            diameters: of the reference circles of both gears, which a field goes by [m].
+        """
+        if self.thickness_field is not None:
+            first, second = (
+                din_3967.thickness_allowances(field=field, diameter=diameter)
+                for field, diameter in zip(self.thickness_field, diameters, strict=True)
+            )
+            return (first[0], second[0]), (first[1], second[1])
         upper, lower = self.upper_thickness_allowance, self.lower_thickness_allowance
         return None if upper is None or lower is None else (upper, lower)
 
@@ -154,6 +180,11 @@ class Inspection(Table):
             raise InputError(
                 f"was given without {missing}_thickness_allowance; a tooth thickness has both",
                 key=f"{given}_thickness_allowance",
+            )
+        if upper is not None and self.thickness_field is not None:
+            raise InputError(
+                "allowances of the tooth thickness and thickness_field were both given; give one",
+                key="thickness_field",
             )
         for number, (high, low) in enumerate(zip(upper or (), lower or (), strict=True), 1):
             if low > high:
@@ -170,10 +201,12 @@ class Inspection(Table):
         return self
 
 
-def _allowed(inspection: Inspection | None) -> dict[str, float]:
+def _allowed(gears: "CylindricalGears") -> dict[str, float]:
     """Largest allowance by key."""
-    limits = (None if inspection is None else inspection.allowances) or ()
+    limits = gears.thickness_allowances or ()
     keys = ("upper_thickness_allowance", "lower_thickness_allowance")
+    if gears.inspection is not None and gears.inspection.thickness_field is not None:
+        keys = ("thickness_field", "thickness_field")
     return {
         f"inspection.{key}": max(map(abs, pair)) for key, pair in zip(keys, limits, strict=False)
     }
@@ -247,15 +280,32 @@ class CylindricalGears(GearsTable):
         return self.module
 
     @property
+    def thickness_allowances(self) -> tuple[Limits, Limits] | None:
+        """Upper and lower allowances of the normal tooth thickness of both gears [m]; None without any.
+
+        Raises:
+            InputError: a gear that is larger than its field covers.
+        """
+        if self.inspection is None:
+            return None
+        first, second = (abs(teeth) * self.module / cos(self.helix_angle) for teeth in self.teeth)
+        try:
+            return self.inspection.allowances((first, second))
+        except InputError as error:
+            raise error.at(key="inspection.thickness_field") from None
+
+    @property
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography for what is given."""
         modified = self.modifications is not None or self.misalignment is not None
         inspected = self.inspection is not None
         by_field = self.inspection is not None and self.inspection.centre_distance_field is not None
+        thickness = self.inspection is not None and self.inspection.thickness_field is not None
         return (
             *("iso_21771_2007",) * (modified or inspected),
             *("iso_1328_1_2013",) * (self.tolerance_class is not None),
             *("iso_286_1_2010",) * by_field,
+            *("din_3967_1978",) * thickness,
         )
 
     @property
@@ -276,7 +326,7 @@ class CylindricalGears(GearsTable):
         amounts = self.modifications.amounts if self.modifications is not None else {}
         given = {f"modifications.{key}": max(pair) for key, pair in amounts.items()}
         given["misalignment"] = abs(self.misalignment or 0.0)
-        given |= _allowed(self.inspection)
+        given |= _allowed(self)
         for key, most in given.items():
             if most > self.module / 2.0:
                 raise InputError(

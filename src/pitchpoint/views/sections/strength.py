@@ -2,9 +2,12 @@
 
 import json
 from collections.abc import Iterator
+from math import inf
 
+import numpy as np
 import xarray as xr
 
+from pitchpoint.cases.failures import apart
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
@@ -26,7 +29,7 @@ _STRESSES = ("contact_stress", "flank_safety", "root_stress", "root_safety")
 
 _LOAD = (
     "application_factor",
-    "dynamic_factor",
+    "rated_dynamic_factor",
     "face_load_factor",
     "transverse_load_factor",
     "root_face_load_factor",
@@ -40,6 +43,8 @@ _FLANK = (
     "nominal_contact_stress",
     "single_contact_factor",
     "contact_stress",
+    "flank_endurance",
+    "flank_cycles",
     "flank_life_factor",
     "lubricant_factor",
     "velocity_factor",
@@ -58,10 +63,13 @@ _ROOT = (
     "form_factor",
     "stress_correction_factor",
     "root_helix_factor",
+    "rim_backup",
     "rim_factor",
     "root_contact_ratio_factor",
     "nominal_root_stress",
     "root_stress",
+    "root_endurance",
+    "root_cycles",
     "root_life_factor",
     "notch_sensitivity_factor",
     "surface_factor",
@@ -70,6 +78,9 @@ _ROOT = (
     "root_limit",
     "root_safety",
 )
+
+
+_COUNTED = ("flank_cycles", "root_cycles")
 
 
 def _pairs(data: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
@@ -93,10 +104,14 @@ def strength_rows(outcome: Outcome) -> list[dict[str, str]]:
 
 
 def _cell(data: xr.Dataset, name: str, gear: int) -> str:
-    """Value of a gear, or of both; a dash where it is withheld."""
+    """Value of a gear, or of both; a dash where it is withheld, without load a safety without end."""
     values = data[name].values
     value = float(values[gear] if values.ndim else values)
-    return "–" if value != value else shown(name, value, data)
+    if value != value:
+        return "–"
+    if name in _COUNTED:
+        return f"{value:.4g}"
+    return "∞" if value == inf else shown(name, value, data)
 
 
 def _told(data: xr.Dataset, name: str) -> list[str]:
@@ -123,9 +138,8 @@ def _words(name: str, data: xr.Dataset) -> str:
 
 
 def _values(name: str, data: xr.Dataset) -> tuple[str, ...]:
-    """Values of both gears, or the one that they share."""
-    both = range(2) if data[name].values.ndim else range(1)
-    return tuple(_cell(data, name, gear) for gear in both)
+    """Values of both gears, also where they share one."""
+    return tuple(_cell(data, name, gear) for gear in range(2))
 
 
 def _blocks_of(_: int, outcome: Outcome) -> Iterator[Block]:
@@ -148,10 +162,25 @@ def _blocks(page: Page) -> Iterator[Block]:
     return by_variant(page, "strength", _blocks_of)
 
 
+def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """The least safeties, where they are known."""
+    data = outcome.parts.get("strength")
+    if data is None:
+        return
+    for term, name in (("Flanks", "flank_safety"), ("Roots", "root_safety")):
+        found = data[name].where(np.isfinite(data[name]))
+        if not found.isnull().all():
+            least = found.isel(found.argmin([*found.dims]))
+            place = [str(least["gear"].values)]
+            place += [f"stage {least['stage'].values}"] if "stage" in least.coords else []
+            yield f"{term}, least safety", f"{float(least):.3g}, {', '.join(place)}"
+
+
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("strength")
     if data is not None:
-        line = " ".join([*_told(data, "warnings"), *_caveats(data)])
+        doubts = apart(_told(data, "warnings"))["warnings"]  # what fails stands first
+        line = " ".join([*doubts, *_caveats(data)])
         yield Printed("Strength of the teeth", strength_rows(outcome), line)
 
 
@@ -162,6 +191,7 @@ STRENGTH = Section(
     order=140.0,
     parts=("strength",),
     blocks=_blocks,
+    answer=_answer,
     warns=lambda one: _told(one.parts["strength"], "warnings") if "strength" in one.parts else (),
     screen=_screen,
 )
