@@ -113,6 +113,23 @@ def test_every_link_leads_somewhere() -> None:
             assert (folder / target).exists(), (page, target)
 
 
+def test_what_is_wrong_with_the_links_of_a_site(tmp_path: Path) -> None:
+    """`.ci/run` builds the site and asks the same of it."""
+    broken = runpy.run_path(str(ROOT / "docs" / "check_links.py"))["broken"]
+    (tmp_path / "b.html").write_text('<p id="here">', "utf-8")
+    (tmp_path / "a.html").write_text(
+        '<a href="b.html#here"></a><a href="b.html#there"></a><a href="c.html"></a><a href="#top"></a>'
+        '<a href="https://a.example"></a><script src="https://a.example/x.js"></script>',
+        "utf-8",
+    )
+    assert list(broken(tmp_path)) == [
+        "a.html: b.html#there leads to no place of b.html",
+        "a.html: c.html leads to no file",
+        "a.html: #top leads to no place of a.html",
+        "a.html: https://a.example/x.js is loaded from another site",
+    ]
+
+
 def test_the_reference_is_that_of_the_code(tmp_path: Path) -> None:
     """`python docs/generate.py docs/reference` writes it anew."""
     generate = runpy.run_path(str(ROOT / "docs" / "generate.py"))

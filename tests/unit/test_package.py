@@ -56,6 +56,10 @@ def test_locks_name_no_address() -> None:
 
 def test_locks_agree() -> None:
     assert pins("run").items() <= pins("dev").items()
+    docs = pins("docs")
+    assert pins("run").items() <= docs.items()
+    both = pins("dev").keys() & docs.keys()  # one environment holds both
+    assert {name: docs[name] for name in both} == {name: pins("dev")[name] for name in both}
 
 
 def test_locks_hold_what_the_project_asks_for() -> None:
@@ -63,6 +67,7 @@ def test_locks_hold_what_the_project_asks_for() -> None:
     wanted = {
         "run": PROJECT["project"]["dependencies"] + groups["build"],
         "dev": groups["dev"],
+        "docs": groups["docs"],
     }
     for lock, lines in wanted.items():
         for asked in map(Requirement, lines):
