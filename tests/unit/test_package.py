@@ -11,6 +11,7 @@ import pytest
 from packaging.requirements import Requirement
 
 import pitchpoint
+from pitchpoint import pages
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
@@ -48,6 +49,8 @@ def test_wheel_holds_every_source_file(tmp_path: Path) -> None:
     wanted = {str(path.relative_to(ROOT / "src")) for path in files if path.suffix != ".pyc"}
     assert "pitchpoint/py.typed" in shipped
     assert wanted <= shipped
+    read = {name for name in shipped if name.startswith("pitchpoint/docs/")}
+    assert read == {f"pitchpoint/docs/{name}.md" for name in pages.names()}
 
 
 def test_locks_name_no_address() -> None:
