@@ -1,7 +1,7 @@
 """Pages of the reference that come from the schema and the registries: `python docs/generate.py FOLDER`."""
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 

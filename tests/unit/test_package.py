@@ -65,6 +65,14 @@ def test_locks_agree() -> None:
     assert {name: docs[name] for name in both} == {name: pins("dev")[name] for name in both}
 
 
+def test_the_oldest_packages_that_are_allowed_are_those_tested() -> None:
+    """`.ci/elsewhere` tests with the lowest lock."""
+    for asked in map(Requirement, PROJECT["project"]["dependencies"]):
+        (floor,) = (str(one).removeprefix(">=") for one in asked.specifier)
+        pinned = rf"^{asked.name}=={re.escape(floor)}(\.0)* "
+        assert re.search(pinned, LOCKS["lowest"], re.MULTILINE), asked
+
+
 def test_locks_hold_what_the_project_asks_for() -> None:
     groups = PROJECT["dependency-groups"]
     wanted = {
