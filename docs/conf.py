@@ -1,10 +1,16 @@
-"""Site of the documentation: `sphinx-build -W -n docs docs/_build`."""
+"""Site of the documentation, read without a network: `sphinx-build -W -n docs docs/_build/html`."""
 
+import re
 import sys
 from importlib.metadata import version as installed
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
+from docutils import nodes
+from latex2mathml.converter import convert
 from sphinx.application import Sphinx
+from sphinx.writers.html5 import HTML5Translator
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -14,10 +20,12 @@ copyright = author
 version = release = installed("pitchpoint")
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["_build", "jupyter_execute"]
+exclude_patterns = ["_build"]
 html_theme = "furo"
 html_title = "Pitchpoint"
-html_static_path: list[str] = []
+html_css_files = ["site.css"]
+html_math_renderer = "mathml"
+html_static_path = ["_static", str(files("plotly") / "package_data" / "plotly.min.js")]
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
@@ -31,14 +39,42 @@ nb_merge_streams = True
 napoleon_custom_sections = ["Validity", "Source"]
 autodoc_typehints = "none"  # docstrings give shapes and units
 autodoc_member_order = "bysource"
-suppress_warnings = [
-    "docutils"
-]  # shapes such as (*b, 3) look like emphasis to it; links still count
 nitpick_ignore_regex = [("py:.*", ".*")]  # types are words there; links of pages are checked
 
 
+def _equation(page: HTML5Translator, node: nodes.math) -> None:
+    page.body.append(convert(node.astext()))
+    raise nodes.SkipNode
+
+
+def _displayed_equation(page: HTML5Translator, node: nodes.math_block) -> None:
+    page.body.append(f'<div class="math">{convert(node.astext(), display="block")}</div>')
+    raise nodes.SkipNode
+
+
+def _plain_words(_: Sphinx, what: str, *event: Any) -> None:
+    """Axes such as `*b` begin no emphasis; the words before a colon are no type of a property."""
+    lines = event[-1]
+    lines[:] = [line if ">>>" in line else line.replace("*", r"\*") for line in lines]
+    if what == "property":
+        lines[:0] = ["..", ""]  # an empty remark
+
+
+def _plain_types(*event: Any) -> None:
+    """Types of attributes as the source has them."""
+    lines = event[-1]
+    for number, line in enumerate(lines):
+        if line.lstrip().startswith(":type:"):
+            start, given, words = line.partition(":type: ")
+            short = re.sub(r"(?:\w+\.)+(?=\w)", "", words)
+            lines[number] = f"{start}{given}``{short}``"
+
+
 def setup(app: Sphinx) -> None:
-    """Write the pages that come from the schema and the registries."""
+    """Have equations in the browser's own form, and pages from the schema and the registries."""
     from generate import write
 
+    app.add_html_math_renderer("mathml", (_equation, None), (_displayed_equation, None))
+    app.connect("autodoc-process-docstring", _plain_words, priority=400)  # before napoleon
+    app.connect("autodoc-process-docstring", _plain_types, priority=600)
     app.connect("builder-inited", lambda _: write(Path(__file__).parent / "reference"))

@@ -1,7 +1,7 @@
 """Pages of the reference that come from the schema and the registries: `python docs/generate.py FOLDER`."""
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -81,13 +81,18 @@ def models_page() -> str:
     known = entries()
     for kind in dict.fromkeys(one["kind"] for one in known):
         rows = [
-            (f"`{one['name']}`", one["title"], one["range"], one["sources"], one["note"])
+            (f"`{one['name']}`", one["title"], one["range"], _note(one))
             for one in known
             if one["kind"] == kind
         ]
-        parts.append(f"## {kind[0].upper()}{kind[1:]}\n")
-        parts.append(_table(("name", "what it is", "range", "sources", "note"), rows))
+        parts.append(f"## {kind.capitalize().replace('_', ' ')}\n")
+        parts.append(_table(("name", "what it is", "range", "note (sources)"), rows))
     return "\n".join(parts)
+
+
+def _note(entry: Mapping[str, str]) -> str:
+    """Remark and sources."""
+    return " ".join(filter(None, (entry["note"], entry["sources"] and f"({entry['sources']})")))
 
 
 def api_page() -> str:

@@ -483,6 +483,42 @@ def schema(
     _write(json.dumps(case_schema(), indent=1, ensure_ascii=False) + "\n", output)
 
 
+def _pages_from(incomplete: str) -> list[str]:
+    """Pages that begin so."""
+    from pitchpoint.pages import names
+
+    return [name for name in names() if name.startswith(incomplete)]
+
+
+@app.command()
+def docs(
+    page: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="PAGE", help="Print this page; none lists them.", autocompletion=_pages_from
+        ),
+    ] = None,
+    json_: AsJson = False,
+) -> None:
+    """Read the documentation in the terminal; into a file or a pipe it goes as Markdown."""
+    from pitchpoint import pages
+
+    if page is None:
+        _show(
+            [{"page": one, "title": pages.title(one)} for one in pages.names()],
+            json_,
+            ("page", "title"),
+        )
+    elif json_:
+        _emit({"page": page, "text": pages.page(page)})
+    elif sys.stdout.isatty():
+        from rich.markdown import Markdown
+
+        _console().print(Markdown(pages.page(page), hyperlinks=False))
+    else:
+        typer.echo(pages.page(page), nl=False)
+
+
 def _families_from(incomplete: str) -> list[str]:
     """Families that begin so."""
     from pitchpoint.cases.template import FAMILIES

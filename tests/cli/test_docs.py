@@ -1,5 +1,7 @@
 """Every block of README and documentation runs, but for the two commands that set a clone up."""
 
+import io
+import json
 import re
 import runpy
 import shlex
@@ -111,6 +113,23 @@ def test_every_link_leads_somewhere() -> None:
         folder = ROOT if page == "README.md" else (ROOT / "docs" / page).parent
         for target in re.findall(r"\]\(([^)#]+)", text):
             assert (folder / target).exists(), (page, target)
+
+
+def test_what_is_wrong_with_the_links_of_a_site(tmp_path: Path) -> None:
+    """`.ci/run` builds the site and asks the same of it."""
+    broken = runpy.run_path(str(ROOT / "docs" / "check_links.py"))["broken"]
+    (tmp_path / "b.html").write_text('<p id="here">', "utf-8")
+    (tmp_path / "a.html").write_text(
+        '<a href="b.html#here"></a><a href="b.html#there"></a><a href="c.html"></a><a href="#top"></a>'
+        '<a href="https://a.example"></a><script src="https://a.example/x.js"></script>',
+        "utf-8",
+    )
+    assert list(broken(tmp_path)) == [
+        "a.html: b.html#there leads to no place of b.html",
+        "a.html: c.html leads to no file",
+        "a.html: #top leads to no place of a.html",
+        "a.html: https://a.example/x.js is loaded from another site",
+    ]
 
 
 def test_the_reference_is_that_of_the_code(tmp_path: Path) -> None:
@@ -262,6 +281,41 @@ def test_a_page_with_sliders(line: str, folder: Path, monkeypatch: pytest.Monkey
 @pytest.mark.parametrize("sweep", re.findall(r"`--sweep (\S+=\S+)`", PAGES["guide/pairs.md"]))
 def test_a_sweep_in_the_text(sweep: str, folder: Path) -> None:
     assert run.describe("pair.toml", studies=cli._studies([sweep]))
+
+
+def printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *said: str) -> str:
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "docs", *said])
+    with pytest.raises(SystemExit):
+        cli.main()
+    told = capsys.readouterr()
+    return told.out + told.err
+
+
+def test_pages_can_be_read_without_the_site(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    listed = json.loads(printed(monkeypatch, capsys, "--json"))
+    apart = {"README.md", "index.md"}
+    assert {f"{one['page']}.md" for one in listed} > PAGES.keys() - apart
+    assert {"page": "guide/sizing", "title": "Sizing a stage"} in listed
+    for name in ("guide/sizing", "sizing.md", "Guide/Sizing"):
+        assert printed(monkeypatch, capsys, name) == PAGES["guide/sizing.md"]
+    assert printed(monkeypatch, capsys, "gallery/paper").startswith("# A published model")
+    assert "no page of the documentation; there are guide/wear and theory/wear" in printed(
+        monkeypatch, capsys, "wear"
+    )
+    assert "did you mean guide/sizing?" in printed(monkeypatch, capsys, "guide/sizin")
+
+
+def test_a_page_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    screen = io.StringIO()
+    monkeypatch.setattr(screen, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stdout", screen)
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "docs", "guide/limits"])
+    with pytest.raises(SystemExit):
+        cli.main()
+    assert "What it computes, and what it does not" in screen.getvalue()
+    assert "# What it computes" not in screen.getvalue()
 
 
 def test_the_table_of_commands_is_whole() -> None:

@@ -21,6 +21,7 @@ FLOW = (
         "roots",
         "_jax",
         "kept",
+        "pages",
         "programs",
         "factored",
         "status",

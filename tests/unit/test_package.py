@@ -11,6 +11,7 @@ import pytest
 from packaging.requirements import Requirement
 
 import pitchpoint
+from pitchpoint import pages
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
@@ -48,6 +49,8 @@ def test_wheel_holds_every_source_file(tmp_path: Path) -> None:
     wanted = {str(path.relative_to(ROOT / "src")) for path in files if path.suffix != ".pyc"}
     assert "pitchpoint/py.typed" in shipped
     assert wanted <= shipped
+    read = {name for name in shipped if name.startswith("pitchpoint/docs/")}
+    assert read == {f"pitchpoint/docs/{name}.md" for name in pages.names()}
 
 
 def test_locks_name_no_address() -> None:
@@ -56,6 +59,18 @@ def test_locks_name_no_address() -> None:
 
 def test_locks_agree() -> None:
     assert pins("run").items() <= pins("dev").items()
+    docs = pins("docs")
+    assert pins("run").items() <= docs.items()
+    both = pins("dev").keys() & docs.keys()  # one environment holds both
+    assert {name: docs[name] for name in both} == {name: pins("dev")[name] for name in both}
+
+
+def test_the_oldest_packages_that_are_allowed_are_those_tested() -> None:
+    """`.ci/elsewhere` tests with the lowest lock."""
+    for asked in map(Requirement, PROJECT["project"]["dependencies"]):
+        (floor,) = (str(one).removeprefix(">=") for one in asked.specifier)
+        pinned = rf"^{asked.name}=={re.escape(floor)}(\.0)* "
+        assert re.search(pinned, LOCKS["lowest"], re.MULTILINE), asked
 
 
 def test_locks_hold_what_the_project_asks_for() -> None:
@@ -63,6 +78,7 @@ def test_locks_hold_what_the_project_asks_for() -> None:
     wanted = {
         "run": PROJECT["project"]["dependencies"] + groups["build"],
         "dev": groups["dev"],
+        "docs": groups["docs"],
     }
     for lock, lines in wanted.items():
         for asked in map(Requirement, lines):

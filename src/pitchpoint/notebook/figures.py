@@ -99,17 +99,22 @@ def _sections(
             yield section.name, found
 
 
+_ABOVE = {"x": 0.0, "xanchor": "left", "y": 1.0, "yanchor": "bottom", "pad": {"b": 12}}
+"""Place of a menu between title and curves."""
+
+
 def _drawn(panel: Panel, figure: Figure) -> "go.Figure":
     """A figure of plotly with its title, legend and menu."""
     import plotly.graph_objects as go
 
     named = {trace.get("name") for trace in figure.data} - {None, ""}
+    menu = _menu(panel, figure.name)
     layout = {
         **figure.layout,
-        "title": {"text": figure.title, "font": {"size": 14}},
+        "title": {"text": figure.title, "font": {"size": 14}, "y": 1.0, "pad": {"t": 16}},
         "showlegend": len(named) > 1,
-        "margin": {**figure.layout.get("margin", {}), "t": 64},
-        **_menu(panel, figure.name),
+        "margin": {**figure.layout.get("margin", {}), "t": 104 if "updatemenus" in menu else 64},
+        **menu,
     }
     return go.Figure(data=figure.data, layout=layout)
 
@@ -125,4 +130,4 @@ def _menu(panel: Panel, name: str) -> dict[str, Any]:
         return {}
     if panel.slides:
         return {"sliders": [{"active": panel.at, "steps": steps}]}
-    return {"updatemenus": [{"active": panel.at, "buttons": steps, "x": 1.0, "y": 1.2}]}
+    return {"updatemenus": [{"active": panel.at, "buttons": steps, **_ABOVE}]}
