@@ -304,7 +304,7 @@ def test_pages_can_be_read_without_the_site(
     assert "no page of the documentation; there are guide/wear and theory/wear" in printed(
         monkeypatch, capsys, "wear"
     )
-    assert "did you mean guide/sizing?" in printed(monkeypatch, capsys, "guide/sizin")
+    assert "did you mean guide/sizing" in printed(monkeypatch, capsys, "guide/sizin")
 
 
 def test_a_page_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
