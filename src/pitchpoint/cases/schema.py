@@ -1109,7 +1109,9 @@ class Study(Table):
 class LossMap(Table):
     """Axes of the loss map; zero torque and zero speed are allowed. A force stands for a torque of travel.
 
-    `count` is that of both axes, `torque_count` or `force_count` and `speed_count` are those of one.
+    `count` is that of both axes, `torque_count` or `force_count` and `speed_count` are those of one. With
+    `quadrants` of 4 there is a map of the output too, over its torque and speed with their signs: there
+    the output also drives.
     """
 
     torque: Annotated[float, TORQUE] | None = None
@@ -1130,6 +1132,8 @@ class LossMap(Table):
     """Points of the force axis; count unless given."""
     speed_count: Annotated[float, MAP_COUNT] | None = None
     """Points of the speed axis; count unless given."""
+    quadrants: Literal[1, 4] = 1
+    """4 for a map of the output too, over the signs of its torque and speed."""
 
 
 class Target(Table):
