@@ -1,7 +1,7 @@
 """The loss map of the output over its torque and speed with their signs: the output drives too."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
@@ -9,17 +9,26 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.interpolate import PchipInterpolator, RegularGridInterpolator
+from scipy.interpolate import PchipInterpolator
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films, without_films
 from pitchpoint.analyses.operation import untransmitted
 from pitchpoint.cases.schema import LossMap
 from pitchpoint.cases.stages import Ready
+from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
-__all__ = ["FOUR_QUADRANTS", "both", "loss_of_output", "mirrored", "pieces", "speed_ratio"]
+__all__ = [
+    "FOUR_QUADRANTS",
+    "both",
+    "loss_of_output",
+    "mirrored",
+    "pieces",
+    "speed_ratio",
+    "table_of",
+]
 
 FORWARDS, BACKWARDS = "forwards", "backwards"
 """Way of the power: from the driver of the case to its output, and from the output to the driver."""
@@ -28,13 +37,13 @@ FALLS_SHORT = 1e-9
 """Part of a torque by which rounding may leave the largest that was computed behind that of the map."""
 
 BOTH_FLANKS = (
-    "Negative speeds mirror the positive ones: both flanks of the teeth are taken to be alike, those that the "
-    "case describes."
+    "Negative speeds mirror the positive ones: the flanks on either side of the teeth are taken to be alike, "
+    "as the case describes those that it loads."
 )
 BETWEEN = (
-    "Where the output drives with less than the drive takes to turn without load, both ends put power in, and "
-    "the loss is a straight line between that without torque at the output and that without torque at the "
-    "driver: not less than it really is."
+    "Where the load turns the output with less than the drive takes to be driven backwards, both ends put "
+    "power in; the loss is taken there as a straight line between that without torque at the output and "
+    "that without torque at the driver."
 )
 
 _EACH = ("law", "speed", "temperature")
@@ -159,7 +168,8 @@ def _between_loads(
     if known.size < 2:
         return np.interp(torque, xs, values) if known.size else np.full(torque.shape, np.nan)
     curve = PchipInterpolator(known, losses)(np.clip(torque, known[0], known[-1]))
-    return np.where(torque < known[0], np.interp(torque, xs, values), curve)
+    found: np.ndarray = np.where(torque < known[0], np.interp(torque, xs, values), curve)
+    return found
 
 
 def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -171,7 +181,13 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     loss = np.concatenate([turned[:, ::-1], forwards[0]], axis=1)
     stuck = np.concatenate([held[:, ::-1], forwards[1] & (loads > 0.0)[:, None, None]], axis=1)
     torques = both(loads)
-    errors = _errors(built, parts, (torques, speeds, degrees), loss)
+    axes = {
+        "law": built.law_names,
+        "output_torque": torques,
+        "output_speed": both(speeds),
+        "temperature": degrees,
+    }
+    errors = _errors(built, parts, _table(axes, np.where(stuck, LOCKED, loss), ratio))
     loss, stuck = mirrored(loss), mirrored(stuck & (speeds > 0.0)[:, None])
     figures = _figures(loss, torques[:, None, None], both(speeds)[:, None], ratio)
     lost = np.isnan(loss) & ~stuck
@@ -182,12 +198,7 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
             "locked": (_DIMS, stuck),
             **{name: (("law",), values) for name, values in errors.items()},
         },
-        {
-            "law": built.law_names,
-            "output_torque": torques,
-            "output_speed": both(speeds),
-            "temperature": degrees,
-        },
+        axes,
         title="loss map of the output",
         travels=built.travels,
         warnings=_told(built, stuck, lost, parts),
@@ -241,7 +252,8 @@ def _turning(built: Ready, losses: Values, *, between: bool) -> Values:
     loads, speeds, _ = _axes(built, BACKWARDS, between=between)
     ratio = speed_ratio(built)
     speed = np.where(speeds > 0.0, speeds, np.nan)[:, None]
-    return (loads[:, None, None] * (speed / ratio) + losses) / speed
+    torque: Values = (loads[:, None, None] * (speed / ratio) + losses) / speed
+    return torque
 
 
 def _turned(built: Ready, no_load: Values, losses: Values, locked: Values) -> tuple[Values, Values]:
@@ -272,10 +284,8 @@ def _figures(
     return {"mean_efficiency": out / over, "mean_input_torque": turning}
 
 
-def _errors(
-    built: Ready, parts: Sequence[xr.Dataset], axes: tuple[np.ndarray, ...], loss: Values
-) -> dict[str, np.ndarray]:
-    """How far linear interpolation of the loss is off half way between nodes, largest and mean [law]."""
+def _errors(built: Ready, parts: Sequence[xr.Dataset], table: LossTable) -> dict[str, np.ndarray]:
+    """How far the loss of the table is off half way between its nodes, largest and mean [law]."""
     off = []
     for way in (FORWARDS, BACKWARDS):
         found, _ = _stacked(built, way, parts, between=True)
@@ -284,31 +294,76 @@ def _errors(
             torque = -_turning(built, found, between=True)
         else:
             torque, speeds = loads[:, None, None], speeds * speed_ratio(built)
-        every = np.broadcast_arrays(torque, speeds[:, None], degrees)
-        points = np.stack([np.broadcast_to(one, found.shape) for one in every], -1)
-        there = np.stack(
-            [_interpolated(axes, *each) for each in zip(loss, points, strict=True)]
-        )
-        off.append(np.abs(there / np.where(found > 0.0, found, np.nan) - 1.0)[:, :, : axes[1].size - 1])
-    each = np.concatenate(off, axis=1).reshape(loss.shape[0], -1)
-    each = [one[np.isfinite(one)] for one in each]
+        places = torque, speeds[:, None], celsius(degrees)
+        each = (np.broadcast_to(one, found.shape)[:, :, : len(table.speeds) - 1] for one in places)
+        off.append(_off(table, found[:, :, : len(table.speeds) - 1], *each))
+    errors = [one[np.isfinite(one)] for one in np.concatenate(off, axis=1)]
     return {
-        "interpolation_error": np.array([one.max(initial=0.0) for one in each]),
-        "mean_interpolation_error": np.array([one.mean() if one.size else 0.0 for one in each]),
+        "interpolation_error": np.array([one.max(initial=0.0) for one in errors]),
+        "mean_interpolation_error": np.array([one.sum() / max(one.size, 1) for one in errors]),
     }
 
 
-def _interpolated(axes: tuple[np.ndarray, ...], values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Values at points from those at nodes, linear along each axis; NaN beyond."""
-    several = [k for k, axis in enumerate(axes) if axis.size > 1]
-    table = RegularGridInterpolator([axes[k] for k in several], values.squeeze(), bounds_error=False)
-    found: np.ndarray = table(points[..., several])
-    return found
+def _off(
+    table: LossTable, loss: Values, torque: Values, speed: Values, degree: Values
+) -> np.ndarray:
+    """Errors of the table over the loss, NaN beyond it and where there is none [law, place]."""
+    errors = np.full(loss.shape, np.nan)
+    for at in zip(*np.nonzero(loss > 0.0), strict=True):
+        law = [*table.losses][at[0]]
+        found = table.at(float(torque[at]), float(speed[at]), float(degree[at]), law)
+        errors[at] = np.nan if found.outside else abs(found.loss / loss[at] - 1.0)
+    return errors.reshape(loss.shape[0], -1)
 
 
-def _told(
-    built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]
-) -> list[str]:
+def table_of(data: xr.Dataset, running: xr.Dataset | None = None) -> LossTable:
+    """The map as a table that needs no library.
+
+    Args:
+        data: the map.
+        running: torques of the same case that start the drive from rest.
+    """
+    speeds = data["output_speed"].values
+    held = data.transpose(*_DIMS, ...).isel(output_speed=speeds >= 0.0)
+    losses = np.where(held["locked"].values, LOCKED, held["mean_loss"].values)
+    units = [
+        data[name].attrs["units"] for name in ("output_torque", "output_speed", "mean_input_torque")
+    ]
+    made = _table(data, losses, float(data.attrs["speed_ratio"]))._replace(units=units)
+    if running is None:
+        return made
+    names = running["law"].values.tolist()
+    starting, back = (
+        dict(zip(names, running[name].values.tolist(), strict=True))
+        for name in ("starting_torque", "back_driving_torque")
+    )
+    rest = celsius(running["temperature"].values).tolist()
+    return made._replace(rest=rest, starting=starting, back_driving=back)
+
+
+def _table(axes: Mapping[Any, Any], losses: Values, ratio: float) -> LossTable:
+    torques, speeds, degrees = (np.asarray(axes[name]) for name in _DIMS[1:])
+    return LossTable(
+        torques=torques.tolist(),
+        speeds=speeds[speeds >= 0.0].tolist(),
+        temperatures=celsius(degrees).tolist(),
+        losses=dict(zip(map(str, np.asarray(axes["law"])), losses.tolist(), strict=True)),
+        speed_ratio=ratio,
+    )
+
+
+def celsius(degrees: np.ndarray) -> np.ndarray:
+    """Temperatures [K] in degC, without the rounding of the difference.
+
+    Example:
+        >>> import numpy as np
+        >>> celsius(np.array([313.15, 333.15])).tolist()
+        [40.0, 60.0]
+    """
+    return np.round(degrees - 273.15, 9)
+
+
+def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]) -> list[str]:
     """Where there is no number, and why, in sentences."""
     locks = (
         "friction locks the drive against its output at {} of {} points: there the driver has to turn the "

@@ -37,7 +37,16 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
 
-__all__ = ["LOSS_MAP", "Map", "at_torque", "map_axes", "maps", "pieces", "told_of_films", "without_films"]
+__all__ = [
+    "LOSS_MAP",
+    "Map",
+    "at_torque",
+    "map_axes",
+    "maps",
+    "pieces",
+    "told_of_films",
+    "without_films",
+]
 
 STATES = 1 << 20
 """Contacts (pairs, slices, nodes of the cycle, operating points) that are computed together at most."""
