@@ -154,6 +154,7 @@ def _kind(info: FieldInfo) -> str:
     every = [*_inside(info.annotation)]
     kinds = {dict: "table", tuple: "list", bool: "`true` or `false`", Any: "any value"}
     literals = [f'`"{one}"`' for one in every if isinstance(one, str)]
+    literals += [f"`{one}`" for one in every if isinstance(one, int)]
     several = next((told for kind, told in kinds.items() if kind in every), "text")
     by_name = any(hasattr(getattr(one, "func", None), "known") for one in (*info.metadata, *every))
     if alternatives(info.annotation):
