@@ -48,6 +48,14 @@ class LossTable(NamedTuple):
         starting: torque of the driver that starts it without load, by law over these temperatures.
         back_driving: torque of the output that starts it backwards, likewise; NaN where none does.
         units: of torque and speed of the output, and of torque of the driver.
+
+    Example:
+        >>> losses = {"own": (((0.0,), (-1.0,)), ((0.0,), (1.0,)), ((0.0,), (2.0,)))}
+        >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), losses, 0.1)
+        >>> table.at(1.0, 5.0, 40.0)
+        Point(loss=0.75, efficiency=0.8695652173913043, input_torque=0.115, locked=False, outside=False)
+        >>> table.at(1.0, -5.0, 40.0).locked, table.at(3.0, 5.0, 40.0).outside
+        (True, True)
     """
 
     torques: Sequence[float]
@@ -76,14 +84,6 @@ class LossTable(NamedTuple):
 
         Raises:
             ValueError: there is no such law.
-
-        Example:
-            >>> table = LossTable((-2.0, 0.0, 2.0), (0.0, 10.0), (40.0,), {"own": (
-            ...     ((0.0,), (LOCKED,)), ((0.0,), (1.0,)), ((0.0,), (2.0,)))}, 0.1)
-            >>> table.at(1.0, 5.0, 40.0)
-            Point(loss=0.75, efficiency=0.8695652173913043, input_torque=0.115, locked=False, outside=False)
-            >>> table.at(1.0, -5.0, 40.0).locked, table.at(3.0, 5.0, 40.0).outside
-            (True, True)
         """
         along = torque if speed >= 0.0 else -torque
         place = (along, self.torques), (abs(speed), self.speeds), (temperature, self.temperatures)
