@@ -1133,7 +1133,7 @@ class LossMap(Table):
     speed_count: Annotated[float, MAP_COUNT] | None = None
     """Points of the speed axis; count unless given."""
     quadrants: Literal[1, 4] = 1
-    """4 for a map of the output too, over the signs of its torque and speed."""
+    """Quadrants of torque and speed; 4 has a map of the output too; 1 unless given."""
 
 
 class Target(Table):
