@@ -175,7 +175,7 @@ def _default(info: FieldInfo) -> str:
         return "needed"
     value = info.default if info.default_factory is None else None
     usual = usual_words(info).removeprefix("default ")
-    if usual or not isinstance(value, str | bool) or value == "":
+    if usual or not isinstance(value, str | int) or value == "":
         return usual
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
 

@@ -58,16 +58,19 @@ friction = { name = "constant", coefficient = 1.8 }
 TOLERANCE = 1e-13
 
 
+def variant(text: str) -> Variant:
+    return Variant({**tomllib.loads(text), "title": TITLE}, "pair.toml", "default")
+
+
 def outcome(text: str, *others: Any) -> tuple[Ready, Outcome]:
-    tree = {**tomllib.loads(text), "title": TITLE}
-    made = Variant(tree, "pair.toml", "default")
+    made = variant(text)
     built = made.built({})
     parts = {}
     for analysis in (FOUR_QUADRANTS, *others):
         pieces = [analysis.compute(built, piece, silent) for piece in analysis.pieces(built)]
         parts[analysis.name] = analysis.joined(built, pieces)
         parts[analysis.name].attrs["fingerprint"] = "0123456789abcdef"
-    (manifest,) = describe(tree)
+    (manifest,) = describe(made.tree)
     return built, Outcome(manifest | {"lacks": {}, "parts": [*parts], "finished": True}, parts)
 
 
@@ -84,7 +87,7 @@ def locking() -> tuple[Ready, Outcome]:
 @pytest.fixture(scope="module")
 def folder(moving: tuple[Ready, Outcome], tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("result")
-    keep({"default": moving[1]}, made)
+    keep({"default": moving[1]}, {"default": variant(PAIR + MOVING)}, made)
     return made
 
 
@@ -393,7 +396,8 @@ def test_a_result_without_the_map(
     folder: Path, moving: tuple[Ready, Outcome], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     manifest, parts = moving[1].manifest, {"running": moving[1].parts["running"]}
-    keep({"default": Outcome({**manifest, "parts": ["running"]}, parts)}, tmp_path / "other")
+    bare = Outcome({**manifest, "parts": ["running"]}, parts)
+    keep({"default": bare}, {"default": variant(PAIR + MOVING)}, tmp_path / "other")
     assert command("export", tmp_path / "other", "--evaluator") == 2
     told = capsys.readouterr().err
     assert "the result has no loss map of the output" in told

@@ -1106,6 +1106,13 @@ class Study(Table):
     """Values over which one key is swept; one point unless given."""
 
 
+def _quadrants(value: Any) -> Any:
+    """The value, unless it is a flag, which Python counts among the numbers."""
+    if isinstance(value, bool):
+        raise InputError(f"{shown(value)} is not allowed; use 1 or 4")
+    return value
+
+
 class LossMap(Table):
     """Axes of the loss map; zero torque and zero speed are allowed. A force stands for a torque of travel.
 
@@ -1132,8 +1139,8 @@ class LossMap(Table):
     """Points of the force axis; count unless given."""
     speed_count: Annotated[float, MAP_COUNT] | None = None
     """Points of the speed axis; count unless given."""
-    quadrants: Literal[1, 4] = 1
-    """Quadrants of torque and speed; 4 has a map of the output too; 1 unless given."""
+    quadrants: Annotated[Literal[1, 4], BeforeValidator(_quadrants)] = 1
+    """Quadrants of torque and speed; with 4 there is a map of the output too."""
 
 
 class Target(Table):
