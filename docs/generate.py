@@ -159,6 +159,7 @@ def _kind(info: FieldInfo) -> str:
     every = [*_inside(info.annotation)]
     kinds = {dict: "table", tuple: "list", bool: "`true` or `false`", Any: "any value"}
     literals = [f'`"{one}"`' for one in every if isinstance(one, str)]
+    literals += [f"`{one}`" for one in every if isinstance(one, int)]
     several = next((told for kind, told in kinds.items() if kind in every), "text")
     by_name = any(hasattr(getattr(one, "func", None), "known") for one in (*info.metadata, *every))
     if alternatives(info.annotation):
@@ -179,7 +180,7 @@ def _default(info: FieldInfo) -> str:
         return "needed"
     value = info.default if info.default_factory is None else None
     usual = usual_words(info).removeprefix("default ")
-    if usual or not isinstance(value, str | bool) or value == "":
+    if usual or not isinstance(value, str | int) or value == "":
         return usual
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
 

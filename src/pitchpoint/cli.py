@@ -395,17 +395,27 @@ def export(
     mat: Annotated[bool, typer.Option("--mat", help="A file for MATLAB and Octave.")] = False,
     json_: Annotated[bool, typer.Option("--json", help="One JSON file.")] = False,
     xlsx: Annotated[bool, typer.Option("--xlsx", help="A workbook.")] = False,
+    evaluator: Annotated[
+        bool,
+        typer.Option(
+            "--evaluator", help="The loss map of the output as Python and C that need nothing."
+        ),
+    ] = False,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Default: export in the result."),
     ] = None,
     si: Annotated[bool, typer.Option("--si", help="SI units, not those of the report.")] = False,
 ) -> None:
-    """Write a result as tables for other programs, with a README.txt that says what is in them."""
+    """Write a result for other programs.
+
+    Tables come with a README.txt that says what is in them. An evaluator gives loss, efficiency and torque of
+    the driver at any torque and speed of the output; it is of a run with --set loss_map.quadrants=4.
+    """
     from pitchpoint.exports.files import export as exported
     from pitchpoint.runs.run import open_result
 
-    asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx}
+    asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
     for path in exported(open_result(result), output or Path(result) / "export", formats, si=si):
         typer.echo(visible(str(path)))

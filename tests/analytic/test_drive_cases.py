@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jnp
+from pitchpoint.analyses.four_quadrants import FOUR_QUADRANTS
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.torsion import TORSION
@@ -150,6 +151,26 @@ def test_the_loss_map_is_the_operating_point_at_its_node():
         assert corner == pytest.approx(figure(data, name), rel=1e-12)
     assert np.isnan(whole["mean_efficiency"].values[0, 0, 0, 0])
     assert not whole["mean_loss"].values[0, :, 0].any()
+
+
+def test_the_map_of_the_output_is_the_drive_forwards_and_backwards():
+    case = built(TWO, **{"loss_map.quadrants": 4})
+    pieces = FOUR_QUADRANTS.pieces(case)
+    data = FOUR_QUADRANTS.joined(case, [part(FOUR_QUADRANTS, case, piece) for piece in pieces])
+    corner = data.isel(law=0, temperature=0, output_torque=-1)
+    assert float(corner["output_torque"]) == LOAD
+    for end, sign in ((-1, 1.0), (0, -1.0)):
+        speed = float(corner["output_speed"][end])
+        assert speed == pytest.approx(sign * SPEED / RATIO, rel=1e-12)
+        loss = float(corner["mean_loss"][end])
+        torque = float(corner["mean_input_torque"][end])
+        assert torque * sign * SPEED == pytest.approx(LOAD * speed + loss, rel=1e-12)
+    assert float(corner["mean_loss"][-1]) == pytest.approx(
+        figure(operation(), "mean_loss"), rel=1e-12
+    )
+    # With a constant coefficient neither efficiency asks for the torque.
+    back = figure(part(BACK_DRIVING, case), "mean_efficiency")
+    assert float(corner["mean_efficiency"][0]) == pytest.approx(back, rel=1e-9)
 
 
 def test_the_drive_backwards_locks_before_it_does_forwards():

@@ -682,7 +682,7 @@ def bads_at(site: Site) -> Iterator[Bad]:
                 yield Bad(name, site.path, value, tuple(words), site.key.partition(".0.name")[0])
     elif options := literals(site.annotation):
         for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
-            yield Bad(name, site.path, value, (shown, *options), site.key)
+            yield Bad(name, site.path, value, (shown, *map(str, options)), site.key)
     elif takes_flag(site):
         for name, (value, shown) in {**NAMES, "text": ("x", '"x"')}.items():
             if not isinstance(value, bool):

@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.errors import InputError
+from pitchpoint.exports.evaluator import module
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.runs.catalogue import figures
@@ -18,7 +20,7 @@ SAMPLE = str(sample_of(RackAndPinionGears))
 EXAMPLE = Path(__file__).parents[2] / "examples" / "rack_and_pinion.toml"
 FORCE, SPEED, RADIUS = 2000.0, 300.0 * 2.0 * np.pi / 60.0, 0.03
 FRICTIONLESS = {"models.friction": "frictionless"}
-SMALL = {"loss_map": {"count": 2, "force": "4000 N"}}
+SMALL = {"loss_map": {"count": 2, "force": "4000 N", "quadrants": 4}}
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +43,21 @@ def test_power_goes_from_the_pinion_to_the_rack(outcome: Outcome) -> None:
     torque = (power + lost) / SPEED
     assert float(data["mean_input_torque"].values[0, 0]) == pytest.approx(torque, rel=1e-12)
     assert float(data["mean_drag_loss"].values[0, 0]) == pytest.approx(seal, rel=1e-12)
+
+
+def test_the_map_of_the_rack_is_in_its_units(outcome: Outcome) -> None:
+    data = outcome.parts["four_quadrants"]
+    units = [data[name].attrs["units"] for name in ("output_torque", "output_speed")]
+    assert units == ["N", "m/s"]
+    assert data["mean_input_torque"].attrs["units"] == "N m"
+    text = module(outcome, table_of(data))
+    assert "Units: torque N, speed m/s, torque of the driver N m" in text
+    fast = data.isel(law=0, temperature=0, output_speed=-1, output_torque=[0, -1])
+    given = fast["output_torque"] * fast["output_speed"]
+    taken = fast["mean_input_torque"] * fast["output_speed"] / RADIUS
+    np.testing.assert_allclose(taken - given, fast["mean_loss"], rtol=1e-10)
+    assert (fast["mean_efficiency"] > 0.9).all()
+    assert ">Four quadrants<" in render({"default": outcome})
 
 
 def test_guides_of_the_rack_bear_the_separating_force_alone() -> None:
@@ -106,7 +123,7 @@ def test_every_section_that_applies_is_in_the_report_in_words_of_a_travel(outcom
     sections = re.findall(r'<section id="(\w+)"', page)
     assert sections[:7] == ["answer", "inputs", "teeth", "path", "cycle", "film", "torsion"]
     assert sections[7:13] == ["beside", "stiffness", "vibration", "motion", "studies", "map"]
-    assert sections[13:] == ["models", "sources"]
+    assert sections[13:] == ["quadrants", "models", "sources"]
     assert "Kinematic error (deviations of the teeth of these gears are not among" in page
     assert "load on the guides of the rack, across its travel" in page
     for words in (

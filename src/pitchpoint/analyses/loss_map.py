@@ -37,7 +37,16 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
 
-__all__ = ["LOSS_MAP", "at_torque", "map_axes", "pieces"]
+__all__ = [
+    "LOSS_MAP",
+    "Map",
+    "at_torque",
+    "map_axes",
+    "maps",
+    "pieces",
+    "told_of_films",
+    "without_films",
+]
 
 STATES = 1 << 20
 """Contacts (pairs, slices, nodes of the cycle, operating points) that are computed together at most."""
@@ -105,7 +114,7 @@ def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
     """The map at one torque."""
     torque, (speeds, degrees) = float(piece["torque"]), map_axes(built)[1:]
     runs = []
-    for count, one in enumerate(_maps(built, torque, speeds, degrees), 1):
+    for count, one in enumerate(maps(built, torque, speeds, degrees), 1):
         runs.append(one)
         progress(count * speeds.size * degrees.size)
     found = [np.stack(each)[:, None] for each in zip(*runs, strict=True)]
@@ -117,11 +126,11 @@ def at_torque(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
             "speed": ("speed", speeds),
             "temperature": ("temperature", degrees),
         },
-        warnings=_told(built),
+        warnings=told_of_films(built),
     )
 
 
-def _told(built: Ready) -> list[str]:
+def told_of_films(built: Ready) -> list[str]:
     """How near the friction of films comes that is interpolated over the map."""
     laws = [law for law in built.laws if law.films is not None]
     return [_solved_films(built, law)[1] for law in laws] if isinstance(built, Built) else []
@@ -131,8 +140,15 @@ Map = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Loss, efficiency and whether friction locks the mesh, each [speed, temperature]."""
 
 
-def _maps(built: Ready, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Iterator[Map]:
-    """The map at one torque under each friction law; at rest nothing is lost, whatever the laws say."""
+def maps(built: Ready, torque: float, speeds: np.ndarray, degrees: np.ndarray) -> Iterator[Map]:
+    """The map at one torque under each friction law; at rest nothing is lost, whatever the laws say.
+
+    Args:
+        built: the case.
+        torque: that the output carries [N m or N].
+        speeds: of the driver [rad/s or m/s].
+        degrees: temperatures of the oil [K].
+    """
     moving = np.where(speeds > 0.0, speeds, 1.0)
     if isinstance(built, BuiltDrive):
         found = _of_drive(built, torque, moving, degrees)
@@ -300,7 +316,7 @@ def _figures(
 _figures_of_many = fast_program(_figures.function)
 
 
-def _without_films(built: Ready) -> str | None:
+def without_films(built: Ready) -> str | None:
     """Why films are not solved over a map."""
     why_not = without_formula(built)
     if why_not is None or not isinstance(built, Built):
@@ -314,7 +330,7 @@ LOSS_MAP = Analysis(
     name="loss_map",
     title="loss map",
     alone="",
-    lacks=lambda built: untransmitted(built) or _without_films(built),
+    lacks=lambda built: untransmitted(built) or without_films(built),
     compute=at_torque,
     pieces=pieces,
     joined=_joined,

@@ -11,6 +11,7 @@ from pitchpoint.analyses.along_action import (
 from pitchpoint.analyses.analysis import Analysis, Several
 from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
+from pitchpoint.analyses.four_quadrants import FOUR_QUADRANTS
 from pitchpoint.analyses.inspection import INSPECTION
 from pitchpoint.analyses.joint import JOINT
 from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
@@ -54,6 +55,7 @@ ANALYSES: Registry[Analysis | Several] = Registry(
     RUNNING,
     LOSS_MAP,
     BACK_DRIVING,
+    FOUR_QUADRANTS,
 )
 
 

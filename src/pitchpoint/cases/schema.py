@@ -1106,10 +1106,19 @@ class Study(Table):
     """Values over which one key is swept; one point unless given."""
 
 
+def _quadrants(value: Any) -> Any:
+    """The value, unless it is a flag, which Python counts among the numbers."""
+    if isinstance(value, bool):
+        raise InputError(f"{shown(value)} is not allowed; use 1 or 4")
+    return value
+
+
 class LossMap(Table):
     """Axes of the loss map; zero torque and zero speed are allowed. A force stands for a torque of travel.
 
-    `count` is that of both axes, `torque_count` or `force_count` and `speed_count` are those of one.
+    `count` is that of both axes, `torque_count` or `force_count` and `speed_count` are those of one. With
+    `quadrants` of 4 there is a map of the output too, over its torque and speed with their signs: there
+    the output also drives.
     """
 
     torque: Annotated[float, TORQUE] | None = None
@@ -1130,6 +1139,8 @@ class LossMap(Table):
     """Points of the force axis; count unless given."""
     speed_count: Annotated[float, MAP_COUNT] | None = None
     """Points of the speed axis; count unless given."""
+    quadrants: Annotated[Literal[1, 4], BeforeValidator(_quadrants)] = 1
+    """Quadrants of torque and speed; with 4 there is a map of the output too."""
 
 
 class Target(Table):

@@ -11,11 +11,15 @@ import pandas as pd
 import xarray as xr
 
 from pitchpoint.errors import InputError
+from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.tables import Sheet, exported, sheets
 from pitchpoint.results.store import make_folder, without_nan, write_bytes, write_text
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["FORMATS", "export"]
+__all__ = ["EVALUATOR", "FORMATS", "export"]
+
+EVALUATOR = "evaluator"
+"""The format that is no table: the loss map of the output as source, see `exports.evaluator`."""
 
 MOST_ROWS = 1_048_575
 """Rows of a sheet of a spreadsheet, under its head."""
@@ -34,7 +38,7 @@ def export(
     Args:
         outcomes: by variant.
         folder: where files go.
-        formats: of `FORMATS`.
+        formats: of `FORMATS`, and `EVALUATOR`.
         si: True for SI units, else those of report and screen.
 
     Returns:
@@ -44,17 +48,20 @@ def export(
         InputError: no format, a folder that cannot be written to, a library that is missing.
     """
     if not formats:
-        told = ", ".join(f"--{name}" for name in FORMATS)
+        told = ", ".join(f"--{name}" for name in (*FORMATS, EVALUATOR))
         raise InputError(f"no format was given; give one or several of {told}")
     written: list[Path] = []
     for name, outcome in outcomes.items():
         place = folder / name if len(outcomes) > 1 else folder
         make_folder(place)
-        tables = list(sheets(outcome, si=si))
-        for one in formats:
-            written += FORMATS[one](outcome, tables, place, si)
-        write_text(place / README, _readme(outcome, tables, si))
-        written.append(place / README)
+        if EVALUATOR in formats:
+            written += evaluator(outcome, place)
+        if wanted := [one for one in formats if one != EVALUATOR]:
+            tables = list(sheets(outcome, si=si))
+            for one in wanted:
+                written += FORMATS[one](outcome, tables, place, si)
+            write_text(place / README, _readme(outcome, tables, si))
+            written.append(place / README)
     return written
 
 

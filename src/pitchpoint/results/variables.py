@@ -495,6 +495,12 @@ VARIABLES: dict[str, Variable] = {
     "locked": Variable("friction locks the mesh", "", "1"),
     "torque": torque("output torque", "T_out"),
     "speed": Variable("driver speed", "n", "rad/s", "rpm", "rotational speed"),
+    "output_torque": torque("output torque", "T_out"),
+    "output_speed": Variable("output speed", "n_out", "rad/s", "rpm", "rotational speed"),
+    "interpolation_error": percent("largest error of the loss half way between nodes, over it", ""),
+    "mean_interpolation_error": percent(
+        "mean error of the loss half way between nodes, over it", ""
+    ),
     "temperature": Variable("oil temperature", "θ", "K", "degC", "temperature"),
 }
 
@@ -511,6 +517,8 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
     },
     "loaded": {
         "torque": force("output force", "F_out"),
+        "output_torque": force("output force", "F_out"),
+        "output_speed": speed("output speed", "v_out"),
         "back_driving_torque": force("output force that starts the drive backwards", "F_back"),
         "loading_torque": force("force while the deflection grows", "F"),
         "unloading_torque": force("force while the deflection shrinks", "F"),

@@ -27,7 +27,7 @@ Printed by `pitchpoint models --matrix` from the registries of families and anal
 def matrix() -> list[dict[str, str]]:
     """A row for each analysis: its name and title, and for each family yes, or why it is not there."""
     samples = {tag(table): _asking(str(sample_of(table))) for table in TABLES}
-    samples["several stages"] = [load_case(str(_SEVERAL))]
+    samples["several stages"] = [load_case(str(_SEVERAL), settings=_OF_OUTPUT)]
     return [
         {"analysis": analysis.name, "title": analysis.title}
         | {name: _why_not(analysis, cases) for name, cases in samples.items()}
@@ -36,13 +36,17 @@ def matrix() -> list[dict[str, str]]:
 
 
 def _asking(sample: str) -> list[Ready]:
-    """The sample, the same with every solver of films that its contacts have, and with wear."""
+    """The sample, the same with every solver of films that its contacts have, with wear, with all maps."""
     built = load_case(sample)
     assert isinstance(built, Built)
     solvers = FILM_SOLVERS[built.design.mesh.shape]
     films = [load_case(sample, settings=_films(one)) for one in solvers]
     worn = [load_case(sample, settings=_WEAR)] if built.design.mesh.goes_round else []
-    return [built, *films, *worn]
+    maps = [load_case(sample, settings=_OF_OUTPUT)] if built.transmits else []
+    return [built, *films, *worn, *maps]
+
+
+_OF_OUTPUT = {"loss_map.quadrants": 4}
 
 
 _WEAR = {"wear.law": "vdi_2736", "wear.cycles": 1e6, "wear.rate": "1e-9 mm3/(N m)"}

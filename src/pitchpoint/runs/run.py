@@ -217,7 +217,11 @@ def run_variant(
     outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
     _note(outcome, folder, finished=True)
     if folder is not None:
-        for pieces in ("study_*", "loss_map"):  # of parts that were not asked for again
+        for pieces in (
+            "study_*",
+            "loss_map",
+            "four_quadrants",
+        ):  # of parts that were not asked for again
             _drop_pieces(folder, pieces)
     return outcome
 

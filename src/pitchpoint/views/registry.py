@@ -13,6 +13,7 @@ from pitchpoint.views.sections.film import FILM
 from pitchpoint.views.sections.film_squeeze import FILM_SQUEEZE
 from pitchpoint.views.sections.finite_film import FINITE_FILM
 from pitchpoint.views.sections.formulas import FORMULAS
+from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS
 from pitchpoint.views.sections.inputs import INPUTS
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.issues import ISSUES
@@ -63,6 +64,7 @@ SECTIONS: Registry[Section] = Registry(
     STUDIES,
     FORMULAS,
     LOSS_MAP,
+    FOUR_QUADRANTS,
     COMPARED,
     ISSUES,
     MODELS,

@@ -1,6 +1,7 @@
 """Loss and efficiency over torque, speed and temperature."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -34,35 +35,59 @@ from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section
 
-__all__ = ["LOSS_MAP", "efficiency_panel", "map_panel"]
+__all__ = ["LOSS_MAP", "Chart", "efficiency_panel", "map_panel"]
 
-_SHOWN = ("mean_loss", "mean_efficiency")
 _MOST = 60
 """Largest number of values on an axis that goes into the page."""
 
 
-def map_panel(outcomes: Mapping[str, Outcome], known: Curves) -> Panel:
+@dataclass(frozen=True)
+class Chart:
+    """A map that is drawn.
+
+    Attributes:
+        part: of the result.
+        title: of the panel.
+        axes: that go across and up.
+        shown: quantities, each in a figure.
+        name: begins the names of the figures.
+    """
+
+    part: str
+    title: str
+    axes: tuple[str, str]
+    shown: tuple[str, ...]
+    name: str
+
+    def of(self, outcomes: Mapping[str, Outcome]) -> dict[str, xr.Dataset]:
+        """The maps of those outcomes that have one."""
+        return {n: one.parts[self.part] for n, one in outcomes.items() if self.part in one.parts}
+
+
+OF_DRIVER = Chart(
+    "loss_map", "Loss map", ("speed", "torque"), ("mean_loss", "mean_efficiency"), "map"
+)
+
+
+def map_panel(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart = OF_DRIVER) -> Panel:
     """Heat maps of loss and efficiency with a menu for law, variant and temperature."""
-    choices = list(_choices(outcomes, known))
+    choices = list(_choices(outcomes, chart))
     if not choices:
-        return Panel("Loss map", [])
+        return Panel(chart.title, [])
     first = min(range(len(choices)), key=lambda at: choices[at][0])
     _, variant, position, law = choices[first]
-    data = outcomes[variant].parts["loss_map"]
-    scales = {name: _scale(name, outcomes) for name in _SHOWN}
+    scales = {name: _scale(name, outcomes, chart) for name in chart.shown}
     figures = [
-        _figure(name, outcomes[variant], data, law, position, scales[name]) for name in _SHOWN
+        _figure(name, outcomes[variant], chart, law, position, scales[name]) for name in chart.shown
     ]
-    menu = [_choice(outcomes, known, *choice[1:]) for choice in choices]
-    menus = _menus(outcomes, known) if len(choices) > 1 else []
-    return Panel("Loss map", figures, choices=menu, menu="Shown for", menus=menus, at=first)
+    menu = [_choice(outcomes, known, chart, *choice[1:]) for choice in choices]
+    menus = _menus(outcomes, known, chart) if len(choices) > 1 else []
+    return Panel(chart.title, figures, choices=menu, menu="Shown for", menus=menus, at=first)
 
 
-def _menus(outcomes: Mapping[str, Outcome], known: Curves) -> list[Menu]:
+def _menus(outcomes: Mapping[str, Outcome], known: Curves, chart: Chart) -> list[Menu]:
     """Menus for law and for temperature; none where variants have their maps at others."""
-    maps = {
-        name: one.parts["loss_map"] for name, one in outcomes.items() if "loss_map" in one.parts
-    }
+    maps = chart.of(outcomes)
     degrees = {tuple(data["temperature"].values.tolist()) for data in maps.values()}
     labels = [known[name, law].label for name, data in maps.items() for law in laws(data)]
     if len(degrees) > 1:
@@ -72,9 +97,9 @@ def _menus(outcomes: Mapping[str, Outcome], known: Curves) -> list[Menu]:
     return [menu for menu in each if len(menu.labels) > 1]
 
 
-def _scale(name: str, outcomes: Mapping[str, Outcome]) -> dict[str, float]:
+def _scale(name: str, outcomes: Mapping[str, Outcome], chart: Chart) -> dict[str, float]:
     """Ends of the colour scale that all maps of a quantity share; none where nothing is known."""
-    maps = [one.parts["loss_map"][name] for one in outcomes.values() if "loss_map" in one.parts]
+    maps = [data[name] for data in chart.of(outcomes).values()]
     values = np.concatenate([display(name, each.values).ravel() for each in maps])
     values = values[np.isfinite(values)]
     if not values.size or not np.ptp(values) > ROUNDING * np.abs(values).max():
@@ -83,38 +108,43 @@ def _scale(name: str, outcomes: Mapping[str, Outcome]) -> dict[str, float]:
 
 
 def _choices(
-    outcomes: Mapping[str, Outcome], known: Curves
+    outcomes: Mapping[str, Outcome], chart: Chart
 ) -> Iterator[tuple[float, str, int, int]]:
     """Distance from the operating temperature, variant, temperature and law of every map."""
-    for variant, outcome in outcomes.items():
-        if "loss_map" in outcome.parts:
-            data, fact = outcome.parts["loss_map"], operating_point(outcome)
-            for law in range(data.sizes["law"]):
-                for position, degree in enumerate(data["temperature"].values):
-                    yield abs(float(degree) - fact.temperature), variant, position, law
+    for variant, data in chart.of(outcomes).items():
+        fact = operating_point(outcomes[variant])
+        for law in range(data.sizes["law"]):
+            for position, degree in enumerate(data["temperature"].values):
+                yield abs(float(degree) - fact.temperature), variant, position, law
 
 
 def _choice(
-    outcomes: Mapping[str, Outcome], known: Curves, variant: str, position: int, law: int
+    outcomes: Mapping[str, Outcome],
+    known: Curves,
+    chart: Chart,
+    variant: str,
+    position: int,
+    law: int,
 ) -> Choice:
-    data = outcomes[variant].parts["loss_map"]
+    data = outcomes[variant].parts[chart.part]
     curve = known[variant, laws(data)[law]]
     degree = level("temperature", float(data["temperature"].values[position]))
     changes: dict[str, list[Any]] = {}
-    for name in _SHOWN:
-        heat = _heat(name, data, law, position)
-        changes[f"map_{name}"] = [{key: [values] for key, values in heat.items()}, {}, [0]]
+    for name in chart.shown:
+        heat = _heat(name, data, chart, law, position)
+        changes[f"{chart.name}_{name}"] = [{key: [values] for key, values in heat.items()}, {}, [0]]
     return Choice(f"{curve.label}, oil at {degree}", changes)
 
 
-def _heat(name: str, data: xr.Dataset, law: int, temperature: int) -> dict[str, Any]:
+def _heat(name: str, data: xr.Dataset, chart: Chart, law: int, temperature: int) -> dict[str, Any]:
     """Axes and values, thinned where there are more than a page can show."""
-    values = data[name].transpose("law", "temperature", "torque", "speed").values[law, temperature]
+    across, up = chart.axes
+    values = data[name].transpose("law", "temperature", up, across).values[law, temperature]
     rows, columns = (_thinned(size) for size in values.shape)
     return {
-        "x": rounded(display("speed", data["speed"].values[columns], data)),
-        "y": rounded(display("torque", data["torque"].values[rows], data)),
-        "z": rounded(display(name, values[np.ix_(rows, columns)])),
+        "x": rounded(display(across, data[across].values[columns], data)),
+        "y": rounded(display(up, data[up].values[rows], data)),
+        "z": rounded(display(name, values[np.ix_(rows, columns)], data)),
     }
 
 
@@ -125,18 +155,18 @@ def _thinned(size: int) -> np.ndarray:
 def _figure(
     name: str,
     outcome: Outcome,
-    data: xr.Dataset,
+    chart: Chart,
     law: int,
     temperature: int,
     scale: Mapping[str, float],
 ) -> Figure:
-    variable, fact = VARIABLES[name], operating_point(outcome)
-    unit, units = show.unit(variable.display), [show.unit_of(n, data) for n in ("speed", "torque")]
+    data, fact, (across, up) = outcome.parts[chart.part], operating_point(outcome), chart.axes
+    unit, units = show.unit_of(name, data), [show.unit_of(one, data) for one in chart.axes]
+    speed = fact.speed * float(data.attrs.get("speed_ratio", 1.0))
     heat = {
         "type": "contour",
-        **_heat(name, data, law, temperature),
-        "colorscale": "Cividis" if name == "mean_efficiency" else "YlOrRd",
-        "reversescale": name != "mean_efficiency",
+        **_heat(name, data, chart, law, temperature),
+        **_COLOURS.get(name, {"colorscale": "YlOrRd", "reversescale": True}),
         "hoverongaps": False,
         **scale,
         "zauto": not scale,
@@ -149,8 +179,8 @@ def _figure(
     point = {
         "type": "scatter",
         "mode": "markers",
-        "x": rounded(display("speed", [fact.speed], data)),
-        "y": rounded(display("torque", [fact.torque], data)),
+        "x": rounded(display(across, [speed], data)),
+        "y": rounded(display(up, [fact.torque], data)),
         "marker": {
             "symbol": "x",
             "size": 10,
@@ -160,13 +190,19 @@ def _figure(
         "hovertemplate": "operating point<extra></extra>",
     }
     return Figure(
-        f"map_{name}",
-        titled(name),
+        f"{chart.name}_{name}",
+        titled(name, data),
         [heat, point],
-        layout(show.axis_title("speed", data), show.axis_title("torque", data)),
+        layout(show.axis_title(across, data), show.axis_title(up, data)),
         "The cross marks the operating point.",
     )
 
+
+_COLOURS: dict[str, dict[str, Any]] = {
+    "mean_efficiency": {"colorscale": "Cividis", "reversescale": False},
+    "mean_input_torque": {"colorscale": "RdBu", "reversescale": True, "zmid": 0.0},
+}
+"""Colours of quantities of which little is not what is wanted."""
 
 _AXES = {"torque": "temperature", "speed": "temperature", "temperature": "torque"}
 """For the axis of a figure, what its lines differ in."""

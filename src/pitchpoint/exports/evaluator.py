@@ -1,0 +1,225 @@
+"""The loss map of the output as files that need nothing else: a module of Python and a header of C."""
+
+import ast
+import re
+from collections.abc import Iterable, Sequence
+from importlib.resources import files
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+from pitchpoint.analyses.four_quadrants import FOUR_QUADRANTS, table_of
+from pitchpoint.efficiency.loss_table import LossTable
+from pitchpoint.errors import InputError
+from pitchpoint.results.store import write_text
+from pitchpoint.runs.run import Outcome
+
+__all__ = ["evaluator", "header", "module"]
+
+MOST = 500_000
+"""Losses that go into a file."""
+
+SIGNS = (
+    "Torque and speed are those of the output, positive the same way; the torque is that of the output on "
+    "its load. Where both have one sign the driver drives (quadrants I and III), where they differ the load "
+    "drives (II and IV). The torque of the driver is positive where it acts along a positive speed of the "
+    "output. Power balances: torque times speed of the driver = torque times speed of the output + loss."
+)
+BETWEEN = (
+    "Nodes are as computed. The loss is linear between them; below the lowest speed that is not zero it goes "
+    "with the power of the speed that leads to the next node, the first power at least. Torque of the driver "
+    "and efficiency follow from the balance of power."
+)
+BEYOND = (
+    "Beyond the table the loss is that of the nearest point in it, and `outside` is true. Where friction "
+    "locks the drive against its output, or does so at a node beside, `locked` is true and the rest is NaN. "
+    "At rest the loss is zero, torque of the driver and efficiency are NaN; the efficiency is NaN too where "
+    "no power comes out, as where both ends put power in."
+)
+
+
+def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
+    """Write module and header into a folder.
+
+    Raises:
+        InputError: the result has no such map, or too large a one.
+    """
+    table = _table(outcome)
+    texts = {
+        "loss_table.py": module(outcome, table),
+        "loss_table.h": header(outcome, table),
+    }
+    for name, text in texts.items():
+        write_text(folder / name, text)
+    return [folder / name for name in texts]
+
+
+def _table(outcome: Outcome) -> LossTable:
+    name = FOUR_QUADRANTS.name
+    if name not in outcome.parts:
+        why = outcome.manifest["lacks"].get(name)
+        how = f"run {outcome.manifest['case']} with --set loss_map.quadrants=4, which computes it"
+        told = f"the result has no {FOUR_QUADRANTS.title}"
+        raise InputError(f"{told}: {why}" if why else f"{told}; {how}", key="--evaluator")
+    data = outcome.parts[name]
+    if data["mean_loss"].size > 2 * MOST:
+        raise InputError(
+            f"the {FOUR_QUADRANTS.title} has {data['mean_loss'].size} points, and {2 * MOST} is the most for "
+            "a file of source; take a lower loss_map.count",
+            key="--evaluator",
+        )
+    return table_of(data, outcome.parts.get("running"))
+
+
+def module(outcome: Outcome, table: LossTable) -> str:
+    """The map as a module of Python without dependencies.
+
+    Args:
+        outcome: with the map.
+        table: made of it.
+    """
+    source = files("pitchpoint.efficiency").joinpath("loss_table.py").read_text("utf-8")
+    first = ast.parse(source).body[0]
+    code = "".join(source.splitlines(keepends=True)[first.end_lineno :])
+    code = re.sub(
+        r"^__all__ = .*$",
+        '__all__ = ["ABOUT", "TABLE", "Point", "at", "at_rest"]',
+        code,
+        count=1,
+        flags=re.M,
+    )
+    about = ", ".join(f"{key!a}: {text!a}" for key, text in _origin(outcome).items())
+    fields = "".join(f"    {key}={_literal(one)},\n" for key, one in table._asdict().items())
+    usage = [
+        "    python loss_table.py --torque 5 --speed -3 --temperature 40",
+        "    from loss_table import at",
+        "    at(5.0, -3.0, 40.0).input_torque",
+    ]
+    paragraphs = ["\n".join(wrap(text, 100)) for text in _told(outcome, table)]
+    head = "\n\n".join(
+        [*paragraphs, "\n".join(usage), "Python 3.9 or later; nothing else is needed."]
+    )
+    return (
+        f'"""{head}\n"""\n{code}\n\n'
+        f"ABOUT = {{{about}}}\n"
+        f'"""Where the table comes from."""\n\n'
+        f"TABLE = LossTable(\n{fields})\n"
+        "at, at_rest = TABLE.at, TABLE.at_rest\n\n"
+        'if __name__ == "__main__":\n    raise SystemExit(main(TABLE, __doc__))\n'
+    )
+
+
+def header(outcome: Outcome, table: LossTable) -> str:
+    """The map as a header of C99 that allocates nothing.
+
+    Args:
+        outcome: with the map.
+        table: made of it.
+    """
+    code = files("pitchpoint.exports").joinpath("loss_table.h").read_text("utf-8")
+    shape = len(table.losses), len(table.torques), len(table.speeds), len(table.temperatures)
+    names = ("LAWS", "TORQUES", "SPEEDS", "TEMPERATURES")
+    usage = (
+        "struct loss_table_point here = loss_table_at(5.0, -3.0, 40.0, 0); the last number is that of the "
+        'friction law, by name loss_table_law("..."). C99 with math.h and string.h.'
+    )
+    head = "\n *\n * ".join(
+        "\n * ".join(wrap(text, 100)) for text in (*_told(outcome, table), usage)
+    )
+    sizes = "".join(f"#define LOSS_TABLE_{n} {k}\n" for n, k in zip(names, shape, strict=True))
+    driver = table.units[-1]
+    arrays = {
+        "torques[LOSS_TABLE_TORQUES]": table.torques,
+        "speeds[LOSS_TABLE_SPEEDS]": table.speeds,
+        "temperatures[LOSS_TABLE_TEMPERATURES]": table.temperatures,
+        "losses[LOSS_TABLE_LAWS][LOSS_TABLE_TORQUES][LOSS_TABLE_SPEEDS][LOSS_TABLE_TEMPERATURES]": [
+            *table.losses.values()
+        ],
+    }
+    texts = {**_origin(outcome), "law_names[LOSS_TABLE_LAWS]": [*table.losses]}
+    return (
+        f"/* {head}\n */\n#ifndef LOSS_TABLE_H\n#define LOSS_TABLE_H\n\n"
+        f"#include <math.h>\n#include <string.h>\n\n{sizes}"
+        f"#define LOSS_TABLE_SPEED_RATIO {table.speed_ratio!r}\n\n"
+        "struct loss_table_point {\n"
+        f"    double loss;         /* W */\n    double efficiency;\n"
+        f"    double input_torque; /* {driver} */\n    int locked, outside;\n}};\n\n"
+        + "".join(f"static const char *const loss_table_{n} = {_c(v)};\n" for n, v in texts.items())
+        + "".join(f"static const double loss_table_{n} = {_c(v)};\n" for n, v in arrays.items())
+        + f"\n{code}"
+    )
+
+
+def _told(outcome: Outcome, table: LossTable) -> Iterable[str]:
+    """What stands at the head of a file."""
+    data = outcome.parts[FOUR_QUADRANTS.name]
+    torque, speed, driver = table.units
+    errors = "; ".join(
+        f"{_plain(law)}: {100.0 * most:.2g} % at most, {100.0 * mean:.2g} % in the mean"
+        for law, most, mean in zip(
+            table.losses,
+            data["interpolation_error"].values,
+            data["mean_interpolation_error"].values,
+            strict=True,
+        )
+    )
+    yield "Loss of a drive and torque of its driver at any torque and speed of its output."
+    yield SIGNS
+    yield f"Units: torque {torque}, speed {speed}, torque of the driver {driver}, temperature degC, loss W."
+    yield BETWEEN
+    yield (
+        f"Error of the loss half way between nodes against direct computation, by friction law: {errors}; "
+        "more values of loss_map.count and loss_map.temperatures bring it down."
+    )
+    yield BEYOND
+    yield str(data.attrs["note"])
+    yield f"Made by Pitchpoint {data.attrs['version']}."
+
+
+def _origin(outcome: Outcome) -> dict[str, str]:
+    """Case, variant and title as given, digest of the inputs, version."""
+    data = outcome.parts[FOUR_QUADRANTS.name]
+    return {
+        "case": str(outcome.manifest["case"]),
+        "variant": str(outcome.manifest["variant"]),
+        "title": str(outcome.manifest["title"]),
+        "digest": str(data.attrs["fingerprint"]),
+        "version": str(data.attrs["version"]),
+    }
+
+
+def _literal(value: Any) -> str:
+    """A value of the table as Python has it, without names beside `float`."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key!a}: {_literal(one)}" for key, one in value.items()) + "}"
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return "(" + "".join(f"{_literal(one)},{_apart(value)}" for one in value) + ")"
+    if isinstance(value, float) and value != value:
+        return "math.nan"
+    return ascii(value)
+
+
+def _c(value: Any) -> str:
+    """A value of the table as C has it; bytes of a text that are no plain letters as octal numbers."""
+    if isinstance(value, str):
+        plain = {
+            *b" !#$%&'()+,-./:;<=>@[]^_`{|}~",
+            *range(48, 58),
+            *range(65, 91),
+            *range(97, 123),
+        }
+        return '"' + "".join(chr(b) if b in plain else f"\\{b:03o}" for b in value.encode()) + '"'
+    if isinstance(value, Sequence):
+        return "{" + f",{_apart(value)}".join(map(_c, value)) + "}"
+    return "NAN" if value != value else repr(float(value))
+
+
+def _apart(values: Sequence[Any]) -> str:
+    """What stands between values: rows of a table have lines of their own."""
+    rows = bool(values) and isinstance(values[0], Sequence) and not isinstance(values[0], str)
+    return "\n    " if rows else " "
+
+
+def _plain(name: str) -> str:
+    """Name of a law for a comment: what steers no compiler."""
+    return re.sub(r"[^A-Za-z0-9_ +-]", "_", name)
