@@ -125,6 +125,8 @@ def _kind(info: FieldInfo) -> str:
     quantity = quantity_of(info)
     if quantity is not None:
         return "number" if quantity.kind == "dimensionless" else quantity.kind
+    if get_origin(info.annotation) is dict:
+        return "table"
     if alternatives(info.annotation):
         return "table, or a name" if any(_marks(info.annotation)) else "table"
     names = [repr(one) for one in _literals(info.annotation)]

@@ -30,6 +30,7 @@ from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.registry import alike, letters, nearest
+from pitchpoint.results.chosen_units import unit_choice
 
 __all__ = [
     "Case",
@@ -1172,6 +1173,19 @@ Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
 
 
+class Output(Table):
+    """How results are shown; numbers that are computed and kept are SI whatever it says.
+
+    `units` are those of tables, figures and exports by kind of quantity, units = {angle = "arcmin", torque =
+    "N cm"}. A unit of small angles, lengths or times (arcmin, um, ms) is for these; the kinds `small_angle`,
+    `small_length` and `small_time` give them a unit of any size.
+    """
+
+    units: Annotated[dict[str, str], BeforeValidator(unit_choice)] = Field(
+        default_factory=dict, examples=[{"angle": "arcmin", "torsional stiffness": "N m/arcmin"}]
+    )
+
+
 class Case(Table):
     """A whole case file, one variant of it."""
 
@@ -1193,6 +1207,7 @@ class Case(Table):
     strength: StrengthTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
+    output: Output | None = None
     formulas: Formulas | None = None
     targets: Targets = ()
     issues: Issues = ()
@@ -1314,6 +1329,7 @@ class DriveCase(Table):
     strength: StrengthTable | None = None
     studies: Studies = Field(default_factory=dict)
     loss_map: LossMap | None = None
+    output: Output | None = None
     targets: Targets = ()
     issues: Issues = ()
 

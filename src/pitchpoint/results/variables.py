@@ -159,7 +159,9 @@ VARIABLES: dict[str, Variable] = {
     "film_sliding_loss": power("sliding loss of the pair by its film", "P_s"),
     "film_rolling_loss": power("rolling loss of the pair by its film", "P_r"),
     "film_stiffness": stiffness("stiffness of the film", "k_film"),
-    "film_damping": Variable("squeeze damping of the film", "c_film", "N s/m"),
+    "film_damping": Variable(
+        "squeeze damping of the film", "c_film", "N s/m", "N s/m", "viscous damping"
+    ),
     "film_torsional_stiffness": torsional_stiffness(
         "torsional stiffness of the films alone", "K_film"
     ),

@@ -11,6 +11,7 @@ from pitchpoint import units
 from pitchpoint.analyses.figures import CONTACT, MAIN, covered, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
+from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -238,6 +239,7 @@ def _swept(data: xr.Dataset) -> tuple[np.ndarray, str]:
         return np.arange(1.0, values.size + 1.0), f"{words} (number in the list)"
     unit, kind = str(data.attrs["axis_unit"]), str(data.attrs["axis_kind"])
     if kind:
+        unit = unit_in_use(kind, unit)
         values = np.asarray(units.convert(values, unit, kind))
     return values, f"{words} [{show.unit(unit)}]" if show.unit(unit) else words
 

@@ -368,10 +368,10 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
         {"friction law": str(law)}
         | slopes
         | {
-            words: shown(name, float(data[name].values[k]))
+            f"{words} [{show.unit_of(name)}]": shown(name, float(data[name].values[k]))
             for words, name in (
-                ("lost motion at ±4 % of the torque [arcmin]", "catalogue_lost_motion"),
-                ("hysteresis loss [arcmin]", "hysteresis_loss"),
+                ("lost motion at ±4 % of the torque", "catalogue_lost_motion"),
+                ("hysteresis loss", "hysteresis_loss"),
             )
         }
         for k, law in enumerate(data["law"].values)

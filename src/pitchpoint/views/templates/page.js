@@ -243,7 +243,7 @@
         names[lane].setAttribute("dy", ".35em");
       });
       const now = mesh.querySelector(".now");
-      if (now) now.textContent = length.toPrecision(4) + " mm now;";
+      if (now) now.textContent = (motion.of_mm * length).toPrecision(4) + " " + motion.unit + " now;";
       return count;
     }
 
