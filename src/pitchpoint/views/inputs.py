@@ -8,11 +8,21 @@ from pitchpoint.cases.inputs import DIMENSIONS, OIL, SOLIDS, STUDIES
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity
 from pitchpoint.results.chosen_units import Choice, unit_choice, unit_in_use
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["FOLLOWING", "given", "input_rows", "number", "recorded_units", "set_for_run", "words"]
+__all__ = [
+    "FOLLOWING",
+    "given",
+    "in_words",
+    "input_rows",
+    "number",
+    "recorded_units",
+    "set_for_run",
+    "words",
+]
 
 _TABLES = {
     DIMENSIONS: "gears as computed",
@@ -168,6 +178,11 @@ def _one(value: Any, row: Row, name: str = "") -> str:
     if row["table"] == DIMENSIONS and abs(value) < _ROUNDING:
         value = 0.0
     return _shown(value, kind, _unit(row["table"], f"{row['key']}.{name}".removesuffix("."), kind))
+
+
+def in_words(value: float, quantity: Quantity) -> str:
+    """A value at a key with its unit [SI in]."""
+    return _shown(value, quantity.kind, unit_in_use(quantity.kind, quantity.unit))
 
 
 def _shown(value: float, kind: str, unit: str) -> str:

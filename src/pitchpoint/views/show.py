@@ -58,7 +58,7 @@ NOISE = 1e-9
 """Value in usual units below which one is left by rounding."""
 
 _INDEXED = re.compile(r"(?<![\w`./])(Δ?[^\W\d_])_(\w{1,5})(?![\w(])")
-_LAST_UNIT = re.compile(r"(?<=\d) (um|degC|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
+_LAST_UNIT = re.compile(r"(?<=\d) (um|urad|degC|degF|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
 
 
 def unit(name: str) -> str:

@@ -29,6 +29,7 @@ from pitchpoint.views.figures import (
     short_axis,
     text,
 )
+from pitchpoint.views.inputs import in_words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
@@ -329,7 +330,7 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
 def _place(value: float, key: str) -> str:
     """Place on the axis of a sweep as case files write it."""
     quantity = quantity_at(key)
-    return f"{value:.6g}" if quantity is None else quantity.show(float(value))
+    return f"{value:.6g}" if quantity is None else in_words(float(value), quantity)
 
 
 def _lacks(page: Page) -> str | None:

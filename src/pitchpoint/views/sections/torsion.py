@@ -314,7 +314,7 @@ def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
     data = outcome.parts["torsion"]
     torques = data["torque"].values
     return [
-        {head("torque", data): f"{torques[k]:.5g}"}
+        {head("torque", data): shown("torque", float(torques[k]), data)}
         | {
             head(name, data): shown(name, float(data[name].values[k]), data)
             for name in WIND_UP

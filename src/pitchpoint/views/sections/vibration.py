@@ -387,7 +387,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("vibration")
     if data is not None:
         rows = [
-            {head("torque", data): f"{torque:.5g}"}
+            {head("torque", data): shown("torque", float(torque), data)}
             | {head(name): shown(name, float(data[name].values[k])) for name in FIGURES}
             for k, torque in enumerate(data["torque"].values)
         ]
