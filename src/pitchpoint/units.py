@@ -562,10 +562,11 @@ def spelled(unit: str, kind: str) -> str:
     found, wanted = _spelling(unit), _kind(kind)
     if found in wanted.units:
         return found
-    near = _near(found, wanted)
-    meant = f' (did you mean "{near}"?)' if near else ""
+    other, near = _first_kind(found), _near(found, wanted)
+    meant = f' (did you mean "{near}"?)' if near and other is None else ""
+    of = f"a unit of {_KINDS[other].noun}, not" if other is not None else "not a unit"
     raise UnitError(
-        f"{_quoted(unit)} is not a unit of {wanted.noun}; use one of {_listed(wanted)}{meant}",
+        f"{_quoted(unit)} is {of} of {wanted.noun}; use one of {_listed(wanted)}{meant}",
         value=unit,
         allowed=units_of(kind),
     )

@@ -39,6 +39,7 @@ WEAR, WORN = blocks("guide/wear.md", "toml")
 (RACK,) = blocks("gears/rack_and_pinion.md", "toml")
 (TORUS,) = blocks("gears/torus.md", "toml")
 (WAVE,) = blocks("gears/strain_wave.md", "toml")
+(UNITS,) = blocks("guide/commands.md", "toml")
 (BALL,) = blocks("gears/ball_on_disc.md", "toml")
 SHELL = [line for page in PAGES for text in blocks(page, "sh") for line in text.splitlines()]
 SET_UP = [
@@ -62,6 +63,7 @@ CASES = {
     "stages": STAGES,
     "ball": BALL,
     "targets": (WAVE, TARGETS),
+    "units": (PAIR, UNITS),
 }
 """Whole cases: a block that goes on with another stands behind it."""
 
@@ -71,6 +73,7 @@ PYTHON = {
     ("guide/films.md", "solve_patch"),
     ("guide/python.md", "write_report"),
     ("guide/python.md", "strain_wave.toml"),
+    ("guide/python.md", "plot_in"),
 }
 """Blocks of Python by page and by what they alone hold; each is run by a test."""
 
@@ -99,7 +102,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", "{toctree}"}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 19
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 20
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 

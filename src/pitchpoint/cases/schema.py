@@ -1343,9 +1343,12 @@ class DriveCase(Table):
     @model_validator(mode="after")
     def _whole(self) -> "DriveCase":
         wrong = Complaints()
-        wrong.tried(_check_aims, self.targets, self.studies)
         wrong.tried(_check_passing, self.stages)
-        wrong.tried(_check_load, self, self.last)
+        if not wrong:  # what the drive carries, and what turns, follows from its stages
+            travels = self.last.load == "force"
+            turning = self.bodies[: len(self.bodies) - travels]
+            wrong.tried(_check_load, self, self.last)
+            wrong.tried(_check_losses, self.losses, turning, self.bodies)
         if self.operation.driver:
             told = (
                 "the first stage drives; the member that drives a stage is its own key, "
@@ -1357,9 +1360,7 @@ class DriveCase(Table):
             if models.averaging != "base_pitch":
                 told = "the path of one pair does not stand for several meshes; leave it out"
                 wrong.add(InputError(told, key=f"{key}.averaging"))
-        travels = self.last.load == "force"
-        turning = self.bodies[: len(self.bodies) - travels]
-        wrong.tried(_check_losses, self.losses, turning, self.bodies)
+        wrong.tried(_check_aims, self.targets, self.studies)
         wrong.demand_none()
         return self
 

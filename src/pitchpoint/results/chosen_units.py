@@ -65,7 +65,8 @@ def unit_choice(given: Any) -> dict[str, str]:
     for name, unit in pairs:
         kind = known_as(str(name), choosable())
         if kind is None:
-            near = nearest(str(name), choosable())
+            ending = [one for one in choosable() if one.endswith(f" {name}")]
+            near = nearest(str(name), ending or choosable())
             raise InputError(f"{shown(name)} is no kind of quantity with units{near}", value=name)
         if kind in made:
             raise InputError(f"the unit of {kind} was given twice", value=unit)

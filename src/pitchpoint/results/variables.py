@@ -543,6 +543,35 @@ VARIABLES.update(
 )
 
 
+_OF_ENDS: dict[End, tuple[str, ...]] = {
+    "driver": ("critical_speed", "half_power_width", "course_speed"),
+    "loaded": (
+        "wind_up_part",
+        "wind_up_by_balls",
+        "slope_torque",
+        "slope_stiffness",
+        "catalogue_lost_motion",
+        "hysteresis_loss",
+        "film_torsional_stiffness",
+        "stiffness_without_films",
+        "stiffness_with_films",
+        "reduced_inertia",
+        "wave_amplitude",
+        "output_amplitude",
+        "output_speed_amplitude",
+        "torque_amplitude",
+        "course_torque",
+        "course_smallest_torque",
+        "linear_torque",
+    ),
+}
+"""Other quantities of the input and of the output, which no member that travels has."""
+
+VARIABLES.update(
+    (name, replace(VARIABLES[name], end=end)) for end, names in _OF_ENDS.items() for name in names
+)
+
+
 def variable_of(data: Any, name: str) -> Variable:
     """The quantity of that name in a dataset, or none; of a member that travels where its unit says so."""
     known = VARIABLES[name]
