@@ -129,7 +129,8 @@ def test_one_cause_at_both_gears_is_told_once(told: Run) -> None:
 
 def test_whole_case_checks_are_told_together(told: Run) -> None:
     text = PAIR + 'driver = "gear 3"\n'
-    text += '[losses.a]\nbetween = ["gear 1", "house"]\nseal_torque = "1 N m"\n[losses.b]\nbetween = ["x", "housing"]\nseal_torque = "1 N m"\n'
+    for name, body in (("a", "gear 4"), ("b", "house")):
+        text += f'[losses.{name}]\nbetween = ["gear 1", "{body}"]\nseal_torque = "1 N m"\n'
     _, _, err = told(text)
     assert [line.split(": ")[2] for line in err] == [
         "losses.a.between",
