@@ -294,6 +294,12 @@ def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert str(["teeth", "inspection", "cycle", "operation", "laws", "strength"])[:-1] in out
 
 
+def test_units_of_ones_choice(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    left = ran("guide/python.md", "plot_in")
+    assert left["figure"].layout.yaxis.title.text.endswith("[N cm]")
+    assert capsys.readouterr().out.splitlines()[-1] == "N cm"
+
+
 def test_the_parts_of_a_strain_wave_drive_are_those_of_the_text() -> None:
     """What the block reads of them is run beside a drive, in `test_strain_wave_runs`."""
     (told,) = re.findall(r"print\(list\(drive\.parts\)\)\n# (.*)", PAGES["guide/python.md"])

@@ -1176,9 +1176,9 @@ Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
 class Output(Table):
     """How results are shown; numbers that are computed and kept are SI whatever it says.
 
-    `units` are those of tables, figures and exports by kind of quantity, units = {angle = "arcmin", torque =
-    "N cm"}. A unit of small angles, lengths or times (arcmin, um, ms) is for these; the kinds `small_angle`,
-    `small_length` and `small_time` give them a unit of any size.
+    `units` are those of tables, figures and exports by kind of quantity: angle, torque, torsional_stiffness,
+    rotational_speed and so on. A unit of small angles, lengths or times (arcmin, um, ms) is for these; the kinds
+    `small_angle`, `small_length` and `small_time` give them a unit of any size.
     """
 
     units: Annotated[dict[str, str], BeforeValidator(unit_choice)] = Field(

@@ -90,6 +90,7 @@ def unit_in_use(kind: str, usual: str) -> str:
     """Unit in which quantities of a kind are shown: the chosen one, else that which is usual for them.
 
     Example:
+        >>> from pitchpoint.results.chosen_units import shown_in
         >>> with shown_in({"angle": "arcmin"}):
         ...     unit_in_use("angle", "arcsec"), unit_in_use("angle", "deg")
         ('arcmin', 'deg')

@@ -141,6 +141,7 @@ def bracketed(words: str, variable: Variable) -> str:
     """Words for a variable with its display unit behind them.
 
     Example:
+        >>> from pitchpoint.results.variables import VARIABLES
         >>> bracketed("backlash j_bn", VARIABLES["normal_backlash"])
         'backlash j_bn [µm]'
     """
