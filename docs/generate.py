@@ -64,15 +64,19 @@ def variables_page() -> str:
     """Every variable that a result may hold."""
     own = {name: one for each in ANALYSES.values() for name, one in each.variables.items()}
     rows = [
-        (f"`{name}`", one.long_name, one.symbol, one.unit, one.display)
+        (f"`{name}`", one.long_name, one.symbol, one.unit, one.usual, _SIDES.get(one.end, ""))
         for name, one in sorted({**VARIABLES, **own}.items())
     ]
     intro = (
-        "Names in the datasets of a result, in SI; the last column is the unit in which screen and report "
-        "show them."
+        "Names in the datasets of a result, in SI. `shown in` is the unit in which screen and report show "
+        "them, unless `--units` or `[output]` of the case chose another. `side` says which side of the drive "
+        "a torque, speed, angle or stiffness counts at: none is reduced to the other one."
     )
-    head = ("name", "what it is", "symbol", "unit", "shown in")
+    head = ("name", "what it is", "symbol", "unit", "shown in", "side")
     return _page_head("Variables of a result", intro) + "\n" + _table(head, rows)
+
+
+_SIDES = {"driver": "input", "loaded": "output"}
 
 
 def models_page() -> str:

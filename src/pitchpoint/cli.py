@@ -6,7 +6,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from glob import escape as glob_escape
 from glob import glob
 from pathlib import Path
@@ -65,6 +65,13 @@ def _keys_from(incomplete: str) -> list[str]:
     return [f"{key}=" for key in keys() if key.startswith(incomplete)]
 
 
+def _kinds_from(incomplete: str) -> list[str]:
+    """Kinds of quantities whose unit can be chosen that begin so."""
+    from pitchpoint.results.chosen_units import choosable
+
+    return [f"{kind}=" for kind in choosable() if kind.startswith(incomplete)]
+
+
 CaseName = Annotated[
     str,
     typer.Argument(
@@ -105,6 +112,15 @@ Sweeps = Annotated[
         metavar="KEY=START:STOP:COUNT",
         help='For example operation.speed="500 rpm:3000 rpm:11".',
         autocompletion=_keys_from,
+    ),
+]
+UnitsByKind = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--units",
+        metavar="KIND=UNIT",
+        help='Units to show, for example "angle=arcmin, torsional stiffness=N m/arcmin".',
+        autocompletion=_kinds_from,
     ),
 ]
 Folder = Annotated[
@@ -210,6 +226,7 @@ def run(
     variant: Variants = None,
     set_: Settings = None,
     sweep: Sweeps = None,
+    units: UnitsByKind = None,
     overwrite: Overwrite = False,
     json_: AsJson = False,
 ) -> None:
@@ -218,6 +235,8 @@ def run(
     from pitchpoint.runs.run import run as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
+    if units:
+        settings["output.units"] = _units(units)
     folder = output or default_folder(case, Path("results"), settings)
     with _progress(folder) as progress:
         outcomes = compute(
@@ -234,8 +253,9 @@ def run(
     if json_:
         _emit({name: _figures(outcome) for name, outcome in outcomes.items()})
         return
-    for number, outcome in enumerate(outcomes.values()):
-        _summary(outcome, number)
+    with _shown_units(outcomes):
+        for number, outcome in enumerate(outcomes.values()):
+            _summary(outcome, number)
     measured = {name: outcome.rows for name, outcome in outcomes.items() if outcome.rows}
     for name, rows in measured.items():
         _verdicts(rows, f"{name}, " if len(measured) > 1 else "")
@@ -304,6 +324,7 @@ def compare(
             "-o", "--output", metavar="DIR", help="Of several designs; results/A-B by default."
         ),
     ] = None,
+    units: UnitsByKind = None,
     overwrite: Overwrite = False,
     json_: AsJson = False,
 ) -> None:
@@ -317,14 +338,20 @@ def compare(
     if len(designs) > 1:
         if variant is not None:
             raise InputError("goes with one case; of several write case@variant", key="--variant")
-        _compare_designs(designs, output, overwrite, json_)
+        _compare_designs(designs, output, overwrite, json_, _units(units) if units else None)
         return
+    if units:
+        raise InputError("goes with several designs; print has its own units", key="--units")
     one = wanted(designs[0])
     _compare_with_print(one.case, variant or one.variant, json_)
 
 
 def _compare_designs(
-    designs: list[str], output: Path | None, overwrite: bool, as_json: bool
+    designs: list[str],
+    output: Path | None,
+    overwrite: bool,
+    as_json: bool,
+    units: dict[str, str] | None,
 ) -> None:
     from pitchpoint.runs.designs import DESIGNS, folder_of
     from pitchpoint.runs.designs import designs as compared
@@ -335,13 +362,14 @@ def _compare_designs(
             designs, folder=folder / DESIGNS, overwrite=overwrite, progress=progress
         )
         progress.part("", "report", False)
-        _write_report(outcomes, folder, designs=True)
+        _write_report(outcomes, folder, designs=True, units=units)
     if as_json:
         from pitchpoint.runs.designs import as_json as told
 
         _emit({**told(outcomes), "designs": {n: _figures(one) for n, one in outcomes.items()}})
         return
-    _differences(outcomes)
+    with _shown_units(outcomes, units):
+        _differences(outcomes)
     _console().print(f"Report: {_plain(str(folder / 'report.html'))}")
 
 
@@ -406,6 +434,7 @@ def export(
         typer.Option("-o", "--output", metavar="DIR", help="Default: export in the result."),
     ] = None,
     si: Annotated[bool, typer.Option("--si", help="SI units, not those of the report.")] = False,
+    units: UnitsByKind = None,
 ) -> None:
     """Write a result for other programs.
 
@@ -417,7 +446,9 @@ def export(
 
     asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
-    for path in exported(open_result(result), output or Path(result) / "export", formats, si=si):
+    chosen = _units(units) if units else None
+    folder = output or Path(result) / "export"
+    for path in exported(open_result(result), folder, formats, si=si, units=chosen):
         typer.echo(visible(str(path)))
 
 
@@ -622,10 +653,36 @@ def _sweeps(texts: list[str], option: str) -> "Iterator[Sweep]":
         yield Sweep(key=key, start=start, stop=stop, count=float(count))
 
 
-def _write_report(outcomes: "dict[str, Outcome]", folder: Path, *, designs: bool = False) -> None:
+def _units(texts: list[str]) -> dict[str, str]:
+    """Units by kind of quantity."""
+    from pitchpoint.results.chosen_units import unit_choice
+
+    try:
+        return unit_choice(",".join(texts))
+    except InputError as error:
+        raise error.at(key="--units") from None
+
+
+def _shown_units(
+    outcomes: "dict[str, Outcome]", units: dict[str, str] | None = None
+) -> AbstractContextManager[None]:
+    """Units of what is printed: those given, else those of the first case."""
+    from pitchpoint.results.chosen_units import shown_in
+    from pitchpoint.views.inputs import recorded_units
+
+    return shown_in(recorded_units(outcomes) if units is None else units)
+
+
+def _write_report(
+    outcomes: "dict[str, Outcome]",
+    folder: Path,
+    *,
+    designs: bool = False,
+    units: dict[str, str] | None = None,
+) -> None:
     from pitchpoint.views.report import write_report
 
-    write_report(outcomes, folder / "report.html", designs=designs)
+    write_report(outcomes, folder / "report.html", designs=designs, units=units)
 
 
 @contextmanager

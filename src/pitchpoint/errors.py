@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Sequence
-from typing import ClassVar, Self
+from collections.abc import Callable, Iterable, Sequence
+from typing import ClassVar, ParamSpec, Self, TypeVar
 
 __all__ = [
     "CollectedInputError",
+    "Complaints",
     "ConvergenceError",
     "InputError",
     "PitchpointError",
@@ -17,6 +18,9 @@ __all__ = [
 
 LONGEST_PLACE = 240
 """Longest file name or key in a sentence [characters]."""
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class PitchpointError(Exception):
@@ -114,6 +118,74 @@ class CollectedInputError(InputError):
 
     def __reduce__(self) -> tuple[type[Self], tuple[tuple[InputError, ...]]]:
         return type(self), (self.errors,)
+
+
+class Complaints:
+    """What is wrong with one input, gathered: things that are wrong by themselves are told together.
+
+    What rests on something that is wrong is not tried; so nothing is told that only follows from it. One
+    thing about a key is told, or several about different values at it.
+
+    Args:
+        file: that errors name which name none.
+
+    Example:
+        >>> from pitchpoint.errors import Complaints, InputError
+        >>> def refuse(key):
+        ...     raise InputError("is missing", key=key)
+        >>> wrong = Complaints("pair.toml")
+        >>> wrong.tried(refuse, "a"), wrong.under("gears").tried(refuse, "b"), wrong.tried(len, "sound")
+        (None, None, 5)
+        >>> print(wrong.error)
+        pair.toml: a: is missing
+        pair.toml: gears.b: is missing
+    """
+
+    def __init__(self, file: str | None = None) -> None:
+        self._file = file
+        self._table = ""
+        self._told: dict[tuple[str, str], InputError] = {}
+
+    def __bool__(self) -> bool:
+        """True if anything is wrong."""
+        return bool(self._told)
+
+    def under(self, table: str) -> Complaints:
+        """The same complaints, those made through it with keys inside a table."""
+        inside = Complaints(self._file)
+        inside._table, inside._told = table, self._told
+        return inside
+
+    def of(self, table: str) -> bool:
+        """True if anything is wrong with a table or in it."""
+        keys = [one.key or "" for one in self._told.values()]
+        return any(key == table or key.startswith(f"{table}.") for key in keys)
+
+    def tried(self, make: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | None:
+        """What a function makes; None where it raises an InputError, which is kept."""
+        try:
+            return make(*given, **named)
+        except InputError as error:
+            self.add(error)
+            return None
+
+    def add(self, error: InputError) -> None:
+        """Keep an error, each one of several."""
+        for one in error.errors if isinstance(error, CollectedInputError) else (error,):
+            key = ".".join(filter(None, (self._table, one.key))) or None
+            located = one.at(file=one.file or self._file, key=key)
+            self._told.setdefault((key or one.message, str(one.value)), located)
+
+    @property
+    def error(self) -> InputError:
+        """What is wrong, at least one thing, as one error."""
+        every = [*self._told.values()]
+        return every[0] if len(every) == 1 else CollectedInputError(every)
+
+    def demand_none(self) -> None:
+        """InputError if anything is wrong."""
+        if self:
+            raise self.error
 
 
 class ConvergenceError(PitchpointError, RuntimeError):

@@ -43,6 +43,7 @@ __all__ = [
     "parse",
     "plain",
     "si_unit",
+    "spelled",
     "units_of",
 ]
 
@@ -89,6 +90,7 @@ _KINDS: dict[str, _Kind] = {
             "rad": "radian",
             "deg": "degree",
             "mrad": "milliradian",
+            "urad": "microradian",
             "arcmin": "arcminute",
             "arcsec": "arcsecond",
             "rev": "turn",
@@ -269,6 +271,8 @@ _KINDS: dict[str, _Kind] = {
             "N m/rad": "newton*meter/radian",
             "kN m/rad": "kilonewton*meter/radian",
             "N m/arcmin": "newton*meter/arcminute",
+            "N m/mrad": "newton*meter/milliradian",
+            "N m/deg": "newton*meter/degree",
         },
     ),
     "moment of inertia": _Kind(
@@ -309,7 +313,9 @@ _KINDS: dict[str, _Kind] = {
             "ft/min": "foot/minute",
         },
     ),
-    "power": _Kind("a power", "25 kW", {"W": "watt", "kW": "kilowatt", "hp": "horsepower"}),
+    "power": _Kind(
+        "a power", "25 kW", {"W": "watt", "kW": "kilowatt", "mW": "milliwatt", "hp": "horsepower"}
+    ),
     "energy": _Kind(
         "an energy",
         "25 J",
@@ -535,16 +541,35 @@ def convert(
         >>> convert(0.003, "mm", "length")
         3.0
     """
-    spelled = _spelling(unit)
-    wanted = _kind(kind)
-    if spelled not in wanted.units:
-        raise UnitError(
-            f"{_quoted(unit)} is not a unit of {wanted.noun}; use one of {_listed(wanted)}",
-            value=unit,
-            allowed=units_of(kind),
-        )
-    scale, offset = _factors(kind, spelled)
+    scale, offset = _factors(kind, spelled(unit, kind))
     return (value_si - float(offset)) / float(scale)
+
+
+def spelled(unit: str, kind: str) -> str:
+    """A unit of a kind in the spelling of its list.
+
+    Args:
+        unit: as a user may write it.
+        kind: of quantity, one of `kinds()`.
+
+    Raises:
+        UnitError: the kind does not have this unit; the nearest one it has is told.
+
+    Example:
+        >>> spelled("N*m/arcmin", "torsional stiffness")
+        'N m/arcmin'
+    """
+    found, wanted = _spelling(unit), _kind(kind)
+    if found in wanted.units:
+        return found
+    other, near = _first_kind(found), _near(found, wanted)
+    meant = f' (did you mean "{near}"?)' if near and other is None else ""
+    of = f"a unit of {_KINDS[other].noun}, not" if other is not None else "not a unit"
+    raise UnitError(
+        f"{_quoted(unit)} is {of} of {wanted.noun}; use one of {_listed(wanted)}{meant}",
+        value=unit,
+        allowed=units_of(kind),
+    )
 
 
 def _kind(kind: str) -> _Kind:

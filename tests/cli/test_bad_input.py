@@ -190,6 +190,9 @@ torque = "40 N m"
 [loss_map]
 temperatures = ["60 degC"]
 
+[output]
+units = { angle = "arcmin" }
+
 [formulas]
 form = "motion"
 bearing_stiffness = "2190 N/um"

@@ -32,6 +32,8 @@ def told(
     return run
 
 
+LUBRICANT = 'base = "mineral"\nviscosity_40 = "20 mm2/s"\nviscosity_100 = "220 mm2/s"'
+STRENGTH = '[materials]\ngear_1 = "PA66"\n[strength]\nsigma_hlim = "1500 MPa"\n'
 WRONG = (
     PAIR.replace('"2 mm"', '"2 mmm"')
     .replace('torque = "50 N m"\n', "")
@@ -78,6 +80,83 @@ def test_every_variant_is_checked_and_each_error_told_once(told: Run) -> None:
     ]
     _, _, err = told(text, "--variant", "b", "--set", "gears.module=2 mm")
     assert [line.split(": ")[2] for line in err] == ["operation.temperature"]
+
+
+BY_THEMSELVES = (
+    PAIR.replace(
+        "[lubricant]", "addendum = [1.0, 3.0]\ndedendum = [0.2, 1.25]\n[lubricant]"
+    ).replace('name = "75W90-A"', LUBRICANT)
+    + STRENGTH
+)
+
+
+def test_what_is_wrong_by_itself_is_told_together(told: Run) -> None:
+    """Both gears, the oil, and the strength, which no schema knows; nothing that follows from them."""
+    status, _, err = told(BY_THEMSELVES)
+    assert status == 2
+    assert [line.split(": ")[2] for line in err] == [
+        "gears.dedendum",
+        "gears.addendum",
+        "lubricant.viscosity_40",
+        "strength.treatment",
+    ]
+    assert "dedendum of gear 1" in err[0]
+    assert "tip circle of gear 2" in err[1]
+
+
+def test_gears_and_oil_are_looked_at_where_other_tables_are_wrong(told: Run) -> None:
+    _, _, err = told(BY_THEMSELVES.replace('"1500 rpm"', '"1500"').replace("0.4 um", "0.4 K"))
+    assert [line.split(": ")[2] for line in err] == [
+        "roughness.ra",
+        "operation.speed",
+        "gears.dedendum",
+        "gears.addendum",
+        "lubricant.viscosity_40",
+    ]
+
+
+def test_one_cause_at_both_gears_is_told_once(told: Run) -> None:
+    for text in (
+        PAIR.replace("[lubricant]", "dedendum = 0.2\n[lubricant]"),
+        PAIR.replace('"60 degC"', '"250 degC"').replace(
+            'name = "75W90-A"', f'{LUBRICANT}\ntemperature_max = "300 degC"'.replace("220", "9")
+        )
+        + '[materials]\ngear_1 = "POM-H"\ngear_2 = "POM-H"\n',
+    ):
+        _, _, err = told(text)
+        assert len(err) == 1
+
+
+def test_whole_case_checks_are_told_together(told: Run) -> None:
+    text = PAIR + 'driver = "gear 3"\n'
+    for name, body in (("a", "gear 4"), ("b", "house")):
+        text += f'[losses.{name}]\nbetween = ["gear 1", "{body}"]\nseal_torque = "1 N m"\n'
+    _, _, err = told(text)
+    assert [line.split(": ")[2] for line in err] == [
+        "losses.a.between",
+        "losses.b.between",
+        "operation.driver",
+    ]
+
+
+def test_every_study_and_stage_is_looked_at(told: Run) -> None:
+    text = PAIR + "".join(
+        f'[studies.{name}]\nsweep = {{ key = "{key}", start = "1 N m", stop = "2 N m", count = 2 }}\n'
+        for name, key in (
+            ("a", "operation.torqe"),
+            ("b", "operation.speed"),
+            ("c", "operation.torque"),
+        )
+    )
+    _, _, err = told(text)
+    assert [line.split(": ")[2].split(".")[1] for line in err] == ["a", "b"]
+    gears, rest = PAIR.strip().removeprefix("[gears]\n").split("[lubricant]")
+    stage = f"[[stages]]\n[stages.gears]\n{gears}dedendum = 0.2\n"
+    _, _, err = told(f"{stage}{stage}[lubricant]{rest}")
+    assert [line.split(": ")[2] for line in err] == [
+        "stages.1.gears.dedendum",
+        "stages.2.gears.dedendum",
+    ]
 
 
 def test_a_sound_case_is_ok_with_what_warns(told: Run) -> None:

@@ -296,6 +296,47 @@ def test_a_record_is_a_case_to_other_commands(
     )
 
 
+def test_units_by_choice_are_kept_and_compute_nothing_anew(
+    pitchpoint: Callable[..., Told], finished: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(finished.parent, tmp_path / "moved")
+    case, folder = tmp_path / "moved" / "tiny.toml", tmp_path / "moved" / "out"
+    made = times(folder)
+    chosen = ("--units", "torque=N cm, speed of nothing=rpm")
+    told = pitchpoint("run", case, "-o", folder, *chosen)
+    assert told.err.startswith('error: --units: "speed of nothing" is no kind of quantity')
+    told = pitchpoint("run", case, "-o", folder, "--units", "torque=N cm", "--units", "power=mW")
+    assert told.status == 0
+    assert "T_in mean [N cm]" in told.out
+    assert "P_loss [mW]" in told.out
+    assert times(folder) == made
+    kept = open_result(folder)["default"]
+    assert kept.parts["operation"]["mean_input_torque"].attrs["units"] == "N m"
+    assert [row["value"] for row in kept.manifest["inputs"] if row["table"] == "output"] == [
+        {"torque": "N cm", "power": "mW"}
+    ]
+    assert "[N cm]" in pitchpoint("run", folder).out  # of the case that it holds
+    assert times(folder) == made
+
+    def heads(*options: str) -> str:
+        assert pitchpoint("export", folder, "--csv", *options).status == 0
+        return (folder / "export" / "cycle_law_node.csv").read_text().partition("\n")[0]
+
+    assert "input_torque [N cm]" in heads()
+    assert "input_torque [mN m]" in heads("--units", "torque=mN m")
+    assert "input_torque [N m]" in heads("--si")
+    told = pitchpoint("export", folder, "--csv", "--si", "--units", "torque=mN m")
+    assert told.complaint.endswith("give one of --si and --units")
+    assert "T_in mean [N m]" in pitchpoint("run", case, "-o", folder).out
+    assert times(folder) == made
+
+
+def test_print_has_its_own_units(pitchpoint: Callable[..., Told]) -> None:
+    told = pitchpoint("compare", "tian2024", "--units", "torque=N cm")
+    assert (told.status, told.out) == (2, "")
+    assert told.complaint.startswith("error: --units: goes with several designs")
+
+
 def test_another_case_is_not_written_over(
     pitchpoint: Callable[..., Told], tiny: Path, tmp_path: Path
 ) -> None:

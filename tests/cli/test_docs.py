@@ -43,6 +43,7 @@ WEAR, WORN = blocks("guide/wear.md", "toml")
 (RACK,) = blocks("gears/rack_and_pinion.md", "toml")
 (TORUS,) = blocks("gears/torus.md", "toml")
 (WAVE,) = blocks("gears/strain_wave.md", "toml")
+(UNITS,) = blocks("guide/commands.md", "toml")
 (BALL,) = blocks("gears/ball_on_disc.md", "toml")
 SHELL = [line for page in PAGES for text in blocks(page, "sh") for line in text.splitlines()]
 SET_UP = [
@@ -66,6 +67,7 @@ CASES = {
     "stages": STAGES,
     "ball": BALL,
     "targets": (WAVE, TARGETS),
+    "units": (PAIR, UNITS),
 }
 """Whole cases: a block that goes on with another stands behind it."""
 
@@ -75,6 +77,7 @@ PYTHON = {
     ("guide/films.md", "solve_patch"),
     ("guide/python.md", "write_report"),
     ("guide/python.md", "strain_wave.toml"),
+    ("guide/python.md", "plot_in"),
 }
 """Blocks of Python by page and by what they alone hold; each is run by a test."""
 
@@ -103,7 +106,7 @@ def test_every_block_is_known() -> None:
     assert set(kinds) <= {"sh", "toml", "python", "{toctree}"}
     assert all(block(page, "python", holding) for page, holding in PYTHON)
     assert sum(len(blocks(page, "python")) for page in PAGES) == len(PYTHON)
-    assert sum(len(blocks(page, "toml")) for page in PAGES) == 19
+    assert sum(len(blocks(page, "toml")) for page in PAGES) == 20
     assert blocks("guide/pairs.md", "toml")[0] == PAIR
     assert [line for line in SHELL if "bootstrap" in line] == SET_UP
 
@@ -366,6 +369,12 @@ def test_python(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = capsys.readouterr().out
     assert "instantaneous efficiency" in out
     assert str(["teeth", "inspection", "cycle", "operation", "laws", "strength"])[:-1] in out
+
+
+def test_units_of_ones_choice(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    left = ran("guide/python.md", "plot_in")
+    assert left["figure"].layout.yaxis.title.text.endswith("[N cm]")
+    assert capsys.readouterr().out.splitlines()[-1] == "N cm"
 
 
 def test_the_parts_of_a_strain_wave_drive_are_those_of_the_text() -> None:

@@ -105,8 +105,45 @@ def test_units_by_choice(result: pp.Result) -> None:
     assert (si.speed.units, shown.speed.units) == ("rad/s", "rpm")
     np.testing.assert_allclose(shown.mean_efficiency, 100.0 * si.mean_efficiency)
     assert shown.mean_efficiency.long_name == "mean efficiency"
-    with pytest.raises(pp.InputError, match='"SI" was given as units; use "si" or "shown"'):
+    with pytest.raises(pp.InputError, match='"SI" was given as units; use "si", "shown", or'):
         result.dataset("cycle", units="SI")
+
+
+def test_units_by_kind(result: pp.Result) -> None:
+    joint = {"torque": "N cm", "rotational_speed": "rad/s"}
+    usual, chosen = result.summary(), result.summary(units=joint)
+    assert (usual.unit["mean_input_torque"], chosen.unit["mean_input_torque"]) == (
+        "N\u00a0m",
+        "N cm",
+    )
+    np.testing.assert_allclose(
+        chosen.xu_2007["mean_input_torque"], 100.0 * usual.xu_2007["mean_input_torque"]
+    )
+    si, map_ = (result.dataset("loss_map", units=one) for one in ("si", joint))
+    assert (map_.torque.units, map_.speed.units, map_.temperature.units) == (
+        "N cm",
+        "rad/s",
+        "degC",
+    )
+    np.testing.assert_allclose(map_.torque, 100.0 * si.torque)
+    assert result.dataset("loss_map", units="torque=N cm").torque.units == "N cm"
+    assert (
+        result.to_dataframe("operation", units=joint).attrs["units"]["mean_input_torque"] == "N cm"
+    )
+    assert result.plot_in(joint).cycle.input_torque().layout.yaxis.title.text.endswith("[N cm]")
+    assert result.plot.cycle.input_torque().layout.yaxis.title.text.endswith("[N\u00a0m]")
+    with pytest.raises(pp.InputError, match='"N cmm" is not a unit of a torque'):
+        result.dataset("cycle", units={"torque": "N cmm"})
+
+
+def test_a_case_may_ask_for_units(result: pp.Result) -> None:
+    asked = pp.Case(PAIR).set({"output.units": {"torque": "N cm"}})
+    given = asked.held[0].document().tree
+    assert given["output"] == {"units": {"torque": "N cm"}}
+    grid = pp.study(asked, {TORQUE: [20.0, 60.0]}, units="shown")
+    assert grid[TORQUE].units == "N cm"
+    np.testing.assert_allclose(grid[TORQUE], [2000.0, 6000.0])
+    assert pp.study(PAIR, {TORQUE: [20.0, 60.0]}, units="torque=mN m")[TORQUE].units == "mN m"
 
 
 def test_what_is_shown_in_its_si_unit_stays_as_it_is() -> None:

@@ -26,6 +26,7 @@ from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome, open_result, run
+from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
 from pitchpoint.views.figures import curves, rounded
 from pitchpoint.views.lines import gapped
@@ -195,6 +196,39 @@ def payload(page: str) -> dict[str, Any]:
     return dict(json.loads(found.group(1)))
 
 
+CHOSEN = {
+    "length": "in",
+    "small length": "nm",
+    "torque": "N cm",
+    "rotational speed": "rad/s",
+    "pressure": "psi",
+    "power": "mW",
+    "force": "lbf",
+    "velocity": "mm/s",
+    "small time": "us",
+    "stiffness": "N/mm",
+}
+ONCE = ("mm", "um", "N m", "rpm", "MPa", "W", "N", "m/s", "ms", "N/um")
+"""Usual units of these kinds."""
+
+
+def unit_of_axis(figure: dict[str, Any], axis: str) -> str:
+    """Unit in the title of an axis; empty where there is none."""
+    title = figure["layout"].get(f"{axis}axis", {}).get("title", {}).get("text", "")
+    return next(iter(re.findall(r"\[([^\[\]]+)\]$", title)), "")
+
+
+def in_unit(values: list[float | None], old: str, new: str) -> list[float]:
+    """Values of an axis in another unit, both as printed."""
+    spelled = {show.unit(one): one for kind in kinds() for one in units_of(kind)}
+    old, new = spelled[old], spelled[new]
+    kind = kind_of(old)
+    return [
+        np.nan if value is None else convert(parse(f"{value!r} {old}", kind), new, kind)
+        for value in values
+    ]
+
+
 def finite(trace: dict[str, Any]) -> bool:
     return any(
         value is not None for value in np.ravel(np.array(trace.get("z", trace["y"]), object))
@@ -219,6 +253,25 @@ def test_a_menu_changes_traces_that_exist(page: str) -> None:
             traces = content["figures"][name]["data"]
             which = change[2] if len(change) > 2 else range(len(traces))
             assert all(len(values) == len(list(which)) for values in change[0].values())
+
+
+def test_figures_change_with_the_units_of_their_axes(published: Outcomes) -> None:
+    """Each axis whose unit is chosen has the same values in that unit; no other changes."""
+    before, after = (payload(render(published, units=chosen))["figures"] for chosen in ({}, CHOSEN))
+    units_seen = set()
+    for name, figure in before.items():
+        for axis in "xy":
+            old, new = (unit_of_axis(one, axis) for one in (figure, after[name]))
+            assert new not in {show.unit(unit) for unit in ONCE}, name
+            pairs = zip(figure["data"], after[name]["data"], strict=True)
+            for one, other in ((a.get(axis), b.get(axis)) for a, b in pairs):
+                if one is None or old == new:
+                    assert one == other
+                    continue
+                units_seen.add(new)
+                told = [np.nan if value is None else value for value in other]
+                np.testing.assert_allclose(told, in_unit(one, old, new), rtol=2e-3, atol=1e-9)
+    assert {"N cm", "psi", "nm"} <= units_seen
 
 
 def test_maps_share_one_scale_and_have_lines_with_labels(page: str, published: Outcomes) -> None:

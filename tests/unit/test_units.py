@@ -267,7 +267,9 @@ def test_convert_keeps_the_shape_of_arrays():
 
 
 def test_convert_names_the_units_it_knows():
-    with pytest.raises(UnitError, match='"s" is not a unit of a length; use one of m, mm'):
+    with pytest.raises(
+        UnitError, match='"s" is a unit of a time, not of a length; use one of m, mm'
+    ):
         convert(1.0, "s", "length")
 
 

@@ -195,7 +195,7 @@ def _axis(data: xr.Dataset, dim: str) -> _Axis:
     if dim not in data.coords or dim not in VARIABLES:
         return _Axis(dim, np.full(data.sizes.get(dim, 1), np.nan))
     variable = VARIABLES[dim]
-    return _Axis(dim, data[dim].values, variable.kind, variable.display)
+    return _Axis(dim, data[dim].values, variable.kind, variable.usual)
 
 
 def _demand_places(target: Target, axis: _Axis) -> None:

@@ -15,7 +15,7 @@ from pitchpoint.cases.document import leaves
 from pitchpoint.cases.schema import Study, Sweep, quantity_at
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
-from pitchpoint.errors import InputError, shorten
+from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.published.publication import Point
 from pitchpoint.published.registry import PUBLICATIONS
@@ -167,10 +167,19 @@ def _studies(subject: Subject) -> Iterator[Analysis]:
         raise InputError(told, file=subject.variant.name, key=f"studies.{name}")
     every = [(name, study, f"studies.{name}") for name, study in own.items()]
     every += [(name, study, "--sweep") for name, study in extra.items()]
+    wrong = Complaints()
     for each in every:
-        planned = _planned(subject, *each)
-        planned.demand_ends()
-        yield planned.analysis
+        planned = wrong.tried(_sound, subject, *each)
+        if planned is not None:
+            yield planned.analysis
+    wrong.demand_none()
+
+
+def _sound(subject: Subject, name: str, study: Study, where: str) -> _Planned:
+    """A study whose first point and last can be built; InputError for another."""
+    planned = _planned(subject, name, study, where)
+    planned.demand_ends()
+    return planned
 
 
 def _unasked(built: Ready) -> str | None:

@@ -3,13 +3,14 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, reduce
-from typing import Any
+from typing import Any, TypeVar
 
 import equinox as eqx
 import numpy as np
+from pydantic import TypeAdapter, ValidationError
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.cases.document import Document
+from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.films import film_model
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.laws import FRICTION
@@ -19,6 +20,7 @@ from pitchpoint.cases.schema import (
     TEMPERATURE,
     TORQUE,
     Case,
+    Choices,
     Dynamics,
     FilmTable,
     Loss,
@@ -48,9 +50,9 @@ from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.efficiency.warm_teeth import balance
-from pitchpoint.errors import InputError
+from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.coordinates import Coordinate
-from pitchpoint.gears.families import built_gears, family_of
+from pitchpoint.gears.families import Gears, built_gears, family_of
 from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.tooth_section import ToothSection
@@ -80,11 +82,14 @@ __all__ = [
     "TEETH_ALONE",
     "Built",
     "build",
+    "check_alone",
     "covered",
     "drags",
     "operation_at",
     "without_bearing",
 ]
+
+T = TypeVar("T")
 
 ALONE = "teeth alone: bearings, seals and grease are not in it"
 """What an efficiency is of where a case has no losses beside the teeth."""
@@ -374,48 +379,112 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
             does not hold for this pair; with file and key.
     """
     bound_programs()
-    try:
-        mesh, warnings = built_gears(case.gears, case.operation.driver, int(case.models.slices))
-    except InputError as error:
-        raise error.at(file=document.name, key=f"gears.{error.key or ''}".rstrip(".")) from None
-    if case.worn is not None:
-        try:
-            mesh, told_of_flanks = with_wear(mesh, case.gears, case.worn)
-            warnings = (*warnings, told_of_flanks)
-        except InputError as error:
-            raise error.at(file=document.name) from None
-    used = solids_in_use(case.materials, document, case.operation.temperature)
-    record = _lubricant(case.lubricant, document)
-    _check_temperature(case.operation.temperature, record, document, "operation.temperature")
-    for temperature in (case.loss_map and case.loss_map.temperatures) or ():
-        _check_temperature(temperature, record, document, "loss_map.temperatures")
-    try:
-        _check_shapes(case, mesh, own)
-        _check_models(case, mesh)
-        _check_hardness(case, used)
-        if case.film is not None:
-            film_model(case.film, [one.record for one in used], None)
-            height_maps(case.film)
-        check_wear(case, mesh, used)
-        check_strength(case, used)
-    except InputError as error:
-        raise error.at(file=document.name) from None
+    wrong = Complaints(document.name)
+    gears = wrong.under("gears").tried(
+        built_gears, case.gears, case.operation.driver, int(case.models.slices)
+    )
+    if gears is not None and case.worn is not None:
+        gears = wrong.tried(_worn, case, gears)
+    used = wrong.tried(solids_in_use, case.materials, document, case.operation.temperature)
+    oil = wrong.tried(_lubricant, case.lubricant, document)
+    _check_parts(case, wrong, oil, None if gears is None else gears[0], used, own)
+    if wrong or oil is None or gears is None or used is None:
+        raise wrong.error
+    mesh, warnings = gears
     design = Design(
         mesh=mesh,
         solids=(used[0].solid, used[1].solid),
-        lubricant=_built_oil(record),
+        lubricant=_built_oil(oil),
         roughness=_roughness(case.roughness),
         drag=drags(case.losses, case.bodies, {mesh.inner_bearing}),
         elliptic=ELLIPTIC_CONTACT[case.models.elliptic_contact],
     )
-    told = [*warnings, *_yielding(case, mesh), *filter(None, [record.note])]
+    told = [*warnings, *_yielding(case, mesh), *filter(None, [oil.note])]
     told += _half_of_a_line(case.lubricant)
     models = _models(case, own, used, mesh)
     name = named_set(document.tree.get("losses"))
     fitted = loss_sets()[name].fitted if name else None
     point = operation_at(case.operation)
-    built = Built(case, design, point, models, record, used, tuple(told), fitted=fitted)
+    built = Built(case, design, point, models, oil, used, tuple(told), fitted=fitted)
     return replace(built, told=(*told, *_left_out(built), *_extrapolated(built)))
+
+
+def check_alone(document: Document, wrong: Complaints) -> None:
+    """Complains of gears and oil that are wrong by themselves, in a file whose other tables are wrong.
+
+    Args:
+        document: with its marks.
+        wrong: what is wrong with other tables; of those told already nothing more is.
+    """
+    tables = {"gears": document.tree.get("gears")}
+    stages = document.tree.get(STAGES)
+    if isinstance(stages, Mapping):
+        tables |= {
+            f"{STAGES}.{number}.gears": one.get("gears")
+            for number, one in stages.items()
+            if isinstance(one, Mapping)
+        }
+    for key, table in tables.items():
+        gears = None if wrong.of(key) else _sound(_GEARS, table)
+        if gears is not None:
+            usual = gears.drivers[0], int(Choices().slices)
+            wrong.under(key).tried(built_gears, gears, *usual)
+    oil = None if wrong.of("lubricant") else _sound(_OIL, document.tree.get("lubricant"))
+    if oil is not None:
+        wrong.tried(_lubricant, oil, document)
+
+
+_GEARS: TypeAdapter[Gears] = TypeAdapter(Gears)
+_OIL = TypeAdapter(Oil)
+
+
+def _sound(model: TypeAdapter[T], table: Any) -> T | None:
+    """A table as the schema has it; None where it has something against it."""
+    try:
+        return model.validate_python(table)
+    except ValidationError:
+        return None
+
+
+def _worn(case: Case, gears: tuple[Mesh, tuple[str, ...]]) -> tuple[Mesh, tuple[str, ...]]:
+    """Gears with the wear of their flanks, and what is to be said of them."""
+    assert case.worn is not None
+    mesh, told = with_wear(gears[0], case.gears, case.worn)
+    return mesh, (*gears[1], told)
+
+
+def _check_parts(
+    case: Case,
+    wrong: Complaints,
+    oil: lubricants.LubricantRecord | None,
+    mesh: Mesh | None,
+    used: tuple[SolidInUse, SolidInUse] | None,
+    own: FrictionLaw | None,
+) -> None:
+    """Complains of what does not fit together, as far as its parts are sound.
+
+    Args:
+        case: whole.
+        wrong: that has been found already.
+        oil, mesh, used: None for what could not be built.
+        own: a friction law of the user's own.
+    """
+    if oil is not None:
+        wrong.tried(_check_temperature, case.operation.temperature, oil, "operation.temperature")
+        for temperature in (case.loss_map and case.loss_map.temperatures) or ():
+            wrong.tried(_check_temperature, temperature, oil, "loss_map.temperatures")
+    if mesh is not None:
+        _check_shapes(case, mesh, own, wrong)
+        _check_models(case, mesh, wrong)
+    if used is not None:
+        wrong.tried(_check_hardness, case, used)
+        wrong.tried(check_strength, case, used)
+    if case.film is not None:
+        wrong.tried(height_maps, case.film)
+        if used is not None:
+            wrong.tried(film_model, case.film, [one.record for one in used], None)
+    if mesh is not None and used is not None:
+        wrong.tried(check_wear, case, mesh, used)
 
 
 def _extrapolated(built: Built) -> list[str]:
@@ -542,8 +611,8 @@ _WHY_NOT: Mapping[Shape, str] = {
 """What contacts of a shape are not solved by."""
 
 
-def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
-    """InputError if a film, a rolling law or the user's own law holds for contacts of another shape."""
+def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None, wrong: Complaints) -> None:
+    """Complains of a film, a rolling law or a user's own law that hold for contacts of another shape."""
     models = case.models
     chosen: dict[str, Law] = {
         "models.film_thickness": FILM_THICKNESS[models.film_thickness],
@@ -551,23 +620,18 @@ def _check_shapes(case: Case, mesh: Mesh, own: FrictionLaw | None) -> None:
         "models.asperity_load": ASPERITY_LOAD[models.asperity_load],
     }
     for key, law in chosen.items():
-        try:
-            demand_shape(law, mesh.shape)
-        except InputError as error:
-            raise error.at(key=key) from None
+        wrong.under(key).tried(demand_shape, law, mesh.shape)
     if own is not None:
-        demand_shape(own, mesh.shape)
+        wrong.tried(demand_shape, own, mesh.shape)
     if case.film is not None and case.film.solver not in FILM_SOLVERS[mesh.shape]:
-        raise InputError(
+        told = (
             f"these gears touch {TOUCH[mesh.shape]}, and {_WHY_NOT[mesh.shape]}; take "
-            f"{' or '.join(FILM_SOLVERS[mesh.shape])}, or leave the table out",
-            key="film.solver",
+            f"{' or '.join(FILM_SOLVERS[mesh.shape])}, or leave the table out"
         )
+        wrong.add(InputError(told, key="film.solver"))
     if mesh.shape == "line" and models.elliptic_contact != USUAL_ELLIPSE:
-        raise InputError(
-            f"these gears touch along lines; leave it at {USUAL_ELLIPSE}",
-            key="models.elliptic_contact",
-        )
+        told = f"these gears touch along lines; leave it at {USUAL_ELLIPSE}"
+        wrong.add(InputError(told, key="models.elliptic_contact"))
 
 
 def _check_hardness(case: Case, used: Sequence[SolidInUse]) -> None:
@@ -584,25 +648,23 @@ def _check_hardness(case: Case, used: Sequence[SolidInUse]) -> None:
             )
 
 
-def _check_models(case: Case, mesh: Mesh) -> None:
-    """InputError if a model of the case does not hold for these gears."""
+def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
+    """Complains of models of the case that do not hold for these gears."""
     models = case.models
-    for choice in models.friction:
+    for place, choice in enumerate(models.friction):
         if why_not := applies(FRICTION[choice.name], mesh):
             others = ", ".join(law.name for law in LAWS if applies(law, mesh) is None)
-            raise InputError(f"{why_not}; choose one of {others}", key="models.friction")
-    try:
-        LOAD_SHARING[models.load_sharing].check(mesh)
-    except InputError as error:
-        raise error.at(key="models.load_sharing") from None
-    _check_map(case, mesh)
+            told = f"{why_not}; choose one of {others}"
+            wrong.add(InputError(told, key="models.friction", value=place))
+    wrong.under("models.load_sharing").tried(LOAD_SHARING[models.load_sharing].check, mesh)
+    wrong.tried(_check_map, case, mesh)
     if models.tooth_temperature != "isothermal":
-        _check_heat(case, mesh)
+        wrong.tried(_check_heat, case, mesh)
     if case.dynamics is not None and mesh.along_action:
-        _check_masses(case, mesh)
-        _check_motion(case, mesh)
+        wrong.tried(_check_masses, case, mesh)
+        wrong.tried(_check_motion, case, mesh)
     elif case.dynamics is not None:
-        _check_joint(case, case.dynamics)
+        wrong.tried(_check_joint, case, case.dynamics)
 
 
 def _check_map(case: Case, mesh: Mesh) -> None:
@@ -939,16 +1001,14 @@ _OIL_KEYS = {
 }
 
 
-def _check_temperature(
-    temperature: float, oil: lubricants.LubricantRecord, document: Document, key: str
-) -> None:
+def _check_temperature(temperature: float, oil: lubricants.LubricantRecord, key: str) -> None:
     low, high = oil.T_min.value, oil.T_max.value
     if not low <= temperature <= high:
         allowed = replace(TEMPERATURE, low=low, high=high).allowed
         raise InputError(
             f"{TEMPERATURE.show(temperature)} is outside the range of {oil.name}; {allowed}",
-            file=document.name,
             key=key,
+            value=temperature,
         )
 
 

@@ -13,6 +13,7 @@ from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
 from pitchpoint.cases.films import CHOICE_NOTES, film_choices
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.loss_sets import SET, marks_of
+from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.gears.family import Followed
@@ -40,6 +41,7 @@ _TABLES = (
     "worn",
     "strength",
     "loss_map",
+    OUTPUT,
     "formulas",
 )
 

@@ -34,6 +34,7 @@ from pitchpoint.results.variable import End
 __all__ = [
     "CASE",
     "MANIFEST",
+    "OUTPUT",
     "RUN",
     "Manifest",
     "Record",
@@ -47,6 +48,9 @@ MANIFEST = "manifest.json"
 
 CASE = "case.toml"
 """The case as it was run, beside the manifest of a variant."""
+
+OUTPUT = "output"
+"""Table of what decides how results are shown, and about no number of them."""
 
 RUN = "run.json"
 """Case and variants of the last run into a folder."""
@@ -131,8 +135,9 @@ class Record(_Kept):
 
 
 def _in_words(settings: Mapping[str, Any]) -> dict[str, str]:
-    """Settings as texts by dotted key."""
-    return {as_text(key): as_text(str(value)) for key, value in settings.items()}
+    """Settings as texts by dotted key, without those of how results are shown."""
+    told = {as_text(key): as_text(str(value)) for key, value in settings.items()}
+    return {key: text for key, text in told.items() if key.partition(".")[0] != OUTPUT}
 
 
 def _known(kind: str) -> str:

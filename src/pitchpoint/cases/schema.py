@@ -21,7 +21,7 @@ from pydantic.fields import FieldInfo
 from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
 from pitchpoint.cases.loss_sets import expanded, named_set
-from pitchpoint.errors import CollectedInputError, InputError, shorten
+from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
@@ -30,6 +30,7 @@ from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.registry import alike, letters, nearest
+from pitchpoint.results.chosen_units import unit_choice
 
 __all__ = [
     "Case",
@@ -1379,6 +1380,20 @@ Targets = Annotated[tuple[Target, ...], Field(max_length=2000)]
 Issues = Annotated[tuple[Issue, ...], Field(max_length=500)]
 
 
+class Output(Table):
+    """How results are shown; numbers that are computed and kept are SI whatever it says.
+
+    `units` are those of tables, figures and exports by kind of quantity: angle, torque, torsional_stiffness,
+    rotational_speed and so on. A unit of small angles, lengths or times (arcmin, um, ms) is for these; the
+    kinds `small_angle`, `small_length` and `small_time` give them a unit of any size.
+    """
+
+    units: Annotated[dict[str, str], BeforeValidator(unit_choice)] = Field(
+        default_factory=dict, examples=[{"angle": "arcmin", "torsional stiffness": "N m/arcmin"}]
+    )
+    """Unit by kind of quantity; usual ones unless given."""
+
+
 class Case(Table):
     """A whole case file, one variant of it."""
 
@@ -1418,6 +1433,8 @@ class Case(Table):
     """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
+    output: Output | None = None
+    """Units in which results are shown; usual ones unless given."""
     formulas: Formulas | None = None
     """Inputs that only the equations of one paper take."""
     targets: Targets = ()
@@ -1431,18 +1448,15 @@ class Case(Table):
         return self.gears.members
 
     @model_validator(mode="after")
-    def _aimed(self) -> "Case":
-        _check_aims(self.targets, self.studies)
-        return self
-
-    @model_validator(mode="after")
     def _of_family(self) -> "Case":
         """What is not given stands as is usual for the family; bodies are those that it has."""
-        _check_load(self, self.gears)
-        _check_losses(self.losses, self.gears.shafts, self.bodies)
-        _check_meant(self)
-        _check_formulas(self)
-        _check_driver(self)
+        wrong = Complaints()
+        wrong.tried(_check_aims, self.targets, self.studies)
+        wrong.tried(_check_load, self, self.gears)
+        wrong.tried(_check_losses, self.losses, self.gears.shafts, self.bodies)
+        for check in (_check_meant, _check_formulas, _check_driver):
+            wrong.tried(check, self)
+        wrong.demand_none()
         operation, models = self.operation, self.models
         driver = operation.driver if _given(operation, "driver") else self.gears.drivers[0]
         usual: dict[str, Any] = {
@@ -1561,6 +1575,8 @@ class DriveCase(Table):
     """Further computations with changed inputs, by names of one's own."""
     loss_map: LossMap | None = None
     """Axes of the loss map; up to 1.5 times the operating point unless given."""
+    output: Output | None = None
+    """Units in which results are shown; usual ones unless given."""
     targets: Targets = ()
     """Printed numbers that computed ones are compared with."""
     issues: Issues = ()
@@ -1578,24 +1594,26 @@ class DriveCase(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "DriveCase":
-        _check_aims(self.targets, self.studies)
-        _check_passing(self.stages)
-        _check_load(self, self.last)
+        wrong = Complaints()
+        wrong.tried(_check_passing, self.stages)
+        if not wrong:  # what the drive carries, and what turns, follows from its stages
+            travels = self.last.load == "force"
+            turning = self.bodies[: len(self.bodies) - travels]
+            wrong.tried(_check_load, self, self.last)
+            wrong.tried(_check_losses, self.losses, turning, self.bodies)
         if self.operation.driver:
-            raise InputError(
+            told = (
                 "the first stage drives; the member that drives a stage is its own key, "
-                'driver = "gear 2" under [[stages]]',
-                key="operation.driver",
+                'driver = "gear 2" under [[stages]]'
             )
+            wrong.add(InputError(told, key="operation.driver"))
         tables = {f"stages.{number}.models": one.models for number, one in self.stages.items()}
         for key, models in {"models": self.models, **tables}.items():
             if models.averaging != "base_pitch":
-                raise InputError(
-                    "the path of one pair does not stand for several meshes; leave it out",
-                    key=f"{key}.averaging",
-                )
-        travels = self.last.load == "force"
-        _check_losses(self.losses, self.bodies[: len(self.bodies) - travels], self.bodies)
+                told = "the path of one pair does not stand for several meshes; leave it out"
+                wrong.add(InputError(told, key=f"{key}.averaging"))
+        wrong.tried(_check_aims, self.targets, self.studies)
+        wrong.demand_none()
         return self
 
 
@@ -1629,18 +1647,19 @@ def bearings_of(losses: Mapping[str, Loss], body: str) -> dict[str, Loss]:
 
 def _check_aims(targets: Sequence[Target], studies: Mapping[str, Study]) -> None:
     """InputError if a target reads a study that does not exist, or no place of its axis."""
+    wrong = Complaints()
     for position, target in enumerate(targets):
         if target.kind == "excluded" or target.part:
             continue
         if target.study not in studies:
-            raise InputError(
-                f"there is no study {shown(target.study)}{nearest(target.study, studies)}",
-                key=f"targets.{position}.study",
-            )
+            told = f"there is no study {shown(target.study)}{nearest(target.study, studies)}"
+            wrong.add(InputError(told, key=f"targets.{position}.study"))
+            continue
         try:
             _check_places(target, studies[target.study].sweep)
         except InputError as error:
-            raise InputError(error.message, key=f"targets.{position}.at") from None
+            wrong.add(InputError(error.message, key=f"targets.{position}.at"))
+    wrong.demand_none()
 
 
 def _check_places(target: Target, sweep: Sweep | None) -> None:
@@ -1723,29 +1742,29 @@ def _check_losses(
     losses: Mapping[str, Loss], turning: Sequence[str], bodies: Sequence[str]
 ) -> None:
     """InputError if losses arise between bodies that do not turn, or bearings have no span."""
-    _check_bodies(losses, turning, bodies)
-    for body in turning:
-        _check_span(body, bearings_of(losses, body))
-
-
-def _check_bodies(
-    losses: Mapping[str, Loss], turning: Sequence[str], bodies: Sequence[str]
-) -> None:
-    """InputError if losses arise between bodies that the drive does not have, or that travel."""
-    known = (*turning, "housing")
+    wrong = Complaints()
     for name, loss in losses.items():
-        first, second = loss.between
-        strange = next((body for body in loss.between if body not in known), None)
-        told = (
-            f"{shown(strange)} travels, and losses are torques between bodies that turn; name two of "
-            f"{', '.join(known)}"
-            if strange in bodies
-            else f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
-            if strange is not None
-            else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
-        )
-        if strange is not None or first == second:
-            raise InputError(told, key=f"losses.{name}.between")
+        wrong.under(f"losses.{name}").tried(_check_bodies, loss, turning, bodies)
+    for body in turning:
+        wrong.tried(_check_span, body, bearings_of(losses, body))
+    wrong.demand_none()
+
+
+def _check_bodies(loss: Loss, turning: Sequence[str], bodies: Sequence[str]) -> None:
+    """InputError if a loss arises between bodies that the drive does not have, or that travel."""
+    known = (*turning, "housing")
+    first, second = loss.between
+    strange = next((body for body in loss.between if body not in known), None)
+    told = (
+        f"{shown(strange)} travels, and losses are torques between bodies that turn; name two of "
+        f"{', '.join(known)}"
+        if strange in bodies
+        else f"{shown(strange)} is no body of this drive{nearest(strange, known)}"
+        if strange is not None
+        else f"{shown(first)} was given twice; name two bodies of {', '.join(dict.fromkeys(known))}"
+    )
+    if strange is not None or first == second:
+        raise InputError(told, key="between")
 
 
 def _check_span(body: str, bearings: Mapping[str, Loss]) -> None:
@@ -1978,7 +1997,7 @@ def _complaint(error: ValidationError, document: Document, model: type[BaseModel
     """The complaints of pydantic in gear words, the clearest one first, each thing once."""
     details = error.errors(include_url=False)[:1000]  # of a hostile file, the first ones
     causes = [_clearest(details), *_causes(details, document)]
-    told = {str(each): each for each in (_sentence(one, document, model) for one in causes)}
+    told = {str(each): each for one in causes for each in _sentences(one, document, model)}
     every = list({each.key: each for each in reversed(told.values())}.values())[::-1]
     if len(every) > _MOST_TOLD:
         more = InputError("more is wrong; these first", file=document.name)
@@ -2039,14 +2058,17 @@ def _left_missing(
     return same[0]["type"] == "missing" and any(alike(one, place[-1:]) for one in beside)
 
 
-def _sentence(detail: Any, document: Document, model: type[BaseModel]) -> InputError:
-    """A complaint of pydantic in gear words."""
+def _sentences(detail: Any, document: Document, model: type[BaseModel]) -> Sequence[InputError]:
+    """A complaint of pydantic in gear words, or several that one check of our own has."""
     words = _words(document, detail)
     key = ".".join(shorten(str(part)) for part in detail["loc"] if str(part) in words)
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
-        return cause.at(file=document.name, key=".".join(filter(None, (key, cause.key))))
-    return InputError(_message(detail, model), file=document.name, key=key)
+        each = cause.errors if isinstance(cause, CollectedInputError) else (cause,)
+        return [
+            one.at(file=document.name, key=".".join(filter(None, (key, one.key)))) for one in each
+        ]
+    return [InputError(_message(detail, model), file=document.name, key=key)]
 
 
 def _clearest(details: list[Any]) -> Any:

@@ -12,7 +12,7 @@ from pitchpoint.cases.failures import fails
 from pitchpoint.cases.schema import Case, Materials, SolidValues
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE, modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated
-from pitchpoint.errors import InputError
+from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
 from pitchpoint.materials._leaves import Datum, Status
@@ -81,14 +81,20 @@ def solids_in_use(materials: Materials, document: Document, temperature: float) 
     Raises:
         InputError: the temperature is outside what is known of a material.
     """
-    try:
-        first, second = (
-            _in_use(_record(getattr(materials, key), key, document), key, temperature)
-            for key in _KEYS
-        )
-    except InputError as error:
-        raise error.at(file=document.name) from None
+    wrong = Complaints(document.name)
+    first = wrong.tried(_of_gear, materials.gear_1, "gear_1", document, temperature)
+    if first is None and materials.gear_1 == materials.gear_2:
+        raise wrong.error  # of the other gear too
+    second = wrong.tried(_of_gear, materials.gear_2, "gear_2", document, temperature)
+    if first is None or second is None:
+        raise wrong.error
     return first, second
+
+
+def _of_gear(
+    given: SolidValues | str, key: str, document: Document, temperature: float
+) -> SolidInUse:
+    return _in_use(_record(given, key, document), key, temperature)
 
 
 def surrounded(used: Used, temperature: float) -> Used:

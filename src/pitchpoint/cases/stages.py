@@ -1,12 +1,11 @@
 """From a validated case of several meshes to one built case a stage, and the drive that they make."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from math import gcd, pi
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -28,7 +27,7 @@ from pitchpoint.cases.schema import TEMPERATURE, Case, DriveCase, Operating, Sta
 from pitchpoint.cases.strength import UNRATED
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
-from pitchpoint.errors import InputError
+from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity, SIValue
@@ -36,6 +35,8 @@ from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.variable import End
 
 __all__ = ["Acting", "BuiltDrive", "Ready", "ready"]
+
+T = TypeVar("T")
 
 _SHARED = ("materials", "models", "strength")
 """Tables that stages share key by key; of the others a stage has its own or that of the drive."""
@@ -271,19 +272,25 @@ def _warm(case: Case, document: Document, own: FrictionLaw | None) -> Built:
 def _built(case: DriveCase, document: Document, own: FrictionLaw | None) -> BuiltDrive:
     numbers = range(1, len(case.stages) + 1)
     documents = [_of_stage(case, document, number) for number in numbers]
+    wrong = Complaints()
     alone: list[Case] = []
     for number, inside in zip(numbers, documents, strict=True):
-        with _told_of_stage(document, number):
-            alone.append(validated(Case, inside))
+        read = partial(validated, Case, inside)
+        alone += filter(None, [wrong.tried(_in_stage, document, number, read)])
+    wrong.demand_none()
+    for number, one in zip(numbers, alone, strict=True):
+        wrong.tried(_mesh, one, number, document)
+    wrong.demand_none()
     _check_laws(alone)
     _check_rated(case, alone)
     alone = _following(alone, document)
     points = _points(case.operation, alone, document)
-    built = []
+    built: list[Built] = []
     for number, one, point in zip(numbers, alone, points, strict=True):
-        with _told_of_stage(document, number):
-            loaded = one.model_copy(update={"operation": point})
-            built.append(_warm(loaded, documents[number - 1], own))
+        loaded = one.model_copy(update={"operation": point})
+        warmed = partial(_warm, loaded, documents[number - 1], own)
+        built += filter(None, [wrong.tried(_in_stage, document, number, warmed)])
+    wrong.demand_none()
     drive = _drive(case, built)
     made = BuiltDrive(
         case,
@@ -339,22 +346,30 @@ def _marks(given: Mapping[str, Provenance], number: int, stage: Tree) -> dict[st
     return {**found, **own}
 
 
-@contextmanager
-def _told_of_stage(document: Document, number: int) -> Iterator[None]:
-    """What is wrong with a stage is told under its key in the file of the drive."""
+def _in_stage(document: Document, number: int, make: Callable[[], T]) -> T:
+    """What a function makes of a stage; what is wrong there is told under its key in the file."""
     try:
-        yield
+        return make()
     except InputError as error:
-        key = error.key or ""
-        if key == "operation.driver":
-            raise error.at(key=_key(number, "driver")) from None
-        node: Any = document.tree[STAGES][str(number)]
-        for part in key.split(".")[: 2 if key.partition(".")[0] in _SHARED else 1]:
-            node = node.get(part) if isinstance(node, Mapping) else None
-        if node is not None:
-            raise error.at(key=_key(number, key)) from None
-        message = f"stage {number}: {error.message}"
-        raise InputError(message, file=error.file, key=error.key, value=error.value) from None
+        wrong = Complaints()
+        for one in error.every:
+            if isinstance(one, InputError):
+                wrong.add(_of_the_drive(one, document, number))
+        raise wrong.error from None
+
+
+def _of_the_drive(error: InputError, document: Document, number: int) -> InputError:
+    """An error of a stage with the key that it has in the file of the drive."""
+    key = error.key or ""
+    if key == "operation.driver":
+        return error.at(key=_key(number, "driver"))
+    node: Any = document.tree[STAGES][str(number)]
+    for part in key.split(".")[: 2 if key.partition(".")[0] in _SHARED else 1]:
+        node = node.get(part) if isinstance(node, Mapping) else None
+    if node is not None:
+        return error.at(key=_key(number, key))
+    message = f"stage {number}: {error.message}"
+    return InputError(message, file=error.file, key=error.key, value=error.value)
 
 
 def _key(number: int, key: str) -> str:
@@ -432,11 +447,17 @@ def _against(one: Case, number: int) -> InputError:
 
 
 def _mesh(one: Case, number: int, document: Document) -> Mesh:
-    with _told_of_stage(document, number):
-        try:
-            return built_gears(one.gears, one.operation.driver, int(one.models.slices))[0]
-        except InputError as error:
-            raise error.at(key=f"gears.{error.key or ''}".rstrip(".")) from None
+    return _in_stage(document, number, partial(_mesh_alone, one))
+
+
+def _mesh_alone(one: Case) -> Mesh:
+    wrong = Complaints()
+    gears = wrong.under("gears").tried(
+        built_gears, one.gears, one.operation.driver, int(one.models.slices)
+    )
+    if gears is None:
+        raise wrong.error
+    return gears[0]
 
 
 def _ends(mesh: Mesh) -> tuple[float, float]:

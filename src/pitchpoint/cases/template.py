@@ -167,6 +167,8 @@ def _example(info: FieldInfo) -> Any:
         value = _of_quantity(quantity, usual if not info.is_required() else None)
         listed = get_origin(info.annotation) is tuple and not _pair(info)
         return [value] if listed else value
+    if info.examples:
+        return info.examples[0]
     if isinstance(usual, str | bool) and (usual != "" or not _names(info)):
         return usual
     if choices := (_names(info) or _options(info)):

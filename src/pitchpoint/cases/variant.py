@@ -6,9 +6,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pitchpoint.cases.build import check_alone
 from pitchpoint.cases.document import Document, resolve
 from pitchpoint.cases.schema import usual_at, validate
 from pitchpoint.cases.stages import Ready, ready
+from pitchpoint.errors import Complaints, InputError
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 
 __all__ = [
@@ -67,7 +69,15 @@ class Variant:
     def built(self, changes: Mapping[str, Any]) -> Ready:
         """Case with some values changed."""
         document = (self.computed if changes else self).document(**changes)
-        return ready(validate(document), document, self.own)
+        try:
+            case = validate(document)
+        except InputError as error:
+            wrong = Complaints(document.name)
+            wrong.add(error)
+            if not changes:
+                check_alone(document, wrong)
+            raise wrong.error from None
+        return ready(case, document, self.own)
 
 
 def _without(tree: Mapping[str, Any]) -> dict[str, Any]:

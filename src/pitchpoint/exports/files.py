@@ -13,8 +13,10 @@ import xarray as xr
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.tables import Sheet, exported, sheets
+from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import make_folder, without_nan, write_bytes, write_text
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views.inputs import recorded_units
 
 __all__ = ["EVALUATOR", "FORMATS", "export"]
 
@@ -31,7 +33,12 @@ README = "README.txt"
 
 
 def export(
-    outcomes: Mapping[str, Outcome], folder: Path, formats: list[str], *, si: bool = False
+    outcomes: Mapping[str, Outcome],
+    folder: Path,
+    formats: list[str],
+    *,
+    si: bool = False,
+    units: UnitsByKind | None = None,
 ) -> list[Path]:
     """Write a result in other formats; each variant of several into a folder of its own.
 
@@ -40,13 +47,24 @@ def export(
         folder: where files go.
         formats: of `FORMATS`, and `EVALUATOR`.
         si: True for SI units, else those of report and screen.
+        units: by kind of quantity, {"angle": "arcmin"} or "angle=arcmin"; those of the case by default.
 
     Returns:
         The files.
 
     Raises:
-        InputError: no format, a folder that cannot be written to, a library that is missing.
+        InputError: no format, units that there are not, a folder that cannot be written to, a library that
+            is missing.
     """
+    if si and units is not None:
+        raise InputError("SI was asked for, and other units too; give one of --si and --units")
+    with shown_in(recorded_units(outcomes) if units is None else unit_choice(units)):
+        return _exported(outcomes, folder, formats, si=si)
+
+
+def _exported(
+    outcomes: Mapping[str, Outcome], folder: Path, formats: list[str], *, si: bool
+) -> list[Path]:
     if not formats:
         told = ", ".join(f"--{name}" for name in (*FORMATS, EVALUATOR))
         raise InputError(f"no format was given; give one or several of {told}")

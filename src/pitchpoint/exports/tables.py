@@ -88,7 +88,7 @@ def _shown(values: np.ndarray, told: Variable) -> np.ndarray:
     """Values in the unit of report and screen."""
     if told.display == told.unit:
         return values
-    return np.asarray(units.convert(values, told.display, told.kind))
+    return np.asarray(told.displayed(values))
 
 
 def _unit(told: Variable, si: bool) -> str:

@@ -16,10 +16,12 @@ from pitchpoint.notebook import tables
 from pitchpoint.notebook.figures import Plots
 from pitchpoint.notebook.gradients import gradients
 from pitchpoint.registry import nearest
+from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.labelled import Units, demand_units, labelled
 from pitchpoint.runs import run as runs
 from pitchpoint.runs.case import Case, CaseLike, written
 from pitchpoint.runs.run import Outcome, Progress
+from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.report import write_report
 
 if TYPE_CHECKING:
@@ -51,6 +53,7 @@ class Result(Mapping[str, Outcome]):
     ) -> None:
         self._outcomes, self._origins, self._friction = dict(outcomes), origins, friction
         self._studies = studies
+        self._units = recorded_units(outcomes)
 
     def __getitem__(self, variant: str) -> Outcome:
         return self._outcomes[variant]
@@ -62,7 +65,8 @@ class Result(Mapping[str, Outcome]):
         return len(self._outcomes)
 
     def __repr__(self) -> str:
-        lines = [f"{name}: {tables.headline(one)}" for name, one in self.items()]
+        with shown_in(self._units):
+            lines = [f"{name}: {tables.headline(one)}" for name, one in self.items()]
         return "\n  ".join([f"Result({self.title!r})", *lines, f"parts {', '.join(self.parts)}"])
 
     def _repr_html_(self) -> str:
@@ -90,30 +94,44 @@ class Result(Mapping[str, Outcome]):
     @property
     def inputs(self) -> "pd.DataFrame":
         """Every input by key: value in SI with its unit, as shown, status, place in print, remark."""
-        return tables.by_variant(self, tables.inputs)
+        with shown_in(self._units):
+            return tables.by_variant(self, tables.inputs)
 
     @property
     def plot(self) -> Plots:
         """Figures of the report, by section: `result.plot.cycle()`; `dir(result.plot)` lists them."""
-        return Plots(self)
+        return self.plot_in(self._units)
 
-    def summary(self) -> "pd.DataFrame":
-        """Main figures in the units in which they are shown, a column for each friction law."""
-        return tables.by_variant(self, tables.summary)
+    def plot_in(self, units: UnitsByKind) -> Plots:
+        """The same figures in units by kind of quantity: `result.plot_in("angle=arcmin").torsion()`."""
+        with shown_in(unit_choice(units)):
+            return Plots(self)
+
+    def summary(self, units: UnitsByKind | None = None) -> "pd.DataFrame":
+        """Main figures in the units in which they are shown, a column for each friction law.
+
+        Args:
+            units: by kind of quantity, {"angle": "arcmin", "torsional stiffness": "N m/arcmin"}, or the same
+                as text, "angle=arcmin"; those of the case by default.
+        """
+        with shown_in(self._units if units is None else unit_choice(units)):
+            return tables.by_variant(self, tables.summary)
 
     def dataset(self, part: str, *, units: Units = "si", variant: str | None = None) -> xr.Dataset:
         """A part of the result: every dimension with a coordinate, NaN where no teeth touch.
 
         Args:
             part: one of `parts`; `outcome.parts` has it as it was computed and kept.
-            units: "si", or those in which values are "shown".
+            units: "si", those in which values are "shown", or some by kind of quantity, as in `summary`,
+                and the others as shown.
             variant: the first one by default.
 
         Raises:
             InputError: there is no such part, and why.
         """
         demand_units(units)
-        return labelled(self._part(part, variant), units)
+        with shown_in(self._units):
+            return labelled(self._part(part, variant), units)
 
     def to_dataframe(
         self, part: str, *, units: Units = "si", variant: str | None = None
@@ -140,9 +158,9 @@ class Result(Mapping[str, Outcome]):
         case = self._origins[variant or next(iter(self))]()
         return gradients(case, of, by, law=law, friction=self._friction)
 
-    def write_report(self, path: str | Path) -> None:
-        """Write the report, one HTML file."""
-        write_report(self, path)
+    def write_report(self, path: str | Path, *, units: UnitsByKind | None = None) -> None:
+        """Write the report, one HTML file; `units` as in `summary`."""
+        write_report(self, path, units=units)
 
     def save(self, folder: str | Path, *, overwrite: bool = False) -> None:
         """Write the datasets, the case and the record as a run into the folder does.

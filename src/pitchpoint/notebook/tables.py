@@ -130,8 +130,7 @@ def _row(outcome: Outcome, data: "xr.Dataset", name: str) -> dict[str, Any]:
     several = [str(law) for law in data["law"].values] if "law" in one.dims else []
     if one.dtype.kind not in "fi" or one.size != max(len(several), 1):
         return {}
-    values = units.convert(np.ravel(one.values).astype(float), variable.display, variable.kind)
-    values = np.where(np.abs(values) < show.NOISE, 0.0, values)
+    values = show.displayed(variable, np.ravel(one.values))
     alone = dict.fromkeys(laws, float(values[0]))
     under = dict(zip(several, values.tolist(), strict=True)) if several else alone
     return {"name": variable.long_name, "unit": show.unit(variable.display), **under}

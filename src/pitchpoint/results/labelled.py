@@ -1,21 +1,24 @@
 """Parts of a result as people of xarray expect them: labelled, in the units asked for, NaN off contact."""
 
-from typing import Any, Literal, get_args
+from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint import units
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
+from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 
-__all__ = ["Units", "demand_units", "in_units", "labelled"]
+__all__ = ["Units", "demand_units", "in_units", "labelled", "showing"]
 
-Units = Literal["si", "shown"]
-"""Units of a dataset: SI, or those in which tables and figures show each variable."""
+Units = Literal["si", "shown"] | UnitsByKind
+"""Units of a dataset: SI, those in which tables and figures show each variable, or a choice by kind."""
 
+_BY_NAME = ("si", "shown")
 _ACTIVE = "active"
 
 _ALONG = ("phase", "axis", "cycles", "time", "speed", "torque")
@@ -27,7 +30,7 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
 
     Args:
         data: a part of a result.
-        unit: "si" or "shown".
+        unit: "si", "shown", or units by kind of quantity, the others as shown.
 
     Dimensions without a coordinate take the variable that runs along them (`phase` along the nodes of a
     cycle), else count from 1; a single operating point is no dimension.
@@ -41,16 +44,33 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
     return in_units(made, unit)
 
 
-def demand_units(unit: str) -> None:
+def demand_units(unit: Any) -> None:
     """InputError for units that are no choice."""
-    if unit not in get_args(Units):
-        raise InputError(f'{shown(unit)} was given as units; use "si" or "shown"')
+    if unit in _BY_NAME or isinstance(unit, Mapping) or (isinstance(unit, str) and "=" in unit):
+        if unit not in _BY_NAME:
+            unit_choice(unit)
+        return
+    raise InputError(
+        f'{shown(unit)} was given as units; use "si", "shown", or units by kind, {{"angle": "arcmin"}}'
+    )
 
 
 def in_units(data: xr.Dataset, unit: Units) -> xr.Dataset:
     """The dataset in SI, as it is, or in the units in which its variables are shown."""
     if unit == "si":
         return data
+    with showing(unit):
+        return _displayed(data)
+
+
+def showing(unit: Units) -> AbstractContextManager[None]:
+    """Within it variables are shown in units by kind; in those that hold where it begins for "shown"."""
+    return (
+        nullcontext() if isinstance(unit, str) and unit in _BY_NAME else shown_in(unit_choice(unit))
+    )
+
+
+def _displayed(data: xr.Dataset) -> xr.Dataset:
     made = data.copy()
     for name in [*map(str, data.variables)]:
         if name in VARIABLES and data[name].dtype.kind == "f":
@@ -62,7 +82,7 @@ def in_units(data: xr.Dataset, unit: Units) -> xr.Dataset:
 
 def _as_shown(data: xr.Dataset, name: str, known: Variable) -> Any:
     """A variable in the unit in which it is shown."""
-    values = units.convert(np.asarray(data[name].values), known.display, known.kind)
+    values = known.displayed(np.asarray(data[name].values))
     attributes = {**data[name].attrs, "units": known.display}
     return (data[name].dims, values, attributes)
 

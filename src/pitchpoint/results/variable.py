@@ -2,7 +2,14 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+from pitchpoint import units
+from pitchpoint.results.chosen_units import unit_in_use
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 __all__ = [
     "End",
@@ -44,9 +51,22 @@ class Variable:
     travel: "Variable | None" = None
 
     @property
-    def display(self) -> str:
-        """Unit in which tables and figures show it."""
+    def usual(self) -> str:
+        """Unit in which tables and figures show it where none is chosen."""
         return self.shown or self.unit
+
+    @property
+    def display(self) -> str:
+        """Unit in which tables and figures show it, see `chosen_units`."""
+        return unit_in_use(self.kind, self.usual)
+
+    @overload
+    def displayed(self, value: float) -> float: ...
+    @overload
+    def displayed(self, value: "NDArray[np.floating[Any]]") -> "NDArray[Any]": ...
+    def displayed(self, value: "float | NDArray[np.floating[Any]]") -> "float | NDArray[Any]":
+        """A value in the unit in which it is shown [SI in]."""
+        return units.convert(value, self.display, self.kind)
 
     def where(self, travels: Collection[End]) -> "Variable":
         """The quantity in a drive some of whose members travel."""

@@ -159,7 +159,9 @@ VARIABLES: dict[str, Variable] = {
     "film_sliding_loss": power("sliding loss of the pair by its film", "P_s"),
     "film_rolling_loss": power("rolling loss of the pair by its film", "P_r"),
     "film_stiffness": stiffness("stiffness of the film", "k_film"),
-    "film_damping": Variable("squeeze damping of the film", "c_film", "N s/m"),
+    "film_damping": Variable(
+        "squeeze damping of the film", "c_film", "N s/m", "N s/m", "viscous damping"
+    ),
     "film_torsional_stiffness": torsional_stiffness(
         "torsional stiffness of the films alone", "K_film"
     ),
@@ -546,6 +548,35 @@ VARIABLES.update(
     (name, replace(VARIABLES[name], end=end, travel=travel))
     for end, own in _IN_TRAVEL.items()
     for name, travel in own.items()
+)
+
+
+_OF_ENDS: dict[End, tuple[str, ...]] = {
+    "driver": ("critical_speed", "half_power_width", "course_speed"),
+    "loaded": (
+        "wind_up_part",
+        "wind_up_by_balls",
+        "slope_torque",
+        "slope_stiffness",
+        "catalogue_lost_motion",
+        "hysteresis_loss",
+        "film_torsional_stiffness",
+        "stiffness_without_films",
+        "stiffness_with_films",
+        "reduced_inertia",
+        "wave_amplitude",
+        "output_amplitude",
+        "output_speed_amplitude",
+        "torque_amplitude",
+        "course_torque",
+        "course_smallest_torque",
+        "linear_torque",
+    ),
+}
+"""Other quantities of the input and of the output, which no member that travels has."""
+
+VARIABLES.update(
+    (name, replace(VARIABLES[name], end=end)) for end, names in _OF_ENDS.items() for name in names
 )
 
 

@@ -6,12 +6,12 @@ from functools import cached_property
 
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Subject, silent
+from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, silent
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
-from pitchpoint.errors import InputError, shorten
+from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.registry import nearest
 
 __all__ = ["Job", "job_of", "jobs"]
@@ -76,8 +76,14 @@ def jobs(variant: Variant, studies: Mapping[str, Study]) -> list[Job]:
     """
     built = variant.built({})
     subject = Subject(variant, built, studies)
-    parts = (part for analysis in ANALYSES.values() for part in analysis.parts(subject))
-    return [Job(part, built) for part in parts]
+    wrong = Complaints(variant.name)
+    made = [wrong.tried(_parts, analysis, subject) for analysis in ANALYSES.values()]
+    wrong.demand_none()
+    return [Job(part, built) for parts in made for part in parts or ()]
+
+
+def _parts(entry: Analysis | Several, subject: Subject) -> list[Analysis]:
+    return [*entry.parts(subject)]
 
 
 def job_of(variant: Variant, name: str) -> Job:

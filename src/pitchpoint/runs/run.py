@@ -26,7 +26,7 @@ from pitchpoint.cases.failures import apart
 from pitchpoint.cases.handed_over import FILES, hand_over
 from pitchpoint.cases.library import names
 from pitchpoint.cases.loss_sets import set_sources
-from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record
+from pitchpoint.cases.record import CASE, MANIFEST, OUTPUT, RUN, Manifest, Record, is_record
 from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
@@ -456,6 +456,7 @@ def _mark(manifest: Mapping[str, Any], job: Job) -> str:
         [row["table"], row["key"], row["value"]]
         for row in manifest["inputs"]
         if row["given"]
+        and row["table"] != OUTPUT
         and (row["table"] != study or f"study_{row['key']}.".startswith(f"{job.name}."))
         and not _names_file(row)
     ]

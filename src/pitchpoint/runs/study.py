@@ -13,11 +13,13 @@ import xarray as xr
 from pitchpoint import units as units_of_numbers
 from pitchpoint.analyses.designs import Designs
 from pitchpoint.analyses.studies import SWEPT, demand_films, demand_one
+from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import COUNT, Sweep, quantity_at
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
-from pitchpoint.results.labelled import Units, demand_units, in_units
+from pitchpoint.results.chosen_units import shown_in, unit_choice, unit_in_use
+from pitchpoint.results.labelled import Units, demand_units, in_units, showing
 from pitchpoint.results.store import fingerprint, make_folder, sole_writer
 from pitchpoint.runs.case import Case, CaseLike, as_case, written
 from pitchpoint.runs.run import Progress, compute_alone, own_law
@@ -50,7 +52,8 @@ def study(
             ones, "latin_hypercube" draws designs that fill the ranges evenly.
         n: number of designs to draw.
         seed: the same one draws the same designs.
-        units: of the result, "si" or those in which values are "shown".
+        units: of the result, "si", those in which values are "shown", or some by kind of quantity,
+            {"angle": "arcmin"}, and the others as shown.
         variant: of the case, the first one by default.
         friction: a law of one's own, see `run`.
         folder: where pieces of 256 designs are kept as soon as they are computed, so that the same call
@@ -79,7 +82,8 @@ def study(
     changes = [dict(zip(axes, row, strict=True)) for row in zip(*columns, strict=True)]
     for key, axis in axes.items():
         _demand_meant(base, key, axis)
-    told = [base.document().tree, changes]
+    tree = base.document().tree
+    told = [{key: table for key, table in tree.items() if key != OUTPUT}, changes]
     designs = Designs(f"designs_{fingerprint(*told)[:8]}", base, changes)
     with nullcontext() if folder is None else _alone(Path(folder)):
         data = compute_alone(
@@ -89,7 +93,8 @@ def study(
             folder=None if folder is None else Path(folder),
             progress=progress or Progress(),
         )
-    return _laid_out(in_units(data, units), axes, dims, columns, units)
+    with shown_in(unit_choice(tree.get(OUTPUT, {}).get("units", {}))), showing(units):
+        return _laid_out(in_units(data, units), axes, dims, columns, units)
 
 
 class _Axis:
@@ -127,8 +132,8 @@ class _Axis:
             return np.array([str(value) for value in values]), {"long_name": self.key}
         si = np.array([quantity.si(value) for value in values])
         name = units_of_numbers.si_unit(quantity.kind) or "1"
-        if unit == "shown" and quantity.unit != "1":
-            name = quantity.unit
+        if unit != "si" and quantity.unit != "1":
+            name = unit_in_use(quantity.kind, quantity.unit)
             si = units_of_numbers.convert(si, name, quantity.kind)
         return si, {"units": name, "long_name": self.key}
 

@@ -44,21 +44,21 @@ def campbell(
     fastest = float(data["speed"].values[-1])
     ends = display("speed", np.array([0.0, fastest]), data)
     traces: list[Trace] = []
-    marks = []
+    marks, unit = [], show.unit_of("natural_frequency")
     for key, each in orders:
         line = np.array([0.0, min(fastest, most / each)])
-        x, y = display("speed", line, data), each * line
-        traces.append(plain(key, x, y, "Hz"))
+        x, y = display("speed", line, data), display("natural_frequency", each * line)
+        traces.append(plain(key, x, y, unit))
         marks.append({"text": key.label, "x": float(x[1]), "y": float(y[1])} | _LABEL)
     for key, value in natural:
-        traces.append(plain(key, ends, np.full(2, value), "Hz"))
+        traces.append(plain(key, ends, display("natural_frequency", np.full(2, value)), unit))
     room = _ROOM if marked else (1.0, 1.0)
     words = {"annotations": marks} if marked else {}
     axes = layout(
         show.axis_title("speed", data),
-        "frequency [Hz]",
+        f"frequency [{unit}]",
         xaxis={"range": [0.0, room[0] * float(ends[1])]},
-        yaxis={"range": [0.0, room[1] * most]},
+        yaxis={"range": [0.0, room[1] * float(display("natural_frequency", most))]},
         **words,
     )
     keys = tuple(key for key, _ in (*orders, *natural))

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pitchpoint import units
 from pitchpoint.analyses.figures import covers
 from pitchpoint.runs.designs import Figure, main_results, shared_laws
 from pitchpoint.runs.run import Outcome
@@ -115,8 +114,7 @@ def _title(figure: Figure, by_law: bool) -> str:
 
 
 def _shown(figure: Figure, value: float) -> float:
-    converted = units.convert(value, figure.variable.display, figure.variable.kind)
-    return 0.0 if abs(converted) < show.NOISE else float(converted)
+    return float(show.displayed(figure.variable, value))
 
 
 def _value(figure: Figure, design: str) -> str:

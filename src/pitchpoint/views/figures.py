@@ -13,7 +13,6 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from pitchpoint import units
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.runs.run import Outcome
@@ -233,9 +232,7 @@ def _decimals(value: float, digits: int) -> int:
 
 def display(name: str, values: Any, of: Any = None) -> np.ndarray:
     """SI values of a variable in its display unit, see `show.described`."""
-    variable = show.described(name, of)
-    array = np.asarray(values, dtype=float)
-    return np.asarray(units.convert(array, variable.display, variable.kind))
+    return np.asarray(show.described(name, of).displayed(np.asarray(values, dtype=float)))
 
 
 def line(curve: Curve, x: Any, y: Any, unit: str, **more: Any) -> Trace:
@@ -332,8 +329,7 @@ def level(name: str, value: float, of: Any = None) -> str:
 def short_axis(name: str, of: Any = None) -> str:
     """Title of an axis: symbol and unit; the figure has the long name above it."""
     variable = show.described(name, of)
-    unit = show.unit(variable.display)
-    return f"{variable.symbol} [{unit}]" if unit else variable.symbol
+    return show.bracketed(variable.symbol, variable)
 
 
 def text(words: str) -> str:

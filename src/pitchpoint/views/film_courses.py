@@ -493,11 +493,11 @@ def printed(title: str, data: xr.Dataset) -> Iterator[Printed]:
 def _row(
     data: xr.Dataset, names: Sequence[str], at: tuple[int, ...], heads: Sequence[str] = ()
 ) -> dict[str, str]:
-    pairs = zip(heads or names, names, strict=True)
+    pairs, unit = zip(heads or names, names, strict=True), show.unit_of("mean_film_loss")
     symbols = {
         "mean_film_friction": "μ mean",
-        "mean_film_loss": "P [W]",
-        "mean_film_rolling_loss": "of it rolling [W]",
+        "mean_film_loss": f"P [{unit}]",
+        "mean_film_rolling_loss": f"of it rolling [{unit}]",
         "film_efficiency": "η [%]",
     }
     empty = dict.fromkeys(symbols.values(), "")

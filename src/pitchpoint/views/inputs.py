@@ -5,12 +5,24 @@ from typing import Any
 
 from pitchpoint import units
 from pitchpoint.cases.inputs import DIMENSIONS, OIL, SOLIDS, STUDIES
+from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import Quantity
+from pitchpoint.results.chosen_units import Choice, unit_choice, unit_in_use
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["FOLLOWING", "given", "input_rows", "number", "set_for_run", "words"]
+__all__ = [
+    "FOLLOWING",
+    "given",
+    "in_words",
+    "input_rows",
+    "number",
+    "recorded_units",
+    "set_for_run",
+    "words",
+]
 
 _TABLES = {
     DIMENSIONS: "gears as computed",
@@ -21,8 +33,8 @@ _TABLES = {
 FOLLOWING = tuple(_TABLES.values())
 """Titles of the tables of what follows from the inputs."""
 
-_APART = (STUDIES, "loss_map")
-"""Tables that say what is computed, not from what: the results themselves show them."""
+_APART = (STUDIES, "loss_map", OUTPUT)
+"""Tables that say what is computed and how it is shown, not from what: the results show that themselves."""
 
 _LABELS = {
     "young": "Young's modulus",
@@ -75,7 +87,17 @@ def input_rows(manifest: Mapping[str, Any]) -> list[dict[str, str]]:
 
 def set_for_run(manifest: Mapping[str, Any]) -> dict[str, str]:
     """What was set for this run, in words by dotted key."""
-    return {_path(row): _words(row) for row in manifest["inputs"] if row["status"] == "set"}
+    return {
+        _path(row): _words(row)
+        for row in manifest["inputs"]
+        if row["status"] == "set" and row["table"] != OUTPUT
+    }
+
+
+def recorded_units(outcomes: Mapping[str, Outcome]) -> Choice:
+    """Units by kind of quantity in which the first of some results asks to be shown."""
+    asked = next((given(one, OUTPUT, "units") for one in outcomes.values()), None)
+    return unit_choice(asked or {})
 
 
 def given(outcome: Outcome, table: str, key: str) -> Any:
@@ -158,6 +180,11 @@ def _one(value: Any, row: Row, name: str = "") -> str:
     return _shown(value, kind, _unit(row["table"], f"{row['key']}.{name}".removesuffix("."), kind))
 
 
+def in_words(value: float, quantity: Quantity) -> str:
+    """A value at a key with its unit [SI in]."""
+    return _shown(value, quantity.kind, unit_in_use(quantity.kind, quantity.unit))
+
+
 def _shown(value: float, kind: str, unit: str) -> str:
     if unit in ("", "1"):
         return f"{value:.6g}"
@@ -167,14 +194,15 @@ def _shown(value: float, kind: str, unit: str) -> str:
 def _unit(table: str, key: str, kind: str) -> str:
     """Unit in which the value at a key is shown, one of its kind."""
     own = _own_unit(table, key)
-    return own if own in units.units_of(kind) else _UNITS.get(kind, units.si_unit(kind))
+    usual = own if own in units.units_of(kind) else _UNITS.get(kind, units.si_unit(kind))
+    return unit_in_use(kind, usual)
 
 
 def _own_unit(table: str, key: str) -> str:
     """Unit that the schema or the list of variables names for a key; empty where neither does."""
     if table == DIMENSIONS:
         variable = VARIABLES.get(key) or VARIABLES.get(f"{key}_1")
-        return "" if variable is None else variable.display
+        return "" if variable is None else variable.usual
     try:
         quantity = quantity_at(f"{table}.{key}")
     except InputError:  # no key of a case file

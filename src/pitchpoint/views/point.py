@@ -1,15 +1,17 @@
 """Where a result was run, and the period of its mesh."""
 
 from dataclasses import dataclass
-from math import degrees
 
 import numpy as np
 
+from pitchpoint.results.variable import angle, length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import given, number
 
 __all__ = ["OperatingPoint", "Period", "of_geometry", "operating_point", "period_of"]
+
+_WAY, _TURN = length("", ""), angle("", "")
 
 
 @dataclass(frozen=True)
@@ -54,8 +56,10 @@ class Period:
     def words(self) -> str:
         """How far the driver moves in a period."""
         if self.travels:
-            return f"{show.number(1e3 * self.angle)} mm of the driver"
-        return f"{show.number(degrees(self.angle))}° of the driver"
+            way = show.number(float(_WAY.displayed(self.angle)))
+            return f"{way} {show.unit(_WAY.display)} of the driver"
+        turn, unit = show.number(float(_TURN.displayed(self.angle))), show.unit(_TURN.display)
+        return f"{turn}{'' if unit == '°' else ' '}{unit} of the driver"
 
     @property
     def axis(self) -> str:

@@ -9,10 +9,12 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
+from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     Block,
@@ -34,7 +36,11 @@ __all__ = ["environment", "packed_plotly", "render", "write_report"]
 
 
 def write_report(
-    outcomes: Mapping[str, Outcome], path: str | Path, *, designs: bool = False
+    outcomes: Mapping[str, Outcome],
+    path: str | Path,
+    *,
+    designs: bool = False,
+    units: UnitsByKind | None = None,
 ) -> None:
     """Write the report; a reader never sees half of it.
 
@@ -42,17 +48,30 @@ def write_report(
         outcomes: by variant, as `run` and `open_result` give them.
         path: of the HTML file.
         designs: True if the outcomes are those of several cases, by design, which are compared.
+        units: by kind of quantity, {"angle": "arcmin"} or "angle=arcmin"; those of the first case by
+            default.
+
+    Raises:
+        InputError: units that there are not.
     """
-    write_text(Path(path), render(outcomes, designs=designs))
+    write_text(Path(path), render(outcomes, designs=designs, units=units))
 
 
-def render(outcomes: Mapping[str, Outcome], *, designs: bool = False) -> str:
+def render(
+    outcomes: Mapping[str, Outcome], *, designs: bool = False, units: UnitsByKind | None = None
+) -> str:
     """The report as text.
 
     Args:
         outcomes: by variant, at least one; parts that were not finished are left out.
         designs: True if the outcomes are those of several cases, by design, which are compared.
+        units: by kind of quantity; those of the first case by default.
     """
+    with shown_in(recorded_units(outcomes) if units is None else unit_choice(units)):
+        return _rendered(outcomes, designs=designs)
+
+
+def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
     from markupsafe import Markup
 
     bare = Page(outcomes, curves(outcomes), designs=designs)

@@ -4,9 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint import units
 from pitchpoint.analyses.figures import covers
-from pitchpoint.views.show import NOISE, described
+from pitchpoint.views.show import described, displayed
 
 __all__ = ["cell", "efficiency_of", "head", "shown"]
 
@@ -38,5 +37,4 @@ def shown(name: str, value: float, of: Any = None) -> str:
         return "none"
     if variable.display == "1":
         return f"{value:.4f}"
-    converted = float(units.convert(value, variable.display, variable.kind))
-    return f"{converted:.5g}" if abs(converted) >= NOISE else "0"
+    return f"{float(displayed(variable, value)):.5g}"

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from math import floor, isfinite, log10
 from typing import Any
 
+import numpy as np
+
 from pitchpoint import units
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
@@ -12,7 +14,9 @@ from pitchpoint.results.variables import VARIABLES, variable_of
 __all__ = [
     "NOISE",
     "axis_title",
+    "bracketed",
     "described",
+    "displayed",
     "number",
     "pretty",
     "quantity",
@@ -34,13 +38,27 @@ _UNITS = {
     "kg/m3": "kg/m³",
     "kg/m3/K": "kg/(m³ K)",
     "N m": "N\u00a0m",
+    "urad": "µrad",
+    "us": "µs",
+    "degF": "°F",
+    "N/mm2": "N/mm²",
+    "kg m2": "kg m²",
+    "kg cm2": "kg cm²",
+    "kg mm2": "kg mm²",
+    "g cm2": "g cm²",
+    "m2/s": "m²/s",
+    "m2": "m²",
+    "cm2": "cm²",
+    "mm2": "mm²",
+    "m3": "m³",
+    "cm3": "cm³",
     "1": "",
 }
 NOISE = 1e-9
-"""Value in display units below which one is left by rounding."""
+"""Value in usual units below which one is left by rounding."""
 
 _INDEXED = re.compile(r"(?<![\w`./])(Δ?[^\W\d_])_(\w{1,5})(?![\w(])")
-_LAST_UNIT = re.compile(r"(?<=\d) (um|degC|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
+_LAST_UNIT = re.compile(r"(?<=\d) (um|urad|degC|degF|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
 
 
 def unit(name: str) -> str:
@@ -119,6 +137,32 @@ def unit_of(name: str, of: Any = None) -> str:
     return unit(described(name, of).display)
 
 
+def bracketed(words: str, variable: Variable) -> str:
+    """Words for a variable with its display unit behind them.
+
+    Example:
+        >>> from pitchpoint.results.variables import VARIABLES
+        >>> bracketed("backlash j_bn", VARIABLES["normal_backlash"])
+        'backlash j_bn [µm]'
+    """
+    shown = unit(variable.display)
+    return f"{words} [{shown}]" if shown else words
+
+
+def displayed(variable: Variable, values: Any) -> np.ndarray:
+    """SI values of a variable in its display unit, zero where only rounding left something.
+
+    What rounding leaves is told in the usual unit: a film of 0.1 um is none of that, also in metres. No
+    temperature is that small.
+    """
+    array = np.asarray(values, float)
+    shown = variable.displayed(array)
+    of_zero = shown
+    if variable.kind != "temperature":
+        of_zero = units.convert(array, variable.usual, variable.kind)
+    return np.where(np.abs(of_zero) < NOISE, 0.0, shown)
+
+
 def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None) -> str:
     """Value of a variable of a result in its display unit [SI in], see `described`.
 
@@ -129,9 +173,7 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
     variable = described(name, of)
     if not isfinite(value):
         return "undefined, no power" if variable.display == "%" else "undefined"
-    shown = float(units.convert(value, variable.display, variable.kind))
-    if abs(shown) < NOISE:
-        shown = 0.0
+    shown = float(displayed(variable, value))
     text = f"{shown:.2f}" if variable.display == "%" else number(shown, trailing=True)
     return f"{text} {unit(variable.display)}".strip() if with_unit else text
 
@@ -162,5 +204,4 @@ def the(member: str) -> str:
 def axis_title(name: str, of: Any = None) -> str:
     """Long name and display unit of a variable, see `described`."""
     variable = described(name, of)
-    shown = unit(variable.display)
-    return f"{variable.long_name} [{shown}]" if shown else variable.long_name
+    return bracketed(variable.long_name, variable)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.errors import InputError
+from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
 from pitchpoint.gears.designs import Faults, Number
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
@@ -122,16 +123,19 @@ def check_cylindrical(pair: CylindricalPair) -> list[str]:
     Raises:
         InputError: the flanks overlap or never meet, a tip is pointed, a tip runs into the mate's
             root, fillet or (in a ring) tip, tool or fillet are impossible, or the contact ratio is
-            not from 1 to 24. Its key is the entry of the gears table to change.
+            not from 1 to 24. Its key is the entry of the gears table to change. What is wrong with
+            each gear by itself is told of both.
 
     Validity: backlash is not limited.
 
     Source: geometry of ISO 21771:2007; tool tip of ISO 53:1998.
     """
     whole, gears = _measure(pair)
-    for fails, refuse in _faults(whole, gears):
-        if fails:
-            refuse()
+    for beside in _stages(whole, gears):
+        wrong = Complaints()
+        for faults in beside:
+            wrong.tried(_refuse_first, faults)
+        wrong.demand_none()
     found = [text for gear in gears for text in _warnings(whole, gear)]
     return found + _pair_warnings(whole)
 
@@ -142,22 +146,33 @@ def cannot_run(pair: CylindricalPair) -> Bool[Array, ""]:
     Args:
         pair: with the dimensions that follow.
     """
-    return jnp.any(jnp.stack([jnp.asarray(fails) for fails, _ in _faults(*_named(pair))]))
+    every = chain.from_iterable(chain.from_iterable(_stages(*_named(pair))))
+    return jnp.any(jnp.stack([jnp.asarray(fails) for fails, _ in every]))
 
 
-def _faults(whole: _Pair, gears: list[_Gear]) -> Faults:
-    """Whether a design has each fault, and what refuses one that has it, the first one first."""
-    yield from _check_finite(whole, gears, only=_GIVEN)
-    yield from _check_teeth(whole)
-    yield from _check_distance(whole)
-    for gear in gears:
-        yield from (_check_ring_root(gear) if gear.internal else _check_tool(gear))
-        yield from _check_circles(gear)
-    for gear in gears:
-        yield from _check_meeting(whole, gear)
-    yield from _check_contact_ratio(whole, gears)
-    yield from _check_tips(whole)
-    yield from _check_finite(whole, gears)  # whatever the checks above did not think of
+def _stages(whole: _Pair, gears: list[_Gear]) -> Iterator[list[Faults]]:
+    """Whether a design has each fault, and what refuses one that has it.
+
+    What has nothing to do with each other stands beside each other; all that comes later rests on it.
+    """
+    yield [_check_finite(whole, gears, only=_GIVEN)]
+    yield [chain(_check_teeth(whole), _check_distance(whole))]
+    yield [_check_gear(gear) for gear in gears]
+    yield [chain.from_iterable(_check_meeting(whole, gear) for gear in gears)]
+    yield [chain(_check_contact_ratio(whole, gears), _check_tips(whole))]
+    yield [_check_finite(whole, gears)]  # whatever the checks above did not think of
+
+
+def _check_gear(gear: _Gear) -> Faults:
+    yield from (_check_ring_root(gear) if gear.internal else _check_tool(gear))
+    yield from _check_circles(gear)
+
+
+def _refuse_first(faults: Faults) -> None:
+    """InputError for the first fault that a design has."""
+    for fails, refuse in faults:
+        if fails:
+            refuse()
 
 
 def _measure(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:

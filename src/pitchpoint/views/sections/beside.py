@@ -137,16 +137,16 @@ def _running(
 
 
 def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
-    places = list(range(len(split)))
+    places, unit = list(range(len(split))), show.unit_of("mean_loss")
     traces = [
         {
             "type": "bar",
             "orientation": "h",
             "y": places,
-            "x": rounded([one[part] for one in split]),
+            "x": rounded(display("mean_loss", [one[part] for one in split])),
             "marker": {"color": key.colour},
             "width": 0.4,
-            "hovertemplate": f"%{{x:.4~g}} W {key.label}<extra></extra>",
+            "hovertemplate": f"%{{x:.4~g}} {unit} {key.label}<extra></extra>",
         }
         for part, key in ((1, _TEETH), (2, _BESIDE))
     ]
@@ -160,7 +160,7 @@ def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
         "Power loss in the teeth and beside them",
         traces,
         layout(
-            "mean power loss P_loss [W]",
+            f"mean power loss P_loss [{unit}]",
             "",
             barmode="stack",
             xaxis={"rangemode": "tozero", "nticks": 6},

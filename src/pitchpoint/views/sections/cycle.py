@@ -94,7 +94,7 @@ def _change(other: Figure) -> list[Any]:
 def _axis(axis: str, period: Period) -> str:
     """Title of the axis; time may run against the phase."""
     against = f", against the phase: {period.against}" if period.backwards else ""
-    return period.axis if axis == "phase" else f"time [ms]{against}"
+    return period.axis if axis == "phase" else f"time [{show.unit_of('time')}]{against}"
 
 
 def _timed(
@@ -134,7 +134,7 @@ def _time(data: xr.Dataset, values: np.ndarray, period: Period) -> Points:
     if period.backwards:
         phase, values = 1.0 - phase[::-1], values[::-1]
     x, y = gapped(np.concatenate([phase, phase + 1.0]) - phase[0], np.tile(values, 2))
-    return x * period.time * 1e3, y
+    return display("time", x * period.time), y
 
 
 def _against(seen: Timed) -> Figure:
@@ -226,8 +226,8 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
     seen: dict[str, list[str]] = {}
     for variant, outcome in outcomes.items():
         period = period_of(outcome)
-        time = show.number(1e3 * period.time)
-        seen.setdefault(f"{period.words}, {time} ms", []).append(variant)
+        time = show.number(float(display("time", period.time)))
+        seen.setdefault(f"{period.words}, {time} {show.unit_of('time')}", []).append(variant)
     if len(seen) < 2:
         return next(iter(seen), "")
     return "; ".join(f"{words} ({', '.join(names)})" for words, names in seen.items())

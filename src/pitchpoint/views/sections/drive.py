@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from pitchpoint.results.variable import length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.inputs import words
@@ -23,6 +24,8 @@ from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.way import place_of
 
 __all__ = ["DRIVE", "loaded_arcs", "picture", "wave_dimensions"]
+
+_LENGTH = length("", "")
 
 _PARTS = ("teeth.wave_weights",)
 _FINE = 1e-3
@@ -116,10 +119,17 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     """Names of the main dimensions, each with the values of flexspline and circular spline or of both."""
     teeth, manifest = outcome.parts["teeth"], outcome.manifest
 
-    def length(name: str, factor: float = 1.0) -> str:
-        return show.number(1e3 * factor * float(teeth[name]), 6)
+    def told(metres: float, digits: int = 6) -> str:
+        return show.number(float(_LENGTH.displayed(metres)), digits)
 
-    tip = 1e3 * (float(teeth["neutral_radius"]) + float(teeth["tooth"].values[:, 1].max()))
+    def titled(words: str) -> str:
+        return show.bracketed(words, _LENGTH)
+
+    deflection, neutral, rim, ring = (
+        float(teeth[name])
+        for name in ("deflection", "neutral_radius", "rim_thickness", "tip_height")
+    )
+    height = float(teeth["tooth"].values[:, 1].max())
     driver, loaded = manifest["driver"], manifest["loaded"]
     motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
     rows: list[tuple[str, ...]] = [("number of teeth z", *map(str, _numbers(teeth)))]
@@ -130,27 +140,23 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         *rows,
         (f"speed ratio, {driver} to {loaded}", show.number(motion[driver] / motion[loaded], 6)),
         ("fixed member", next(name for name in motion if name not in (driver, loaded))),
-        ("deflection w_0 [mm]", length("deflection")),
-        ("diameter of the undeformed neutral line [mm]", length("neutral_radius", 2.0)),
-        ("rim thickness of the flexspline [mm]", length("rim_thickness")),
+        (titled("deflection w_0"), told(deflection)),
+        (titled("diameter of the undeformed neutral line"), told(2.0 * neutral)),
+        (titled("rim thickness of the flexspline"), told(rim)),
         (
-            "tip diameter, undeformed [mm]",
-            show.number(2.0 * tip, 6),
-            length("tip_height", 2.0),
+            titled("tip diameter, undeformed"),
+            told(2.0 * (neutral + height)),
+            told(2.0 * ring),
         ),
-        ("tooth height above the neutral line [mm]", show.number(tip - _mm(teeth), 4)),
-        ("depth to which the teeth reach into each other [mm]", show.number(_depth(teeth), 4)),
+        (titled("tooth height above the neutral line"), told(height, 4)),
+        (titled("depth to which the teeth reach into each other"), told(_depth(teeth), 4)),
     ]
 
 
-def _mm(teeth: xr.Dataset) -> float:
-    return 1e3 * float(teeth["neutral_radius"])
-
-
 def _depth(teeth: xr.Dataset) -> float:
-    """From the tip of the circular spline's teeth to that of a flexspline tooth on the long axis [mm]."""
+    """From the tip of the circular spline's teeth to that of a flexspline tooth on the long axis [m]."""
     deepest, tip = teeth["passing"].values[..., 1].max(), teeth["space"].values[:, 1].min()
-    return 1e3 * float(deepest - tip)
+    return float(deepest - tip)
 
 
 def _told_arcs(outcome: Outcome) -> str:

@@ -25,6 +25,7 @@ from pitchpoint.views.figures import (
     rounded,
     short_axis,
 )
+from pitchpoint.views.inputs import in_words
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
 
 __all__ = ["FORMULAS"]
@@ -222,7 +223,7 @@ def _places(data: xr.Dataset) -> list[str]:
         return [""]
     quantity = quantity_at(data.attrs["sweep_key"])
     return [
-        quantity.show(float(value)) if quantity is not None else f"{value:.6g}"
+        in_words(float(value), quantity) if quantity is not None else f"{value:.6g}"
         for value in data["axis"].values
     ]
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Sequence
+from math import floor, log10
 
 import numpy as np
 import xarray as xr
@@ -32,13 +33,13 @@ Row = tuple[str, ...]
 def measured_rows(data: xr.Dataset) -> list[Row]:
     """Names of the dimensions of a drawing, each with its values for both gears."""
     return [
-        *_limits(data, "normal_thickness", "tooth thickness, normal section s_n [mm]"),
+        *_limits(data, "normal_thickness", "tooth thickness, normal section s_n"),
         _row("teeth under the span k", [_count(v) for v in data["span_teeth"].values]),
-        *_limits(data, "span_measurement", "span W_k [mm]"),
-        _row("the span touches on d [mm]", _millimetres(data["span_diameter"].values)),
-        _row("measuring balls D_M [mm]", _millimetres(data["ball_diameter"].values)),
-        *_limits(data, "over_balls", "over balls, in a ring between them, M_d [mm]"),
-        _row("the balls touch on d [mm]", _millimetres(data["ball_contact_diameter"].values)),
+        *_limits(data, "span_measurement", "span W_k"),
+        _measured("the span touches on d", "span_diameter", data),
+        _measured("measuring balls D_M", "ball_diameter", data),
+        *_limits(data, "over_balls", "over balls, in a ring between them, M_d"),
+        _measured("the balls touch on d", "ball_contact_diameter", data),
         *(
             _row(f"{title} [{show.unit_of(name)}]", _each(name, data))
             for name, title in (("disc_mass", "mass m"), ("disc_inertia", "moment of inertia J"))
@@ -66,8 +67,21 @@ def backlash_rows(data: xr.Dataset) -> list[Row]:
 def _limits(data: xr.Dataset, name: str, title: str) -> Iterator[Row]:
     """A row for the nominal value and one for each limit."""
     for side in data["limit"].values:
-        values = data[name].sel(limit=side).values
-        yield _row(title.replace(" [", f"{_SIDES[str(side)]} [", 1), _millimetres(values))
+        yield _measured(f"{title}{_SIDES[str(side)]}", name, data.sel(limit=side))
+
+
+def _measured(title: str, name: str, data: xr.Dataset) -> Row:
+    """Row of a length of a drawing."""
+    return _row(
+        show.bracketed(title, show.described(name)), _to_a_micrometre(name, data[name].values)
+    )
+
+
+def _to_a_micrometre(name: str, values: np.ndarray) -> list[str]:
+    """Lengths in their unit to a micrometre or finer; a dash where there is none."""
+    variable = show.described(name)
+    decimals = max(0, -floor(log10(variable.displayed(1e-6))))
+    return [f"{v:.{decimals}f}" if np.isfinite(v) else "–" for v in variable.displayed(values)]
 
 
 def _row(title: str, cells: Sequence[str]) -> Row:
@@ -78,18 +92,14 @@ def _each(name: str, data: xr.Dataset) -> list[str]:
     return [show.quantity(name, float(v), with_unit=False) for v in data[name].values]
 
 
-def _millimetres(values: np.ndarray) -> list[str]:
-    """Lengths to a micrometre; a dash where there is none."""
-    return [f"{1e3 * v:.3f}" if np.isfinite(v) else "–" for v in values]
-
-
 def _count(value: float) -> str:
     return f"{value:.0f}" if np.isfinite(value) else "–"
 
 
 def _tolerance_rows(data: xr.Dataset) -> list[Row]:
+    tolerance = show.described("flank_tolerance")
     return [
-        _row(f"{name} [µm]", [show.number(1e6 * float(v)) for v in values])
+        _row(show.bracketed(name, tolerance), [show.number(tolerance.displayed(v)) for v in values])
         for name, values in zip(
             data["tolerance"].values, data["flank_tolerance"].values.T, strict=True
         )
@@ -146,7 +156,7 @@ def _on_screen(data: xr.Dataset, gear: str) -> dict[str, str]:
     row = {"inspection": gear, head("span_teeth"): _count(float(own["span_teeth"]))}
     for name in ("span_measurement", "ball_diameter", "over_balls"):
         values = np.sort(np.atleast_1d(own[name].values)[-2:])
-        row[head(name)] = " to ".join(dict.fromkeys(_millimetres(values)))
+        row[head(name)] = " to ".join(dict.fromkeys(_to_a_micrometre(name, values)))
     plays = own["backlash_angle"].values
     ends = plays if plays.size == 1 else plays[[1, -1]]
     words = [shown("backlash_angle", float(v)) for v in ends]

@@ -90,6 +90,7 @@ def _turn(name: str, data: xr.Dataset) -> Figure:
     """Error by the deviations of both members."""
     angle = display("turn_angle", data["turn_angle"])
     unit = show.unit_of("kinematic_error", data)
+    quarter = float(display("turn_angle", 0.5 * np.pi))
     traces = [
         plain(
             key,
@@ -103,9 +104,9 @@ def _turn(name: str, data: xr.Dataset) -> Figure:
         f"Kinematic error over {data.attrs['turn']}",
         traces,
         layout(
-            f"{data.attrs['turn_angle']} θ [°]",
+            f"{data.attrs['turn_angle']} θ [{show.unit_of('turn_angle')}]",
             short_axis("kinematic_error", data),
-            xaxis={"range": [0, 360], "dtick": 90},
+            xaxis={"range": [0, 4.0 * quarter], "dtick": quarter},
         ),
         "Rotation of the loaded member in the sense of its torque, less that of teeth without "
         "deviations.",

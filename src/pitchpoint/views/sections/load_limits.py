@@ -146,7 +146,7 @@ def _on_screen(data: xr.Dataset) -> Iterator[str]:
     torque = show.quantity("flexspline_torque", float(data["flexspline_torque"]))
     yield f"Estimate, at {torque} on the flexspline, without teeth. {_concentrated(data)}"
     for name, limit, margin in limit_rows(data):
-        yield f"Against {name} {margin}, by {limit} N m {_origin(data)}."
+        yield f"Against {name} {margin}, by {limit} {show.unit_of('limit_torque')} {_origin(data)}."
     if "bearing_life" in data:
         yield _life(data)
 

@@ -320,7 +320,7 @@ def _efficiencies(name: str, data: xr.Dataset) -> Figure:
 
 def _waterfall(name: str, data: xr.Dataset) -> Figure:
     """Amplitude of every order over speed, rising."""
-    orders = data["order"].values
+    orders, unit = data["order"].values, show.unit_of("spectrum")
     kept = (orders > 0.0) & (orders <= 12.0)
     codes = data["vibration_status"].values[0]
     amplitude = np.where(codes[:, None] == 0, data["spectrum"].values[0], np.nan)[:, kept]
@@ -331,8 +331,8 @@ def _waterfall(name: str, data: xr.Dataset) -> Figure:
         "z": [rounded(row) for row in display("spectrum", amplitude).T],
         "colorscale": "Cividis",
         "hoverongaps": False,
-        "colorbar": {"title": {"text": "µm"}, "thickness": 12, "outlinewidth": 0},
-        "hovertemplate": "%{z:.4~g} µm<br>%{x:.4~g}, order %{y}<extra></extra>",
+        "colorbar": {"title": {"text": unit}, "thickness": 12, "outlinewidth": 0},
+        "hovertemplate": f"%{{z:.4~g}} {unit}<br>%{{x:.4~g}}, order %{{y}}<extra></extra>",
     }
     axes = layout(show.axis_title("speed", data), "order of the mesh frequency")
     title = "Orders of the transmission error over speed"
@@ -514,7 +514,10 @@ def _last_speeds(data: xr.Dataset) -> Iterator[tuple[str, str]]:
 
 
 def _frequencies(data: xr.Dataset) -> str:
-    values = ", ".join(show.number(float(one)) for one in data["natural_frequency"].values)
+    values = ", ".join(
+        show.number(float(one))
+        for one in display("natural_frequency", data["natural_frequency"].values, data)
+    )
     return f"{values} {show.unit_of('natural_frequency', data)}"
 
 

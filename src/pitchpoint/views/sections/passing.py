@@ -5,6 +5,7 @@ from math import degrees
 import numpy as np
 import xarray as xr
 
+from pitchpoint.results.variable import length
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
@@ -28,6 +29,7 @@ from pitchpoint.views.way import at_origin, place_of
 
 __all__ = ["gap_panel"]
 
+_LENGTH = length("", "")
 _LEAST = 1e-8
 """Smallest clearance drawn [m]: flanks that slide on each other have none."""
 
@@ -47,13 +49,14 @@ def gap_panel(outcome: Outcome, name: str) -> Panel:
 def _clearance(name: str, outcome: Outcome) -> Figure:
     """Clearance of unloaded flanks, with the teeth that carry at one moment."""
     teeth = outcome.parts["teeth"]
-    angle = np.degrees(teeth["clearance_angle"].values)
+    angle = display("clearance_angle", teeth["clearance_angle"].values)
     given = np.maximum(teeth["clearance"].values, _LEAST)
     unit = show.unit(VARIABLES["clearance"].display)
     key = Key("clearance of the unloaded flanks", PALETTE[0])
     traces = [plain(key, angle, display("clearance", given), unit)]
     keys = [key]
-    told = "Clearances below 0.01 µm are drawn there: flanks without one slide on each other."
+    least = f"{show.number(float(display('clearance', _LEAST)))} {unit}"
+    told = f"Clearances below {least} are drawn there: flanks without one slide on each other."
     places = _carrying(outcome)
     if places.size:
         there = np.interp(places, angle, display("clearance", given))
@@ -85,7 +88,7 @@ def _clearance(name: str, outcome: Outcome) -> Figure:
 
 def _angle_axis() -> str:
     variable = VARIABLES["clearance_angle"]
-    return f"{variable.long_name} {variable.symbol} [{show.unit(variable.display)}]"
+    return show.bracketed(f"{variable.long_name} {variable.symbol}", variable)
 
 
 def _torque(outcome: Outcome) -> str:
@@ -93,13 +96,13 @@ def _torque(outcome: Outcome) -> str:
 
 
 def _carrying(outcome: Outcome) -> np.ndarray:
-    """Angles of the teeth of one zone that carry at the start of the mesh cycle [deg]."""
+    """Angles of the teeth of one zone that carry at the start of the mesh cycle, as shown."""
     data = outcome.parts.get("cycle")
     if data is None:
         return np.zeros(0)
     half = data.sizes["pair"] // int(data["path"].attrs["zones"])
     carries = data["load"].values[0, 0, :half].max(axis=-1) > 0.0
-    return np.asarray(place_of(data)[0, :half, 0][carries])
+    return display("clearance_angle", np.radians(place_of(data)[0, :half, 0][carries]))
 
 
 def _passing(name: str, outcome: Outcome) -> Figure:
@@ -112,17 +115,22 @@ def _passing(name: str, outcome: Outcome) -> Figure:
     for k in shown:
         traces.append(_outline(teeth["passing"].values[k], low, float(angle[k]), _reach(teeth)))
     traces.append(_track(teeth["passing"].values[shown], low))
-    wide = 1e3 * np.abs(teeth["space"].values[:, 0]).max()
-    deep = 1e3 * float(np.ptp(teeth["space"].values[:, 1]))
-    height = 1e3 * float(np.ptp(teeth["tooth"].values[:, 1]))
+    wide, deep, height = (
+        float(_LENGTH.displayed(size))
+        for size in (
+            np.abs(teeth["space"].values[:, 0]).max(),
+            np.ptp(teeth["space"].values[:, 1]),
+            np.ptp(teeth["tooth"].values[:, 1]),
+        )
+    )
     axis = {"constrain": "domain", "scaleanchor": "x", "scaleratio": 1}
     return Figure(
         name,
         "Path of a tooth into its space",
         traces,
         layout(
-            "across [mm]",
-            "outwards [mm]",
+            show.bracketed("across", _LENGTH),
+            show.bracketed("outwards", _LENGTH),
             xaxis={"range": [3.2 * wide, -3.2 * wide], "constrain": "domain"},
             yaxis={"range": [-1.15 * height, 1.2 * deep], **axis},
         ),
@@ -151,8 +159,8 @@ def _space(teeth: xr.Dataset, low: float) -> Trace:
     """The circular spline around the space and half of its neighbours."""
     x, y = simplified(teeth["space"].values, 2e-7).T
     turns = np.exp(2j * np.pi * np.array([-1, 0, 1]) / float(teeth["teeth"].values[1]))
-    places = 1e3 * ((turns[:, None] * (y + 1j * x)).ravel() - low)
-    across, outwards = places.imag, places.real
+    places = (turns[:, None] * (y + 1j * x)).ravel() - low
+    across, outwards = (_LENGTH.displayed(part) for part in (places.imag, places.real))
     deep = 1.3 * float(outwards.max())
     ends = across[[-1, 0]].tolist()
     return {
@@ -169,7 +177,7 @@ def _space(teeth: xr.Dataset, low: float) -> Trace:
 
 def _outline(corners: np.ndarray, low: float, angle: float, reach: float) -> Trace:
     colour = INK if abs(angle) < 1e-9 else PALETTE[0] if angle > 0.0 else PALETTE[1]
-    x, y = 1e3 * (simplified(corners, 1e-6) - np.array([0.0, low])).T
+    x, y = _LENGTH.displayed(simplified(corners, 1e-6) - np.array([0.0, low])).T
     return {
         "type": "scatter",
         "mode": "lines",
@@ -182,7 +190,9 @@ def _outline(corners: np.ndarray, low: float, angle: float, reach: float) -> Tra
 
 def _track(passing: np.ndarray, low: float) -> Trace:
     middle = passing.shape[1] // 2
-    x, y = 1e3 * (passing[:, middle - 1 : middle + 1].mean(axis=1) - np.array([0.0, low])).T
+    x, y = _LENGTH.displayed(
+        passing[:, middle - 1 : middle + 1].mean(axis=1) - np.array([0.0, low])
+    ).T
     return {
         "type": "scatter",
         "mode": "lines",

@@ -12,8 +12,12 @@ from typing import Any
 
 import xarray as xr
 
+from pitchpoint.results.variable import length
+from pitchpoint.views import show
+
 __all__ = ["PlaneOfAction", "plane_of_action"]
 
+_LENGTH = length("", "")
 _EDGE = 1e-9
 
 _MARK = 0.03
@@ -132,6 +136,8 @@ class PlaneOfAction:
             "pitch": round(1e3 * self.base_pitch, 6),
             "width": round(1e3 * self.face_width, 6),
             "slope": cos(self.base_helix_angle),
+            "unit": show.unit(_LENGTH.display),
+            "of_mm": float(_LENGTH.displayed(1e-3)),
         }
 
 

@@ -115,7 +115,7 @@ def _over_phase(name: str, data: xr.Dataset, period: Period) -> Figure:
         f"{name}_phase",
         "Stiffness of the pairs and of the mesh",
         traces,
-        layout(period.axis, "k [N/µm]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}),
+        layout(period.axis, f"k [{unit}]", xaxis={"range": [0, 1]}, yaxis={"rangemode": "tozero"}),
         keys=(*keys, _TOTAL, *told),
     )
 

@@ -11,6 +11,7 @@ from pitchpoint import units
 from pitchpoint.analyses.figures import CONTACT, MAIN, covered, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
+from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -28,6 +29,7 @@ from pitchpoint.views.figures import (
     short_axis,
     text,
 )
+from pitchpoint.views.inputs import in_words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import efficiency_of, head, shown
 from pitchpoint.views.section import Block, Drawn, Heading, Page, Paragraph, Printed, Section, Table
@@ -238,6 +240,7 @@ def _swept(data: xr.Dataset) -> tuple[np.ndarray, str]:
         return np.arange(1.0, values.size + 1.0), f"{words} (number in the list)"
     unit, kind = str(data.attrs["axis_unit"]), str(data.attrs["axis_kind"])
     if kind:
+        unit = unit_in_use(kind, unit)
         values = np.asarray(units.convert(values, unit, kind))
     return values, f"{words} [{show.unit(unit)}]" if show.unit(unit) else words
 
@@ -327,7 +330,7 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
 def _place(value: float, key: str) -> str:
     """Place on the axis of a sweep as case files write it."""
     quantity = quantity_at(key)
-    return f"{value:.6g}" if quantity is None else quantity.show(float(value))
+    return f"{value:.6g}" if quantity is None else in_words(float(value), quantity)
 
 
 def _lacks(page: Page) -> str | None:

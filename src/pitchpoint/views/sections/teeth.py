@@ -1,12 +1,12 @@
 """Teeth and path of contact: the picture, the plane of action, specific sliding and main dimensions."""
 
-from collections.abc import Iterator
-from math import degrees
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from pitchpoint.results.variable import Variable, angle, deviation, length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, pair_key
@@ -21,6 +21,9 @@ from pitchpoint.views.sections.sliding import sliding_figure
 __all__ = ["TEETH", "dimensions"]
 
 _PARTS = ("teeth.layer_tooth",)
+
+LENGTH, DEVIATION, ANGLE = length("", ""), deviation("", ""), angle("", "")
+PLAIN = Variable("", "", "1")
 
 
 def _blocks(page: Page) -> Iterator[Block]:
@@ -53,21 +56,25 @@ def _plane(outcome: Outcome) -> dict[str, Any]:
     """Plane of action, its lines in the colours of the pairs, lengths in words."""
     picture = plane_of_action(outcome.parts["teeth"]).picture()
     keys = [pair_key(lane) for lane in range(picture["lanes"] + 1)]
-    told = {
-        name: f"{show.number(picture[name], trailing=True)} mm"
-        for name in ("mean", "least", "most")
-    }
+    told = {name: _length(picture[name], trailing=True) for name in ("mean", "least", "most")}
+    told |= {name: _length(picture[name]) for name in ("width", "height")}
     return {**picture, "pairs": keys, "told": told}
+
+
+def _length(millimetres: float, *, trailing: bool = False) -> str:
+    """A length of the picture in words [mm in]."""
+    value = float(LENGTH.displayed(1e-3 * millimetres))
+    return f"{show.number(value, trailing=trailing)} {show.unit(LENGTH.display)}"
 
 
 def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     """Names of the main dimensions, each with its values for both members or the one they share."""
     teeth, path = outcome.parts["teeth"], path_of(outcome)
     rows = [
-        *_numbers(teeth, {"teeth": ("number of teeth z", 1.0, 6)}),
+        *_numbers(teeth, {"teeth": ("number of teeth z", 1.0, 6, PLAIN)}),
         *_given(outcome, "module", "normal module m_n" if path.helical else "module m"),
         *(_given(outcome, "helix_angle", "helix angle β") if path.helical else []),
-        *(_angle(teeth, "base_helix_angle", "base helix angle β_b [°]") if path.helical else []),
+        *(_angle(teeth, "base_helix_angle", "base helix angle β_b") if path.helical else []),
         *_given(outcome, "profile_shift", "profile shift x"),
         *_undercut_limits(teeth),
         *_tip_alteration(teeth),
@@ -75,57 +82,64 @@ def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
         *_numbers(teeth, _THICKNESS[path.helical]),
         *_numbers(teeth, _LENGTHS),
         *_backlash(teeth),
-        *_numbers(teeth, {"face_width": ("face width b [mm]", 1e3, 6)}),
+        *_numbers(teeth, {"face_width": ("face width b", 1.0, 6, LENGTH)}),
         *_transverse(teeth, path),
         *_numbers(teeth, _POINTS),
     ]
     return rows + (_numbers(teeth, _OVERLAP) if path.helical else [])
 
 
+Dimension = tuple[str, float, int, Variable]
+"""Title of a dimension, what its value is multiplied by, its digits, and what kind of quantity it is."""
+
 _DIAMETERS = {
-    "reference_radius": ("reference diameter d [mm]", 2e3, 6),
-    "base_radius": ("base diameter d_b [mm]", 2e3, 6),
-    "tip_radius": ("tip diameter d_a [mm]", 2e3, 6),
-    "root_radius": ("root diameter d_f [mm]", 2e3, 6),
-    "form_radius": ("form diameter d_Ff [mm]", 2e3, 6),
-    "active_root_radius": ("active root diameter d_Nf [mm]", 2e3, 6),
-    "working_radius": ("pitch diameter in operation d_w [mm]", 2e3, 6),
+    "reference_radius": ("reference diameter d", 2.0, 6, LENGTH),
+    "base_radius": ("base diameter d_b", 2.0, 6, LENGTH),
+    "tip_radius": ("tip diameter d_a", 2.0, 6, LENGTH),
+    "root_radius": ("root diameter d_f", 2.0, 6, LENGTH),
+    "form_radius": ("form diameter d_Ff", 2.0, 6, LENGTH),
+    "active_root_radius": ("active root diameter d_Nf", 2.0, 6, LENGTH),
+    "working_radius": ("pitch diameter in operation d_w", 2.0, 6, LENGTH),
 }
 _THICKNESS = {
-    False: {"tip_thickness": ("tooth thickness on the tip circle s_a [mm]", 1e3, 4)},
+    False: {"tip_thickness": ("tooth thickness on the tip circle s_a", 1.0, 4, LENGTH)},
     True: {
-        "tip_thickness": ("tooth thickness on the tip circle, normal section s_an [mm]", 1e3, 4)
+        "tip_thickness": ("tooth thickness on the tip circle, normal section s_an", 1.0, 4, LENGTH)
     },
 }
 _LENGTHS = {
-    "specific_sliding_A": ("specific sliding at A", 1.0, 4),
-    "specific_sliding_E": ("specific sliding at E", 1.0, 4),
-    "centre_distance": ("centre distance a [mm]", 1e3, 6),
-    "mounting_distance": ("distance from the axis to the reference line a [mm]", 1e3, 6),
+    "specific_sliding_A": ("specific sliding at A", 1.0, 4, PLAIN),
+    "specific_sliding_E": ("specific sliding at E", 1.0, 4, PLAIN),
+    "centre_distance": ("centre distance a", 1.0, 6, LENGTH),
+    "mounting_distance": ("distance from the axis to the reference line a", 1.0, 6, LENGTH),
 }
 _POINTS = {
-    "transverse_radius": ("relative radius across the profile R_y [mm]", 1e3, 5),
+    "transverse_radius": ("relative radius across the profile R_y", 1.0, 5, LENGTH),
     "contact_place": (
-        "place of the contacts across the face, from the middle of gear 1 [mm]",
-        1e3,
+        "place of the contacts across the face, from the middle of gear 1",
+        1.0,
         4,
+        LENGTH,
     ),
-    "contact_room": ("from the contacts to the nearest end of a face [mm]", 1e3, 4),
-    "misalignment_approach": ("approach of the flanks by misalignment [µm]", 1e6, 4),
+    "contact_room": ("from the contacts to the nearest end of a face", 1.0, 4, LENGTH),
+    "misalignment_approach": ("approach of the flanks by misalignment", 1.0, 4, DEVIATION),
 }
 _OVERLAP = {
-    "overlap_ratio": ("overlap ratio ε_β", 1.0, 4),
-    "contact_ratio": ("total contact ratio ε_γ", 1.0, 4),
+    "overlap_ratio": ("overlap ratio ε_β", 1.0, 4, PLAIN),
+    "contact_ratio": ("total contact ratio ε_γ", 1.0, 4, PLAIN),
 }
 
 Row = tuple[str, ...]
 
 
-def _numbers(teeth: xr.Dataset, named: dict[str, tuple[str, float, int]]) -> list[Row]:
-    """Rows of the dimensions that there are: title, factor and digits by name."""
+def _numbers(teeth: xr.Dataset, named: Mapping[str, Dimension]) -> list[Row]:
+    """Rows of the dimensions that there are."""
     return [
-        (title, *(_number(factor * float(v), digits) for v in np.ravel(teeth[name].values)))
-        for name, (title, factor, digits) in named.items()
+        (
+            show.bracketed(title, kind),
+            *(_number(float(kind.displayed(factor * v)), digits) for v in np.ravel(teeth[name])),
+        )
+        for name, (title, factor, digits, kind) in named.items()
         if name in teeth
     ]
 
@@ -143,21 +157,24 @@ def _given(outcome: Outcome, key: str, title: str) -> list[Row]:
 
 
 def _angle(teeth: xr.Dataset, name: str, title: str) -> list[Row]:
-    return [(title, show.number(degrees(float(teeth[name])), 6))] if name in teeth else []
+    return _numbers(teeth, {name: (title, 1.0, 6, ANGLE)})
 
 
 def _tip_alteration(teeth: xr.Dataset) -> list[Row]:
     if "tip_alteration" not in teeth or np.abs(teeth["tip_alteration"].values).max() <= 5e-7:
         return []
-    return _numbers(teeth, {"tip_alteration": ("tip alteration k [modules]", 1.0, 4)})
+    return _numbers(teeth, {"tip_alteration": ("tip alteration k [modules]", 1.0, 4, PLAIN)})
 
 
 def _backlash(teeth: xr.Dataset) -> list[Row]:
     return [
-        (title, show.quantity(name, float(teeth[name]), with_unit=False))
+        (
+            show.bracketed(title, show.described(name)),
+            show.quantity(name, float(teeth[name]), with_unit=False),
+        )
         for name, title in (
-            ("circumferential_backlash", "backlash on the pitch circles j_wt [µm]"),
-            ("normal_backlash", "backlash along the normal j_bn [µm]"),
+            ("circumferential_backlash", "backlash on the pitch circles j_wt"),
+            ("normal_backlash", "backlash along the normal j_bn"),
         )
         if name in teeth
     ]
@@ -166,11 +183,13 @@ def _backlash(teeth: xr.Dataset) -> list[Row]:
 def _transverse(teeth: xr.Dataset, path: PathOfContact) -> list[Row]:
     """What a helical pair has in its transverse section, a spur pair in its only one."""
     words, sign = ("transverse ", "t") if path.helical else ("", "")
-    angle = f"{words}pressure angle in operation α_w{sign} [°]"
+    angle = f"{words}pressure angle in operation α_w{sign}"
     return [
-        *_numbers(teeth, {"base_pitch": (f"{words}base pitch p_b{sign} [mm]", 1e3, 6)}),
+        *_numbers(teeth, {"base_pitch": (f"{words}base pitch p_b{sign}", 1.0, 6, LENGTH)}),
         *_angle(teeth, "working_pressure_angle", angle),
-        *_numbers(teeth, {"transverse_contact_ratio": ("transverse contact ratio ε_α", 1.0, 4)}),
+        *_numbers(
+            teeth, {"transverse_contact_ratio": ("transverse contact ratio ε_α", 1.0, 4, PLAIN)}
+        ),
     ]
 
 

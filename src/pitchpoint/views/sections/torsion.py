@@ -314,7 +314,7 @@ def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
     data = outcome.parts["torsion"]
     torques = data["torque"].values
     return [
-        {head("torque", data): f"{torques[k]:.5g}"}
+        {head("torque", data): shown("torque", float(torques[k]), data)}
         | {
             head(name, data): shown(name, float(data[name].values[k]), data)
             for name in WIND_UP
@@ -368,10 +368,10 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
         {"friction law": str(law)}
         | slopes
         | {
-            words: shown(name, float(data[name].values[k]))
+            f"{words} [{show.unit_of(name)}]": shown(name, float(data[name].values[k]))
             for words, name in (
-                ("lost motion at ±4 % of the torque [arcmin]", "catalogue_lost_motion"),
-                ("hysteresis loss [arcmin]", "hysteresis_loss"),
+                ("lost motion at ±4 % of the torque", "catalogue_lost_motion"),
+                ("hysteresis loss", "hysteresis_loss"),
             )
         }
         for k, law in enumerate(data["law"].values)

@@ -165,7 +165,7 @@ def _keys(data: xr.Dataset) -> list[Key]:
 
 def _errors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
     """Transmission error over one period, dynamic and static, for every torque."""
-    traces, keys = [], []
+    traces, keys, unit = [], [], show.unit_of("transmission_error")
     for k, (key, ok) in enumerate(zip(_keys(data), _found(data), strict=True)):
         looks = {
             "static_transmission_error": replace(key, label=f"{key.label}, static", dash="dot")
@@ -174,13 +174,13 @@ def _errors(name: str, data: xr.Dataset, backwards: bool) -> Figure:
             looks["transmission_error"] = replace(key, label=f"{key.label}, dynamic")
         for variable, look in reversed(looks.items()):
             x, y = _over_time(data, data[variable].values[k], backwards)
-            traces.append(plain(look, x, display(variable, y), "µm"))
+            traces.append(plain(look, x, display(variable, y), unit))
             keys.append(look)
     return Figure(
         f"{name}_error",
         "Transmission error over one mesh period",
         traces,
-        layout(TIME, "δ [µm]", xaxis={"range": [0, 1]}),
+        layout(TIME, f"δ [{unit}]", xaxis={"range": [0, 1]}),
         "Dynamic: with inertia and damping. Static: load over stiffness at each instant.",
         tuple(keys),
         NONE,
@@ -235,7 +235,7 @@ def _spectrum(name: str, data: xr.Dataset) -> Figure:
             "x": data["order"].values[wanted].tolist(),
             "y": rounded(display("spectrum", values[wanted])),
             "marker": {"color": key.colour},
-            "hovertemplate": "%{y:.4~g} µm<br>order %{x}",
+            "hovertemplate": f"%{{y:.4~g}} {show.unit_of('spectrum')}<br>order %{{x}}",
         }
         for key, values in zip(keys, each, strict=True)
     ]
@@ -387,7 +387,7 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("vibration")
     if data is not None:
         rows = [
-            {head("torque", data): f"{torque:.5g}"}
+            {head("torque", data): shown("torque", float(torque), data)}
             | {head(name): shown(name, float(data[name].values[k])) for name in FIGURES}
             for k, torque in enumerate(data["torque"].values)
         ]

@@ -108,7 +108,7 @@
         names[lane].setAttribute("dy", ".35em");
       });
       const now = mesh.querySelector(".now");
-      if (now) now.textContent = length.toPrecision(4) + " mm now;";
+      if (now) now.textContent = (zone.of_mm * length).toPrecision(4) + " " + zone.unit + " now;";
     }
 
     let timer = 0;
