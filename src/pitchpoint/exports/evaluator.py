@@ -97,7 +97,7 @@ def module(outcome: Outcome, table: LossTable) -> str:
     ]
     paragraphs = ["\n".join(wrap(text, 100)) for text in _told(outcome, table)]
     head = "\n\n".join(
-        [*paragraphs, "\n".join(usage), "Python 3.9 or later; nothing else is needed."]
+        [*paragraphs, "\n".join(usage), "Python 3.10 or later; nothing else is needed."]
     )
     return (
         f'"""{head}\n"""\n{code}\n\n'
