@@ -283,6 +283,7 @@ def explore(
             autocompletion=_keys_from,
         ),
     ] = None,
+    units: UnitsByKind = None,
 ) -> None:
     """Write one page that opens offline: the teeth moving, inputs on sliders, figures that follow.
 
@@ -294,6 +295,8 @@ def explore(
     from pitchpoint.views.explorer import Reader, write_explorer
 
     settings, sweeps = _settings(set_ or []), list(_sweeps(over or [], "--over"))
+    if units:
+        settings["output.units"] = _units(units)
     path = output or default_folder(case, Path("results"), settings) / "explorer.html"
     if path.suffix.lower() not in (".html", ".htm"):
         raise InputError("is no name of a page; give one that ends in .html", file=str(path))

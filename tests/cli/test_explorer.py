@@ -103,6 +103,10 @@ def told(
 @pytest.fixture(scope="module")
 def held(page: Path) -> dict[str, Any]:
     """What the script of the page reads."""
+    return held_by(page)
+
+
+def held_by(page: Path) -> dict[str, Any]:
     (found,) = re.findall(
         r'<script type="text/plain" id="explored">(.*?)</script>', page.read_text("utf-8")
     )
@@ -195,6 +199,19 @@ def test_errors_between_points_are_measured(folder: Path) -> None:
         off = np.abs(found.figures[name].values.mean(axis=1) - true) / true
         assert found.errors[name] == pytest.approx(off.max(), rel=1e-6)
         assert 1e-4 < found.errors[name] < 0.2
+
+
+def test_units_by_choice(folder: Path, told: Callable[..., Told], corner: Outcome) -> None:
+    over = ("--over", "operation.speed=900 rpm:1800 rpm:2", "--set", "operation.torque=30 N m")
+    chosen = ("--units", "rotational speed=rad/s, torque=N cm")
+    assert told("pair.toml", "-o", "units.html", *over, *chosen)[0] == 0
+    held = held_by(folder / "units.html")
+    assert (held["axes"][0]["unit"], held["axes"][0]["values"][1]) == ("rad/s", 188.495559215)
+    shown = figure(held, "mean_input_torque")
+    assert shown["unit"] == "N cm"
+    assert shown["axis"].endswith("[N cm]")
+    whole = corner.parts["operation"]["mean_input_torque"].values[:, 0]
+    np.testing.assert_allclose([one[1] for one in shown["values"]], 100.0 * whole, rtol=1e-5)
 
 
 def test_errors_are_told(page: Path) -> None:

@@ -14,11 +14,13 @@ import xarray as xr
 
 from pitchpoint import units
 from pitchpoint.analyses.figures import covers, main_figures
+from pitchpoint.results.chosen_units import shown_in, unit_in_use
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.explore import Axis, Explored
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import PALETTE, display, law_title, laws, layout, rounded, short_axis
+from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.lines import folded, gapped, titled
 from pitchpoint.views.point import period_of
 from pitchpoint.views.registry import in_order
@@ -97,7 +99,9 @@ class Reader:
         """What the page shows of a case at one point."""
         number, acting = self._drawing(outcome)
         told = outcome.manifest
-        return Point(_courses(outcome), told["implausible"], told["warnings"], number, acting)
+        with shown_in(recorded_units({"": outcome})):
+            courses = _courses(outcome)
+        return Point(courses, told["implausible"], told["warnings"], number, acting)
 
     def _drawing(self, outcome: Outcome) -> tuple[int | None, Any]:
         made = next(_movings(outcome, f"drawing{len(self.drawings)}"), None)
@@ -170,6 +174,11 @@ def render(found: Explored[Point], drawings: Sequence[Moving]) -> str:
         found: read by a `Reader`.
         drawings: of that reader.
     """
+    with shown_in(recorded_units({"": found.own})):
+        return _rendered(found, drawings)
+
+
+def _rendered(found: Explored[Point], drawings: Sequence[Moving]) -> str:
     manifest, data = found.own.manifest, found.figures
     axes = [_axis(axis, found) for axis in found.axes]
     figures = list(_figures(found))
@@ -229,7 +238,7 @@ def _axis(axis: Axis, found: Explored[Point]) -> dict[str, Any]:
     return {
         "key": axis.key,
         "words": _words(axis.key, found.own.manifest),
-        "unit": show.unit(quantity.unit),
+        "unit": show.unit(unit_in_use(quantity.kind, quantity.unit)),
         "values": values,
         "own": own[0],
         "step": _plain(gaps.min() / 20.0),
@@ -241,7 +250,8 @@ def _axis(axis: Axis, found: Explored[Point]) -> dict[str, Any]:
 def _shown(axis: Axis, values: np.ndarray) -> list[float]:
     quantity = axis.quantity
     if quantity.unit != "1":
-        values = np.asarray(units.convert(values, quantity.unit, quantity.kind))
+        unit = unit_in_use(quantity.kind, quantity.unit)
+        values = np.asarray(units.convert(values, unit, quantity.kind))
     return [_plain(value) for value in values]
 
 
