@@ -318,6 +318,18 @@ def test_sensitivities_of_the_life_are_those_of_differences():
         slope = np.log(lives[0] / lives[1]) / np.log((1.0 + step) / (1.0 - step))
         assert found[name].life == pytest.approx(slope, rel=1e-3, abs=1e-5), name
     assert found["speed"].life == pytest.approx(0.0, abs=1e-9)
+    assert not {"centre distance", "tip alteration 1"} & {*found}  # they follow from the others
+
+
+def test_flanks_that_count_as_new_wear_by_their_first_rate():
+    """At a rate that stays, the depth changes as the rate does, and the life the other way."""
+    built, (_, cells) = pair(), begun(pair())
+    first = np.asarray(turn(built)[0].depth)
+    turns, worn = np.array([0.0, 1e7]), first * np.array([0.0, 1e7])[:, None, None, None]
+    given = (built.design, built.operation, WEAR), built.models[0], cells, PARTS, turns, worn
+    for name, one in march_sensitivities(*given, updated=False).items():
+        assert one.depth == pytest.approx(one.rate, abs=1e-12), name
+        assert one.life == pytest.approx(-one.rate, abs=1e-12), name
 
 
 def test_sensitivities_of_discs_are_the_powers_of_archard():

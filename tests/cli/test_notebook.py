@@ -356,6 +356,15 @@ def test_gradients_by_keys_are_those_of_rebuilt_cases(result: pp.Result) -> None
     np.testing.assert_allclose(table.derivative, slopes, rtol=2e-5)
 
 
+def test_a_key_that_makes_other_gears_has_no_derivative() -> None:
+    """Lines of a spur pair are straight: nothing is known of the first inclination of them."""
+    helix = "gears.helix_angle"
+    pair = PAIR.set({"models.load_sharing": "from_stiffness"})
+    with pytest.raises(pp.InputError, match=f"{helix}: has no derivative here"):
+        pp.gradients(pair, by=[helix])
+    assert helix not in pp.gradients(pair).index
+
+
 def test_units_and_value_stand_beside_the_gradients(result: pp.Result) -> None:
     table = result.gradients("mean_loss", ["torque", SHIFT])
     assert [*table.index] == [TORQUE, SHIFT]

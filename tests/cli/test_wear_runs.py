@@ -323,6 +323,15 @@ REFUSED = {
     ),
     "negative cycles": ({"wear.law": "archard_1953", "wear.cycles": -1.0}, "out of range"),
     "no rate": ({"wear.law": "vdi_2736", "wear.cycles": 1.0}, "asks for the specific wear rate"),
+    "derivatives through films": (
+        {
+            "wear.law": "masjedi_khonsari_2015",
+            "wear.cycles": 1.0,
+            "wear.load_ratio": "film",
+            "wear.sensitivities": True,
+        },
+        "no derivatives are taken through solved films",
+    ),
     "a constant of another law": (
         {
             "wear.law": "vdi_2736",

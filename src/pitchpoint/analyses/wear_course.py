@@ -277,7 +277,9 @@ def _sensitivities(built: Built, values: Mapping[str, np.ndarray]) -> dict[str, 
         return {}
     inputs = built.design, built.operation, course.model
     given = models, course.cells, int(asked(built).phases)
-    found = march_sensitivities(inputs, *given, values["cycles"], values["worn_depth"])
+    course_of = values["cycles"], values["worn_depth"]
+    updated = asked(built).profile == "updated"
+    found = march_sensitivities(inputs, *given, *course_of, updated=updated)
     return {name: one._asdict() for name, one in found.items()}
 
 
@@ -306,7 +308,7 @@ def _warnings(
         told.append(
             "Wear: nothing slides under load, or the law wears nothing off: depths stay zero."
         )
-    if not _sensitive(built) and asked(built).sensitivities is None and not _films(built):
+    if asked(built).sensitivities is None and not _sensitive(built) and not _films(built):
         told.append(
             "Wear: what the life depends on is not told; its derivatives take minutes for teeth that a ring "
             "couples. Ask for them by wear.sensitivities = true."

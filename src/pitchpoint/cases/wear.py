@@ -61,6 +61,12 @@ def check_wear(case: Case, mesh: Mesh, used: Used) -> None:
         raise InputError(
             "was given with [worn]: only flanks as new are worn; leave one out", key="wear"
         )
+    if table.sensitivities and table.load_ratio == "film":
+        raise InputError(
+            'true was given with wear.load_ratio = "film"; no derivatives are taken through solved films, '
+            "leave it out",
+            key="wear.sensitivities",
+        )
     law = WEAR_LAWS[table.law]
     if law.shape not in (None, mesh.shape):
         raise InputError(

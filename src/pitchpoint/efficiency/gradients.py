@@ -10,7 +10,13 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle,
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.programs import program
 
-__all__ = ["figure_gradient", "input_torque_gradient", "mean_loss_gradient", "ripple_gradient"]
+__all__ = [
+    "Inputs",
+    "figure_gradient",
+    "input_torque_gradient",
+    "mean_loss_gradient",
+    "ripple_gradient",
+]
 
 Inputs = tuple[Design, Operation]
 

@@ -177,6 +177,11 @@ class Mesh(eqx.Module):
         return self
 
     @property
+    def independent(self) -> tuple[str, ...]:
+        """Fields of `chosen` that follow from no others here."""
+        return self.chosen
+
+    @property
     def overlap_ratio(self) -> Float[Array, ""]:
         """Part of the contact ratio that contact lines inclined to the axes add."""
         return jnp.zeros(())

@@ -13,7 +13,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.cases.variant import Variant
-from pitchpoint.efficiency.gradients import figure_gradient
+from pitchpoint.efficiency.gradients import Inputs, figure_gradient
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
@@ -69,11 +69,12 @@ def gradients(
         plastic from the temperature, is taken along.
 
     Raises:
-        InputError: no such figure or law, or a drive of several meshes.
+        InputError: no such figure or law, a drive of several meshes, or no derivative by a key of `by`.
         ConvergenceError: friction locks the mesh.
 
     By automatic differentiation of the mesh cycle in reverse; what a key does to the design, which is
-    closed forms and built on the host, by central differences.
+    closed forms and built on the host, by central differences. A key has no row where any change makes
+    gears of another form, such as the helix angle of a spur pair.
     """
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
     base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
@@ -86,7 +87,7 @@ def gradients(
     flat = [np.asarray(leaf) for leaf in jax.tree.leaves(slopes)]
     rows = {
         key: {"value": number, "unit": units.si_unit(kind) or "1", "derivative": derivative}
-        for key, number, kind, derivative in _rows(base, built, numbers, flat)
+        for key, number, kind, derivative in _rows(base, built, numbers, flat, bool(by))
     }
     return _frame(rows, {"of": of, "value": value, "unit": VARIABLES[of].unit})
 
@@ -125,12 +126,15 @@ def _asked(built: Built, keys: Sequence[str]) -> "list[Number]":
 
 
 def _rows(
-    base: Variant, built: Built, numbers: "Sequence[Number]", slopes: Leaves
+    base: Variant, built: Built, numbers: "Sequence[Number]", slopes: Leaves, asked: bool
 ) -> Iterator[tuple[str, float, str, float]]:
-    """Key, value, kind and derivative of every number that moves the design."""
-    here = _leaves(built)
+    """Key, value, kind and derivative of every number that moves the design; InputError if one cannot."""
+    here = _numbers_of(built)
     for key, value, kind, setting in numbers:
         moved = _moved(base, here, setting, value)
+        if moved is None and asked:
+            told = "has no derivative here: any change of it makes gears of another form, or none"
+            raise InputError(told, key=key)
         if moved is not None and any(np.any(one) for one in moved):
             pairs = zip(slopes, moved, strict=True)
             yield key, value, kind, float(sum(np.sum(slope * step) for slope, step in pairs))
@@ -178,30 +182,38 @@ def _in_list(key: str, values: tuple[float, ...], position: int) -> Setting:
     return setting
 
 
-def _moved(base: Variant, here: Leaves, setting: Setting, value: float) -> Leaves | None:
+def _moved(base: Variant, here: Inputs, setting: Setting, value: float) -> Leaves | None:
     """Derivatives of the numbers of the design by a key; one-sided at the end of its range."""
     step = STEP * (abs(value) if abs(value) > _LEAST * STEP else 1.0)
     above, below = (_built_at(base, here, setting(value + way * step)) for way in (1.0, -1.0))
     if above is None and below is None:
         return None
-    first, last = (here if below is None else below), (here if above is None else above)
+    own = _leaves(here)
+    first, last = (own if below is None else below), (own if above is None else above)
     width = step * ((above is not None) + (below is not None))
     return [np.asarray((b - a) / width) for a, b in zip(first, last, strict=True)]
 
 
-def _built_at(base: Variant, here: Leaves, setting: tuple[str, Any]) -> Leaves | None:
+def _built_at(base: Variant, here: Inputs, setting: tuple[str, Any]) -> Leaves | None:
     """Numbers of the design with a key changed; None where it cannot be built, or is of another form."""
     try:
         built = base.built(dict([setting]))
     except InputError:
         return None
     assert isinstance(built, Built)
-    found = _leaves(built)
-    alike = [one.shape for one in found] == [one.shape for one in here]
-    return found if alike else None
+    found = _numbers_of(built)
+    alike = bool(jax.tree.structure(found) == jax.tree.structure(here))  # type: ignore[operator]
+    leaves, own = _leaves(found), _leaves(here)
+    same = alike and [one.shape for one in leaves] == [one.shape for one in own]
+    return leaves if same else None
 
 
-def _leaves(built: Built) -> Leaves:
-    """Continuous numbers of the design and the operating point; what is not known stays where it is."""
-    numbers = eqx.filter((built.design, built.operation), eqx.is_inexact_array)
+def _numbers_of(built: Built) -> Inputs:
+    """Continuous numbers of the design and the operating point, and the form that they are of."""
+    numbers: Inputs = eqx.filter((built.design, built.operation), eqx.is_inexact_array)
+    return numbers
+
+
+def _leaves(numbers: Inputs) -> Leaves:
+    """Numbers alone; what is not known stays where it is."""
     return [np.nan_to_num(np.asarray(leaf), nan=0.0) for leaf in jax.tree.leaves(numbers)]

@@ -102,7 +102,7 @@ def _words(name: str) -> str:
 
 def _of_mesh(mesh: Mesh) -> Iterator[tuple[str, str, int | None, Array]]:
     """Name, field, member and value of the numbers of a mesh that are chosen."""
-    for field in mesh.chosen:
+    for field in mesh.independent:
         value = getattr(mesh, field)
         if not np.ndim(value):
             yield _words(field), field, None, value
@@ -132,6 +132,8 @@ def march_sensitivities(
     parts: int,
     turns: Float[np.ndarray, " step"],
     depth: Float[np.ndarray, "step 2 cell strip"],
+    *,
+    updated: bool = True,
 ) -> dict[str, Sensitivity]:
     """How the end of a march depends on each input.
 
@@ -142,6 +144,7 @@ def march_sensitivities(
         parts: phases in each stretch between events.
         turns: of the driver after each step, from zero on.
         depth: that the march came to there [m].
+        updated: False where flanks count as new throughout the march.
 
     Returns:
         Sensitivities by the name of the input; none where nothing wears.
@@ -152,10 +155,11 @@ def march_sensitivities(
     """
     names = tuple(varied(inputs))
     moved = np.zeros((len(names), *depth.shape[1:]))
+    felt = float(updated)
 
     def rate(depth: Values, moved: Values) -> tuple[Values, Values]:
         found: tuple[Values, Values] = jax.device_get(
-            _rate(inputs, models, cells, parts, names, array(depth), array(moved))
+            _rate(inputs, models, cells, parts, names, array(felt * depth), array(felt * moved))
         )
         return found
 

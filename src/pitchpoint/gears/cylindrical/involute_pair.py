@@ -238,6 +238,12 @@ class InvolutePair(Mesh):
             pair = dataclasses.replace(pair, tip_alteration=pair._shortened_tips())
         return dataclasses.replace(pair, surfaces=pair._fitted_surfaces())
 
+    @property
+    def independent(self) -> tuple[str, ...]:
+        """Fields of `chosen` that follow from no others here."""
+        follows = dict(zip(("centre_distance", "tip_alteration"), self.follows, strict=True))
+        return tuple(name for name in self.chosen if not follows.get(name))
+
     def _fitted_surfaces(self) -> Surfaces:
         """Surfaces on the flanks as they end now."""
         if not any(self.surfaces):
