@@ -529,6 +529,19 @@ def test_a_ring_is_rated_on_the_fillet_that_it_has(ring: CylindricalPair) -> Non
     assert torques == pytest.approx([2.0, 7.0], rel=1e-9)
 
 
+def test_a_thinner_ring_has_thinner_roots(ring: CylindricalPair) -> None:
+    given = float(ring.transverse_contact_ratio), duty(7.0, 1000.0), factors(), strengths()
+    nominal = rating(ring.bare, *given)
+    thin = replace(FINISH, thickness=numbers(0.0, -60e-6))
+    found = rating(ring.bare, *given, thin)
+    assert nominal["root_chord"][1] - found["root_chord"][1] == pytest.approx(60e-6)
+    assert found["root_chord"][0] == nominal["root_chord"][0]
+    # Bending goes with the square of the chord, and the force crosses the thinner tooth nearer to its root.
+    thicker = (nominal["root_chord"][1] / found["root_chord"][1]) ** 2
+    stress = found["root_stress"][1] / nominal["root_stress"][1]
+    assert 1.0 < stress < 1.1 * thicker
+
+
 def test_planet_and_ring_as_kisssoft_prints_them(ring: CylindricalPair) -> None:
     """Its ring has the root that a pinion cutter leaves, rounder than the arc that is rated here."""
     pair = replace(

@@ -359,9 +359,17 @@ def _root(
 
 
 def _cut(pair: RatedPair, finish: Finish) -> RatedPair:
-    """The pair with the shifts x_E with which its teeth are cut, x + A_sn/(2 m_n tan(alpha_n))."""
+    """The pair with the shifts x_E with which its teeth are cut, x + A_sn/(2 m_n tan(alpha_n)).
+
+    The teeth of a ring are thinner at their root by the allowance itself, on the fillet that they have.
+    """
     thinner = finish.thickness / (2.0 * pair.module * jnp.tan(pair.pressure_angle))
-    return dataclasses.replace(pair, profile_shift=pair.profile_shift + thinner)
+    half = pair.ring_section[0] + jnp.where(pair.teeth[1] < 0.0, 0.5 * finish.thickness[1], 0.0)
+    return dataclasses.replace(
+        pair,
+        profile_shift=pair.profile_shift + thinner,
+        ring_section=pair.ring_section.at[0].set(half),
+    )
 
 
 def _virtual(pair: RatedPair) -> tuple[Both, One]:
