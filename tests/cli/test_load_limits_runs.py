@@ -80,7 +80,7 @@ def test_margins_and_life_are_those_of_the_case(asked) -> None:
     assert np.isnan(asked["limit_margin"].sel(against="buckling"))
     assert float(asked["bearing_life"]) == pytest.approx(3500.0 * 3600.0)
     (told,) = json.loads(asked.attrs["warnings"])
-    assert told == "The torque on the flexspline is 2.23 times that of ratcheting."
+    assert told == "Fails: the torque on the flexspline is 2.23 times that of ratcheting."
 
 
 def test_caveats_stand_beside_the_numbers(plain, asked) -> None:

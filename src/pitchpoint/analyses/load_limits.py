@@ -8,6 +8,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, of_gears_with
 from pitchpoint.cases.build import Built
+from pitchpoint.cases.failures import fails
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.load_limits import (
     bearing_life,
@@ -152,13 +153,13 @@ def _failing(stresses: dict[str, np.ndarray], against: dict[str, np.ndarray]) ->
     """What does not hold, in words."""
     safety = stresses.get("goodman_safety")
     if safety is not None and safety.min() < 1.0:
-        yield (
-            f"The flexspline fails by the estimate of its stress: at the {PLACES[int(safety.argmin())]} its "
-            f"safety for endless life is {safety.min():.2f}."
+        yield fails(
+            f"the flexspline breaks sooner or later by the estimate of its stress: at the "
+            f"{PLACES[int(safety.argmin())]} its safety for endless life is {safety.min():.2f}."
         )
     for name, margin in zip(AGAINST, against.get("limit_margin", ()), strict=False):
         if margin < 1.0:
-            yield f"The torque on the flexspline is {1.0 / margin:.2f} times that of {name}."
+            yield fails(f"the torque on the flexspline is {1.0 / margin:.2f} times that of {name}.")
 
 
 LOAD_LIMITS = Analysis(

@@ -593,7 +593,7 @@ class Loss(Table):
     preload: Annotated[float, FORCE] = 0.0
     """Load on the bearing without any on the teeth, which adds to theirs."""
     position: Annotated[float, PLACE] | None = None
-    """Place of the bearing from the middle of the face along the axis; for two bearings of a body."""
+    """Place of one of two bearings along the axis, from the middle of the face; of stages, as their place."""
     locating: Annotated[bool, BeforeValidator(_flag)] | None = None
     """Whether this one of two bearings takes the axial force; the first one unless either says."""
     seal_torque: Annotated[float, TORQUE] = 0.0
