@@ -129,7 +129,7 @@ def test_one_cause_at_both_gears_is_told_once(told: Run) -> None:
 
 def test_whole_case_checks_are_told_together(told: Run) -> None:
     text = PAIR + 'driver = "gear 3"\n'
-    for name, body in (("a", "gear 4"), ("b", "house")):
+    for name, body in (("a", "gear 4"), ("b", "wall")):
         text += f'[losses.{name}]\nbetween = ["gear 1", "{body}"]\nseal_torque = "1 N m"\n'
     _, _, err = told(text)
     assert [line.split(": ")[2] for line in err] == [

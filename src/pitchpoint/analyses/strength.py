@@ -122,7 +122,7 @@ def _ring(built: Built) -> bool:
 
 
 def _remarks(built: Built) -> Iterator[str]:
-    if getattr(built.case.gears, "thickness_allowances", None) is not None:
+    if built.case.gears.thickness_allowances is not None:
         yield _THINNED
     if _ring(built):
         yield _RING

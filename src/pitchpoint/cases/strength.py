@@ -199,7 +199,7 @@ def _treatment(table: StrengthTable, used: SolidInUse, gear: int) -> Treatment:
 
 def _thinning(case: Case) -> tuple[float, float] | None:
     """Allowances of the thinnest teeth of both gears [m]; None where the case gives none."""
-    allowed = getattr(case.gears, "thickness_allowances", None)
+    allowed = case.gears.thickness_allowances
     return None if allowed is None else allowed[1]
 
 

@@ -93,6 +93,11 @@ class GearsTable(Table):
         return None
 
     @property
+    def thickness_allowances(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Upper and lower allowances of the tooth thickness of both gears [m]; None where none are given."""
+        return None
+
+    @property
     def shafts(self) -> tuple[str, ...]:
         """Bodies that turn, beside which power may be lost."""
         return self.members
