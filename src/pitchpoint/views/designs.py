@@ -70,16 +70,14 @@ def law_words(outcomes: Mapping[str, Outcome]) -> str:
 
 
 def result_table(outcomes: Mapping[str, Outcome], *, differences: bool = True) -> Compared:
-    """Main results of the designs that rounding alone has not left, and their differences from the first one.
+    """Main results of the designs but those that rounding leaves, and differences from the first one.
 
     Args:
         outcomes: by design.
         differences: False to leave these out.
     """
     first, *others = outcomes if differences else [*outcomes][:1]
-    figures = [
-        one for one in main_results(outcomes) if any(_shown(one, of) for of in one.values.values())
-    ]
+    figures = [one for one in main_results(outcomes) if not _left_by_rounding(one)]
     by_law = len({one.law for one in figures if one.law}) > 1
     rows = [
         (
@@ -127,6 +125,12 @@ def _title(figure: Figure, by_law: bool) -> str:
 
 def _shown(figure: Figure, value: float) -> float:
     return float(show.displayed(figure.variable, value))
+
+
+def _left_by_rounding(figure: Figure) -> bool:
+    """True if all values are shown as zero; that of a temperature is as good as any other one."""
+    values = (_shown(figure, value) for value in figure.values.values())
+    return figure.variable.kind != "temperature" and not any(values)
 
 
 def _value(figure: Figure, design: str) -> str:
