@@ -5,7 +5,7 @@ import json
 import re
 import sys
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from glob import escape as glob_escape
 from glob import glob
@@ -377,16 +377,14 @@ def _compare_designs(
 
 
 def _differences(outcomes: "dict[str, Outcome]") -> None:
-    """Results of designs with their differences, inputs that differ, and what warns of each design."""
-    from pitchpoint.views.designs import input_tables, law_words, result_table
+    """What cannot be, results with their differences, inputs that differ, and what warns of each design."""
+    from pitchpoint.views.designs import differing, law_words, result_table
 
+    for name, outcome in outcomes.items():
+        _failing(f"{name}: {text}" for text in outcome.manifest["implausible"])
     _console().print(_plain(law_words(outcomes)))
-    given, following = input_tables(outcomes)
-    for title, table in (
-        ("Results", result_table(outcomes, differences=len(outcomes) <= _FEW_DESIGNS)),
-        ("Inputs that differ", given),
-        ("What follows from them", following),
-    ):
+    results = result_table(outcomes, differences=len(outcomes) <= _FEW_DESIGNS)
+    for title, table in {"Results": results, **differing(outcomes)}.items():
         _console().print(f"\n[bold]{title}[/]" if table.rows else f"\n[bold]{title}[/]: none")
         _table([dict(zip(table.head, row, strict=True)) for row in table.rows], tuple(table.head))
     for name, outcome in outcomes.items():
@@ -758,9 +756,13 @@ def _heading(manifest: Mapping[str, Any], number: int) -> None:
     """What cannot be, before anything else is said of a variant; then its title."""
     if number:
         _console().print()
-    for text in manifest["implausible"]:
-        _console().print(_plain(text), style="bold red")
+    _failing(manifest["implausible"])
     _console().print(f"[bold]{_plain(manifest['title'])}[/] ({_plain(manifest['variant'])})")
+
+
+def _failing(sentences: Iterable[str]) -> None:
+    for text in sentences:
+        _console().print(_plain(text), style="bold red")
 
 
 def _print(printed: "Printed") -> None:

@@ -2,6 +2,7 @@
 
 import json
 import sys
+import tomllib
 import webbrowser
 from pathlib import Path
 
@@ -11,12 +12,15 @@ import pytest
 from scipy.io import loadmat
 
 from pitchpoint import cli
+from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.exports.files import FORMATS, export
 from pitchpoint.exports.tables import sheets
-from pitchpoint.runs.designs import designs, main_results, wanted
-from pitchpoint.runs.run import Outcome, open_result, run
-from pitchpoint.views.designs import input_tables, law_words, result_table
+from pitchpoint.results.variable import Variable
+from pitchpoint.runs.designs import Figure, as_json, designs, main_results, wanted
+from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.run import Outcome, Progress, open_result, run, run_variant
+from pitchpoint.views.designs import differing, input_tables, law_words, result_table
 from pitchpoint.views.report import render
 
 PAIR = """
@@ -59,6 +63,23 @@ temperature = "40 degC"
 [models]
 friction = { name = "constant", coefficient = 0.04 }
 """
+HARD = (
+    PAIR.partition("[variants.new]")[0]
+    + """
+[materials]
+gear_1 = "case-hardened-mq"
+gear_2 = "case-hardened-mq"
+"""
+)
+STAGES = HARD.replace("[gears]", "[[stages]]\n[stages.gears]").replace(
+    "[lubricant]",
+    """[[stages]]
+[stages.gears]
+teeth = [19, 70]
+module = "3 mm"
+face_width = "30 mm"
+[lubricant]""",
+)
 
 Outcomes = dict[str, Outcome]
 
@@ -177,6 +198,119 @@ def test_the_command(
     status, _, err = told("out/pair", "out/ball", "--variant", "new")
     assert status == 2
     assert "write case@variant" in err
+
+
+# ---- strength and backlash of designs
+
+
+def kept(folder: Path, text: str, *parts: str, **settings: object) -> str:
+    """Folder of a result that has some parts only."""
+    variant = Variant(tomllib.loads(text), f"{folder.name}.toml", "default", settings)
+    work = [job for job in jobs(variant, {}) if job.name in parts]
+    run_variant(variant, work, folder=folder / "default", studies={}, progress=Progress())
+    record = {"case": f"{folder.name}.toml", "variants": ["default"]}
+    (folder / "run.json").write_text(json.dumps(record))
+    return str(folder)
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """A drive of two stages whose second one does not bear the load, and one with wider teeth there."""
+    folder = tmp_path_factory.mktemp("drives")
+    load = {"operation.torque": "1500 N m"}
+    wide = {"stages.2.gears.face_width": "200 mm"}
+    return [
+        kept(folder / "narrow", STAGES, "strength", **load),
+        kept(folder / "wide", STAGES, "strength", **load, **wide),
+    ]
+
+
+def test_stages_have_stresses_and_the_safety_of_their_weaker_gear(drives: list[str]) -> None:
+    outcomes = designs(drives)
+    figures = {(one.name, one.place): one for one in main_results(outcomes)}
+    for name, word in (
+        ("contact_stress", "largest"),
+        ("root_stress", "largest"),
+        ("flank_safety", "least"),
+        ("root_safety", "least"),
+    ):
+        for stage in (1, 2):
+            told = figures[name, f"{word} of stage {stage}"].values
+            for design, outcome in outcomes.items():
+                both = outcome.parts["strength"][name].sel(stage=stage).values
+                assert told[design] == (max(both) if word == "largest" else min(both))
+    assert ("tangential_force", "stage 2") in figures
+    weaker = figures["root_safety", "least of stage 2"]
+    assert weaker.title.endswith(", least of stage 2")
+    assert weaker.values["narrow"] < weaker.values["wide"]
+
+
+def test_a_stage_with_a_gear_of_unknown_strength_has_no_least_safety(drives: list[str]) -> None:
+    outcome = designs(drives[:1])["narrow"]
+    data = outcome.parts["strength"].copy(deep=True)
+    data["flank_safety"][1, 0] = np.nan
+    told = main_results({"one": Outcome(outcome.manifest, {"strength": data})})
+    safeties = [one.place for one in told if one.name == "flank_safety"]
+    assert safeties == ["least of stage 1"]
+
+
+def test_what_cannot_be_stands_before_every_number(
+    drives: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "300")
+    output = str(Path(drives[0]).parent / "beside")
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "compare", *drives, "-o", output])
+    with pytest.raises(SystemExit) as caught:
+        cli.main()
+    assert not caught.value.code
+    outcomes = designs(drives)
+    failing = {name: one.manifest["implausible"] for name, one in outcomes.items()}
+    assert any("stage 2: the flanks of gear 1 bear" in text for text in failing["narrow"])
+    assert not any("stage 2" in text for text in failing["wide"])
+    expected = [f"{name}: {text}" for name, texts in failing.items() for text in texts]
+    assert capsys.readouterr().out.splitlines()[: len(expected)] == expected
+    found = as_json(outcomes)
+    assert found["implausible"] == failing
+    assert next(iter(found)) == "implausible"
+
+
+def test_backlash_by_tolerances_beside_the_nominal_one(tmp_path: Path) -> None:
+    allowed = {"gears.inspection.thickness_field": "26cd"}
+    outcomes = designs(
+        [
+            kept(tmp_path / "nominal", HARD, "inspection"),
+            kept(tmp_path / "thinned", HARD, "inspection", **allowed),
+        ]
+    )
+    rows = {row[0]: row[1:] for row in result_table(outcomes).rows}
+    turns = {words: row for words, row in rows.items() if "in its backlash" in words}
+    assert len(turns) == 6  # the nominal one is left by rounding
+    angles = outcomes["thinned"].parts["inspection"]["backlash_angle"].sel(gear="gear 2")
+    for case in ("least", "mean", "largest"):
+        (told,) = [row for words, row in turns.items() if f"gear 2, {case}" in words]
+        minutes = float(np.degrees(angles.sel(case=case))) * 60.0
+        assert told == ("–", f"{minutes:.4g}", "–")
+        assert minutes > 1.0
+
+
+def test_what_follows_is_told_where_there_is_something(compared: Outcomes, folder: Path) -> None:
+    assert [*differing(compared)] == ["Inputs that differ"]
+    others = designs([str(folder / "out" / "pair@new"), str(folder / "out" / "ball")])
+    given, following = input_tables(others)
+    assert [*differing(others).values()] == [given, following]
+
+
+@pytest.mark.parametrize(
+    ("change", "told"), [(9.394e-8, "0"), (0.0, "0"), (2e-3, "+0.002 (+0.2 %)")]
+)
+def test_what_solvers_leave_is_no_difference(
+    compared: Outcomes, monkeypatch: pytest.MonkeyPatch, change: float, told: str
+) -> None:
+    first, second = compared
+    values = {first: 1.0, second: 1.0 + change}
+    figure = Figure("operation", "contact_ratio", "", "", Variable("ratio", "", "1"), values)
+    monkeypatch.setattr("pitchpoint.views.designs.main_results", lambda _: [figure])
+    assert result_table(compared).rows[-1][-1] == told
 
 
 def test_open(

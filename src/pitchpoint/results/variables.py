@@ -59,8 +59,8 @@ VARIABLES: dict[str, Variable] = {
     ),
     "pitch_sum_speed": speed("sum of the surface speeds at the pitch point", "v_ΣC"),
     "pitch_radius": length("relative radius of curvature at the pitch point", "ρ_redC"),
-    "circumferential_backlash": deviation("backlash on the pitch circles", "j_wt"),
-    "normal_backlash": deviation("backlash along the normal", "j_bn"),
+    "circumferential_backlash": deviation("nominal backlash on the pitch circles", "j_wt"),
+    "normal_backlash": deviation("nominal backlash along the normal", "j_bn"),
     "backlash_on_circle": deviation("backlash on the pitch circles by tolerances", "j_wt"),
     "backlash_along_normal": deviation("backlash along the normal by tolerances", "j_bn"),
     "backlash_angle": Variable(
@@ -428,7 +428,7 @@ VARIABLES: dict[str, Variable] = {
     "loaded_pairs": Variable("mean number of pairs that carry", "n", "1"),
     "zone_load": Variable("inward load on each end of the long axis", "F_r", "N", "N", "force"),
     "kinematic_play": Variable(
-        "kinematic play of the loaded member between its flanks",
+        "kinematic play of the loaded member between its flanks, without tolerances",
         "Δθ_0",
         "rad",
         "arcmin",
@@ -532,7 +532,9 @@ _IN_TRAVEL: dict[End, dict[str, Variable]] = {
         "mesh_torsional_stiffness": stiffness(
             "stiffness at the output over the mesh cycle", "K(φ)"
         ),
-        "kinematic_play": deviation("kinematic play of the loaded member", "Δs_0"),
+        "kinematic_play": deviation(
+            "kinematic play of the loaded member, without tolerances", "Δs_0"
+        ),
         "angular_transmission_error": deviation("travel of the loaded member under load", "s_e"),
         "angular_transmission_error_range": deviation(
             "static transmission error at the loaded member, peak to peak", "Δs_e"

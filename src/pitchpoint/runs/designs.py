@@ -209,6 +209,14 @@ class Figure:
 _EXTREMES = {"pressure": "", "film_thickness": "smallest", "lambda_ratio": "smallest"}
 """What is shown of the mesh cycle: its largest pressure, and where films are thinnest."""
 
+_OF_GEARS = {
+    "contact_stress": "largest",
+    "root_stress": "largest",
+    "flank_safety": "least",
+    "root_safety": "least",
+}
+"""What is shown of both gears of a stage."""
+
 _MORE = {
     "operation": ("contact_ratio", "circumferential_backlash"),
     "cycle": tuple(_EXTREMES),
@@ -218,6 +226,9 @@ _MORE = {
 
 _FEW = 4
 """Most values of a figure that are shown one by one."""
+
+_LABELLED = ("stage", "case")
+"""Axes whose label is told of a single value too: of a rated stage, of the backlash without tolerances."""
 
 Keys = tuple[str, str, str, str, Variable]
 
@@ -308,14 +319,35 @@ def _given_there(row: Mapping[str, Any]) -> bool:
 
 def _places(array: xr.DataArray) -> Iterator[tuple[str, float]]:
     """Values by place; none where there are too many to be told one by one."""
-    left = array.squeeze(drop=True)
-    if left.ndim == 0:
+    single = [dim for dim, size in array.sizes.items() if size == 1 and dim not in _LABELLED]
+    left = array.squeeze(single, drop=True)
+    if left.dims == ("stage", "gear"):
+        yield from _of_stages(left)
+    elif left.dims == ("gear", "case"):
+        for gear in left["gear"].values:
+            yield from ((f"{gear}, {case}", of) for case, of in _places(left.sel(gear=gear)))
+    elif left.ndim == 0:
         yield "", float(left)
     elif left.ndim == 1 and left.size <= _FEW and left.dims[0] in left.coords:
-        dim = str(left.dims[0])
-        for place, value in zip(left[dim].values, left.values, strict=True):
-            told = str(place).replace("_", " ")
-            yield f"{dim} {told}" if told.isdigit() else told, float(value)
+        yield from _along(left)
+
+
+def _of_stages(array: xr.DataArray) -> Iterator[tuple[str, float]]:
+    """The value of the weaker gear of each stage; not a number where one of both has none."""
+    extreme = _OF_GEARS.get(str(array.name))
+    if extreme is not None:
+        of = array.max if extreme == "largest" else array.min
+        yield from (
+            (f"{extreme} of {stage}", one) for stage, one in _along(of("gear", skipna=False))
+        )
+
+
+def _along(array: xr.DataArray) -> Iterator[tuple[str, float]]:
+    """Values along the only axis, by their labels."""
+    dim = str(array.dims[0])
+    for place, value in zip(array[dim].values, array.values, strict=True):
+        told = str(place).replace("_", " ")
+        yield f"{dim} {told}" if told.isdigit() else told, float(value)
 
 
 def differing_inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
@@ -351,10 +383,11 @@ def _unit(rows: Iterable[Mapping[str, Any]]) -> str:
 
 
 def as_json(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
-    """A comparison as JSON has it: inputs that differ and main results, in SI by design."""
+    """A comparison as JSON has it: what cannot be, inputs that differ, main results, in SI by design."""
     results = [
         {"result": one.title, "part": one.part, "variable": one.name, "law": one.law}
         | {"place": one.place, "unit": one.variable.unit, "values": dict(one.values)}
         for one in main_results(outcomes)
     ]
-    return {"inputs": differing_inputs(outcomes), "results": results}
+    failing = {name: one.manifest["implausible"] for name, one in outcomes.items()}
+    return {"implausible": failing, "inputs": differing_inputs(outcomes), "results": results}

@@ -12,10 +12,13 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import law_title
 from pitchpoint.views.inputs import FOLLOWING, input_rows
 
-__all__ = ["NOTHING", "Compared", "input_tables", "law_words", "result_table"]
+__all__ = ["NOTHING", "Compared", "differing", "input_tables", "law_words", "result_table"]
 
 NOTHING = "–"
 """Stands for what a design does not have."""
+
+_ROUNDING = 1e-6
+"""Part of a result below which a difference is what solvers leave."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,13 @@ def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
     )
 
 
+def differing(outcomes: Mapping[str, Outcome]) -> dict[str, Compared]:
+    """Tables of the inputs by title; that of gears, materials and oils only where they differ."""
+    given, following = input_tables(outcomes)
+    also = {"Gears, materials and oils that differ by them": following} if following.rows else {}
+    return {"Inputs that differ": given, **also}
+
+
 def law_words(outcomes: Mapping[str, Outcome]) -> str:
     """Under which friction law the designs are compared, as a sentence."""
     shared = shared_laws(outcomes)
@@ -60,14 +70,14 @@ def law_words(outcomes: Mapping[str, Outcome]) -> str:
 
 
 def result_table(outcomes: Mapping[str, Outcome], *, differences: bool = True) -> Compared:
-    """Main results of the designs, and their differences from the first one.
+    """Main results of the designs but those that rounding leaves, and differences from the first one.
 
     Args:
         outcomes: by design.
         differences: False to leave these out.
     """
     first, *others = outcomes if differences else [*outcomes][:1]
-    figures = main_results(outcomes)
+    figures = [one for one in main_results(outcomes) if not _left_by_rounding(one)]
     by_law = len({one.law for one in figures if one.law}) > 1
     rows = [
         (
@@ -117,6 +127,12 @@ def _shown(figure: Figure, value: float) -> float:
     return float(show.displayed(figure.variable, value))
 
 
+def _left_by_rounding(figure: Figure) -> bool:
+    """True if all values are shown as zero; that of a temperature is as good as any other one."""
+    values = (_shown(figure, value) for value in figure.values.values())
+    return figure.variable.kind != "temperature" and not any(values)
+
+
 def _value(figure: Figure, design: str) -> str:
     if design not in figure.values:
         return NOTHING
@@ -132,7 +148,7 @@ def _difference(figure: Figure, first: str, design: str) -> str:
     change = now - before
     if figure.variable.display == "%":
         return f"{show.signed(change, 2)} points"
-    if abs(change) <= 1e-9 * max(abs(before), abs(now)):
+    if abs(change) <= _ROUNDING * max(abs(before), abs(now)):
         return "0"
     told = show.number(change) if change < 0.0 else f"+{show.number(change)}"
     part = 100.0 * np.divide(change, abs(before)) if before else np.inf

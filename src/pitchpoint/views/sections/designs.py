@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from pitchpoint.views.designs import Compared, input_tables, law_words, result_table
+from pitchpoint.views.designs import Compared, differing, law_words, result_table
 from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table
 
 __all__ = ["DESIGNS"]
@@ -12,12 +12,11 @@ def _blocks(page: Page) -> Iterator[Block]:
     yield Paragraph(law_words(page.outcomes))
     results = result_table(page.outcomes)
     yield Table(results.head, results.rows)
-    given, following = input_tables(page.outcomes)
-    yield from _differing("Inputs that differ", given)
-    yield from _differing("What follows from them", following)
+    for title, table in differing(page.outcomes).items():
+        yield from _inputs(title, table)
 
 
-def _differing(title: str, table: Compared) -> Iterator[Block]:
+def _inputs(title: str, table: Compared) -> Iterator[Block]:
     yield Heading(title)
     if not table.rows:
         yield Paragraph("None.")

@@ -173,8 +173,8 @@ def _backlash(teeth: xr.Dataset) -> list[Row]:
             show.quantity(name, float(teeth[name]), with_unit=False),
         )
         for name, title in (
-            ("circumferential_backlash", "backlash on the pitch circles j_wt"),
-            ("normal_backlash", "backlash along the normal j_bn"),
+            ("circumferential_backlash", "nominal backlash on the pitch circles j_wt"),
+            ("normal_backlash", "nominal backlash along the normal j_bn"),
         )
         if name in teeth
     ]
