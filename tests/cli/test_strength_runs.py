@@ -9,16 +9,21 @@ from typing import Any
 import numpy as np
 import pytest
 
+import pitchpoint as pp
+from pitchpoint.analyses.figures import RATING
 from pitchpoint.analyses.strength import STRENGTH as ANALYSIS
+from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.torus.table import TorusGears
+from pitchpoint.notebook.tables import summary
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, describe, open_result, run_piece, run_variant
 from pitchpoint.views.report import render
 from pitchpoint.views.sections.strength import STRENGTH, strength_rows
+from pitchpoint.views.sections.studies import swept_rows
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SPEED, TORQUE = 1500.0 * np.pi / 30.0, 50.0
@@ -288,3 +293,86 @@ def test_a_table_of_a_drive_is_for_those_stages_that_are_rated() -> None:
     assert ratio == pytest.approx(2.0, abs=0.2)  # K_v falls a little with the load
     with pytest.raises(InputError, match=r"stages\.2\.strength: was given"):
         strength_of(path, {"stages.2.strength.application_factor": 1.2})
+
+
+# ---- extremes, of a run and of studies
+
+WIDTH = "gears.face_width"
+
+
+def swept(text: str, *widths: str, key: str = WIDTH) -> Any:
+    """A sweep of a case, by itself."""
+    extra = {"x": pp.Study(sweep=pp.Sweep(key=key, values=widths))}
+    variant = Variant(tomllib.loads(text), "pair.toml", "default", {})
+    work = [job for job in jobs(variant, extra) if job.name == "study_x"]
+    outcome = run_variant(variant, work, folder=None, studies=extra, progress=Progress())
+    return outcome.parts["study_x"]
+
+
+def test_a_study_has_the_strength_of_each_run() -> None:
+    widths = ["12 mm", "20 mm"]
+    found = pp.study(tomllib.loads(PAIR + RATED), {WIDTH: [*widths, "-1 mm"]})
+    by_sweep = swept(PAIR + RATED, *widths)
+    for at, width in enumerate(widths):
+        outcome = computed(PAIR + RATED, None, "strength", **{WIDTH: width})
+        data, rows = outcome.parts["strength"], summary(outcome)
+        each = (
+            data["contact_stress"].values.max(),
+            data["root_stress"].values.max(),
+            data["flank_safety"].values.min(),
+            data["root_safety"].values.min(),
+        )
+        for name, expected in zip(RATING, each, strict=True):
+            assert float(data[name]) == expected
+            np.testing.assert_allclose(found[name].values[:, at], expected, rtol=1e-12)
+            np.testing.assert_allclose(by_sweep[name].values[:, at], expected, rtol=1e-12)
+            shown = expected / (1e6 if name.endswith("stress") else 1.0)
+            assert rows.loc[name, "frictionless"] == pytest.approx(shown, rel=1e-12)
+    assert all(np.isnan(found[name].values[:, 2]).all() for name in RATING)
+
+
+def test_a_sweep_shows_safeties_that_vary_or_else_stresses() -> None:
+    def columns(text: str, *values: str, key: str = WIDTH) -> list[str]:
+        heads = swept_rows(swept(text, *values, key=key))[0]
+        return [head for head in heads if head.startswith(("S_", "σ_"))]
+
+    safeties = columns(PAIR + RATED, "12 mm", "20 mm")
+    assert [head.split(" ")[0] for head in safeties] == ["S_H", "S_F"]
+    idle, loaded = swept_rows(
+        swept(PAIR + RATED, "0 N m", "50 N m", key="operation.torque").isel(law=[0])
+    )
+    assert [idle[head] for head in safeties] == ["∞", "∞"]
+    assert all(float(loaded[head]) > 1.0 for head in safeties)
+    assert columns(PAIR + RATED, "50 degC", "70 degC", key="operation.temperature") == []
+    plain = PAIR.replace("case-hardened-mq", "steel")
+    assert [head.split(" ")[0] for head in columns(plain, "12 mm", "20 mm")] == ["σ_H", "σ_F"]
+
+
+def test_without_limits_there_are_stresses_and_no_safeties() -> None:
+    found = pp.study(tomllib.loads(PAIR.replace("case-hardened-mq", "steel")), {WIDTH: ["20 mm"]})
+    for name in RATING[:2]:
+        assert (found[name].values > 1e7).all()
+    for name in RATING[2:]:
+        assert np.isnan(found[name].values).all()
+    one = PAIR.replace('gear_2 = "case-hardened-mq"', 'gear_2 = "steel"')
+    assert float(computed(one, None, "strength").parts["strength"]["least_root_safety"]) > 1.0
+
+
+def test_a_drive_has_the_extremes_of_its_rated_stages() -> None:
+    def built(name: str) -> Any:
+        text = (EXAMPLES / f"{name}.toml").read_text("utf-8")
+        return Variant(tomllib.loads(text), f"{name}.toml", "default", {}).built({})
+
+    data = strength_of(EXAMPLES / "two_stage.toml")
+    found = ratings_of([built("two_stage")], 2)
+    for name, of in (
+        ("largest_contact_stress", "contact_stress"),
+        ("largest_root_stress", "root_stress"),
+    ):
+        dims, values = found[name]
+        assert (dims, values.shape) == (("law", "point"), (2, 1))
+        expected = data[of].values.max()
+        assert float(data[name]) == expected
+        np.testing.assert_allclose(values, expected, rtol=1e-12)
+    assert [*ratings_of([built("spur_and_strain_wave")], 1)] == [*RATING]
+    assert ratings_of([built("torus")], 1) == {}

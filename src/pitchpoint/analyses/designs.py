@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, silent
-from pitchpoint.analyses.studies import readings_of
-from pitchpoint.analyses.summaries import beside, joined, summaries
+from pitchpoint.analyses.studies import more_of
+from pitchpoint.analyses.summaries import joined, summaries
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
@@ -107,7 +107,7 @@ def _figures(points: Mapping[int, Ready], reasons: dict[int, str]) -> list[xr.Da
 def _together(points: Mapping[int, Ready]) -> xr.Dataset:
     every = [*points.values()]
     under = every[0].models
-    extra = {**beside(every), **readings_of(every, len(under))}
+    extra = more_of(every, len(under))
     data = summaries(every, under, extra, title="designs", may_lock=True)
     return data.assign_coords(point=[*points])
 

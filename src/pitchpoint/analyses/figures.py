@@ -16,6 +16,7 @@ __all__ = [
     "OF_CROSSING",
     "OF_MOTION",
     "OF_START",
+    "RATING",
     "REACTIONS",
     "STAGES",
     "TEMPERATURES",
@@ -112,6 +113,14 @@ TEMPERATURES = tuple(
     for name in ("flank_temperature", "root_temperature", "young")
 )
 
+RATING = (
+    "largest_contact_stress",
+    "largest_root_stress",
+    "least_flank_safety",
+    "least_root_safety",
+)
+"""Largest stresses and least safeties of all gears that are rated."""
+
 REACTIONS = tuple(f"{way}_reaction_{gear}" for gear in (1, 2) for way in ("radial", "axial"))
 
 STAGES = (
@@ -135,8 +144,8 @@ def numbers(values: Any) -> Any:
 
 
 def by_law(data: xr.Dataset, names: Sequence[str]) -> dict[str, Any]:
-    """Figures under each friction law, with those of vibration and temperature, and the axis of a sweep."""
-    every = [name for name in (*names, *VIBRATION, *TEMPERATURES) if name in data]
+    """Figures under each law, with those of vibration, temperature and strength, and the axis of a sweep."""
+    every = [name for name in (*names, *VIBRATION, *TEMPERATURES, *RATING) if name in data]
     result: dict[str, Any] = {
         str(law): {name: numbers(data[name].values[position]) for name in every}
         for position, law in enumerate(data["law"].values)

@@ -1,6 +1,6 @@
 """Strength of cylindrical pairs: forces, flank pressure, root stress, safeties at the operating point."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,7 @@ import xarray as xr
 
 from pitchpoint._jax import array, jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
-from pitchpoint.analyses.figures import numbers
+from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails, in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
@@ -17,7 +17,7 @@ from pitchpoint.strength.load_factors import MOST_RESONANCE
 from pitchpoint.strength.rating import rated
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
 
-__all__ = ["STRENGTH"]
+__all__ = ["STRENGTH", "ratings_of"]
 
 _MAIN = (
     "tangential_force",
@@ -27,7 +27,9 @@ _MAIN = (
     "flank_safety",
     "root_stress",
     "root_safety",
+    *RATING,
 )
+_OF_GEARS = ("contact_stress", "root_stress", "flank_safety", "root_safety")
 _SHARED = 2.0
 _LEAST_NOTCH, _MOST_NOTCH = 1.0, 8.0
 _DEEPEST = 2.5
@@ -64,11 +66,12 @@ def _unrated(built: Ready) -> str | None:
 
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
-    stages = [one for one in _stages(built) if one[1].case.gears.rated]
+    stages = _rated(built)
     each = [_rating(one) for _, one in stages]
     several = isinstance(built, BuiltDrive)
     values = {name: np.stack([found[name] for found in each]) for name in each[0]}
     dims = {name: ("stage", "gear")[: np.ndim(found)] for name, found in values.items()}
+    extremes = _extremes(each)
     labels = {"stage": [number for number, _ in stages], "gear": ["gear 1", "gear 2"]}
 
     def told(of: Callable[[Built, Numbers], Iterable[str]]) -> list[str]:
@@ -77,7 +80,8 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
         return [in_stage(number, text) if several else text for number, text in every]
 
     data = dataset(
-        {name: (dims[name], found) for name, found in values.items()},
+        {name: (dims[name], found) for name, found in values.items()}
+        | {name: ((), found) for name, found in extremes.items()},
         labels,
         title="strength",
         method=_method([one for _, one in stages]),
@@ -89,11 +93,12 @@ def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     return data if several else data.isel(stage=0, drop=True)
 
 
-def _stages(built: Ready) -> list[tuple[int, Built]]:
-    """Meshes with their numbers, in the order of the power."""
-    if isinstance(built, BuiltDrive):
-        return [*zip(built.numbers, built.stages, strict=True)]
-    return [(1, built)]
+def _rated(built: Ready) -> list[tuple[int, Built]]:
+    """Meshes that are rated with their numbers, in the order of the power."""
+    stages = (
+        [(1, built)] if isinstance(built, Built) else zip(built.numbers, built.stages, strict=True)
+    )
+    return [one for one in stages if one[1].case.gears.rated]
 
 
 def _rating(built: Built) -> dict[str, np.ndarray]:
@@ -104,6 +109,28 @@ def _rating(built: Built) -> dict[str, np.ndarray]:
     ratio = array(built.dimensions["transverse_contact_ratio"])
     found = rated(mesh.bare, ratio, duty, given.factors, given.strengths, given.finish)
     return {name: np.asarray(value) for name, value in jax.device_get(found).items()}
+
+
+def _extremes(each: Sequence[Numbers]) -> dict[str, float]:
+    """Largest stresses and least safeties of some ratings; NaN where no gear has that safety."""
+    reduced = zip(RATING, _OF_GEARS, (np.fmax, np.fmax, np.fmin, np.fmin), strict=True)
+    return {
+        name: float(extreme.reduce(np.ravel([found[of] for found in each])))
+        for name, of, extreme in reduced
+    }
+
+
+def ratings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
+    """Largest stresses and least safeties [law, point], the same under every friction law.
+
+    None where teeth are not rated.
+    """
+    if STRENGTH.why_not(points[0]) is not None:
+        return {}
+    found = [_extremes([_rating(one) for _, one in _rated(point)]) for point in points]
+    return {
+        name: (("law", "point"), np.array([[one[name] for one in found]] * laws)) for name in RATING
+    }
 
 
 def _method(pairs: Iterable[Built]) -> str:
@@ -186,7 +213,7 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("strength")
     if data is None:
         return {"strength": {}}
-    return {"strength": {name: _nested(data[name].values) for name in _MAIN}}
+    return {"strength": {name: _nested(data[name].values) for name in _MAIN if name in data}}
 
 
 def _nested(values: np.ndarray) -> Any:

@@ -9,6 +9,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Several, Subject, Unasked
 from pitchpoint.analyses.figures import by_law, json_figures
+from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import beside, joined, summaries
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import leaves
@@ -27,7 +28,7 @@ __all__ = [
     "demand_films",
     "demand_one",
     "is_study",
-    "readings_of",
+    "more_of",
     "sweep_values",
 ]
 
@@ -97,7 +98,7 @@ class _Planned:
         changes = self.changes[piece["first"] : piece["stop"]]
         points = [self.point(change) for change in changes]
         under = points[0].models
-        extra = {**self._axis(changes), **beside(points), **readings_of(points, len(under))}
+        extra = {**self._axis(changes), **more_of(points, len(under))}
         data = summaries(points, under, extra, progress, title=self.title)
         data.attrs.update(self.told)
         if self.told.get("axis_kind"):
@@ -117,6 +118,11 @@ class _Planned:
         """InputError for what is wrong with the first point or the last."""
         for change in (*self.changes[:1], *self.changes[1:][-1:]):
             self.point(change)
+
+
+def more_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
+    """Figures of points beside those of their cycle, their strength and those of their source."""
+    return {**beside(points), **ratings_of(points, laws), **readings_of(points, laws)}
 
 
 def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:

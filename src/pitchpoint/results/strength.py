@@ -4,7 +4,7 @@ from typing import Final
 
 from pitchpoint.results.variable import Variable, angle, force, length, pressure
 
-__all__ = ["STRENGTH"]
+__all__ = ["EXTREMES", "STRENGTH"]
 
 
 def _factor(long_name: str, symbol: str) -> Variable:
@@ -72,3 +72,11 @@ STRENGTH: Final = {
     "root_safety": _factor("root safety", "S_F"),
 }
 """Variables of a rating."""
+
+EXTREMES: Final = {
+    "largest_contact_stress": pressure("largest contact stress of the flanks", "σ_H max"),
+    "largest_root_stress": pressure("largest root stress of the teeth", "σ_F max"),
+    "least_flank_safety": _factor("least flank safety of those that are known", "S_H min"),
+    "least_root_safety": _factor("least root safety of those that are known", "S_F min"),
+}
+"""Variables of some ratings together."""

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from pitchpoint.results.strength import STRENGTH
+from pitchpoint.results.strength import EXTREMES, STRENGTH
 from pitchpoint.results.variable import (
     End,
     Variable,
@@ -27,6 +27,7 @@ __all__ = ["VARIABLES", "variable_of"]
 
 VARIABLES: dict[str, Variable] = {
     **STRENGTH,
+    **EXTREMES,
     "phase": Variable("phase of the mesh cycle", "φ", "1"),
     "weight": Variable("weight of the node in a mean over one period", "w", "1"),
     "path": Variable("position on the path of contact from A, in base pitches", "x/p_b", "1"),

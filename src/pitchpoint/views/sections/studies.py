@@ -1,17 +1,18 @@
 """Figures and tables of the studies of a case."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.analyses.figures import CONTACT, MAIN, covered, of_contact
+from pitchpoint.analyses.figures import CONTACT, MAIN, RATING, covered, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.schema import quantity_at
 from pitchpoint.results.chosen_units import unit_in_use
+from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (
@@ -144,14 +145,21 @@ def _columns(seen: Seen) -> list[str]:
     more = ["mean_stiffness", "stiffness_variation", *_MOVING[1:]]
     if of_contact(seen[0][1]):
         return [*CONTACT]
-    return [name for name in (*_TABLE, *more) if any(name in data for _, data, _ in seen)]
+    found = [name for name in (*_TABLE, *more) if any(name in data for _, data, _ in seen)]
+    return found + _of_strength([data for _, data, _ in seen], vary=False)
 
 
 def _cells(data: xr.Dataset, law: int, columns: list[str], point: int = 0) -> list[str]:
+    values = {name: float(_valid(data, name)[law, point]) for name in columns}
     return [
-        show.quantity(name, float(_valid(data, name)[law, point]), with_unit=False, of=data)
-        for name in columns
+        _endless(name, value) or show.quantity(name, value, with_unit=False, of=data)
+        for name, value in values.items()
     ]
+
+
+def _endless(name: str, value: float) -> str:
+    """What is shown of a safety without load; empty for all else."""
+    return "∞" if name in RATING and value == np.inf else ""
 
 
 def _valid(data: xr.Dataset, name: str) -> np.ndarray:
@@ -174,7 +182,24 @@ def _shown(seen: Seen) -> list[str]:
     data = seen[0][1]
     more = _MOVING[2:] if is_design_chart(data) else _MOVING
     first = CONTACT if of_contact(data) else _SHOWN
-    return [*first, *(name for name in more if any(name in each for _, each, _ in seen))]
+    found = [*first, *(name for name in more if any(name in each for _, each, _ in seen))]
+    return found + _of_strength([each for _, each, _ in seen], vary=True)
+
+
+def _of_strength(every: Sequence[xr.Dataset], *, vary: bool) -> list[str]:
+    """Least safeties, without them largest stresses, where there are some, or where they vary."""
+
+    def told(name: str) -> bool:
+        each = [one[name].values for one in every if name in one]
+        known = [values[~np.isnan(values)] for values in each]
+        return any(not vary or _varies(values) for values in known if values.size)
+
+    safeties = [name for name in RATING[2:] if told(name)]
+    return safeties or [name for name in RATING[:2] if told(name)]
+
+
+def _varies(values: np.ndarray) -> bool:
+    return not np.allclose(values, values.flat[0], rtol=ROUNDING, atol=0.0)
 
 
 def _panel(studies: list[tuple[str, Seen]]) -> Panel:
@@ -320,9 +345,10 @@ def swept_rows(data: xr.Dataset) -> list[dict[str, str]]:
 def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
     key = data.attrs["sweep_key"]
     place = {key: _place(data["axis"].values[point], key)}
-    names = CONTACT if of_contact(data) else SWEPT
+    names = CONTACT if of_contact(data) else (*SWEPT, *_of_strength([data], vary=True))
     cells = {
-        head(n, data): shown(n, float(data[n].values[law, point]), data) for n in names if n in data
+        head(n, data): _endless(n, value) or shown(n, value, data)
+        for n, value in ((n, float(data[n].values[law, point])) for n in names if n in data)
     }
     return {**place, "friction law": str(data["law"].values[law]), **cells, **efficiency_of(data)}
 
