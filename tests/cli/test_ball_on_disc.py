@@ -153,7 +153,7 @@ def test_the_report_shows_the_contact_and_leaves_out_what_gears_have(outcome: Ou
     assert "<dt>largest Hertz pressure</dt><dd>1110 MPa</dd>" in body
     assert "normal force" in page
     body, absent = body.split('id="absent"')
-    assert "Loss map (nothing is transmitted by a test rig)" in absent
+    assert "Loss map, Four quadrants (nothing is transmitted by a test rig)" in absent
     for heading in ("base pitch", "back-driving", "Loss map", "Load sharing</dt>", "None"):
         assert heading not in body, heading
     assert render({"one": outcome, "two": outcome})
