@@ -50,7 +50,7 @@ def alone() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ANALYSES, "_entries", few)
         # Another file holds derivatives against differences.
-        patch.setattr(wear_course, "march_sensitivities", lambda *_: {})
+        patch.setattr(wear_course, "march_sensitivities", lambda *_, **__: {})
         yield
 
 
