@@ -31,7 +31,7 @@ LOADS = (
 
 OF_LIMITS = {
     *(f"{part}_{what}" for part in ("flank", "root") for what in ("endurance", "cycles", "safety")),
-    *("contact_limit", "root_limit"),
+    *("contact_limit", "root_limit", "least_flank_safety", "least_root_safety"),
     *("lubricant_factor", "velocity_factor", "roughness_factor"),
 }
 """What is not known without limits of the materials, or for plastics."""
@@ -72,7 +72,7 @@ def rating(case: dict[str, Any]) -> xr.Dataset | None:
         built = Variant(case, "random.toml", "default").built({})
         return STRENGTH.compute(built, {}, lambda _: None)
     except (InputError, ConvergenceError) as error:
-        assert 20 < len(str(error)) < 700
+        assert all(20 < len(str(one)) < 700 for one in error.every)
         return None
 
 
@@ -86,6 +86,9 @@ def check(data: xr.Dataset) -> None:
     known = data["flank_endurance"].notnull()
     assert (data["flank_safety"].notnull() == known).all()
     assert (data["root_safety"].notnull() == data["root_endurance"].notnull()).all()
+    for part in ("flank", "root"):
+        least, each = float(data[f"least_{part}_safety"]), data[f"{part}_safety"].values
+        assert least == np.fmin.reduce(each) if np.isfinite(each).any() else not np.isfinite(least)
     assert (data["rated_dynamic_factor"] >= 1.0).all()
     assert (data["single_contact_factor"] >= 1.0).all()
     failing = (data["flank_safety"] < 1.0).sum() + (data["root_safety"] < 1.0).sum()
