@@ -20,6 +20,25 @@ temperature = "60 degC"
 """
 """The shortest case file of a pair."""
 
+SMOOTH = """
+[gears]
+teeth = [23, 61]
+module = "2 mm"
+face_width = "15 mm"
+profile_shift = [0.4, -0.2]
+[lubricant]
+base = "mineral"
+viscosity_40 = "220 mm2/s"
+viscosity_100 = "19 mm2/s"
+[roughness]
+rq = "0.1 um"
+[operation]
+torque = "60 N m"
+speed = "900 rpm"
+temperature = "60 degC"
+"""
+"""One whose smooth flanks and thick oil have every friction law in its range."""
+
 WAVE = """
 [gears]
 family = "strain_wave"

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import sound
 import xarray as xr
 
 from pitchpoint import cli
@@ -25,20 +26,9 @@ from pitchpoint.exports.evaluator import header, module
 from pitchpoint.runs.run import Outcome, describe, keep, open_result
 
 TITLE = '"""*/ #\' \\ ??/ {title}\u2028 % \U0001f600'
-PAIR = """
-[gears]
-teeth = [12, 120]
-module = "2 mm"
-face_width = "20 mm"
-profile_shift = [0.5, 0.0]
-[lubricant]
-name = "75W90-A"
-[roughness]
-ra = "0.4 um"
-[operation]
-torque = "50 N m"
-speed = "1500 rpm"
-temperature = "60 degC"
+GEARS = sound.PAIR.replace("[23, 61]", "[12, 120]\nprofile_shift = [0.5, 0.0]")
+PAIR = f"""
+{GEARS}
 [loss_map]
 count = 4
 temperatures = ["40 degC", "60 degC"]

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from browser import CHROMIUM, Browser, browser
+from sound import SMOOTH
 
 from pitchpoint import cli
 from pitchpoint.cases.document import Document
@@ -25,23 +26,9 @@ from pitchpoint.runs.explore import Explored, explore, usual
 from pitchpoint.runs.run import Outcome, run
 from pitchpoint.views import show
 
-CASE = """
+CASE = f"""
 title = "A pair & <b>its</b> </script><i>loss</i>"
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = "15 mm"
-profile_shift = [0.4, -0.2]
-[lubricant]
-base = "mineral"
-viscosity_40 = "220 mm2/s"
-viscosity_100 = "19 mm2/s"
-[roughness]
-rq = "0.1 um"
-[operation]
-torque = "60 N m"
-speed = "900 rpm"
-temperature = "60 degC"
+{SMOOTH}
 [models]
 friction = ["iso_tr_14179_2", "xu_2007"]
 """

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 from browser import CHROMIUM, Browser, browser
+from sound import SMOOTH
 
 from pitchpoint.runs.run import run
 from pitchpoint.views.report import write_report
@@ -15,23 +16,9 @@ pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this ma
 
 ALL = "document.documentElement.dataset.drawn === 'all'"
 VISIBLE = "[...document.querySelectorAll('.plot')].filter(p => p.offsetParent)"
-CASE = """
+CASE = f"""
 title = "A pair & <b>its</b> loss"
-[gears]
-teeth = [23, 61]
-module = "2 mm"
-face_width = "15 mm"
-profile_shift = [0.4, -0.2]
-[lubricant]
-base = "mineral"
-viscosity_40 = "220 mm2/s"
-viscosity_100 = "19 mm2/s"
-[roughness]
-rq = "0.1 um"
-[operation]
-torque = "60 N m"
-speed = "900 rpm"
-temperature = "60 degC"
+{SMOOTH}
 [loss_map]
 count = 3
 [variants.one.models]
@@ -40,10 +27,10 @@ friction = ["iso_tr_14179_2", "xu_2007"]
 friction = "constant"
 [studies.shape]
 title = "Shape"
-sweep = { key = "gears.addendum", start = 1.0, stop = 1.4, count = 3 }
+sweep = {{ key = "gears.addendum", start = 1.0, stop = 1.4, count = 3 }}
 [studies.wide]
 title = "Two points, a table wider than a narrow screen"
-sweep = { key = "gears.addendum", values = [1.0, 1.2] }
+sweep = {{ key = "gears.addendum", values = [1.0, 1.2] }}
 """
 
 

@@ -3,6 +3,7 @@
 import dataclasses
 import itertools
 import tomllib
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -212,19 +213,25 @@ def answer(case: dict[str, Any]) -> str:
     return "results"
 
 
-def explore(examples: int) -> None:
-    """Draw cases, the same in every run, and hold each to its answer."""
-    counts = {"results": 0, "input": 0, "convergence": 0}
-
-    @seed(SEED)  # the same draws whatever becomes of this code
-    @settings(
+def drawn(
+    strategy: st.SearchStrategy[dict[str, Any]], examples: int, number: int
+) -> Callable[[Callable[[dict[str, Any]], None]], Callable[[], None]]:
+    """Decorator of what is held to so many cases: the same draws whatever becomes of the code."""
+    chosen = settings(
         max_examples=examples,
         deadline=None,
         database=None,
         phases=[Phase.generate, Phase.shrink],
         suppress_health_check=list(HealthCheck),
     )
-    @given(cases())
+    return lambda holds: seed(number)(chosen(given(strategy)(holds)))
+
+
+def explore(examples: int) -> None:
+    """Draw cases, the same in every run, and hold each to its answer."""
+    counts = {"results": 0, "input": 0, "convergence": 0}
+
+    @drawn(cases(), examples, SEED)
     def draw(case: dict[str, Any]) -> None:
         counts[answer(case)] += 1
 

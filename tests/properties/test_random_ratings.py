@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
-from properties.test_random_cases import between, cases, of, pair
+from properties.test_random_cases import between, cases, drawn, of, pair
 
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.cases.schema import ENDURED, LIFE, PEAK_TO_VALLEY
@@ -100,15 +99,7 @@ def explore(examples: int) -> None:
     """Draw cases, the same in every run, and hold each to its rating."""
     counts = {"rated": 0, "refused": 0}
 
-    @seed(SEED)
-    @settings(
-        max_examples=examples,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate, Phase.shrink],
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(rated())
+    @drawn(rated(), examples, SEED)
     def draw(case: dict[str, Any]) -> None:
         found = rating(case)
         counts["refused" if found is None else "rated"] += 1

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from pitchpoint import units
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
 from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films, without_films
 from pitchpoint.analyses.operation import untransmitted
@@ -360,7 +361,7 @@ def celsius(degrees: np.ndarray) -> np.ndarray:
         >>> celsius(np.array([313.15, 333.15])).tolist()
         [40.0, 60.0]
     """
-    return np.round(degrees - 273.15, 9)
+    return np.round(units.convert(degrees, "degC", "temperature"), 9)
 
 
 def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]) -> list[str]:

@@ -277,9 +277,9 @@ def _sensitivities(built: Built, values: Mapping[str, np.ndarray]) -> dict[str, 
         return {}
     inputs = built.design, built.operation, course.model
     given = models, course.cells, int(asked(built).phases)
-    course_of = values["cycles"], values["worn_depth"]
+    steps = values["cycles"], values["worn_depth"]
     updated = asked(built).profile == "updated"
-    found = march_sensitivities(inputs, *given, *course_of, updated=updated)
+    found = march_sensitivities(inputs, *given, *steps, updated=updated)
     return {name: one._asdict() for name, one in found.items()}
 
 

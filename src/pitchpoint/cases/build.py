@@ -85,6 +85,7 @@ __all__ = [
     "check_alone",
     "covered",
     "drags",
+    "gears_of",
     "operation_at",
     "without_bearing",
 ]
@@ -380,9 +381,7 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     """
     bound_programs()
     wrong = Complaints(document.name)
-    gears = wrong.under("gears").tried(
-        built_gears, case.gears, case.operation.driver, int(case.models.slices)
-    )
+    gears = gears_of(case, wrong)
     if gears is not None and case.worn is not None:
         gears = wrong.tried(_worn, case, gears)
     used = wrong.tried(solids_in_use, case.materials, document, case.operation.temperature)
@@ -407,6 +406,12 @@ def build(case: Case, document: Document, own: FrictionLaw | None = None) -> Bui
     point = operation_at(case.operation)
     built = Built(case, design, point, models, oil, used, tuple(told), fitted=fitted)
     return replace(built, told=(*told, *_left_out(built), *_extrapolated(built)))
+
+
+def gears_of(case: Case, wrong: Complaints) -> tuple[Mesh, tuple[str, ...]] | None:
+    """Mesh of a case and what is to be said of it; None, with a complaint, where it cannot be built."""
+    given = case.gears, case.operation.driver, int(case.models.slices)
+    return wrong.under("gears").tried(built_gears, *given)
 
 
 def check_alone(document: Document, wrong: Complaints) -> None:

@@ -17,6 +17,7 @@ from pitchpoint.cases.build import (
     build,
     covered,
     drags,
+    gears_of,
     operation_at,
     without_bearing,
 )
@@ -28,7 +29,6 @@ from pitchpoint.cases.strength import UNRATED
 from pitchpoint.efficiency.drive import Drive, Stage, chained, owner
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.errors import Complaints, InputError
-from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity, SIValue
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -451,10 +451,7 @@ def _mesh(one: Case, number: int, document: Document) -> Mesh:
 
 
 def _mesh_alone(one: Case) -> Mesh:
-    wrong = Complaints()
-    gears = wrong.under("gears").tried(
-        built_gears, one.gears, one.operation.driver, int(one.models.slices)
-    )
+    gears = gears_of(one, wrong := Complaints())
     if gears is None:
         raise wrong.error
     return gears[0]

@@ -46,13 +46,13 @@ def labelled(data: xr.Dataset, unit: Units = "si") -> xr.Dataset:
 
 def demand_units(unit: Any) -> None:
     """InputError for units that are no choice."""
-    if unit in _BY_NAME or isinstance(unit, Mapping) or (isinstance(unit, str) and "=" in unit):
-        if unit not in _BY_NAME:
-            unit_choice(unit)
+    if unit in _BY_NAME:
         return
-    raise InputError(
-        f'{shown(unit)} was given as units; use "si", "shown", or units by kind, {{"angle": "arcmin"}}'
-    )
+    if not isinstance(unit, Mapping) and not (isinstance(unit, str) and "=" in unit):
+        raise InputError(
+            f'{shown(unit)} was given as units; use "si", "shown", or units by kind, {{"angle": "arcmin"}}'
+        )
+    unit_choice(unit)
 
 
 def in_units(data: xr.Dataset, unit: Units) -> xr.Dataset:
@@ -65,9 +65,7 @@ def in_units(data: xr.Dataset, unit: Units) -> xr.Dataset:
 
 def showing(unit: Units) -> AbstractContextManager[None]:
     """Within it variables are shown in units by kind; in those that hold where it begins for "shown"."""
-    return (
-        nullcontext() if isinstance(unit, str) and unit in _BY_NAME else shown_in(unit_choice(unit))
-    )
+    return nullcontext() if unit in _BY_NAME else shown_in(unit_choice(unit))
 
 
 def _displayed(data: xr.Dataset) -> xr.Dataset:

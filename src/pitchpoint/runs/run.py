@@ -217,13 +217,13 @@ def run_variant(
     outcome.manifest["rows"] = [row.as_json() for row in _rows(built, variant, outcome.parts)]
     _note(outcome, folder, finished=True)
     if folder is not None:
-        for pieces in (
-            "study_*",
-            "loss_map",
-            "four_quadrants",
-        ):  # of parts that were not asked for again
-            _drop_pieces(folder, pieces)
+        for left in _LEFT:
+            _drop_pieces(folder, left)
     return outcome
+
+
+_LEFT = ("study_*", "loss_map", "four_quadrants")
+"""Parts of which pieces are dropped that were not asked for again."""
 
 
 def compute_alone(
