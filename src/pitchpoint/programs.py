@@ -2,7 +2,7 @@
 
 JAX keeps compiled code between processes, but traces and lowers Python anew in each of them, which takes
 longer than the numbers themselves. A program of this module is kept as the portable form that tracing
-gives it (`jax.export`), under a digest of all that decides it: the package's own files, the version of
+gives it (`jax.export`), under a digest of all that decides it: the code that it reaches, the version of
 JAX, the structure of the arguments. What has no such name (a law of the user's own) is traced as ever.
 """
 
@@ -11,6 +11,7 @@ import json
 import logging
 import os
 import platform
+import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -30,6 +31,7 @@ from jax import export
 
 from pitchpoint._jax import jax, kept_folder
 from pitchpoint.kept import read, write
+from pitchpoint.reach import Sources
 
 __all__ = [
     "Program",
@@ -67,13 +69,9 @@ class _NamelessError(Exception):
 
 
 @cache
-def _package_state() -> str:
-    """Digest of every file of the package: changed code or data computes again."""
-    root, found = Path(__file__).parent, hashlib.sha256()
-    for path in sorted(root.rglob("*")):
-        if path.suffix in (".py", ".toml"):
-            found.update(str(path.relative_to(root)).encode() + path.read_bytes())
-    return found.hexdigest()
+def _sources() -> Sources:
+    folder = kept_folder()
+    return Sources(Path(__file__).parent, None if folder is None else folder / "reach")
 
 
 class Program(Generic[P, R]):
@@ -141,8 +139,10 @@ class Program(Generic[P, R]):
         folder = kept_folder()
         if folder is None:
             raise _NamelessError
-        told = [surroundings(), _name(self.function), sorted(self.options.items()), _text(given)]
-        digest = hashlib.sha256(json.dumps(told).encode()).hexdigest()
+        told = json.dumps([_name(self.function), sorted(self.options.items()), _text(given)])
+        # Texts among the arguments stand in quotes of their own: what matches are names from `_name`.
+        code = _sources().digest_of_reach(sorted(set(re.findall(r'"(pitchpoint[.\w]*):', told))))
+        digest = hashlib.sha256(json.dumps([_machine(), code, told]).encode()).hexdigest()
         return folder / "programs" / digest[:40]
 
     def _exported(
@@ -265,12 +265,20 @@ def _module(outline: Any, leaves: Iterator[Any]) -> Any:
 
 def surroundings() -> dict[str, str]:
     """What decides about every program beside its own arguments, and so about the last bits of results."""
+    return {**_machine(), "code": _sources().digest[:16]}
+
+
+def _machine() -> dict[str, str]:
+    """Versions and devices that decide about numbers, whatever the code."""
+    return {**_installed(), "XLA_FLAGS": os.environ.get("XLA_FLAGS", "")}
+
+
+@cache
+def _installed() -> dict[str, str]:
     device = jax.devices()[0]
     return {
         **{name: version(name) for name in _TRACED},
-        "code": _package_state()[:16],
         "device": f"{platform.machine()} {device.platform} {device.device_kind}",
-        "XLA_FLAGS": os.environ.get("XLA_FLAGS", ""),
     }
 
 
