@@ -4,6 +4,8 @@ import os
 import platform
 from collections.abc import Sequence
 from pathlib import Path
+from struct import pack
+from typing import Any
 
 # From 128 rows on the library behind a factorisation divides it among threads that spin while they wait:
 # 24 of 144 rows take 3 ms of one thread and up to 850 ms of two on a busy machine. It reads this once.
@@ -39,6 +41,11 @@ import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
 from jax.typing import ArrayLike, DTypeLike  # noqa: E402
 
+try:
+    from jax.extend.core import get_opaque_trace_state
+except ImportError:  # JAX 0.6
+    from jax.core import get_opaque_trace_state
+
 from pitchpoint.kept import base_folder, prepared  # noqa: E402
 
 __all__ = ["array", "cache_folder", "jax", "jnp", "kept_folder"]
@@ -53,9 +60,35 @@ def cache_folder() -> Path:
     return base_folder() / f"xla-{platform.machine()}-{jax.__version__}"
 
 
+_PLAIN = {bool, int, float, np.float64}
+MOST_NUMBERS = 10_000
+"""Plain numbers whose arrays are kept: some 200 bytes each."""
+
+_NUMBERS: dict[Any, jax.Array] = {}
+_UNTRACED = get_opaque_trace_state()
+
+
 def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) -> jax.Array:
-    """Value as an array; unlike `jnp.asarray` it compiles no program for a plain number."""
-    return jnp.asarray(value if isinstance(value, jax.Array) else np.asarray(value, dtype), dtype)
+    """Value as an array; unlike `jnp.asarray` it compiles no program for a plain number.
+
+    The same plain number gives the same array, for each takes 20 us. While JAX traces it is a constant of
+    what is traced.
+    """
+    if type(value) not in _PLAIN or get_opaque_trace_state() != _UNTRACED:
+        return _placed(value, dtype)
+    # Bytes of a float tell 0.0 from -0.0, and find NaN again.
+    key = type(value), pack("d", value) if isinstance(value, float) else value, dtype
+    if key not in _NUMBERS:
+        if len(_NUMBERS) >= MOST_NUMBERS:
+            _NUMBERS.clear()
+        _NUMBERS[key] = _placed(value, dtype)
+    return _NUMBERS[key]
+
+
+def _placed(value: ArrayLike | Sequence[float], dtype: DTypeLike | None) -> jax.Array:
+    if isinstance(value, jax.Array):
+        return value if dtype is None else jnp.asarray(value, dtype)
+    return jnp.asarray(np.asarray(value, dtype))  # the type said twice costs twice
 
 
 def kept_folder() -> Path | None:
