@@ -458,7 +458,7 @@ class Operating(Table):
 class FrictionChoice(BaseModel):
     """A friction law with values for its own parameters."""
 
-    model_config = ConfigDict(extra="allow", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="allow", frozen=True, defer_build=True)
 
     name: Annotated[str, BeforeValidator(named(_friction_laws, "friction law"))]
     """Friction law; parameters of its own may stand beside it."""
