@@ -8,7 +8,8 @@ from pitchpoint.efficiency.quasi_static import Design, contacts_at, coupling
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wound_up
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 NODES = 24
 """As many phases go through a program together as a cycle has nodes."""

@@ -21,8 +21,9 @@ from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants
+from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 TERMS = TOOTH_COMPLIANCE["beam_foundation_hertz"].terms

@@ -18,7 +18,8 @@ from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.status import Code, Status, summary
 
 LAW = {law.name: law for law in LAWS}

@@ -22,7 +22,8 @@ from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
 from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = solids.find("steel").build()
 CONSTANT = next(law for law in LAWS if law.name == "constant")

@@ -42,7 +42,7 @@ from pitchpoint.cases.strength import Rated, check_strength, rated_case
 from pitchpoint.cases.wear import check_wear
 from pitchpoint.cases.worn import with_wear
 from pitchpoint.contact.contacts import TOUCH, Shape
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
@@ -69,7 +69,7 @@ from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
-from pitchpoint.materials._leaves import Datum
+from pitchpoint.materials.data import Datum
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End

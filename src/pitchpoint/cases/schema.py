@@ -223,7 +223,7 @@ def _rollings() -> list[str]:
 
 
 def _ellipses() -> list[str]:
-    from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
+    from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 
     return list(ELLIPTIC_CONTACT)
 
@@ -253,19 +253,19 @@ def _treatments() -> list[str]:
 
 
 def _viscosities() -> list[str]:
-    from pitchpoint.materials.rheology import VISCOSITY
+    from pitchpoint.materials.registry import VISCOSITY
 
     return list(VISCOSITY)
 
 
 def _densities() -> list[str]:
-    from pitchpoint.materials.rheology import DENSITY
+    from pitchpoint.materials.registry import DENSITY
 
     return list(DENSITY)
 
 
 def _shears() -> list[str]:
-    from pitchpoint.materials.rheology import SHEAR_STRESS
+    from pitchpoint.materials.registry import SHEAR_STRESS
 
     return list(SHEAR_STRESS)
 
@@ -284,7 +284,7 @@ def _asperities() -> list[str]:
 
 
 def _end_profiles() -> list[str]:
-    from pitchpoint.contact.end_profiles import END_PROFILES
+    from pitchpoint.contact.registry import END_PROFILES
 
     return list(END_PROFILES)
 
@@ -458,7 +458,7 @@ class Operating(Table):
 class FrictionChoice(BaseModel):
     """A friction law with values for its own parameters."""
 
-    model_config = ConfigDict(extra="allow", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="allow", frozen=True, defer_build=True)
 
     name: Annotated[str, BeforeValidator(named(_friction_laws, "friction law"))]
     """Friction law; parameters of its own may stand beside it."""
@@ -998,7 +998,7 @@ class FilmTable(Table):
 
     @model_validator(mode="after")
     def _of_profile(self) -> "FilmTable":
-        from pitchpoint.contact.end_profiles import END_PROFILES
+        from pitchpoint.contact.registry import END_PROFILES
 
         given = self.profile_parameters
         if self.end_profile is None:
@@ -1022,7 +1022,7 @@ class FilmTable(Table):
     def _own(self) -> "FilmTable":
         from pitchpoint.lubrication.ehl.model import SMOOTH
         from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS
-        from pitchpoint.materials.rheology import SHEAR_STRESS
+        from pitchpoint.materials.registry import SHEAR_STRESS
 
         law = SHEAR_STRESS[self.shear_law or USUAL_SHEAR_STRESS]
         for key in self.shear_parameters:

@@ -15,7 +15,7 @@ from pitchpoint.efficiency.warm_teeth import Heated
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
-from pitchpoint.materials._leaves import Datum, Status
+from pitchpoint.materials.data import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
 
 __all__ = ["SolidInUse", "datum", "failures", "heated", "heating", "solids_in_use", "surrounded"]

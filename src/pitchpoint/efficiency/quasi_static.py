@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh

@@ -11,7 +11,8 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, Shape
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, Ellipse, EllipticContact
+from pitchpoint.contact.ellipse import Ellipse
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference

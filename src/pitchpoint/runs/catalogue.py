@@ -8,7 +8,7 @@ from pitchpoint import units
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.laws import CASE_LAWS, FRICTION, limits_words
 from pitchpoint.cases.loss_sets import loss_sets
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
@@ -25,8 +25,8 @@ from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
-from pitchpoint.materials._leaves import Datum
-from pitchpoint.materials.rheology import DENSITY, SHEAR_STRESS, VISCOSITY
+from pitchpoint.materials.data import Datum
+from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.wear.laws import WEAR_LAWS

@@ -47,7 +47,7 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials.rheology import DENSITY, SHEAR_STRESS, VISCOSITY
+from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.programs import surroundings
 from pitchpoint.registry import nearest
 from pitchpoint.results.store import (

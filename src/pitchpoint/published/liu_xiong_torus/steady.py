@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.bodies import Body, across
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
