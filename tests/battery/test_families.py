@@ -296,7 +296,25 @@ INSIDE = (np.arange(26) + 0.4) / 26.0
 """As many phases everywhere, so that one program serves."""
 
 
-@pytest.fixture(scope="module", params=FAMILIES, ids=list(FAMILIES))
+FURTHER = (
+    "23/61, high teeth",
+    "17/17",
+    "12/120",
+    "ring 20/-60, wheel drives",
+    "helical ring 18/-71, right flank",
+    "helical rack",
+    "strain wave 200/204",
+)
+"""Of families that have others here; most are another structure to the compiler, some 10 s each."""
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(name, marks=[pytest.mark.whole] * (name in FURTHER), id=name)
+        for name in FAMILIES
+    ],
+)
 def family(request):
     """A mesh with its answers on a grid that crosses all events, and close beside each of them.
 
