@@ -30,7 +30,7 @@ from pitchpoint.efficiency.rows import NODES, one_engagement
 from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
-from pitchpoint.loading.sharing import LoadSharing
+from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset

@@ -23,7 +23,7 @@ from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, OnBalls, opened
 from pitchpoint.loading.equilibrium import touch
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset

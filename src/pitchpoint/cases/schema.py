@@ -181,13 +181,13 @@ def _friction_laws() -> list[str]:
 
 
 def _sharings() -> list[str]:
-    from pitchpoint.loading.sharing import LOAD_SHARING
+    from pitchpoint.loading.registry import LOAD_SHARING
 
     return list(LOAD_SHARING)
 
 
 def _compliances() -> list[str]:
-    from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+    from pitchpoint.loading.registry import TOOTH_COMPLIANCE
 
     return list(TOOTH_COMPLIANCE)
 

@@ -14,8 +14,7 @@ from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
 from pitchpoint.lubrication.conditions import Law, shape_of

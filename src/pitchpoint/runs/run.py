@@ -37,8 +37,7 @@ from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL
 from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
