@@ -14,6 +14,7 @@ from pitchpoint.cases.document import MARKS, STATUSES
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import Case, DriveCase, StageTable, quantity_of, usual_words
 from pitchpoint.input.tables import alternatives, sentences
+from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
 
@@ -63,7 +64,8 @@ def _section(title: str, words: str, rows: Sequence[Row]) -> list[str]:
 
 def variables_page() -> str:
     """Every variable that a result may hold."""
-    own = {name: one for each in ANALYSES.values() for name, one in each.variables.items()}
+    every = (*ANALYSES.values(), *PUBLICATIONS.values())
+    own = {name: one for each in every for name, one in each.variables.items()}
     rows = [
         (f"`{name}`", one.long_name, one.symbol, one.unit, one.usual, _SIDES.get(one.end, ""))
         for name, one in sorted({**VARIABLES, **own}.items())

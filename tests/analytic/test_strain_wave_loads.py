@@ -15,8 +15,8 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagement
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
@@ -34,7 +34,7 @@ FORMS = {
     "flat": (DOUBLE_ARCS["flat"], 0.25),
     "involute": (InvoluteForm(3.32), 0.35),
 }
-LINEAR = TOOTH_COMPLIANCE["beam_hertz"].terms
+LINEAR = terms_of("beam_hertz")
 TORQUES = (4.7, 47.0, 94.0)
 RATED = TORQUES[1]
 NODES = (24, 48)

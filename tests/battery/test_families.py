@@ -25,7 +25,8 @@ from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.sharing import applies
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
@@ -263,7 +264,7 @@ def laws_for(mesh):
 
 
 def sharing_for(mesh):
-    return next(name for name in SHARING if LOAD_SHARING[name].applies(mesh))
+    return next(name for name in SHARING if applies(LOAD_SHARING[name], mesh))
 
 
 def xu_alone(mesh):

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from sound import WAVE
 
-from pitchpoint.analyses.joint import JOINT, RATED, TORQUES, _found, joint_part
-from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.analyses.joint import RATED, TORQUES, _found, joint_part
+from pitchpoint.analyses.registry import ANALYSES, JOINT, TORSION
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures

@@ -30,7 +30,8 @@ from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.loading.registry import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import DIRECT, Code, Status, summary

@@ -58,8 +58,9 @@ from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.sharing import demand_sharing
+from pitchpoint.loading.tooth_compliance import Terms, terms_of, uncovered
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
@@ -554,7 +555,7 @@ def _models(
         parameters={},
         sharing=LOAD_SHARING[case.models.load_sharing],
         rolling=_inlet(ROLLING_RESISTANCE[case.models.rolling_resistance], case),
-        compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance].terms,
+        compliance=terms_of(case.models.tooth_compliance),
     )
     return _under(laws, common, given)
 
@@ -661,7 +662,9 @@ def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
             others = ", ".join(law.name for law in LAWS if applies(law, mesh) is None)
             told = f"{why_not}; choose one of {others}"
             wrong.add(InputError(told, key="models.friction", value=place))
-    wrong.under("models.load_sharing").tried(LOAD_SHARING[models.load_sharing].check, mesh)
+    wrong.under("models.load_sharing").tried(
+        demand_sharing, LOAD_SHARING[models.load_sharing], mesh
+    )
     wrong.tried(_check_map, case, mesh)
     if models.tooth_temperature != "isothermal":
         wrong.tried(_check_heat, case, mesh)
@@ -878,7 +881,7 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
     sections = _sections(mesh)
-    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections, case.gears.members)
+    return uncovered(TOOTH_COMPLIANCE[case.models.tooth_compliance], sections, case.gears.members)
 
 
 @program
