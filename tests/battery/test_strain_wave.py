@@ -257,7 +257,12 @@ DRIVES = {
 }
 
 
-@pytest.fixture(scope="module", params=DRIVES)
+@pytest.fixture(
+    scope="module",
+    params=[  # the last three are other structures to the compiler
+        pytest.param(name, marks=[pytest.mark.whole] * ("fixed" not in name)) for name in DRIVES
+    ],
+)
 def running(request):
     mesh = build(**DRIVES[request.param])
     carried = 0.2 if mesh.loaded[0] else 20.0

@@ -145,9 +145,7 @@ def names(inputs):
 
 
 @pytest.mark.parametrize("choice", [0, 1, 2], ids=["xu", "iso", "constant"])
-@pytest.mark.parametrize(
-    "name", ["18/36", pytest.param("undercut 10/41", marks=pytest.mark.whole)]
-)
+@pytest.mark.parametrize("name", ["18/36", pytest.param("undercut 10/41", marks=pytest.mark.whole)])
 def test_gradients_equal_differences(name, choice):
     check_gradients((design_of(CASES[name]()), operation()), choice)
 

@@ -4,6 +4,7 @@ import dataclasses
 
 import equinox as eqx
 import numpy as np
+import pytest
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.bodies import Body
@@ -80,6 +81,7 @@ def with_slope(own, factors):
     return jax.jacfwd(twice, has_aux=True)(factors)
 
 
+@pytest.mark.whole
 def test_derivatives_by_inertia_damping_and_torus_radius_are_those_of_differences():
     """Differences of two steps, extrapolated."""
     own, middle = design(), np.ones(3)

@@ -241,6 +241,11 @@ def explore(examples: int) -> None:
 
 
 def test_random_cases() -> None:
+    explore(30)
+
+
+@pytest.mark.whole
+def test_more_random_cases() -> None:
     explore(EXAMPLES)
 
 
