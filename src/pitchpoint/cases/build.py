@@ -15,6 +15,7 @@ from pitchpoint.cases.films import film_model
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
+from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import (
     FORCE,
     TEMPERATURE,
@@ -175,7 +176,7 @@ class Built:
     @property
     def film(self) -> FilmThickness:
         """The film law of the case, with the heat in the inlet."""
-        return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case)
+        return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case.models)
 
     @cached_property
     def film_model(self) -> FilmModel | None:
@@ -548,21 +549,36 @@ def _models(
     """Models under each law of the case, or under the user's own."""
     names = [choice.name for choice in case.models.friction]
     laws = [_law(name, case, used, mesh) for name in names] if own is None else [own]
-    given = {choice.name: choice.parameters for choice in case.models.friction}
-    common = Models(
+    if any(law.films is not None for law in laws):
+        return _under(laws, _common(case.models), _given(case.models))
+    return _under_formulas(tuple(laws), case.models)
+
+
+@remembering
+def _under_formulas(laws: tuple[FrictionLaw, ...], choices: Choices) -> tuple[Models, ...]:
+    return _under(laws, _common(choices), _given(choices))
+
+
+def _given(choices: Choices) -> dict[str, Mapping[str, float]]:
+    """Parameters of friction laws that the case gives, by name of the law."""
+    return {choice.name: choice.parameters for choice in choices.friction}
+
+
+def _common(choices: Choices) -> Models:
+    """Models without a friction law."""
+    return Models(
         friction=(),
         choice=array(0),
         parameters={},
-        sharing=LOAD_SHARING[case.models.load_sharing],
-        rolling=_inlet(ROLLING_RESISTANCE[case.models.rolling_resistance], case),
-        compliance=terms_of(case.models.tooth_compliance),
+        sharing=LOAD_SHARING[choices.load_sharing],
+        rolling=_inlet(ROLLING_RESISTANCE[choices.rolling_resistance], choices),
+        compliance=terms_of(choices.tooth_compliance),
     )
-    return _under(laws, common, given)
 
 
-def _inlet(law: Inlet, case: Case) -> Inlet:
+def _inlet(law: Inlet, choices: Choices) -> Inlet:
     """A law of film or of rolling resistance with the heat in the inlet that the case asks for."""
-    return with_inlet_heating(law, INLET_HEATING[case.models.inlet_heating])
+    return with_inlet_heating(law, INLET_HEATING[choices.inlet_heating])
 
 
 def _under(
@@ -802,6 +818,7 @@ def _usual(key: str) -> object:
     return Dynamics.model_fields[key].default
 
 
+@remembering
 def drags(
     losses: Mapping[str, Loss], bodies: Sequence[str], inner: Collection[frozenset[str]]
 ) -> tuple[Drag, ...]:
@@ -1020,6 +1037,7 @@ def _check_temperature(temperature: float, oil: lubricants.LubricantRecord, key:
         )
 
 
+@remembering
 def _roughness(surface: Surface) -> Roughness:
     if surface.ra is not None and surface.rq is not None:
         (ra_1, ra_2), (rq_1, rq_2) = surface.ra, surface.rq

@@ -54,6 +54,8 @@ def _limit(sharing: LoadSharing, mesh: Mesh) -> str | None:
         return "holds where all rigid flanks in mesh touch, and some of these have a gap"
     if sharing.flanks == "wave" and mesh.counts != "wave":
         return "holds for strain-wave gears, and these are not"
+    if not sharing.straight and sharing.ratio_range == (0.0, float("inf")):
+        return None
     whole, overlap = map(float, _ratios(mesh))
     if sharing.straight and overlap > 0.0:
         return "holds for spur gears, and these are helical"

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
+from types import FunctionType
 from typing import Any, Protocol, runtime_checkable
 
 import equinox as eqx
@@ -417,6 +418,13 @@ def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     Raises:
         InputError: the law asks for something that is neither a condition nor has a default.
     """
+    if isinstance(law, FunctionType):
+        wanted, parameters = _arguments(law)
+        return [*wanted], {**parameters}
+    return _read_arguments(law)
+
+
+def _read_arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     wanted, parameters = [], {}
     for name, parameter in inspect.signature(law).parameters.items():
         if name in UNITS:
@@ -429,6 +437,9 @@ def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
                 f"at a contact; conditions are {', '.join(UNITS)}"
             )
     return wanted, parameters
+
+
+_arguments = lru_cache(maxsize=256)(_read_arguments)  # each case asks its laws anew
 
 
 def evaluate(
