@@ -4,8 +4,6 @@ import os
 import platform
 from collections.abc import Sequence
 from pathlib import Path
-from struct import pack
-from typing import Any
 
 # From 128 rows on the library behind a factorisation divides it among threads that spin while they wait:
 # 24 of 144 rows take 3 ms of one thread and up to 850 ms of two on a busy machine. It reads this once.
@@ -60,35 +58,34 @@ def cache_folder() -> Path:
     return base_folder() / f"xla-{platform.machine()}-{jax.__version__}"
 
 
-_PLAIN = {bool, int, float, np.float64}
-MOST_NUMBERS = 10_000
-"""Plain numbers whose arrays are kept: some 200 bytes each."""
+FEW_NUMBERS = 16
+MOST_KEPT = 10_000
+"""Arrays of few numbers that are kept, some 500 bytes each."""
 
-_NUMBERS: dict[Any, jax.Array] = {}
+_ARRAYS: dict[tuple[str, tuple[int, ...], bytes], jax.Array] = {}
 _UNTRACED = get_opaque_trace_state()
 
 
 def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) -> jax.Array:
-    """Value as an array; unlike `jnp.asarray` it compiles no program for a plain number.
+    """Value as an array; unlike `jnp.asarray` it compiles no program for plain numbers.
 
-    The same plain number gives the same array, for each takes 20 us. While JAX traces it is a constant of
-    what is traced.
+    The same few numbers give the same array, for each that is put on the device takes 20 to 40 us. While JAX
+    traces they are constants of what is traced.
     """
-    if type(value) not in _PLAIN or get_opaque_trace_state() != _UNTRACED:
-        return _placed(value, dtype)
-    # Bytes of a float tell 0.0 from -0.0, and find NaN again.
-    key = type(value), pack("d", value) if isinstance(value, float) else value, dtype
-    if key not in _NUMBERS:
-        if len(_NUMBERS) >= MOST_NUMBERS:
-            _NUMBERS.clear()
-        _NUMBERS[key] = _placed(value, dtype)
-    return _NUMBERS[key]
-
-
-def _placed(value: ArrayLike | Sequence[float], dtype: DTypeLike | None) -> jax.Array:
     if isinstance(value, jax.Array):
         return value if dtype is None else jnp.asarray(value, dtype)
-    return jnp.asarray(np.asarray(value, dtype))  # the type said twice costs twice
+    numbers = np.asarray(value, dtype)
+    if get_opaque_trace_state() != _UNTRACED:
+        return jnp.asarray(numbers, dtype)
+    if numbers.size > FEW_NUMBERS:
+        return jnp.asarray(numbers, numbers.dtype)  # without its type a program is compiled
+    key = numbers.dtype.char, numbers.shape, numbers.tobytes()
+    if key not in _ARRAYS:
+        if len(_ARRAYS) >= MOST_KEPT:
+            _ARRAYS.clear()
+        # A copy, since the device may share the memory of whoever asks.
+        _ARRAYS[key] = jnp.asarray(numbers.copy(), numbers.dtype)
+    return _ARRAYS[key]
 
 
 def kept_folder() -> Path | None:

@@ -4,6 +4,7 @@ import logging
 import math
 import os
 from pathlib import Path
+from typing import Any
 
 import jax
 import numpy as np
@@ -102,10 +103,40 @@ def test_while_jax_traces_a_plain_number_is_a_constant_of_what_is_traced() -> No
     assert isinstance(_jax.array(3.0), jax.Array)
 
 
-def test_arrays_of_plain_numbers_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_jax, "MOST_NUMBERS", 3)
+@pytest.mark.parametrize("value", [[1.0, 2.0], (1, 2), np.eye(2), np.eye(2, dtype=np.float32), []])
+def test_so_are_a_few_numbers(value: Any) -> None:
+    array = _jax.array(value)
+    assert array.dtype == np.asarray(value).dtype
+    assert array.tolist() == np.asarray(value).tolist()
+    assert _jax.array(value) is array
+
+
+@pytest.mark.parametrize("size", [_jax.FEW_NUMBERS, 64 * _jax.FEW_NUMBERS])
+def test_changed_numbers_are_another_array(size: int) -> None:
+    numbers = np.arange(float(size))
+    before = _jax.array(numbers)
+    if size <= _jax.FEW_NUMBERS:
+        numbers += 1.0
+        assert before.tolist() == [*range(size)]
+        assert _jax.array(numbers).tolist() == [*range(1, size + 1)]
+    else:
+        assert _jax.array(numbers) is not before
+
+
+def test_no_program_is_compiled_for_numbers() -> None:
+    compiled: list[str] = []
+    jax.monitoring.register_event_duration_secs_listener(
+        lambda event, *_, **__: compiled.append(event) if "backend_compile" in event else None
+    )
+    for shape in ((), (7,), (3, 1, 5), (257,)):
+        _jax.array(np.full(shape, 0.123)).block_until_ready()
+    assert not compiled
+
+
+def test_arrays_that_are_kept_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_jax, "MOST_KEPT", 3)
     assert [float(_jax.array(value)) for value in (5.0, 6.0, 7.0, 8.0, 5.0)] == [5, 6, 7, 8, 5]
-    assert len(_jax._NUMBERS) <= 3
+    assert len(_jax._ARRAYS) <= 3
 
 
 def test_an_array_is_itself() -> None:

@@ -21,7 +21,7 @@ from pitchpoint.loading.compliance import Compliance, compliance
 from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
+from pitchpoint.programs import looping_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
@@ -180,7 +180,7 @@ def _added(
     return added_gap(deviations, mesh.spots(period.contacts, mesh.onward * turned))
 
 
-@program
+@looping_program
 def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> KinematicError:
     return kinematic_error(period.contacts, period.yields, period.loaded, added)
 
