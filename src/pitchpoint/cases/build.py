@@ -62,13 +62,19 @@ from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.loading.sharing import demand_sharing
 from pitchpoint.loading.tooth_compliance import Terms, terms_of, uncovered
 from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
 from pitchpoint.lubrication.ehl.model import FilmModel
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
+from pitchpoint.lubrication.registry import (
+    ASPERITY_LOAD,
+    FILM_THICKNESS,
+    INLET_HEATING,
+    LAWS,
+    ROLLING_RESISTANCE,
+    AsperityLoad,
+    FilmThickness,
+    FrictionLaw,
+)
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.data import Datum
 from pitchpoint.materials.surfaces import Roughness

@@ -17,7 +17,7 @@ from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.gears.family import Followed
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.units import hardness_scale
 

@@ -11,7 +11,7 @@ from pitchpoint.cases.document import Document, resolve
 from pitchpoint.cases.schema import usual_at, validate
 from pitchpoint.cases.stages import Ready, ready
 from pitchpoint.errors import Complaints, InputError
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import FrictionLaw
 
 __all__ = [
     "Variant",

@@ -39,13 +39,14 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL
-from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
-from pitchpoint.lubrication.ehl.texture import ASPERITIES
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
+from pitchpoint.lubrication.registry import (
+    FILM_THICKNESS,
+    INLET_HEATING,
+    ROLLING_RESISTANCE,
+    FrictionLaw,
+)
 from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.programs import surroundings
 from pitchpoint.published.registry import publication_of
