@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from itertools import count
 from math import prod
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
 import xarray as xr
@@ -39,7 +39,6 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
-from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
 from pitchpoint.lubrication.registry import (
     FILM_THICKNESS,
@@ -64,6 +63,9 @@ from pitchpoint.results.store import (
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.case import Case, CaseLike, as_case, held
 from pitchpoint.runs.jobs import Job, job_of, jobs
+
+if TYPE_CHECKING:
+    from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
     "MEETINGS",
@@ -701,7 +703,7 @@ def _of_mesh(built: Built) -> dict[str, Any]:
     return found
 
 
-def _of_films(model: FilmModel) -> dict[str, Any]:
+def _of_films(model: "FilmModel") -> dict[str, Any]:
     """Models behind films that are solved, by effect."""
     found: dict[str, Any] = {
         "viscosity under pressure": VISCOSITY[model.viscosity_law],
