@@ -37,8 +37,7 @@ from pitchpoint.dynamics.transient import Transient, transient, transient_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

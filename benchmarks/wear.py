@@ -32,7 +32,7 @@ from pitchpoint.gears.designs import rows
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.wear.history import WearModel, as_new, one_turn

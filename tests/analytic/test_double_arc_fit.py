@@ -9,9 +9,10 @@ from strain_wave_positions import DoubleArc, Drive, Made
 
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.strain_wave import double_arc_fit
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, DoubleArcForm, build_strain_wave
+from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.double_arc_fit import fit_double_arc, merit_of
 from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
 
 TEETH = (100, 102)
 START = DOUBLE_ARCS["liu"]

@@ -17,8 +17,7 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -19,8 +19,7 @@ from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wind_up
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness

@@ -25,8 +25,7 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program

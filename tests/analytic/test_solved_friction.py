@@ -26,10 +26,11 @@ from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.ehl import traction
-from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.registry import SMOOTH
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.traction import EHL_LINE, FilmTraction
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.status import Code
 

@@ -9,9 +9,10 @@ from scipy.special import k0
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL, Conduction
+from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, THERMAL
 from pitchpoint.lubrication.ehl.solve import line_films, solve_lines
 from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH, Spread
 from pitchpoint.lubrication.ehl.texture import Rough

@@ -19,7 +19,7 @@ from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.conditions import Conditions
 from pitchpoint.lubrication.ehl.model import FilmModel
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.runs.run import load_case

@@ -23,12 +23,12 @@ from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.design import build_strain_wave
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.sharing import applies
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

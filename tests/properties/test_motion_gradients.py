@@ -17,8 +17,7 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from pitchpoint import programs
-from pitchpoint.lubrication.friction_coefficient import LAWS, xu_2007
+from pitchpoint.lubrication.friction_coefficient import xu_2007
+from pitchpoint.lubrication.registry import LAWS
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.programs import Program, program
 

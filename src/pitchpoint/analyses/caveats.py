@@ -15,11 +15,13 @@ from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited
-from pitchpoint.lubrication.asperity_load import AsperityLoad
-from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import (
+    ROLLING_RESISTANCE,
+    AsperityLoad,
+    FilmThickness,
+    FrictionLaw,
+)
 from pitchpoint.status import Code
 
 __all__ = [

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, reduce
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import equinox as eqx
 import numpy as np
@@ -11,8 +11,6 @@ from pydantic import TypeAdapter, ValidationError
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.films import film_model
-from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.remembered import remembering
@@ -40,8 +38,6 @@ from pitchpoint.cases.solids import (
     surrounded,
 )
 from pitchpoint.cases.strength import Rated, check_strength, rated_case
-from pitchpoint.cases.wear import check_wear
-from pitchpoint.cases.worn import with_wear
 from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
@@ -63,19 +59,28 @@ from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.loading.sharing import demand_sharing
 from pitchpoint.loading.tooth_compliance import Terms, terms_of, uncovered
 from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
-from pitchpoint.lubrication.ehl.model import FilmModel
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
+from pitchpoint.lubrication.registry import (
+    ASPERITY_LOAD,
+    FILM_THICKNESS,
+    INLET_HEATING,
+    LAWS,
+    ROLLING_RESISTANCE,
+    AsperityLoad,
+    FilmThickness,
+    FrictionLaw,
+)
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.data import Datum
+from pitchpoint.materials.solids import SolidRecord
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
 from pitchpoint.status import Code, Status
+
+if TYPE_CHECKING:
+    from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
     "ALONE",
@@ -179,14 +184,14 @@ class Built:
         return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case.models)
 
     @cached_property
-    def film_model(self) -> FilmModel | None:
+    def film_model(self) -> "FilmModel | None":
         """How films of the contacts are solved; None where no table, law or wear asks for them."""
         table, wear = self.case.film, self.case.wear
         if table is None and (wear is None or wear.load_ratio == "formula"):
             return next((law.films for law in self.laws if law.films is not None), None)
         solids = [used.record for used in self.solids]
         usual = FilmTable(solver="line")
-        return film_model(table or usual, solids, tooth_size(self.design.mesh))
+        return _film_model(table or usual, solids, tooth_size(self.design.mesh))
 
     @property
     def asperities(self) -> AsperityLoad | None:
@@ -455,6 +460,8 @@ def _sound(model: TypeAdapter[T], table: Any) -> T | None:
 
 def _worn(case: Case, gears: tuple[Mesh, tuple[str, ...]]) -> tuple[Mesh, tuple[str, ...]]:
     """Gears with the wear of their flanks, and what is to be said of them."""
+    from pitchpoint.cases.worn import with_wear
+
     assert case.worn is not None
     mesh, told = with_wear(gears[0], case.gears, case.worn)
     return mesh, (*gears[1], told)
@@ -487,11 +494,28 @@ def _check_parts(
         wrong.tried(_check_hardness, case, used)
         wrong.tried(check_strength, case, used)
     if case.film is not None:
-        wrong.tried(height_maps, case.film)
-        if used is not None:
-            wrong.tried(film_model, case.film, [one.record for one in used], None)
-    if mesh is not None and used is not None:
+        _check_films(case.film, used, wrong)
+    if case.wear is not None and mesh is not None and used is not None:
+        from pitchpoint.cases.wear import check_wear
+
         wrong.tried(check_wear, case, mesh, used)
+
+
+def _check_films(
+    table: FilmTable, used: tuple[SolidInUse, SolidInUse] | None, wrong: Complaints
+) -> None:
+    from pitchpoint.cases.height_maps import height_maps
+
+    wrong.tried(height_maps, table)
+    if used is not None:
+        wrong.tried(_film_model, table, [one.record for one in used], None)
+
+
+def _film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | None) -> "FilmModel":
+    """How films are solved; loaded with what solves them, which few cases ask for."""
+    from pitchpoint.cases.films import film_model
+
+    return film_model(table, solids, size)
 
 
 def _extrapolated(built: Built) -> list[str]:
@@ -610,7 +634,7 @@ def _law(name: str, case: Case, used: Sequence[SolidInUse], mesh: Mesh) -> Frict
         return law
     size = tooth_size(mesh)
     if case.film is not None:
-        return replace(law, films=film_model(case.film, [one.record for one in used], size))
+        return replace(law, films=_film_model(case.film, [one.record for one in used], size))
     return law if size is None else replace(law, films=replace(law.films, inlet=size))
 
 

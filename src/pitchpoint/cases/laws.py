@@ -4,14 +4,18 @@ from math import inf
 
 from pitchpoint import units
 from pitchpoint.lubrication.conditions import UNITS
-from pitchpoint.lubrication.ehl.traction import EHL_LINE
-from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
+from pitchpoint.lubrication.registry import LAWS, FrictionLaw
 from pitchpoint.published.registry import LAWS_OF_CASES
 from pitchpoint.registry import Registry
 
 __all__ = ["FRICTION", "limits_words"]
 
-FRICTION: Registry[FrictionLaw] = Registry("friction law", *LAWS, EHL_LINE, places=LAWS_OF_CASES)
+SOLVED = {"ehl_line": "pitchpoint.lubrication.ehl.traction:EHL_LINE"}
+"""Places of laws that are no formula."""
+
+FRICTION: Registry[FrictionLaw] = Registry(
+    "friction law", *LAWS, places={**SOLVED, **LAWS_OF_CASES}
+)
 
 
 def limits_words(name: str, limits: tuple[float, float]) -> str:

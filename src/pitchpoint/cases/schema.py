@@ -236,7 +236,7 @@ def _breakaways() -> list[str]:
 
 
 def _rollings() -> list[str]:
-    from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+    from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 
     return list(ROLLING_RESISTANCE)
 
@@ -248,13 +248,13 @@ def _ellipses() -> list[str]:
 
 
 def _films() -> list[str]:
-    from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
+    from pitchpoint.lubrication.registry import FILM_THICKNESS
 
     return list(FILM_THICKNESS)
 
 
 def _heatings() -> list[str]:
-    from pitchpoint.lubrication.inlet_heating import INLET_HEATING
+    from pitchpoint.lubrication.registry import INLET_HEATING
 
     return list(INLET_HEATING)
 
@@ -290,14 +290,13 @@ def _shears() -> list[str]:
 
 
 def _thermals() -> list[str]:
-    from pitchpoint.lubrication.ehl.conduction import THERMAL
+    from pitchpoint.lubrication.ehl.registry import THERMAL
 
     return list(THERMAL)
 
 
 def _asperities() -> list[str]:
-    from pitchpoint.lubrication.ehl.model import SMOOTH
-    from pitchpoint.lubrication.ehl.texture import ASPERITIES
+    from pitchpoint.lubrication.ehl.registry import ASPERITIES, SMOOTH
 
     return [SMOOTH, *ASPERITIES]
 
@@ -309,7 +308,7 @@ def _end_profiles() -> list[str]:
 
 
 def _asperity_loads() -> list[str]:
-    from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
+    from pitchpoint.lubrication.registry import ASPERITY_LOAD
 
     return list(ASPERITY_LOAD)
 
@@ -1039,7 +1038,7 @@ class FilmTable(Table):
 
     @model_validator(mode="after")
     def _own(self) -> "FilmTable":
-        from pitchpoint.lubrication.ehl.model import SMOOTH
+        from pitchpoint.lubrication.ehl.registry import SMOOTH
         from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS
         from pitchpoint.materials.registry import SHEAR_STRESS
 

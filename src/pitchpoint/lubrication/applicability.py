@@ -1,10 +1,8 @@
 """Which laws hold for the contacts of a mesh, by what they ask for."""
 
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.conditions import arguments, of_other_shape
-from pitchpoint.lubrication.film_thickness import FilmThickness
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import AsperityLoad, FilmThickness, FrictionLaw
 
 __all__ = ["OF_PITCH_POINT", "Limited", "applies", "asks_for_pitch_point"]
 
@@ -27,7 +25,7 @@ def asks_for_pitch_point(law: FrictionLaw) -> bool:
     """True if a law asks for what only a mesh with a pitch point has.
 
     Example:
-        >>> from pitchpoint.lubrication.friction_coefficient import LAWS
+        >>> from pitchpoint.lubrication.registry import LAWS
         >>> [law.name for law in LAWS if asks_for_pitch_point(law)]
         ['iso_tr_14179_2']
     """

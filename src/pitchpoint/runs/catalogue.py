@@ -13,16 +13,19 @@ from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
-from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
+from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point
-from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
 from pitchpoint.lubrication.conditions import Law, shape_of
-from pitchpoint.lubrication.ehl.texture import ASPERITIES
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.ehl.registry import ASPERITIES
+from pitchpoint.lubrication.registry import (
+    ASPERITY_LOAD,
+    FILM_THICKNESS,
+    INLET_HEATING,
+    ROLLING_RESISTANCE,
+    FilmThickness,
+    FrictionLaw,
+)
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.data import Datum
 from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY

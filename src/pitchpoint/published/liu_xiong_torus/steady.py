@@ -19,9 +19,7 @@ from pitchpoint.dynamics.right_hand_side import Moving, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, ROLLING_RESISTANCE, FilmThickness
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 
