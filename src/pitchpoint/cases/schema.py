@@ -212,25 +212,25 @@ def _compliances() -> list[str]:
 
 
 def _contact_laws() -> list[str]:
-    from pitchpoint.dynamics.contact_law import CONTACT_LAWS
+    from pitchpoint.dynamics.registry import CONTACT_LAWS
 
     return list(CONTACT_LAWS)
 
 
 def _tooth_temperatures() -> list[str]:
-    from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
+    from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 
     return list(TOOTH_TEMPERATURE)
 
 
 def _bearing_losses() -> list[str]:
-    from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
+    from pitchpoint.efficiency.registry import BEARING_LOSS
 
     return list(BEARING_LOSS)
 
 
 def _breakaways() -> list[str]:
-    from pitchpoint.efficiency.breakaway import BREAKAWAY
+    from pitchpoint.efficiency.registry import BREAKAWAY
 
     return list(BREAKAWAY)
 
@@ -260,7 +260,7 @@ def _heatings() -> list[str]:
 
 
 def _wear_laws() -> list[str]:
-    from pitchpoint.wear.laws import WEAR_LAWS
+    from pitchpoint.wear.registry import WEAR_LAWS
 
     return list(WEAR_LAWS)
 
@@ -651,8 +651,7 @@ class Loss(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> "Loss":
-        from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-        from pitchpoint.efficiency.breakaway import BREAKAWAY
+        from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 
         moving = self._asked(self.bearing, BEARING_LOSS[self.bearing].factors, self.factors)
         holding = [f"breakaway_{name}" for name in self.breakaway_factors]
