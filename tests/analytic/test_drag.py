@@ -8,10 +8,11 @@ import pytest
 
 from pitchpoint import citations
 from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, palmgren_1959
-from pitchpoint.efficiency.breakaway import BREAKAWAY, dry_and_viscous
+from pitchpoint.efficiency.bearing_loss import palmgren_1959
+from pitchpoint.efficiency.breakaway import dry_and_viscous
 from pitchpoint.efficiency.drag import Drag, at_rest
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError

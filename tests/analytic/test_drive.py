@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Stage, chained, drive_cycle
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import starting_torque_of_drive
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair

@@ -7,12 +7,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.energy import energies
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.harmonic_balance import harmonic_balance
 from pitchpoint.dynamics.integration import by_steps
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.series import by_series
 from pitchpoint.dynamics.steady_state import separating_steady_state, steady_state
 from pitchpoint.dynamics.sweep import speed_sweep

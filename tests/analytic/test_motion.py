@@ -9,10 +9,10 @@ from sound import quick_first
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.dynamics.bodies import Body, across, motor
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.passage import passage, polynomial, tabulated
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.steady_motion import (
     steady_motion,

@@ -12,13 +12,9 @@ import pytest
 import pitchpoint
 from pitchpoint import citations
 from pitchpoint.cases.solids import heated, heating, surrounded
+from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.summary import heat
-from pitchpoint.efficiency.tooth_temperature import (
-    TOOTH_TEMPERATURE,
-    isothermal,
-    modulus_at,
-    vdi_2736_2,
-)
+from pitchpoint.efficiency.tooth_temperature import isothermal, modulus_at, vdi_2736_2
 from pitchpoint.efficiency.warm_teeth import warm_teeth
 from pitchpoint.errors import InputError
 from pitchpoint.materials import solids

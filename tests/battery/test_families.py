@@ -13,9 +13,9 @@ from flank_curves import Ball, Curves, Discs, Involutes, RackFlanks, TorusFlanks
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair

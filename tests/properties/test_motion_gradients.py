@@ -8,9 +8,9 @@ import pytest
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.bodies import Body
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.passage import sampled
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.steady_motion import periodic_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation

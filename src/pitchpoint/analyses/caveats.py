@@ -8,13 +8,13 @@ import numpy as np
 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails
-from pitchpoint.cases.laws import FRICTION, limits_words
+from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.cases.stages import Ready
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.lubrication.applicability import Limited
+from pitchpoint.lubrication.applicability import Limited, limits_words
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
 from pitchpoint.lubrication.registry import (
     ROLLING_RESISTANCE,

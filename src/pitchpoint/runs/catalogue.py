@@ -6,16 +6,14 @@ from typing import Any
 
 from pitchpoint import units
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.laws import FRICTION, limits_words
+from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-from pitchpoint.efficiency.breakaway import BREAKAWAY
-from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
+from pitchpoint.dynamics.registry import CONTACT_LAWS
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
-from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point
+from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point, limits_words
 from pitchpoint.lubrication.conditions import Law, shape_of
 from pitchpoint.lubrication.ehl.registry import ASPERITIES
 from pitchpoint.lubrication.registry import (
@@ -32,7 +30,7 @@ from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.published.registry import LAWS_OF_CASES
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.wear.laws import WEAR_LAWS
+from pitchpoint.wear.registry import WEAR_LAWS
 
 __all__ = ["entries", "figures"]
 

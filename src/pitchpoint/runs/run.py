@@ -31,10 +31,8 @@ from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-from pitchpoint.efficiency.breakaway import BREAKAWAY
-from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
+from pitchpoint.dynamics.registry import CONTACT_LAWS
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE

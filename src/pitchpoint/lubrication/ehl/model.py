@@ -17,13 +17,9 @@ from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH, THERMAL, USU
 from pitchpoint.lubrication.ehl.solve import NODES
 from pitchpoint.lubrication.ehl.texture import BOUNDARY_FRICTION, Rough
 from pitchpoint.lubrication.flash_temperature import Conductor
-from pitchpoint.materials.fluid import (
-    USUAL_DENSITY,
-    USUAL_SHEAR_STRESS,
-    USUAL_VISCOSITY,
-    Fluid,
-)
+from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.lubricants import Lubricant
+from pitchpoint.materials.registry import USUAL_DENSITY, USUAL_SHEAR_STRESS, USUAL_VISCOSITY
 
 __all__ = ["FilmModel"]
 

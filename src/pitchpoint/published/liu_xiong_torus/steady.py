@@ -10,11 +10,11 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.bodies import Body, across
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.modes import modes
 from pitchpoint.dynamics.passage import passage, polynomial
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import Moving, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
