@@ -36,10 +36,11 @@ from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.transient import Transient, transient, transient_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 TEETH, MODULE, ANGLE, WIDTH = (18, 36), 3e-3, float(np.radians(20.0)), 26.7e-3
 INERTIA, MASS = (1e-3, 6e-3), (2.0, 4.0)

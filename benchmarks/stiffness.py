@@ -40,12 +40,12 @@ from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.loading.compliance import slice_stiffness
 from pitchpoint.loading.foundation import sainsot_2004
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, beam_compliance, interpolate
+from pitchpoint.loading.tooth_compliance import beam_compliance, interpolate, terms_of
 from pitchpoint.materials.solids import Solid
 
 RIVAL = Path(__file__).parent / "rivals" / "ross_mesh_stiffness.py"
 STEEL = Solid(young=206e9, poisson=0.3, density=7810.0)
-TERMS = TOOTH_COMPLIANCE["beam_foundation_hertz"].terms
+TERMS = terms_of("beam_foundation_hertz")
 LOAD = jnp.asarray(100.0)
 ROOT_RADIUS, BORE_RADIUS = 59.5e-3, 17.5e-3
 TOGETHER = 20

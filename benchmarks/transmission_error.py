@@ -40,14 +40,14 @@ from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.materials.solids import Solid
 
 SOLIDS = (
     Solid(young=206e9, poisson=0.3, density=7830.0),
     Solid(young=3.54e9, poisson=0.4, density=1140.0),
 )
-TERMS = TOOTH_COMPLIANCE["beam_foundation_weber"].terms
+TERMS = terms_of("beam_foundation_weber")
 SPEED = 1800.0 * np.pi / 30.0
 
 

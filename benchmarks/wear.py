@@ -30,8 +30,8 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
 from pitchpoint.gears.designs import rows
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
@@ -50,7 +50,7 @@ MODELS = Models(
     parameters={},
     sharing=LOAD_SHARING["from_stiffness"],
     rolling=ROLLING_RESISTANCE["none"],
-    compliance=TOOTH_COMPLIANCE["beam_foundation_hertz"].terms,
+    compliance=terms_of("beam_foundation_hertz"),
 )
 Given = tuple[Design, Operation, WearModel]
 

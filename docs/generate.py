@@ -13,7 +13,8 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import MARKS, STATUSES
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import Case, DriveCase, StageTable, quantity_of, usual_words
-from pitchpoint.input.tables import alternatives
+from pitchpoint.input.tables import alternatives, sentences
+from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
 
@@ -51,7 +52,8 @@ OF_MARKS = (
 
 
 def _of_table(title: str, model: type[BaseModel]) -> list[str]:
-    rows = [_key_row(name, info) for name, info in model.model_fields.items()]
+    told = sentences(model)
+    rows = [_key_row(name, info, told.get(name, "")) for name, info in model.model_fields.items()]
     return _section(title, _words(model.__doc__), rows)
 
 
@@ -62,7 +64,8 @@ def _section(title: str, words: str, rows: Sequence[Row]) -> list[str]:
 
 def variables_page() -> str:
     """Every variable that a result may hold."""
-    own = {name: one for each in ANALYSES.values() for name, one in each.variables.items()}
+    every = (*ANALYSES.values(), *PUBLICATIONS.values())
+    own = {name: one for each in every for name, one in each.variables.items()}
     rows = [
         (f"`{name}`", one.long_name, one.symbol, one.unit, one.usual, _SIDES.get(one.end, ""))
         for name, one in sorted({**VARIABLES, **own}.items())
@@ -149,10 +152,10 @@ def _titled(path: str) -> str:
     return f"`[{path}]`" if path else "The file itself"
 
 
-def _key_row(name: str, info: FieldInfo) -> Row:
+def _key_row(name: str, info: FieldInfo, sentence: str) -> Row:
     quantity = quantity_of(info)
     allowed = quantity.allowed.removeprefix("allowed is ") if quantity else ""
-    return f"`{name}`", info.description or "", _kind(info), allowed, _default(info)
+    return f"`{name}`", sentence, _kind(info), allowed, _default(info)
 
 
 def _kind(info: FieldInfo) -> str:

@@ -1,6 +1,7 @@
-"""Compiles quickly, gives compiled programs back, and holds the suite to its budget of programs."""
+"""Compiles quickly, gives compiled programs back, and holds the suite to its budget."""
 
 import gc
+import math
 import os
 from collections import defaultdict
 from collections.abc import Iterator
@@ -19,9 +20,10 @@ os.environ["XLA_FLAGS"] = " ".join([_given, *_more]).strip()  # read once, with 
 # Nobody reads from which lines of Python an operation of a program came: finding out is a tenth of the work.
 os.environ.setdefault("JAX_TRACEBACK_IN_LOCATIONS_LIMIT", "0")
 
+import budget  # noqa: E402
 import jax  # noqa: E402
 import pytest  # noqa: E402
-from budget import Meter, Spent, exceeded, order, slow  # noqa: E402
+from budget import Meter, Spent  # noqa: E402
 from shapes import install  # noqa: E402
 
 install()  # before anything of the package is imported
@@ -37,12 +39,26 @@ METER = Meter()
 SPENT: dict[str, Spent] = defaultdict(Spent)
 
 
-def pytest_configure() -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--record-budget", action="store_true", help="write tests/budget.toml anew")
+    parser.addoption("--hold-pace", action="store_true", help="fail if the suite takes longer")
+
+
+def pytest_configure(config: pytest.Config) -> None:
     jax.monitoring.register_event_duration_secs_listener(METER.listen)
+    parts = config.option.keyword or any("::" in one for one in config.args)
+    if config.option.record_budget and (parts or len(_parts(config)) > 1):
+        raise pytest.UsageError("figures are recorded of all tests of a file that are in one part")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    items.sort(key=lambda item: order(item.location[0]))
+def _parts(config: pytest.Config) -> tuple[str, ...]:
+    """Parts of the suite that run; with another choice of marks they are not told apart."""
+    return {"not whole": ("quick",), "whole": ("whole",)}.get(config.option.markexpr, budget.PARTS)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    figures = budget.recorded(*_parts(config))
+    items.sort(key=lambda item: budget.order(item.location[0], figures))
 
 
 def pytest_collection_finish() -> None:
@@ -60,11 +76,13 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _programs_within_the_memory_maps() -> Iterator[None]:
+def _programs_within_the_memory_maps(request: pytest.FixtureRequest) -> Iterator[None]:
     """Files share what they compile until it could exhaust the memory maps of the process."""
     yield
+    METER.calibrate()
     maps = Path("/proc/self/maps")
-    if not maps.exists() or maps.read_bytes().count(b"\n") > MOST_MAPS:
+    crowded = not maps.exists() or maps.read_bytes().count(b"\n") > MOST_MAPS
+    if crowded or request.config.option.record_budget:
         programs.forget()
 
 
@@ -74,9 +92,24 @@ def _programs_within_the_memory_maps() -> Iterator[None]:
 def pytest_sessionfinish(session: pytest.Session) -> None:
     handed_in = getattr(session.config, "workeroutput", None)
     if handed_in is not None:
-        handed_in["spent"] = {file: (own.programs, own.seconds) for file, own in SPENT.items()}
-    elif exceeded(SPENT) and session.exitstatus == pytest.ExitCode.OK:
+        handed_in["spent"] = {
+            file: (own.programs, own.seconds, own.loops) for file, own in SPENT.items()
+        }
+        return
+    if session.exitstatus != pytest.ExitCode.OK:
+        return
+    if session.config.option.record_budget:
+        budget.record(*_parts(session.config), SPENT)
+    elif _beyond(session.config):
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+def _beyond(config: pytest.Config) -> list[str]:
+    """A sentence for each figure that was exceeded, as far as this run is held to them."""
+    figures = budget.recorded(*_parts(config))
+    most = budget.PROGRAMS if _parts(config) == ("quick",) else math.inf
+    paced = budget.slow(SPENT, figures) if config.option.hold_pace else []
+    return budget.exceeded(SPENT, figures, most) + paced
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -88,9 +121,8 @@ def pytest_testnodedown(node: object) -> None:
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     whole = sum(SPENT.values(), Spent())
     terminalreporter.write_line(
-        f"{whole.programs} programs and {whole.seconds:.0f} s of the processor in {len(SPENT)} files"
+        f"{whole.programs} programs and {whole.seconds:.0f} s of the processor,"
+        f" {whole.loops:.0f} loops, in {len(SPENT)} files"
     )
-    for told in exceeded(SPENT):
+    for told in _beyond(terminalreporter.config):
         terminalreporter.write_line(f"over budget: {told}; see tests/budget.py", red=True)
-    for told in slow(SPENT):
-        terminalreporter.write_line(f"slow here: {told}", yellow=True)

@@ -6,16 +6,17 @@ import numpy as np
 from pitchpoint._jax import jnp
 from pitchpoint.efficiency.quasi_static import Design, contacts_at, coupling
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wound_up
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 NODES = 24
 """As many phases go through a program together as a cycle has nodes."""
 
 STEEL = solids.find("steel").build()
 OIL = lubricants.find("pao-vg-220").build()
-WEBER = TOOTH_COMPLIANCE["beam_foundation_weber"].terms
+WEBER = terms_of("beam_foundation_weber")
 
 
 def design(mesh):

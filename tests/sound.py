@@ -1,6 +1,7 @@
 """Cases and pairs that several files take as a sound beginning."""
 
 import numpy as np
+import pytest
 
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 
@@ -55,6 +56,25 @@ speed = "2000 rpm"
 temperature = "40 degC"
 """
 """That of a strain wave gear."""
+
+
+class OnDemand(dict):
+    """Values by key, each made when it is first asked for."""
+
+    def __init__(self, make):
+        super().__init__()
+        self.make = make
+
+    def __missing__(self, key):
+        self[key] = self.make(key)
+        return self[key]
+
+
+def quick_first(values, count=1):
+    """Values of parameters of which all but the first are marked `whole`."""
+    several = [value if isinstance(value, tuple) else (value,) for value in values]
+    marks = [[pytest.mark.whole] * (number >= count) for number in range(len(several))]
+    return [pytest.param(*value, marks=mark) for value, mark in zip(several, marks, strict=True)]
 
 
 def pair(teeth, degrees=0.0, module=3e-3, width=20e-3, **options):

@@ -1,6 +1,6 @@
 """`python -m pitchpoint` is the command."""
 
-from pitchpoint.cli import main
+from pitchpoint.cli import command
 
 if __name__ == "__main__":
-    main()
+    command()

@@ -39,6 +39,11 @@ import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
 from jax.typing import ArrayLike, DTypeLike  # noqa: E402
 
+try:
+    from jax.extend.core import get_opaque_trace_state
+except ImportError:  # JAX 0.6
+    from jax.core import get_opaque_trace_state
+
 from pitchpoint.kept import base_folder, prepared  # noqa: E402
 
 __all__ = ["array", "cache_folder", "jax", "jnp", "kept_folder"]
@@ -53,9 +58,34 @@ def cache_folder() -> Path:
     return base_folder() / f"xla-{platform.machine()}-{jax.__version__}"
 
 
+FEW_NUMBERS = 16
+MOST_KEPT = 10_000
+"""Arrays of few numbers that are kept, some 500 bytes each."""
+
+_ARRAYS: dict[tuple[str, tuple[int, ...], bytes], jax.Array] = {}
+_UNTRACED = get_opaque_trace_state()
+
+
 def array(value: ArrayLike | Sequence[float], dtype: DTypeLike | None = None) -> jax.Array:
-    """Value as an array; unlike `jnp.asarray` it compiles no program for a plain number."""
-    return jnp.asarray(value if isinstance(value, jax.Array) else np.asarray(value, dtype), dtype)
+    """Value as an array; unlike `jnp.asarray` it compiles no program for plain numbers.
+
+    The same few numbers give the same array, for each that is put on the device takes 20 to 40 us. While JAX
+    traces they are constants of what is traced.
+    """
+    if isinstance(value, jax.Array):
+        return value if dtype is None else jnp.asarray(value, dtype)
+    numbers = np.asarray(value, dtype)
+    if get_opaque_trace_state() != _UNTRACED:
+        return jnp.asarray(numbers, dtype)
+    if numbers.size > FEW_NUMBERS:
+        return jnp.asarray(numbers, numbers.dtype)  # without its type a program is compiled
+    key = numbers.dtype.char, numbers.shape, numbers.tobytes()
+    if key not in _ARRAYS:
+        if len(_ARRAYS) >= MOST_KEPT:
+            _ARRAYS.clear()
+        # A copy, since the device may share the memory of whoever asks.
+        _ARRAYS[key] = jnp.asarray(numbers.copy(), numbers.dtype)
+    return _ARRAYS[key]
 
 
 def kept_folder() -> Path | None:

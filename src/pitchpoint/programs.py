@@ -2,7 +2,7 @@
 
 JAX keeps compiled code between processes, but traces and lowers Python anew in each of them, which takes
 longer than the numbers themselves. A program of this module is kept as the portable form that tracing
-gives it (`jax.export`), under a digest of all that decides it: the package's own files, the version of
+gives it (`jax.export`), under a digest of all that decides it: the code that it reaches, the version of
 JAX, the structure of the arguments. What has no such name (a law of the user's own) is traced as ever.
 """
 
@@ -11,6 +11,7 @@ import json
 import logging
 import os
 import platform
+import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -30,12 +31,14 @@ from jax import export
 
 from pitchpoint._jax import jax, kept_folder
 from pitchpoint.kept import read, write
+from pitchpoint.reach import Sources
 
 __all__ = [
     "Program",
     "bound_programs",
     "fast_program",
     "forget",
+    "looping_program",
     "program",
     "surroundings",
 ]
@@ -47,12 +50,26 @@ _LOG = logging.getLogger(__name__)
 _TRACED = ("pitchpoint", "jax", "jaxlib", "equinox", "diffrax", "numpy")
 """Packages whose code is in a program or makes its numbers."""
 
-QUICK: Mapping[str, bool | int] = {
-    "xla_backend_optimization_level": 0,
-    "xla_llvm_disable_expensive_passes": True,
-    "xla_cpu_use_fusion_emitters": False,
-}
+
+def _options(level: int) -> dict[str, bool | int]:
+    """Options of the compiler; what XLA_FLAGS name is left to them, as in tests."""
+    options = {
+        "xla_backend_optimization_level": level,
+        "xla_llvm_disable_expensive_passes": True,
+        "xla_cpu_use_fusion_emitters": False,
+    }
+    flags = os.environ.get("XLA_FLAGS", "")
+    return {name: value for name, value in options.items() if f"--{name}=" not in flags}
+
+
+# Level 1 compiles twice to three times as long as level 0 and runs twice as fast; level 2 brings no more. Of
+# the 35 s that the programs of examples/strain_wave.toml compiled and the 24 s that they ran, three of 32
+# programs had 12 s and 21 s.
+QUICK = _options(0)
 """Options for programs whose numbers take milliseconds: they compile in a third of the time."""
+
+LOOPING = _options(1)
+"""Options for programs whose loops take about as long as their compilation."""
 
 
 _CUSTOM = [
@@ -67,13 +84,9 @@ class _NamelessError(Exception):
 
 
 @cache
-def _package_state() -> str:
-    """Digest of every file of the package: changed code or data computes again."""
-    root, found = Path(__file__).parent, hashlib.sha256()
-    for path in sorted(root.rglob("*")):
-        if path.suffix in (".py", ".toml"):
-            found.update(str(path.relative_to(root)).encode() + path.read_bytes())
-    return found.hexdigest()
+def _sources() -> Sources:
+    folder = kept_folder()
+    return Sources(Path(__file__).parent, None if folder is None else folder / "reach")
 
 
 class Program(Generic[P, R]):
@@ -141,8 +154,10 @@ class Program(Generic[P, R]):
         folder = kept_folder()
         if folder is None:
             raise _NamelessError
-        told = [surroundings(), _name(self.function), sorted(self.options.items()), _text(given)]
-        digest = hashlib.sha256(json.dumps(told).encode()).hexdigest()
+        told = json.dumps([_name(self.function), sorted(self.options.items()), _text(given)])
+        # Texts among the arguments stand in quotes of their own: what matches are names from `_name`.
+        code = _sources().digest_of_reach(sorted(set(re.findall(r'"(pitchpoint[.\w]*):', told))))
+        digest = hashlib.sha256(json.dumps([_machine(), code, told]).encode()).hexdigest()
         return folder / "programs" / digest[:40]
 
     def _exported(
@@ -189,6 +204,11 @@ def forget() -> None:
 def program(function: Callable[P, R]) -> Program[P, R]:
     """A program that compiles quickly, for figures that take milliseconds; a decorator."""
     return Program(function, QUICK)
+
+
+def looping_program(function: Callable[P, R]) -> Program[P, R]:
+    """A program that is compiled with some care, for long loops or many calls of one run; a decorator."""
+    return Program(function, LOOPING)
 
 
 def fast_program(function: Callable[P, R]) -> Program[P, R]:
@@ -265,12 +285,20 @@ def _module(outline: Any, leaves: Iterator[Any]) -> Any:
 
 def surroundings() -> dict[str, str]:
     """What decides about every program beside its own arguments, and so about the last bits of results."""
+    return {**_machine(), "code": _sources().digest[:16]}
+
+
+def _machine() -> dict[str, str]:
+    """Versions and devices that decide about numbers, whatever the code."""
+    return {**_installed(), "XLA_FLAGS": os.environ.get("XLA_FLAGS", "")}
+
+
+@cache
+def _installed() -> dict[str, str]:
     device = jax.devices()[0]
     return {
         **{name: version(name) for name in _TRACED},
-        "code": _package_state()[:16],
         "device": f"{platform.machine()} {device.platform} {device.device_kind}",
-        "XLA_FLAGS": os.environ.get("XLA_FLAGS", ""),
     }
 
 

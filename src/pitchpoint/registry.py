@@ -1,13 +1,27 @@
-"""Registries of rival formulas: a name picks one, an unknown name gets the nearest known ones."""
+"""Registries of rival formulas: a name picks one, an unknown name gets the nearest known ones.
+
+What a registry says of its entries is data. Code is loaded when it is chosen: it stands as its place,
+"pitchpoint.loading.sharing:equal", the module and the name in it.
+"""
 
 import difflib
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import Protocol, TypeVar
+from importlib import import_module
+from typing import Any, Generic, Protocol, TypeVar, overload
 
 from pitchpoint.errors import InputError, shorten
 
-__all__ = ["Registry", "alike", "known_as", "letters", "listed", "nearest", "unknown_name"]
+__all__ = [
+    "Deferred",
+    "Registry",
+    "alike",
+    "known_as",
+    "letters",
+    "listed",
+    "nearest",
+    "unknown_name",
+]
 
 _MOST = 24  # names in one sentence
 
@@ -22,15 +36,68 @@ class Named(Protocol):
 
 
 Entry = TypeVar("Entry", bound=Named)
+Code = TypeVar("Code")
+_NEEDED: Any = object()
+
+
+class Deferred(Generic[Code]):
+    """A field of a dataclass that is code: given as it is, or as its place, loaded when it is first used.
+
+    Args:
+        usual: what it is where nothing is given; without it the field has to be given.
+
+    Example:
+        >>> from collections.abc import Callable
+        >>> from dataclasses import dataclass
+        >>> @dataclass(frozen=True)
+        ... class Law:
+        ...     function: Deferred[Callable[[float], float]] = Deferred()
+        >>> Law("math:sqrt").function(9.0), Law(abs).function(-9.0)
+        (3.0, 9.0)
+    """
+
+    def __init__(self, usual: Code | str = _NEEDED) -> None:
+        self._usual = usual
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, entry: None, owner: type) -> Any: ...
+    @overload
+    def __get__(self, entry: object, owner: type) -> Code: ...
+    def __get__(self, entry: object | None, owner: type) -> Any:
+        if entry is None:
+            if self._usual is _NEEDED:
+                raise AttributeError(self._name)  # by this a dataclass knows that it has no default
+            return self._usual
+        held = entry.__dict__[self._name]
+        if isinstance(held, str):
+            held = entry.__dict__[self._name] = _at(held)
+        return held
+
+    def __set__(self, entry: object, given: Code | str) -> None:
+        entry.__dict__[self._name] = given
+
+
+def _at(place: str) -> Any:
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
 class Registry(Mapping[str, Entry]):
-    """Entries by name, in the order in which they were given."""
+    """Entries by name, in the order in which they were given.
 
-    def __init__(self, kind: str, *entries: Entry) -> None:
-        """`kind` names the entries in messages, e.g. "friction law"."""
+    Args:
+        kind: names the entries in messages, e.g. "friction law".
+        entries: with all that they say.
+        places: by name those that are loaded when they are chosen, after the others.
+    """
+
+    def __init__(self, kind: str, *entries: Entry, places: Mapping[str, str] | None = None) -> None:
         self.kind = kind
-        self._entries = {entry.name: entry for entry in entries}
+        self._entries: dict[str, Entry | str] = {entry.name: entry for entry in entries}
+        self._entries.update(places or {})
 
     def __getitem__(self, name: str) -> Entry:
         """Entry of that name, see `known_as`; InputError with the nearest names if there is none."""
@@ -39,7 +106,10 @@ class Registry(Mapping[str, Entry]):
             raise InputError(
                 f"'{shorten(name)}' is not a known {self.kind}{nearest(name, self._entries)}"
             )
-        return self._entries[found]
+        entry = self._entries[found]
+        if isinstance(entry, str):
+            entry = self._entries[found] = _at(entry)
+        return entry
 
     def __contains__(self, name: object) -> bool:
         """True for the name of an entry."""
@@ -56,10 +126,6 @@ class Registry(Mapping[str, Entry]):
     def add(self, entry: Entry) -> None:
         """Add an entry at the end, or put it in the place of that of its name."""
         self._entries[entry.name] = entry
-
-    def extended(self, *entries: Entry) -> "Registry[Entry]":
-        """A registry with further entries, this one unchanged."""
-        return Registry(self.kind, *self._entries.values(), *entries)
 
 
 def known_as(name: str, known: Collection[str]) -> str | None:

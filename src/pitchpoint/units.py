@@ -504,6 +504,10 @@ def parse(text: str | float, kind: str) -> float:
         >>> parse("55 degC", "temperature")
         328.15
     """
+    return _parsed(text, kind) if isinstance(text, str) else _read(text, kind)
+
+
+def _read(text: str | float, kind: str) -> float:
     wanted = _kind(kind)
     number, unit = _split(text, wanted)
     if unit not in wanted.units:
@@ -515,6 +519,9 @@ def parse(text: str | float, kind: str) -> float:
     if kind == "temperature" and value < 0.0:
         raise UnitError(f"{_quoted(text)} is below absolute zero", value=text)
     return value
+
+
+_parsed = lru_cache(maxsize=4096)(_read)  # points of a sweep have most of their values in common
 
 
 @overload

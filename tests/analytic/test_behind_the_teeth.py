@@ -22,13 +22,13 @@ from pitchpoint.gears.strain_wave.in_series import (
 )
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import body_parts, wind_up, wound_up
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 SOLIDS = STEEL, STEEL
-TERMS = TOOTH_COMPLIANCE["beam_foundation_hertz"].terms
+TERMS = terms_of("beam_foundation_hertz")
 PHASES = np.array([0.0, 0.4, 0.7])
 RIGID = {"cup_bottom": "rigid", "flange": "rigid", "wave_generator": "rigid"}
 RIGID |= {"circular_spline": "rigid"}

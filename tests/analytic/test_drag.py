@@ -18,10 +18,11 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.reactions import Bearing
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = solids.find("steel").build()
 OIL = lubricants.find("pao-vg-220").build()

@@ -17,11 +17,12 @@ from pitchpoint.efficiency.summary import mean_friction
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.reactions import Bearing
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 CONSTANT = next(law for law in LAWS if law.name == "constant")
 STEEL = solids.find("steel").build()
@@ -44,7 +45,7 @@ SECOND = Stage(design((19, 70), 3e-3, right_flank=True), (1, 2), place=jnp.asarr
 
 def models(mu, sharing="equal", compliance="beam_hertz"):
     own = {"constant": {"coefficient": jnp.asarray(mu)}}
-    terms = TOOTH_COMPLIANCE[compliance].terms
+    terms = terms_of(compliance)
     rolling = ROLLING_RESISTANCE["none"]
     return Models((CONSTANT,), jnp.asarray(0), own, LOAD_SHARING[sharing], rolling, terms)
 

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jnp
-from pitchpoint.analyses.four_quadrants import FOUR_QUADRANTS
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
-from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.analyses.registry import FOUR_QUADRANTS, TORSION
 from pitchpoint.cases.stages import BuiltDrive
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.drive import drive_cycle

@@ -7,17 +7,11 @@ import pytest
 
 from pitchpoint.contact.dry_contact import dry_contact, near_ends, pressed
 from pitchpoint.contact.ellipse import hertz_1881
-from pitchpoint.contact.end_profiles import (
-    END_PROFILES,
-    chamfered,
-    crowned,
-    dub_off,
-    log_relieved,
-    straight,
-)
+from pitchpoint.contact.end_profiles import chamfered, crowned, dub_off, log_relieved, straight
 from pitchpoint.contact.gaps import elliptic_gap, line_gap, missing_along
 from pitchpoint.contact.half_space import graded_edges, half_space
 from pitchpoint.contact.hertz import line_half_width, line_pressure
+from pitchpoint.contact.registry import END_PROFILES
 from pitchpoint.errors import InputError
 from pitchpoint.status import Code
 

@@ -9,10 +9,11 @@ from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation,
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.period import nodes
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw, xu_2007
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE, wu_cheng_1991
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = solids.find("steel").build()
 

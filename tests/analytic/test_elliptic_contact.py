@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.ellipse import (
-    ELLIPTIC_CONTACT,
     Ellipse,
     _principal_stresses,
     hamrock_brewe_1983,
@@ -18,6 +17,7 @@ from pitchpoint.contact.ellipse import (
 )
 from pitchpoint.contact.elliptic_integrals import carlson_rd, carlson_rf, complete
 from pitchpoint.contact.hertz import line_half_width, line_pressure, line_shear
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 
 MODULUS = 226e9
 RATIOS = (1e-3, 0.01, 0.3, 1.0, 1.25, 3.0, 30.0, 1e3)

@@ -16,7 +16,8 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading import equilibrium as module
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium, touch
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.sharing import applies, demand_sharing
 
 LANES, STATES = 40, 60
 
@@ -360,14 +361,14 @@ def test_cosine_laws_of_strain_wave_gears(name, end):
 def test_models_say_where_they_hold():
     cosines = {"xu_2021_cosine", "zhao_2022_cosine"}
     separate, touching = (
-        {m for m in LOAD_SHARING if LOAD_SHARING[m].applies(mesh(s))} for s in (True, False)
+        {m for m in LOAD_SHARING if applies(LOAD_SHARING[m], mesh(s))} for s in (True, False)
     )
     assert separate == {"from_stiffness", *cosines}
     assert touching == set(LOAD_SHARING) - cosines
     with pytest.raises(InputError, match=r"'equal' holds where all rigid flanks .* gap; choose"):
-        LOAD_SHARING["equal"].check(mesh(True))
+        demand_sharing(LOAD_SHARING["equal"], mesh(True))
     with pytest.raises(InputError, match=r"strain-wave gears, and these are not; choose one of"):
-        LOAD_SHARING["xu_2021_cosine"].check(mesh(False))
+        demand_sharing(LOAD_SHARING["xu_2021_cosine"], mesh(False))
 
 
 # ------------------------------------------------------------------ without a body

@@ -16,16 +16,17 @@ from pitchpoint.contact.surface import Spot, with_surfaces
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.cylindrical.modified import Modifications, modified
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants
+from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
-TERMS = TOOTH_COMPLIANCE["beam_foundation_hertz"].terms
+TERMS = terms_of("beam_foundation_hertz")
 SPUR = pair((23, 61), module=2e-3)
 ARM = abs(float(SPUR.base_radii[1]))
 WIDTH = float(SPUR.face_width)

@@ -12,11 +12,11 @@ import pytest
 
 from pitchpoint import citations
 from pitchpoint.errors import InputError
-from pitchpoint.materials import Roughness, SolidRecord, lubricants, solids
-from pitchpoint.materials._leaves import Datum
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.data import Datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
-from pitchpoint.materials.solids import ModulusPoint, Solid, reduced_modulus
-from pitchpoint.materials.surfaces import composite_rq
+from pitchpoint.materials.solids import ModulusPoint, Solid, SolidRecord, reduced_modulus
+from pitchpoint.materials.surfaces import Roughness, composite_rq
 from pitchpoint.materials.viscosity import astm_d341
 
 DATA = resources.files("pitchpoint.materials").joinpath("catalogue", "lubricants.toml")

@@ -11,8 +11,8 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of, uncovered
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
@@ -48,7 +48,7 @@ _stiffness = eqx.filter_jit(mesh_stiffness)
 
 
 def stiffness(mesh, model=FULL, solids=BOTH_STEEL, load=200.0, slices=12):
-    terms = TOOTH_COMPLIANCE[model].terms
+    terms = terms_of(model)
     return jax.device_get(_stiffness(plain(mesh, slices), solids, terms, jnp.asarray(load)))
 
 
@@ -64,7 +64,7 @@ def _shares(mesh, terms, load, phase):
 
 
 def shares(mesh, model, phase):
-    terms = TOOTH_COMPLIANCE[model].terms
+    terms = terms_of(model)
     found = _shares(plain(mesh), terms, jnp.asarray(200.0), jnp.asarray(phase))
     return jax.device_get(found)
 
@@ -328,7 +328,7 @@ def test_internal_pair_is_stiffer_than_the_external_one_of_equal_teeth(degrees):
         assert least < inner.mean / outer.mean < most
         assert inner.along_action.max() > outer.along_action.max()
     model = TOOTH_COMPLIANCE[FULL]
-    assert any("a ring's rim" in sentence for sentence in model.warnings(internal.sections))
+    assert any("a ring's rim" in sentence for sentence in uncovered(model, internal.sections))
 
 
 def test_standard_gives_no_estimate_for_internal_pairs():

@@ -15,7 +15,7 @@ from pitchpoint.dynamics.modes import mean_stiffness, modes
 from pitchpoint.dynamics.passage import passage
 from pitchpoint.dynamics.steady_motion import film, steady_motion
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, dowson_higginson_1959
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.programs import program

@@ -12,11 +12,12 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, beam_compliance
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import beam_compliance, terms_of
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program
 
 MODULE, ANGLE = 3e-3, np.deg2rad(20.0)
@@ -90,7 +91,7 @@ def figures(mesh, load, sharing):
         parameters={"constant": {"coefficient": jnp.asarray(0.08)}},
         sharing=LOAD_SHARING[sharing],
         rolling=ROLLING_RESISTANCE["none"],
-        compliance=TOOTH_COMPLIANCE["beam_hertz"].terms,
+        compliance=terms_of("beam_hertz"),
     )
     point = Operation(*map(jnp.asarray, (load, 30.0, 330.0)))
     found = summarise([(design(mesh), point)], models)

@@ -14,11 +14,12 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.status import Code, Status, summary
 
 LAW = {law.name: law for law in LAWS}

@@ -10,15 +10,8 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.materials.rheology import (
-    DENSITY,
-    LEAST_PRESSURE,
-    SHEAR_STRESS,
-    VISCOSITY,
-    bair_winer_1979,
-    ree_eyring_1955,
-    roelands_1966,
-)
+from pitchpoint.materials.registry import DENSITY, LEAST_PRESSURE, SHEAR_STRESS, VISCOSITY
+from pitchpoint.materials.rheology import bair_winer_1979, ree_eyring_1955, roelands_1966
 
 OIL = {
     "viscosity": 0.04,

@@ -9,14 +9,15 @@ import equinox as eqx
 import numpy as np
 import pytest
 from loaded_strain_wave import WEBER, design, passing, wound, yielding
+from sound import OnDemand, quick_first
 from strain_wave_positions import drive
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagement
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 
@@ -34,7 +35,7 @@ FORMS = {
     "flat": (DOUBLE_ARCS["flat"], 0.25),
     "involute": (InvoluteForm(3.32), 0.35),
 }
-LINEAR = TOOTH_COMPLIANCE["beam_hertz"].terms
+LINEAR = terms_of("beam_hertz")
 TORQUES = (4.7, 47.0, 94.0)
 RATED = TORQUES[1]
 NODES = (24, 48)
@@ -79,22 +80,21 @@ def run(mesh, torque, like):
 
 @pytest.fixture(scope="module")
 def drives():
-    return {form: build(form) for form in FORMS}
+    return OnDemand(build)
 
 
 @pytest.fixture(scope="module")
 def engaged(drives):
-    return {(form, nodes): at_rated(drives[form], nodes) for form in FORMS for nodes in NODES}
+    return OnDemand(lambda key: at_rated(drives[key[0]], key[1]))
 
 
 @pytest.fixture(scope="module")
 def runs(drives, engaged):
-    few = NODES[0]
-    return {(f, t): run(drives[f], t, engaged[f, few]) for f in FORMS for t in TORQUES}
+    return OnDemand(lambda key: run(drives[key[0]], key[1], engaged[key[0], NODES[0]]))
 
 
 @pytest.mark.parametrize("torque", TORQUES)
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", quick_first(FORMS))
 def test_no_edge_carries_and_every_pair_closes_its_gap(drives, runs, form, torque):
     mesh, at, by = drives[form], runs[form, torque], drive(FORMS[form][0])
     space = by.groove(float(mesh.groove.low))
@@ -115,6 +115,7 @@ def test_no_edge_carries_and_every_pair_closes_its_gap(drives, runs, form, torqu
     assert np.max(np.abs(left[carries])) < 2e-8
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("torque", TORQUES)
 @pytest.mark.parametrize("form", FORMS)
 def test_input_torque_hardly_ripples(drives, engaged, runs, form, torque):
@@ -131,6 +132,7 @@ def ripple(torque):
     return np.ptp(torque) / torque.mean()
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("torque", TORQUES)
 def test_loss_of_an_involute_drive_by_its_friction(runs, torque):
     lost = (1.0 - runs["involute", torque].efficiency) / FRICTION
@@ -143,19 +145,18 @@ SHALLOW = pytest.mark.xfail(
 )
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     "torque", [pytest.param(6.7, id="of 67"), pytest.param(4.7, id="of 47", marks=SHALLOW)]
 )
-def test_pairs_of_an_involute_drive_at_a_tenth_of_a_rated_torque(drives, engaged, runs, torque):
+def test_pairs_of_an_involute_drive_at_a_tenth_of_a_rated_torque(runs, torque):
     """The drives of one size that are sold are rated at 47 N m or 67 N m."""
-    at = runs.get(("involute", torque)) or run(
-        drives["involute"], torque, engaged["involute", NODES[0]]
-    )
+    at = runs["involute", torque]
     pairs = at.wound.loaded_pairs @ at.weight / at.weight.sum()
     assert 6.0 <= pairs <= 10.0
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", quick_first(FORMS))
 def test_no_force_jumps_as_teeth_pass(drives, form):
     """Where contacts yield in proportion, the largest step of a force shrinks with that of the phase."""
     mesh, phases = drives[form], np.linspace(0.0, 1.0, 240, endpoint=False)
@@ -168,11 +169,11 @@ def test_no_force_jumps_as_teeth_pass(drives, form):
 def finely(drives):
     """Contacts every 0.02 degrees of the wave."""
     phases = np.linspace(0.0, 1.0, PHASES, endpoint=False)
-    return {form: passing(mesh, phases) for form, mesh in drives.items()}
+    return OnDemand(lambda form: passing(drives[form], phases))
 
 
 @pytest.mark.parametrize("torque", TORQUES)
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", quick_first(FORMS))
 def test_forces_by_webers_law_hardly_step(drives, finely, form, torque):
     """In 0.02 degrees of the wave: a contact sees a joint of its flank from afar."""
     force = forces(drives[form], finely[form], WEBER, torque)[:, :PHASES]
@@ -195,6 +196,7 @@ def in_pairs(mesh, force):
     return mesh.of_pairs(jnp.sum(force, axis=1))
 
 
+@pytest.mark.whole
 def test_edges_carry_where_that_is_asked_for():
     mesh = build("liu", edges_carry=True, tip_relief=0.0)
     found = run(mesh, RATED, at_rated(mesh)).wound

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from pitchpoint.contact.hertz import line_pressure
+from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.materials import solids
@@ -23,7 +24,7 @@ from pitchpoint.results.strength import STRENGTH
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.strength.limits import Constants
 from pitchpoint.strength.load_factors import CLASSES, root_face_load_factor
-from pitchpoint.strength.rating import Duty, Factors, Finish, Strengths, rated
+from pitchpoint.strength.rating import ROWS, Duty, Factors, Finish, Strengths, rated, ratings
 from pitchpoint.strength.treatments import PLASTIC, TREATMENTS
 
 Found = dict[str, np.ndarray]
@@ -104,8 +105,9 @@ def rating(
     of: Strengths,
     finish: Finish = FINISH,
 ) -> Found:
-    found = rated(pair, numbers(ratio), asked, loads, of, finish)
-    return {name: np.asarray(value) for name, value in jax.device_get(found).items()}
+    one = [(pair, numbers(ratio), asked, loads, of, finish)]
+    found = in_chunks(lambda rows: ratings(*rows), one, size=ROWS)
+    return {name: values[0] for name, values in found.items()}
 
 
 # ---- printed by other programs

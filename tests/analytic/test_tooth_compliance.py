@@ -22,11 +22,13 @@ from pitchpoint.loading.foundation import (
     foundation_warnings,
     sainsot_2004,
 )
+from pitchpoint.loading.registry import TOOTH_COMPLIANCE
 from pitchpoint.loading.tooth_compliance import (
-    TOOTH_COMPLIANCE,
     beam_compliance,
     interpolate,
     teeth_at,
+    terms_of,
+    uncovered,
     unit_stiffness,
 )
 from pitchpoint.materials.solids import Solid
@@ -128,7 +130,7 @@ class Pair:
         )
 
     def unit_stiffness(self, path, model, solids=(STEEL, PA66), load=LOAD):
-        entry = TOOTH_COMPLIANCE[MODELS[model]].terms
+        entry = terms_of(MODELS[model])
         found = stiffness(self.contacts(path), self.sections, solids, entry, number(load))
         return np.asarray(found)[0, 0]
 
@@ -321,9 +323,9 @@ def test_ring_has_no_foundation_and_says_so():
     assert np.all(np.asarray(foundation(ring)) == 0.0)
     assert not bool(foundation_in_range(ring))
     model = TOOTH_COMPLIANCE["beam_foundation_weber"]
-    (sentence,) = model.warnings((pinion, ring))
+    (sentence,) = uncovered(model, (pinion, ring))
     assert sentence.startswith("gear 2: the compliance of a ring's rim")
-    assert TOOTH_COMPLIANCE["beam_weber"].warnings((pinion, ring)) == ()
+    assert uncovered(TOOTH_COMPLIANCE["beam_weber"], (pinion, ring)) == ()
     assert np.all(np.asarray(beam(ring, number(0.3)))[1:] > 0.0)
 
 
@@ -473,7 +475,7 @@ def test_gradients_with_respect_to_shifts_and_load(pairs, model):
             replace(one, profile_shift=one.profile_shift + values[k]).section(number(RIM_RATIO))
             for k, one in enumerate(pair.gears)
         )
-        entry = TOOTH_COMPLIANCE[model].terms
+        entry = terms_of(model)
         return 1e-9 * jnp.mean(
             stiffness(contacts, sections, (STEEL, PA66), entry, 1e4 * (1.0 + values[2]))
         )

@@ -17,7 +17,7 @@ from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.compliance import slice_stiffness
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.materials import solids
 
@@ -189,7 +189,7 @@ def test_both_flanks_pressing_are_told():
 def test_yielding_is_that_of_both_teeth_and_of_an_ellipse():
     mesh, load = pair(), 500.0
     contacts = contacts_of(mesh, jnp.asarray([0.85]))
-    terms = TOOTH_COMPLIANCE["beam_foundation_weber"].terms
+    terms = terms_of("beam_foundation_weber")
 
     @partial(jax.jit, static_argnums=1)
     def stiffness(mesh, scale):
@@ -212,7 +212,7 @@ def test_yielding_is_that_of_both_teeth_and_of_an_ellipse():
 def test_mesh_stiffness_is_the_slope_of_the_wind_up_over_the_load():
     """Of teeth in series with an ellipse, whose approach grows with the load to the power 2/3."""
     mesh, load, radius = pair(), 100.0, float(pair().base_radii[1])
-    terms = TOOTH_COMPLIANCE["beam_foundation_weber"].terms
+    terms = terms_of("beam_foundation_weber")
 
     @eqx.filter_jit
     def both(mesh, load):

@@ -15,10 +15,11 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 

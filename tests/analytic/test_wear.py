@@ -16,7 +16,7 @@ from pitchpoint.contact.surface import Spot, missing
 from pitchpoint.contact.worn import Worn
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.conditions import Conditions
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE

@@ -21,12 +21,12 @@ from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import touch
 from pitchpoint.loading.kinematic_error import added_gap, kinematic_error
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import hysteresis, wind_up
 from pitchpoint.materials.solids import Solid
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
-TERMS = TOOTH_COMPLIANCE["beam_weber"].terms
+TERMS = terms_of("beam_weber")
 LOADS = np.geomspace(1e-3, 200.0, 12)
 PHASES = np.array([0.0, 0.3, 0.8])
 ARM = 0.02

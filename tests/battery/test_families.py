@@ -25,10 +25,12 @@ from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.sharing import applies
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = solids.find("steel").build()
 
@@ -262,7 +264,7 @@ def laws_for(mesh):
 
 
 def sharing_for(mesh):
-    return next(name for name in SHARING if LOAD_SHARING[name].applies(mesh))
+    return next(name for name in SHARING if applies(LOAD_SHARING[name], mesh))
 
 
 def xu_alone(mesh):
@@ -295,7 +297,25 @@ INSIDE = (np.arange(26) + 0.4) / 26.0
 """As many phases everywhere, so that one program serves."""
 
 
-@pytest.fixture(scope="module", params=FAMILIES, ids=list(FAMILIES))
+FURTHER = (
+    "23/61, high teeth",
+    "17/17",
+    "12/120",
+    "ring 20/-60, wheel drives",
+    "helical ring 18/-71, right flank",
+    "helical rack",
+    "strain wave 200/204",
+)
+"""Of families that have others here; most are another structure to the compiler, some 10 s each."""
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(name, marks=[pytest.mark.whole] * (name in FURTHER), id=name)
+        for name in FAMILIES
+    ],
+)
 def family(request):
     """A mesh with its answers on a grid that crosses all events, and close beside each of them.
 

@@ -19,10 +19,11 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = solids.find("steel").build()
 CONSTANT = next(law for law in LAWS if law.name == "constant")
@@ -256,7 +257,12 @@ DRIVES = {
 }
 
 
-@pytest.fixture(scope="module", params=DRIVES)
+@pytest.fixture(
+    scope="module",
+    params=[  # the last three are other structures to the compiler
+        pytest.param(name, marks=[pytest.mark.whole] * ("fixed" not in name)) for name in DRIVES
+    ],
+)
 def running(request):
     mesh = build(**DRIVES[request.param])
     carried = 0.2 if mesh.loaded[0] else 20.0

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import UnionType
@@ -1135,19 +1135,50 @@ def test_the_walk_reaches_every_table() -> None:
     assert tested >= {(site.base, site.path) for site in SITES if site.annotation is not Any}
 
 
-BADS: dict[str, list[Bad]] = {}
-for each in WALKED + LISTED:
-    BADS.setdefault(f"{each.base}: {each.key}", []).append(each)
+def by_place(bads: Iterable[Bad]) -> dict[str, list[Bad]]:
+    """Thousands of tests would take longer than what they test: one for each place of a case."""
+    places: dict[str, list[Bad]] = {}
+    for bad in bads:
+        places.setdefault(f"{bad.base}: {bad.key}", []).append(bad)
+    return places
 
 
-@pytest.mark.parametrize("place", BADS)
-def test_wrong_values(place: str, refuse: Callable[..., str], tmp_path: Path) -> None:
-    """All that is wrong at one place of a case: thousands of tests would take longer than what they test."""
-    for bad in BADS[place]:
-        told = refuse("show", written(put(bad), tmp_path), about=bad)
-        assert f"bad.toml: {bad.key}" in told, bad
-        for word in bad.words:
-            assert word in told, bad
+OF_EACH_KIND = {(bad.base, bad.name): bad for bad in reversed(WALKED)}
+ON_COMMAND_LINE = by_place([*OF_EACH_KIND.values(), *LISTED])
+MORE_ON_COMMAND_LINE = by_place(bad for bad in WALKED if bad != OF_EACH_KIND[bad.base, bad.name])
+IN_SCHEMA = by_place(WALKED)
+
+
+def demand_words(told: str, bad: Bad) -> None:
+    assert f"bad.toml: {bad.key}" in told, bad
+    for word in bad.words:
+        assert word in told, bad
+
+
+@pytest.mark.parametrize("place", IN_SCHEMA)
+def test_the_schema_refuses_wrong_values(place: str) -> None:
+    for bad in IN_SCHEMA[place]:
+        with pytest.raises(InputError) as caught:
+            schema.validate(resolve(put(bad), name="bad.toml", variant="default"))
+        (error,) = caught.value.every
+        demand_words(str(error), bad)
+
+
+@pytest.mark.parametrize("place", ON_COMMAND_LINE)
+def test_the_command_line_tells_wrong_values(
+    place: str, refuse: Callable[..., str], tmp_path: Path
+) -> None:
+    for bad in ON_COMMAND_LINE[place]:
+        demand_words(refuse("show", written(put(bad), tmp_path), about=bad), bad)
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize("place", MORE_ON_COMMAND_LINE)
+def test_the_command_line_tells_every_wrong_value(
+    place: str, refuse: Callable[..., str], tmp_path: Path
+) -> None:
+    for bad in MORE_ON_COMMAND_LINE[place]:
+        demand_words(refuse("show", written(put(bad), tmp_path), about=bad), bad)
 
 
 @pytest.mark.parametrize(("base", "path"), REQUIRED, ids=str)

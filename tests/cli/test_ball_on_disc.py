@@ -3,6 +3,7 @@
 from math import cbrt, exp, pi
 from pathlib import Path
 
+import bank
 import numpy as np
 import pytest
 import xarray as xr
@@ -41,7 +42,7 @@ def outcome() -> Outcome:
         name: Study(title=name, sweep=Sweep(key=key, values=tuple(values)))
         for name, (key, values) in SWEEPS.items()
     }
-    return run(str(EXAMPLE), settings=OIL, studies=studies)["default"]
+    return bank.outcomes(EXAMPLE, settings=OIL, studies=studies)["default"]
 
 
 def film(*, force: float, entrainment: float, across: float = RADIUS) -> float:

@@ -225,6 +225,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     ]
 
 
+@pytest.mark.whole
 def test_stages_have_stresses_and_the_safety_of_their_weaker_gear(drives: list[str]) -> None:
     outcomes = designs(drives)
     figures = {(one.name, one.place): one for one in main_results(outcomes)}
@@ -245,6 +246,7 @@ def test_stages_have_stresses_and_the_safety_of_their_weaker_gear(drives: list[s
     assert weaker.values["narrow"] < weaker.values["wide"]
 
 
+@pytest.mark.whole
 def test_a_stage_with_a_gear_of_unknown_strength_has_no_least_safety(drives: list[str]) -> None:
     outcome = designs(drives[:1])["narrow"]
     data = outcome.parts["strength"].copy(deep=True)
@@ -254,6 +256,7 @@ def test_a_stage_with_a_gear_of_unknown_strength_has_no_least_safety(drives: lis
     assert safeties == ["least of stage 1"]
 
 
+@pytest.mark.whole
 def test_what_cannot_be_stands_before_every_number(
     drives: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -17,8 +17,9 @@ import xarray as xr
 from pitchpoint import cli
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.four_quadrants import FOUR_QUADRANTS, loss_of_output, table_of
+from pitchpoint.analyses.four_quadrants import loss_of_output, table_of
 from pitchpoint.analyses.loss_map import map_axes, maps
+from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import RUNNING
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from browser import CHROMIUM, Browser, browser
-from sound import SMOOTH
+from sound import SMOOTH, quick_first
 
 from pitchpoint import cli
 from pitchpoint.cases.document import Document
@@ -175,6 +175,7 @@ def test_the_page_is_one_small_file(page: Path) -> None:
     assert "default-src 'none'" in text
 
 
+@pytest.mark.whole
 def test_errors_between_points_are_measured(folder: Path) -> None:
     """Along one key: the mean of both ends against a run between them."""
     over = [Sweep(key="operation.speed", start="900 rpm", stop="1800 rpm", count=2.0)]
@@ -188,6 +189,7 @@ def test_errors_between_points_are_measured(folder: Path) -> None:
         assert 1e-4 < found.errors[name] < 0.2
 
 
+@pytest.mark.whole
 def test_units_by_choice(folder: Path, told: Callable[..., Told], corner: Outcome) -> None:
     over = ("--over", "operation.speed=900 rpm:1800 rpm:2", "--set", "operation.torque=30 N m")
     chosen = ("--units", "rotational speed=rad/s, torque=N cm")
@@ -287,7 +289,7 @@ def chromium() -> Iterator[Browser]:
         yield one
 
 
-@pytest.fixture(params=[1280, 500])
+@pytest.fixture(params=quick_first([1280, 500]))
 def driven(request: pytest.FixtureRequest, chromium: Browser, page: Path) -> Browser:
     """The page as it opens, without motion of its own."""
     chromium.open(page, request.param, prefers_reduced_motion="reduce")

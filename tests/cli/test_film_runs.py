@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import bank
 import numpy as np
 import pytest
 import xarray as xr
@@ -60,8 +61,8 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture(scope="module")
-def outcome(case: str, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
-    return running.run(case, folder=tmp_path_factory.mktemp("out"))["default"]
+def outcome(case: str) -> Outcome:
+    return bank.outcomes(case)["default"]
 
 
 def test_every_loaded_contact_has_a_film(outcome: Outcome) -> None:
@@ -126,6 +127,7 @@ def test_energy_is_lost_by_sliding_and_rolling(outcome: Outcome) -> None:
     assert float(data["mean_film_loss"]) == pytest.approx(parts)
 
 
+@pytest.mark.whole
 def test_a_film_that_is_not_found_withholds_the_loss(
     case: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -147,6 +149,7 @@ def test_a_film_that_is_not_found_withholds_the_loss(
     assert "loss and efficiency are withheld" in render({"default": outcome})
 
 
+@pytest.mark.whole
 def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
@@ -183,6 +186,7 @@ def test_keys_that_are_left_out_stand_as_the_model_has_them() -> None:
     assert film_model(given, (), 3e-3) == FilmModel(nodes=65, asperities="none", inlet=2e-3)
 
 
+@pytest.mark.whole
 def test_smooth_flanks_have_no_film_ratio(case: str) -> None:
     outcome = running.run(case, settings={"roughness.ra": "0 um", "film.phases": 3})["default"]
     assert np.isinf(outcome.parts["film"]["smallest_lambda"])
@@ -191,6 +195,7 @@ def test_smooth_flanks_have_no_film_ratio(case: str) -> None:
     assert "lubrication regimes" not in render({"default": outcome})
 
 
+@pytest.mark.whole
 def test_assumed_constants_behind_the_load_on_asperities_are_told(case: str) -> None:
     rough = {"roughness.ra": "1.2 um", "film.phases": 3}
     outcome = running.run(case, settings=rough)["default"]
@@ -207,6 +212,7 @@ def test_assumed_constants_behind_the_load_on_asperities_are_told(case: str) -> 
     assert "assumed" not in film_answer(running.run(case, settings=both)["default"])
 
 
+@pytest.mark.whole
 def test_a_largest_pressure_below_that_of_hertz_is_explained(case: str, outcome: Outcome) -> None:
     rough = {"roughness.ra": "3 um", "film.phases": 3, "operation.torque": "20 N m"}
     one = running.run(case, settings=rough)["default"]
@@ -299,6 +305,7 @@ def test_doubts_are_worse_where_films_are() -> None:
     assert str(whole["inlet"]).startswith("oil begins")
 
 
+@pytest.mark.whole
 def test_heat_that_isothermal_films_leave_out_is_told(outcome: Outcome, case: str) -> None:
     """The estimate beside the film that is solved with its heat; nothing where it is small."""
     (mild,) = (text for text in warnings_of(outcome) if "isothermal" in text)
@@ -343,6 +350,7 @@ def warnings_of(outcome: Outcome) -> list[str]:
     return json.loads(outcome.parts["film"].attrs["warnings"])
 
 
+@pytest.mark.whole
 def test_films_in_series_yield_as_films_of_more_load_do(case: str) -> None:
     """Virtual work: the torque times the rotation by films is the sum of forces times what films give way."""
     outcome = running.run(case, settings={"film.in_series": True})["default"]

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import bank
 import numpy as np
 import pytest
 from sound import PAIR
@@ -59,9 +60,10 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture(scope="module")
 def outcome(case: str) -> Outcome:
-    return running.run(case)["default"]
+    return bank.outcomes(case)["default"]
 
 
+@pytest.mark.whole
 def test_what_does_not_change_is_steady() -> None:
     given = {"film.time": "squeeze", "film.nodes": 33}
     data = running.run(BALL, settings=given)["default"].parts["film_squeeze"]
@@ -101,6 +103,7 @@ def test_oil_takes_time_to_leave_and_to_come(outcome: Outcome) -> None:
     assert abs(largest) == pytest.approx(np.max(np.abs(apart)))
 
 
+@pytest.mark.whole
 def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
@@ -125,6 +128,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     assert json.loads(again.attrs["warnings"]) == json.loads(whole.attrs["warnings"])
 
 
+@pytest.mark.whole
 def test_a_film_that_is_lost_ends_the_march_and_leaves_steady_ones(
     case: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

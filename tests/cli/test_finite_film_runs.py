@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import bank
 import numpy as np
 import pytest
 from sound import PAIR
@@ -56,8 +57,8 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture(scope="module")
-def outcome(case: str, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
-    return running.run(case, folder=tmp_path_factory.mktemp("out"))["default"]
+def outcome(case: str) -> Outcome:
+    return bank.outcomes(case)["default"]
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +108,7 @@ def test_energy_is_lost_by_sliding_and_rolling(outcome: Outcome) -> None:
     assert data["film_rolling_loss"].values[loaded] == pytest.approx(rolled.values[loaded])
 
 
+@pytest.mark.whole
 def test_lines_without_ends_stand_beside_and_agree_in_the_middle(
     outcome: Outcome, case: str
 ) -> None:
@@ -126,6 +128,7 @@ def test_lines_without_ends_stand_beside_and_agree_in_the_middle(
     assert (np.diff(ratio, axis=-1) < 0.0).all() and (ratio[:, 1] > 1.2).all()
 
 
+@pytest.mark.whole
 def test_friction_of_lines_across_the_pitch_line_is_that_of_their_slices(
     case: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,6 +157,7 @@ def test_friction_of_lines_across_the_pitch_line_is_that_of_their_slices(
     assert float(film.friction) < 0.7 * friction[at]
 
 
+@pytest.mark.whole
 def test_crown_and_lean_are_the_relief_along_the_line(leaning: str) -> None:
     built = load_case(leaning)
     given, slices = wholes(built), states(built)
@@ -170,6 +174,7 @@ def test_crown_and_lean_are_the_relief_along_the_line(leaning: str) -> None:
     assert np.min(relief[at]) == 0.0
 
 
+@pytest.mark.whole
 def test_the_load_along_a_line_is_that_of_the_slices(leaning: str) -> None:
     built = load_case(leaning)
     given, slices = wholes(built), states(built)
@@ -199,6 +204,7 @@ def test_ends_by_name_lower_the_pressure_there(case: str) -> None:
 DUB = {"film.end_length": "1 mm", "film.end_radius": "200 mm"}
 
 
+@pytest.mark.whole
 def test_a_ball_on_a_disc_has_an_ellipse_once_for_all_phases() -> None:
     outcome = running.run(BALL, settings={"film.nodes": 33})["default"]
     data = outcome.parts["finite_film"]
@@ -230,9 +236,10 @@ def test_the_heat_that_films_leave_out_is_told_with_what_takes_it_along(case: st
 
 @pytest.fixture(scope="module")
 def warm(case: str) -> Outcome:
-    return running.run(case, settings={"film.thermal": "mean_film"})["default"]
+    return bank.outcomes(case, settings={"film.thermal": "mean_film"})["default"]
 
 
+@pytest.mark.whole
 def test_films_with_their_heat_have_temperatures_beside_those_of_lines(
     warm: Outcome, outcome: Outcome
 ) -> None:
@@ -258,6 +265,7 @@ def test_films_with_their_heat_have_temperatures_beside_those_of_lines(
     assert "field_rise" not in cold and float(cold["largest_film_rise"]) == 0.0
 
 
+@pytest.mark.whole
 def test_a_report_has_the_temperatures_and_no_word_of_isothermal_films(warm: Outcome) -> None:
     page = render({"default": warm})
     assert "films are isothermal" not in page.lower() and "With heat (mean film)" in page
@@ -268,6 +276,7 @@ def test_a_report_has_the_temperatures_and_no_word_of_isothermal_films(warm: Out
     assert figures(warm)["finite_film"]["largest_flash_rise"] > 0.0
 
 
+@pytest.mark.whole
 def test_films_that_are_not_found_are_counted_and_withhold_the_loss(
     case: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -298,6 +307,7 @@ def test_films_that_are_not_found_are_counted_and_withhold_the_loss(
     assert "2 loaded contacts have no film" in render({"default": one})
 
 
+@pytest.mark.whole
 def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
@@ -310,6 +320,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
         assert np.array_equal(again[name], outcome.parts["finite_film"][name], equal_nan=True)
 
 
+@pytest.mark.whole
 def test_progress_tells_contacts_and_steps(case: str) -> None:
     told: list[tuple[int, str]] = []
     built = load_case(case)
@@ -362,6 +373,7 @@ def test_without_a_torque_nothing_is_loaded(case: str) -> None:
     assert words in page and "No film was found" not in page
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("lean", ["80 um", "-80 um"])
 def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     one = running.run(case, settings={"gears.misalignment": lean})["default"]

@@ -100,6 +100,7 @@ def test_films_are_those_of_the_same_map_in_python(outcome: Outcome, folder: Pat
     assert np.ptp(data["field_heights"].values) > 5e-8
 
 
+@pytest.mark.whole
 def test_another_content_is_another_run(folder: Path, tmp_path: Path) -> None:
     np.savetxt(folder / "own.csv", WAVES, delimiter=",")
     case = written(folder, table("both", "own.csv"), "own.toml")
@@ -116,6 +117,7 @@ def test_the_report_shows_what_the_grid_sees(outcome: Outcome) -> None:
     assert "Roughness seen" in page and "Film and heights along the contact" in page
 
 
+@pytest.mark.whole
 def test_a_map_moves_with_its_surface_under_squeeze(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import bank
 import numpy as np
 import pytest
 from sound import WAVE
 
-from pitchpoint.analyses.joint import JOINT, RATED, TORQUES, _found, joint_part
-from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.analyses.joint import RATED, TORQUES, _found, joint_part
+from pitchpoint.analyses.registry import ANALYSES, JOINT, TORSION
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
@@ -50,14 +50,12 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture(scope="module")
 def outcome(case: str) -> Outcome:
-    return running.run(case)["default"]
+    return bank.outcomes(case)["default"]
 
 
 @pytest.fixture(scope="module")
-def deviating(case: str, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
-    folder = tmp_path_factory.mktemp("out")
-    running.run(case, folder=folder, settings=DEVIATING)
-    return running.open_result(folder)["default"]
+def deviating(case: str) -> Outcome:
+    return bank.outcomes(case, settings=DEVIATING)["default"]
 
 
 def test_the_joint_vibrates_on_the_slope_of_its_wind_up(outcome: Outcome) -> None:
@@ -80,6 +78,7 @@ def test_without_deviations_the_ripple_of_the_teeth_excites(outcome: Outcome) ->
     np.testing.assert_allclose(joint["critical_speed"][:, 0], crossed, rtol=1e-12)
 
 
+@pytest.mark.whole
 def test_waves_of_both_splines_turn_against_the_wave_generator(deviating: Outcome) -> None:
     """With the flexspline fixed its waves pass as often as the wave generator turns."""
     joint = deviating.parts["joint"]
@@ -90,6 +89,7 @@ def test_waves_of_both_splines_turn_against_the_wave_generator(deviating: Outcom
     assert joint.attrs["note"].startswith("Left out: ")
 
 
+@pytest.mark.whole
 def test_the_resonance_stands_at_its_critical_speed(deviating: Outcome) -> None:
     """Close to the amplitude of one degree of freedom, 1/(2 xi) times the error on the spring and more."""
     joint = deviating.parts["joint"]
@@ -103,6 +103,7 @@ def test_the_resonance_stands_at_its_critical_speed(deviating: Outcome) -> None:
     assert float(at.max()) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.whole
 def test_the_whole_curve_agrees_where_little_vibrates(deviating: Outcome) -> None:
     joint = deviating.parts["joint"]
     assert (joint["course_status"] == 0).all()
@@ -110,6 +111,7 @@ def test_the_whole_curve_agrees_where_little_vibrates(deviating: Outcome) -> Non
     assert whole == pytest.approx(tangent, rel=0.02)
 
 
+@pytest.mark.whole
 def test_the_joint_is_told(deviating: Outcome, outcome: Outcome) -> None:
     told = figures(deviating)["joint"]
     assert [*told] == [
@@ -134,6 +136,7 @@ def test_the_joint_is_told(deviating: Outcome, outcome: Outcome) -> None:
     assert "<dt>Joint resonance</dt>" in page
 
 
+@pytest.mark.whole
 def test_waves_far_from_resonance_are_not_integrated(deviating: Outcome, outcome: Outcome) -> None:
     courses = [one.parts["joint"]["course"].values.tolist() for one in (deviating, outcome)]
     assert courses == [["operating speed", "critical speed"], ["critical speed"]]

@@ -201,6 +201,7 @@ def test_inertia_that_a_case_leaves_open_stands_among_its_inputs(outcome: Outcom
     assert rows[0]["status"] == "derived"
 
 
+@pytest.mark.whole
 def test_a_rack_moves_too() -> None:
     data = running.run(str(sample_of(RackAndPinionGears)))["default"].parts
     assert data["motion"].attrs["sentence"] == Code.SOLVED.sentence

@@ -274,6 +274,7 @@ def test_a_design_that_cannot_be_says_why_and_stops_no_other() -> None:
         pp.study(PAIR, {SHIFT: [9.0]})
 
 
+@pytest.mark.whole
 def test_one_that_spoils_all_together_is_computed_apart(monkeypatch: pytest.MonkeyPatch) -> None:
     from pitchpoint.analyses import designs
 
@@ -388,6 +389,7 @@ def test_what_is_not_known_of_a_material_spoils_no_derivative(result: pp.Result)
     np.testing.assert_allclose(table.derivative[TORQUE], before.derivative[TORQUE], rtol=1e-3)
 
 
+@pytest.mark.whole
 def test_an_optimiser_of_scipy_finds_the_best_profile_shift() -> None:
     def loss(shift: np.ndarray) -> tuple[float, float]:
         table = pp.gradients(PAIR.set({SHIFT: shift[0]}), "mean_loss", [SHIFT], law="xu_2007")
@@ -401,6 +403,7 @@ def test_an_optimiser_of_scipy_finds_the_best_profile_shift() -> None:
     assert abs(found.x[0] - shifts[np.argmin(beside.values)]) < 0.1
 
 
+@pytest.mark.whole
 def test_designs_are_vectorised_by_jax() -> None:
     case = pp.load_case(PAIR)
     models = case.models[1]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from sound import PAIR
+from sound import PAIR, quick_first
 
 from pitchpoint import cli
 from pitchpoint.analyses.registry import ANALYSES
@@ -106,7 +106,7 @@ def printed(
     return run
 
 
-@pytest.mark.parametrize(("settings", "words"), ABSURD)
+@pytest.mark.parametrize(("settings", "words"), quick_first(ABSURD, 5))
 def test_an_absurd_case_says_so_first(
     printed: Callable[..., str], settings: list[str], words: str
 ) -> None:
@@ -115,7 +115,7 @@ def test_an_absurd_case_says_so_first(
     assert words in line
 
 
-@pytest.mark.parametrize("settings", SOUND)
+@pytest.mark.parametrize("settings", quick_first(SOUND, 3))
 def test_a_sound_case_has_no_such_line(printed: Callable[..., str], settings: list[str]) -> None:
     assert printed(settings).splitlines()[0] == "pair.toml (default)"
 

@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import bank
 import numpy as np
 import pytest
 
@@ -25,7 +26,7 @@ SMALL = {"loss_map": {"count": 2, "force": "4000 N", "quadrants": 4}}
 
 @pytest.fixture(scope="module")
 def outcome() -> Outcome:
-    return run(SAMPLE, settings=SMALL)["default"]
+    return bank.outcomes(SAMPLE, settings=SMALL)["default"]
 
 
 def test_the_shipped_example_is_short() -> None:

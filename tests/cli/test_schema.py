@@ -18,7 +18,7 @@ from pitchpoint.cases.json_schema import case_schema
 from pitchpoint.cases.library import find, names, path_of
 from pitchpoint.cases.schema import Case, DriveCase
 from pitchpoint.gears.families import TABLES, sample_of
-from pitchpoint.input.tables import alternatives
+from pitchpoint.input.tables import alternatives, sentences
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FILES = [*sorted(EXAMPLES.glob("*.toml")), *map(path_of, names()), *map(sample_of, TABLES)]
@@ -94,8 +94,9 @@ def test_every_key_says_what_it_is_and_editors_show_it(schema: dict[str, Any]) -
     known = tables(Case) | tables(DriveCase)
     assert len(known) > 50
     for name, model in known.items():
-        for key, info in model.model_fields.items():
-            told = info.description or ""
+        sentence = sentences(model)
+        for key in model.model_fields:
+            told = sentence.get(key, "")
             assert told.endswith(".") and told[0].isupper() and len(told) <= 110, (name, key, told)
             shown = schema["$defs"][name]["properties"][key]["description"]
             assert shown.startswith(told), (name, key)

@@ -30,6 +30,7 @@ def coarse(monkeypatch):
     monkeypatch.setitem(FRICTION._entries, "ehl_line", replace(EHL_LINE, films=films))
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("coarse")
 def test_a_run_tells_turns_and_what_is_left_out(tmp_path, capsys, monkeypatch):
     file, out = tmp_path / "pair.toml", tmp_path / "out"
@@ -66,6 +67,7 @@ def refused(file, capsys, monkeypatch, *more):
     return " ".join(capsys.readouterr().err.split())
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("law", "told"),
     [

@@ -92,12 +92,14 @@ def other(folder: Path) -> tuple[int, Outcome]:
     return programs._LOADED["programs"] - before, found
 
 
+@pytest.mark.whole
 def test_another_drive_compiles_nothing_new(other: tuple[int, Outcome]) -> None:
     more, found = other
     assert list(found.parts) == PARTS
     assert more == 0
 
 
+@pytest.mark.whole
 def test_empty_places_for_pairs_are_not_told(drive: Outcome, other: tuple[int, Outcome]) -> None:
     """Teeth within 30 degrees before and 50 behind the long axis, at both of its ends."""
     for outcome, pairs in ((drive, 2 * 43), (other[1], 2 * 41)):
@@ -118,6 +120,7 @@ def test_all_parts_are_there(drive: Outcome) -> None:
     assert "palmgren_1959" in [source["key"] for source in drive.manifest["sources"]]
 
 
+@pytest.mark.whole
 def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -> None:
     name, tree = find(str(folder.parent / "drive.toml"))
     with_losses = Variant(tree, name, "default").built({})
@@ -249,6 +252,7 @@ def test_running_without_load(drive: Outcome) -> None:
     assert words["torque without load at 2000\u00a0rpm"] == show.quantity("no_load_torque", told)
 
 
+@pytest.mark.whole
 def test_python_of_the_documentation(
     drive: Outcome, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -283,6 +287,7 @@ class Interrupted(Progress):
             raise KeyboardInterrupt
 
 
+@pytest.mark.whole
 def test_an_interrupted_map_goes_on_where_it_was(tmp_path: Path) -> None:
     made = Variant(tomllib.loads(MAPPED), "pair.toml", "default")
     job = next(job for job in jobs(made, {}) if job.name == "loss_map")

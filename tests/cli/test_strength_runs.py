@@ -309,6 +309,7 @@ def swept(text: str, *widths: str, key: str = WIDTH) -> Any:
     return outcome.parts["study_x"]
 
 
+@pytest.mark.whole
 def test_a_study_has_the_strength_of_each_run() -> None:
     widths = ["12 mm", "20 mm"]
     found = pp.study(tomllib.loads(PAIR + RATED), {WIDTH: [*widths, "-1 mm"]})
@@ -331,6 +332,7 @@ def test_a_study_has_the_strength_of_each_run() -> None:
     assert all(np.isnan(found[name].values[:, 2]).all() for name in RATING)
 
 
+@pytest.mark.whole
 def test_a_sweep_shows_safeties_that_vary_or_else_stresses() -> None:
     def columns(text: str, *values: str, key: str = WIDTH) -> list[str]:
         heads = swept_rows(swept(text, *values, key=key))[0]
@@ -358,6 +360,7 @@ def test_without_limits_there_are_stresses_and_no_safeties() -> None:
     assert float(computed(one, None, "strength").parts["strength"]["least_root_safety"]) > 1.0
 
 
+@pytest.mark.whole
 def test_a_drive_has_the_extremes_of_its_rated_stages() -> None:
     def built(name: str) -> Any:
         text = (EXAMPLES / f"{name}.toml").read_text("utf-8")

@@ -1,5 +1,6 @@
 """What reaches the terminal: nothing that steers it, letters it does not know, progress, completion."""
 
+import gc
 import io
 import json
 import os
@@ -201,3 +202,26 @@ def test_completion(
     _, out, _ = told()
     assert out.split()[: len(offered)] == offered
     assert bool(out.split()) == bool(offered)
+
+
+def test_a_process_of_its_own_looks_for_garbage_once_its_parts_begin(monkeypatch):
+    monkeypatch.setattr(cli, "main", lambda: None)
+    frozen = gc.get_freeze_count()
+    try:
+        cli.command()
+        assert not gc.isenabled()
+        with cli._progress(None) as progress:
+            progress.part("a", "cycle", False)
+        assert gc.isenabled()
+        assert gc.get_freeze_count() > frozen
+    finally:
+        gc.enable()
+        cli._garbage_waits = False
+
+
+def test_who_calls_the_command_line_keeps_the_garbage_collector_as_it_is():
+    frozen = gc.get_freeze_count()
+    with cli._progress(None) as progress:
+        progress.part("a", "cycle", False)
+    assert gc.isenabled()
+    assert gc.get_freeze_count() == frozen

@@ -12,7 +12,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Unasked
 from pitchpoint.analyses.cycle import CYCLE
-from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.analyses.registry import TORSION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.ellipse import hamrock_brewe_1983
 from pitchpoint.errors import InputError

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from sound import PAIR
+from sound import PAIR, quick_first
 
 from pitchpoint import cli
 from pitchpoint.analyses import wear_course
@@ -90,6 +90,7 @@ def test_the_march_ends_where_it_is_asked_to(outcome: Outcome) -> None:
     assert volumes[0] / volumes[1] == pytest.approx(61.0 / 23.0, rel=1e-6)
 
 
+@pytest.mark.whole
 def test_a_march_that_is_stopped_at_every_step_ends_with_the_same_bits(
     outcome: Outcome, case: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -116,6 +117,7 @@ def test_a_march_that_is_stopped_at_every_step_ends_with_the_same_bits(
     assert bits[0] == bits[1]
 
 
+@pytest.mark.whole
 def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
     outcome: Outcome,
     case: str,
@@ -189,6 +191,7 @@ def test_the_march_ends_where_flanks_move_off_their_places(case: str) -> None:
     assert any("the march ends at 0.2 modules" in one for one in json.loads(data.attrs["warnings"]))
 
 
+@pytest.mark.whole
 def test_a_ball_that_conforms_ends_the_march(folder: Path) -> None:
     ball = Path(__file__).parents[2] / "examples" / "ball_on_disc.toml"
     settings = {
@@ -217,7 +220,7 @@ LIMITS = {
 }
 
 
-@pytest.mark.parametrize("end", LIMITS)
+@pytest.mark.parametrize("end", quick_first(LIMITS))
 def test_a_limit_ends_the_march(case: str, outcome: Outcome, end: str) -> None:
     given, name, expected = LIMITS[end]
     if end == "tip land":
@@ -250,6 +253,7 @@ MIXED = {
 }
 
 
+@pytest.mark.whole
 def test_mixed_lubrication_wears_less_than_dry_flanks(folder: Path) -> None:
     dry = running.run(written(folder, MODELS + DRY), settings={"wear.cycles": 1.0})
     mixed = running.run(written(folder, MODELS + DRY, "mixed.toml"), settings=MIXED)
@@ -257,6 +261,7 @@ def test_mixed_lubrication_wears_less_than_dry_flanks(folder: Path) -> None:
     assert 0.0 < depths[1] < 1e-2 * depths[0]
 
 
+@pytest.mark.whole
 def test_the_load_on_asperities_by_films(folder: Path) -> None:
     """Named in the case: neither a formula nor its hardness is asked for, and the report says so."""
     films = {**MIXED, "wear.load_ratio": "film", "models.asperity_load": "none"}
@@ -272,6 +277,7 @@ def test_the_load_on_asperities_by_films(folder: Path) -> None:
     assert {"wear.load_ratio", "film.nodes", "film.asperities"} <= rows
 
 
+@pytest.mark.whole
 def test_a_film_that_is_not_solved_ends_the_march(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -431,6 +437,7 @@ def test_flanks_are_drawn_where_they_are_and_their_wear_magnified(outcome: Outco
     assert start["x"][0] == start["x"][1] and start["y"][0] == start["y"][1]
 
 
+@pytest.mark.whole
 def test_severe_wear_by_the_pressure_is_told_with_its_factor(case: str) -> None:
     given = {"wear.severe_by": "pressure", "wear.cycles": 10.0}
     page = render({"default": running.run(case, settings=given)["default"]})

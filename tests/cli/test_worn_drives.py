@@ -14,8 +14,7 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses import wear_course
 from pitchpoint.analyses.along_action import STIFFNESS
-from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.analyses.torsion import TORSION
+from pitchpoint.analyses.registry import ANALYSES, TORSION
 from pitchpoint.analyses.wear import WEAR
 from pitchpoint.contact.worn import FLATTEST, Worn
 from pitchpoint.efficiency.quasi_static import contacts_at
@@ -104,6 +103,7 @@ def test_a_spur_pair_wears_in_two_humps_around_its_pitch_point(spur: Path) -> No
     assert volumes[0] / volumes[1] == pytest.approx(36.0 / 18.0, rel=1e-6)
 
 
+@pytest.mark.whole
 def test_steps_that_a_killed_run_did_not_remove_go_with_the_next(spur: Path) -> None:
     left = spur / "physical" / "wear.0003.nc"
     left.write_bytes(b"")
@@ -111,6 +111,7 @@ def test_steps_that_a_killed_run_did_not_remove_go_with_the_next(spur: Path) -> 
     assert not left.exists()
 
 
+@pytest.mark.whole
 def test_stiffness_error_and_backlash_of_a_worn_spur_pair(
     spur: Path, new: dict[str, xr.Dataset]
 ) -> None:
@@ -126,6 +127,7 @@ def test_stiffness_error_and_backlash_of_a_worn_spur_pair(
     assert 0.0 < (play(half) - play(new)) * 54e-3 * COSINE < opened < deepest
 
 
+@pytest.mark.whole
 def test_flanks_worn_alike_all_over_turn_the_pair_and_leave_its_stiffness(
     spur: Path, new: dict[str, xr.Dataset], tmp_path: Path
 ) -> None:
@@ -147,6 +149,7 @@ def test_flanks_worn_alike_all_over_turn_the_pair_and_leave_its_stiffness(
     assert windings[1] == pytest.approx(windings[0], rel=1e-9)
 
 
+@pytest.mark.whole
 def test_steel_wears_polyamide_and_not_itself(tmp_path: Path) -> None:
     plastic = {"materials.gear_2": "PA66", "operation.torque": "10 N m"}
     data = parts(plastic | GUIDELINE, tmp_path)["wear"]

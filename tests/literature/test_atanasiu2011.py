@@ -7,6 +7,7 @@ independent calculation of the same models, rows of the kind "reference".
 from dataclasses import replace
 from functools import cache
 
+import bank
 import numpy as np
 import pytest
 import xarray as xr
@@ -19,7 +20,6 @@ from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.results.target_rows import counts
-from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("atanasiu2011")
 VARIANT = Variant(TREE, NAME, "as_published")
@@ -33,7 +33,7 @@ GEOMETRY = {
 
 @pytest.fixture(scope="module")
 def rows():
-    return compare_case("atanasiu2011")[2]
+    return bank.rows("atanasiu2011")
 
 
 @cache

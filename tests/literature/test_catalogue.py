@@ -29,7 +29,7 @@ from pitchpoint.gears.strain_wave.ball_bearing import Balls
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
 from pitchpoint.gears.strain_wave.in_series import Behind
 from pitchpoint.input.quantities import SIValue
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import load_case
@@ -271,7 +271,7 @@ def drive(variant="rigid_bearing", scale=1.0):
 
 def wound_up(design, scale=1.0, model="beam_foundation_weber"):
     load, phase = np.meshgrid(LOADS * scale**3, PHASES, indexing="ij")
-    terms = TOOTH_COMPLIANCE[model].terms
+    terms = terms_of(model)
     return jax.tree.map(np.asarray, _torsion(design, terms, load, phase))
 
 

@@ -6,6 +6,7 @@ figures 4, 5, 9, 10, 11 and 12, which carry no numbers in the text.
 
 import dataclasses
 
+import bank
 import pytest
 
 from pitchpoint.analyses.comparison import compare
@@ -13,12 +14,11 @@ from pitchpoint.cases.library import find
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.runs.run import compare_case
 
 
 @pytest.fixture(scope="module")
 def rows():
-    return compare_case("tian2024")[2]
+    return bank.rows("tian2024")
 
 
 def computed(changes):

@@ -172,6 +172,7 @@ def films():
     return data
 
 
+@pytest.mark.whole
 def test_all_films_of_the_zone_are_found():
     for name in ("films_status_a", "films_status_b"):
         assert not np.any(films()[name])
@@ -179,6 +180,7 @@ def test_all_films_of_the_zone_are_found():
     assert np.all(np.isfinite(films()["film_stiffness_b"]))
 
 
+@pytest.mark.whole
 def test_trends_of_films_are_those_of_the_figures():
     targets = [one for one in case().targets if one.study == "films" and one.kind == "trend"]
     # On a coarse grid the stiffness in B, which changes little, is a number of the grid.
@@ -190,6 +192,7 @@ def test_trends_of_films_are_those_of_the_figures():
     assert [(row.quantity, row.computed) for row in rows if row.verdict != "pass"] == []
 
 
+@pytest.mark.whole
 def test_films_of_the_misprinted_oil_never_touch():
     warm = films().isel(point=-1)
     assert float(warm["rated_film_ratio_a"][0]) < 1.0

@@ -6,6 +6,7 @@ same formulas, rows of the kind "reference". What it prints is about the wear, m
 
 from functools import cache
 
+import bank
 import numpy as np
 import pytest
 import xarray as xr
@@ -33,7 +34,6 @@ from pitchpoint.published.zhao2022.publication import PUBLICATION
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.published.zhao2022.wear import march, marched, severe, strips_of
 from pitchpoint.results.target_rows import counts
-from pitchpoint.runs.run import compare_case
 
 NAME, TREE = find("zhao2022")
 VARIANTS = {name: Variant(TREE, NAME, name) for name in ("as_published", "physical")}
@@ -82,7 +82,7 @@ def missed(study, **changes):
 
 
 def test_no_row_misses():
-    rows = compare_case("zhao2022")[2]
+    rows = bank.rows("zhao2022")
     assert [(row.quantity, row.computed) for row in rows if row.verdict == "miss"] == []
     assert {kind: dict(found) for kind, found in counts(rows).items()} == {
         "reference": {"pass": 55},

@@ -4,6 +4,7 @@ import dataclasses
 
 import equinox as eqx
 import numpy as np
+import pytest
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.bodies import Body
@@ -15,10 +16,11 @@ from pitchpoint.dynamics.steady_motion import periodic_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = solids.find("steel").build()
 CONSTANT = next(law for law in LAWS if law.name == "constant")
@@ -79,6 +81,7 @@ def with_slope(own, factors):
     return jax.jacfwd(twice, has_aux=True)(factors)
 
 
+@pytest.mark.whole
 def test_derivatives_by_inertia_damping_and_torus_radius_are_those_of_differences():
     """Differences of two steps, extrapolated."""
     own, middle = design(), np.ones(3)

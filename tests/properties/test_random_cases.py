@@ -32,7 +32,7 @@ from pitchpoint.cases.schema import (
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.table import WIDTH
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.units import si_unit
@@ -241,6 +241,11 @@ def explore(examples: int) -> None:
 
 
 def test_random_cases() -> None:
+    explore(30)
+
+
+@pytest.mark.whole
+def test_more_random_cases() -> None:
     explore(EXAMPLES)
 
 

@@ -4,6 +4,7 @@ import json
 from typing import Any
 
 import numpy as np
+import pytest
 import xarray as xr
 from hypothesis import strategies as st
 from properties.test_random_cases import between, cases, drawn, of, pair
@@ -111,4 +112,9 @@ def explore(examples: int) -> None:
 
 
 def test_random_ratings() -> None:
+    explore(20)
+
+
+@pytest.mark.whole
+def test_more_random_ratings() -> None:
     explore(EXAMPLES)

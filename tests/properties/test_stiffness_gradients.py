@@ -11,11 +11,12 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.vibration import Vibrating, excited, steady, transmission_figures
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants
+from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
+from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.status import Code
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)

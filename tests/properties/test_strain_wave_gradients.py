@@ -17,11 +17,12 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.wind_up import wind_up
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials import Roughness, lubricants, solids
+from pitchpoint.materials import lubricants, solids
+from pitchpoint.materials.surfaces import Roughness
 
 STEEL = solids.find("steel").build()
 OIL = lubricants.find("pao-vg-220").build()
@@ -116,6 +117,7 @@ def differences(look, name, law, step):
     return np.array([1.0, -8.0, 8.0, -1.0]) @ np.array(rows) / (12.0 * step)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("law", FRICTION)
 @pytest.mark.parametrize("name", INPUTS[:3])
 def test_derivatives_by_dimensions_equal_differences(look, name, law):
@@ -124,6 +126,7 @@ def test_derivatives_by_dimensions_equal_differences(look, name, law):
     np.testing.assert_allclose(differences(look, name, law, STEP), found, rtol=1e-7, atol=ROUNDING)
 
 
+@pytest.mark.whole
 def test_derivative_by_viscosity_equals_differences(look):
     """Oil moves no flank, so nothing jumps and the step may be long."""
     found, *others = differences(look, "viscosity", "xu_2007", 1e-3)
@@ -134,6 +137,7 @@ def test_derivative_by_viscosity_equals_differences(look):
     assert np.max(np.abs(others)) < 1e-11
 
 
+@pytest.mark.whole
 def test_viscosity_does_not_matter_to_dry_friction(look):
     (figures, rates), (others, _) = (
         look("viscosity", "constant"),

@@ -1,13 +1,16 @@
 """The budget of the suite counts what is compiled, and says which file is beyond it."""
 
+import math
 from collections import defaultdict
 from types import SimpleNamespace
 
 import budget
 import pytest
-from budget import PROGRAMS, PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE, Meter, Spent, exceeded, slow
+from budget import FEW, GROWTH, PROGRAMS, Meter, Spent, exceeded, most_of, record, recorded, slow
 
 from pitchpoint._jax import jax
+
+FIGURES = {"tests/a.py": Spent(200, loops=30.0), "tests/b.py": Spent(3, loops=1.0)}
 
 
 def test_a_new_program_is_counted_once():
@@ -23,56 +26,108 @@ def test_a_new_program_is_counted_once():
         jax.monitoring.unregister_event_duration_listener(meter.listen)
     assert spent.programs == 1
     assert 0.0 < spent.seconds < 10.0
+    assert spent.loops == pytest.approx(spent.seconds / meter.loop)
+
+
+def test_loops_are_counted_by_what_a_loop_took_then():
+    meter = Meter()
+    meter.read()
+    meter.loop = 1e-3
+    loops = meter.read().loops
+    budget.seconds_of_a_loop()
+    meter.calibrate()
+    assert meter.loop > 1e-3
+    assert meter.read().loops > loops + 1.0  # of the loops before, by the old measure
 
 
 def test_a_suite_within_its_budget_is_silent():
-    most = Spent(PROGRAMS_OF_A_FILE, SECONDS_OF_A_FILE)
-    for told in (exceeded, slow):
-        assert told({"tests/a.py": most, "tests/b.py": Spent()}) == []
+    assert most_of(200) == int(GROWTH * 200)
+    assert most_of(3) == 3 + FEW
+    spent = {file: Spent(most_of(own.programs), 1e6, own.loops) for file, own in FIGURES.items()}
+    assert exceeded(spent, FIGURES) == slow(spent, FIGURES) == []
 
 
-def test_a_file_beyond_its_budget_is_named():
-    spent = {"tests/a.py": Spent(PROGRAMS_OF_A_FILE + 1, SECONDS_OF_A_FILE + 1.0)}
-    (told,), (late,) = exceeded(spent), slow(spent)
-    assert told.startswith(f"tests/a.py asks for {PROGRAMS_OF_A_FILE + 1} programs")
-    assert late.startswith("tests/a.py takes")
+def test_a_file_beyond_its_figure_is_named():
+    (told,) = exceeded({"tests/a.py": Spent(221), "tests/b.py": Spent(8)}, FIGURES)
+    assert told == "tests/a.py asks for 221 programs, 220 are its budget"
 
 
-def test_many_files_within_their_own_budgets_may_exceed_that_of_the_suite():
-    each = Spent(PROGRAMS_OF_A_FILE, 1.0)
-    (told,) = exceeded({f"tests/{n}.py": each for n in range(PROGRAMS // PROGRAMS_OF_A_FILE + 1)})
+def test_a_file_without_a_figure_is_named_where_others_have_one():
+    spent = {"tests/new.py": Spent(FEW + 1)}
+    (told,) = exceeded(spent, FIGURES)
+    assert told.startswith(f"tests/new.py asks for {FEW + 1} programs")
+    assert exceeded(spent, {}) == []
+
+
+def test_many_files_within_their_own_figures_may_exceed_that_of_the_suite():
+    figures = {f"tests/{n}.py": Spent(PROGRAMS // 10) for n in range(11)}
+    (told,) = exceeded(figures, figures)
     assert told.startswith("the suite asks for ")
+    assert exceeded(figures, figures, math.inf) == []
+
+
+def test_a_slow_suite_is_told():
+    (told,) = slow({"tests/a.py": Spent(1, 1.0, 34.0)}, FIGURES)
+    assert told == "the suite takes 34 loops, 33 are its budget"
+    assert slow({"tests/new.py": Spent(1, 1.0, 34.0)}, FIGURES) == []
+
+
+def test_figures_are_recorded_by_part_and_those_of_other_files_stay(tmp_path):
+    table = tmp_path / "tests" / "budget.toml"
+    table.parent.mkdir()
+    for name in ("a", "b"):
+        (table.parent / f"{name}.py").touch()
+    gone = {"tests/gone.py": Spent(7, loops=1.0)}
+    record("quick", FIGURES | gone, table)
+    record("whole", {"tests/b.py": Spent(40, 1.0, 6.0)}, table)
+    record("quick", {"tests/b.py": Spent(4, loops=2.0)}, table)
+    assert recorded("quick", table=table) == FIGURES | {"tests/b.py": Spent(4, loops=2.0)}
+    assert recorded("whole", table=table) == {"tests/b.py": Spent(40, loops=6.0)}
+    assert recorded(*budget.PARTS, table=table)["tests/b.py"] == Spent(44, loops=8.0)
+
+
+def test_files_that_take_longest_start_first():
+    names = ["tests/b.py", "tests/new.py", "tests/a.py"]
+    assert sorted(names, key=lambda file: budget.order(file, FIGURES)) == [
+        "tests/a.py",
+        "tests/b.py",
+        "tests/new.py",
+    ]
+
+
+@pytest.fixture
+def plugin(request):
+    return request.config.pluginmanager.getplugin(
+        str(request.config.rootpath / "tests/conftest.py")
+    )
+
+
+def config(**options):
+    given = {"markexpr": "not whole", "record_budget": False, "hold_pace": False} | options
+    return SimpleNamespace(option=SimpleNamespace(**given))
 
 
 @pytest.mark.parametrize(
-    ("programs", "status"),
+    ("spent", "options", "status"),
     [
-        (PROGRAMS_OF_A_FILE, pytest.ExitCode.OK),
-        (PROGRAMS_OF_A_FILE + 1, pytest.ExitCode.TESTS_FAILED),
+        (Spent(PROGRAMS, 1e6, 1e6), {}, pytest.ExitCode.OK),
+        (Spent(PROGRAMS + 1), {}, pytest.ExitCode.TESTS_FAILED),
+        (Spent(PROGRAMS + 1), {"markexpr": "whole"}, pytest.ExitCode.OK),
+        (Spent(1, 1e6, 34.0), {"hold_pace": True}, pytest.ExitCode.TESTS_FAILED),
     ],
 )
-def test_a_run_beyond_its_budget_of_programs_fails(request, monkeypatch, programs, status):
-    plugin = request.config.pluginmanager.getplugin(
-        str(request.config.rootpath / "tests/conftest.py")
-    )
-    monkeypatch.setattr(plugin, "SPENT", {"tests/a.py": Spent(programs, 1e6)})
-    session = SimpleNamespace(config=SimpleNamespace(), exitstatus=pytest.ExitCode.OK)
+def test_a_run_beyond_its_budget_fails(plugin, monkeypatch, spent, options, status):
+    figures = {"tests/a.py": Spent(PROGRAMS + 1, loops=30.0)}
+    monkeypatch.setattr(budget, "recorded", lambda *_: figures)
+    monkeypatch.setattr(plugin, "SPENT", {"tests/a.py": spent})
+    session = SimpleNamespace(config=config(**options), exitstatus=pytest.ExitCode.OK)
     plugin.pytest_sessionfinish(session)
     assert session.exitstatus is status
 
 
-def test_workers_hand_in_what_each_file_spent(request, monkeypatch):
-    plugin = request.config.pluginmanager.getplugin(
-        str(request.config.rootpath / "tests/conftest.py")
-    )
-    monkeypatch.setattr(plugin, "SPENT", defaultdict(Spent, {"tests/a.py": Spent(2, 1.0)}))
+def test_workers_hand_in_what_each_file_spent(plugin, monkeypatch):
+    monkeypatch.setattr(plugin, "SPENT", defaultdict(Spent, {"tests/a.py": Spent(2, 1.0, 3.0)}))
     worker = SimpleNamespace(config=SimpleNamespace(workeroutput={}), exitstatus=0)
     plugin.pytest_sessionfinish(worker)
     plugin.pytest_testnodedown(worker.config)
-    assert dict(plugin.SPENT) == {"tests/a.py": Spent(4, 2.0)}
-
-
-@pytest.mark.parametrize("file", budget.SLOWEST_FIRST)
-def test_files_that_start_first_exist(file, request):
-    assert (request.config.rootpath / "tests" / file).is_file()
-    assert budget.order(f"tests/{file}") < budget.order("tests/any/test_other.py")
+    assert dict(plugin.SPENT) == {"tests/a.py": Spent(4, 2.0, 6.0)}

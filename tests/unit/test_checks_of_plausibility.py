@@ -21,7 +21,7 @@ from pitchpoint.cases.solids import BY_VALUE, SolidInUse
 from pitchpoint.citations import cite
 from pitchpoint.lubrication.friction_coefficient import BOUNDARY
 from pitchpoint.materials import solids
-from pitchpoint.materials._leaves import Datum
+from pitchpoint.materials.data import Datum
 
 CONSTANT, ISO = FRICTION["constant"], FRICTION["iso_tr_14179_2"]
 

@@ -16,7 +16,8 @@ DOCUMENTED = ast.ClassDef | ast.FunctionDef
 def _read(path):
     """Module, the public name that stands in it, and each docstring below it that holds an example."""
     module = ".".join(path.relative_to(ROOT.parent).with_suffix("").parts)
-    for top in ast.parse(path.read_text(encoding="utf-8")).body:
+    source = path.read_text(encoding="utf-8")
+    for top in ast.parse(source).body if ">>> " in source else ():
         for node in ast.walk(top):
             text = ast.get_docstring(node) if isinstance(node, DOCUMENTED) else None
             if text and ">>> " in text:

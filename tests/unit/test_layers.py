@@ -23,6 +23,7 @@ FLOW = (
         "kept",
         "pages",
         "programs",
+        "reach",
         "factored",
         "status",
     },

@@ -27,7 +27,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.status import Code, Status
@@ -271,7 +271,7 @@ def test_stiffness_of_modified_flanks_is_that_of_the_springs_that_carry() -> Non
     built = pair(**RELIEVED, **given).built({})
     data, mesh = stiffness_part(built), built.design.mesh
     contacts, load = mesh.contacts(jnp.asarray(data["phase"].values)), jnp.asarray(50.0)
-    terms = TOOTH_COMPLIANCE["beam_hertz"].terms
+    terms = terms_of("beam_hertz")
     found = wound_up(mesh, built.design.solids, terms, load, contacts, None)
     arm = abs(float(mesh.base_radii[1]))
     error = np.asarray(found.wind_up + found.touch) * arm

@@ -15,6 +15,7 @@ import pytest
 
 from pitchpoint import programs
 from pitchpoint.lubrication.friction_coefficient import LAWS, xu_2007
+from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.programs import Program, program
 
 
@@ -82,6 +83,22 @@ def test_what_is_static_decides(kept, tmp_path):
     assert kept(by=2.0, twice=True)["force"][1] == 4.0
     assert kept(by=3.0)["force"][1] == 3.0
     assert len(list((tmp_path / "programs").iterdir())) == len(TRACED) == 3
+
+
+def test_code_that_counts_is_that_of_the_function_and_of_its_arguments(kept, monkeypatch):
+    asked: list[list[str]] = []
+
+    def digest_of_reach(modules: list[str]) -> str:
+        asked.append(modules)
+        return str(len(asked))
+
+    monkeypatch.setattr(programs._sources(), "digest_of_reach", digest_of_reach)
+    one = Program(moved, programs.QUICK)
+    given = {"name": "pitchpoint.units:torque", "law": xu_2007, "of": [Lubricant]}
+    paths = {one._path(((Bodies(jnp.arange(3.0), "a"),), given)) for _ in range(2)}
+    others = ["pitchpoint.lubrication.friction_coefficient", "pitchpoint.materials.lubricants"]
+    assert asked == [[*others, "pitchpoint.programs"]] * 2
+    assert len(paths) == 2
 
 
 @pytest.mark.parametrize("damage", [b"", b"\0" * 4096, None], ids=["empty", "zeros", "cut"])

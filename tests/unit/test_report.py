@@ -11,6 +11,7 @@ from math import atan2, cos, pi, sin
 from pathlib import Path
 from typing import Any
 
+import bank
 import numpy as np
 import pytest
 import xarray as xr
@@ -25,7 +26,7 @@ from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.results.store import dataset
-from pitchpoint.runs.run import Outcome, open_result, run
+from pitchpoint.runs.run import Outcome, open_result
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
 from pitchpoint.views.figures import curves, rounded
@@ -139,7 +140,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def computed(folder: Path, name: str, text: str) -> Outcomes:
     (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    return run(str(folder / f"{name}.toml"), folder=folder / name)
+    return bank.outcomes(folder / f"{name}.toml")
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from pitchpoint.analyses.figures import (
     by_torque,
     numbers,
 )
-from pitchpoint.analyses.torsion import rigid
+from pitchpoint.analyses.lacking import rigid
 from pitchpoint.cases.build import Built
 
 __all__ = ["MOTION", "MOTIONS", "RESONANCE", "START_UP", "STIFFNESS", "VIBRATIONS"]

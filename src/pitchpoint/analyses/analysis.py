@@ -10,6 +10,7 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import Study
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.cases.variant import Variant
+from pitchpoint.registry import Deferred
 from pitchpoint.results.variable import Variable
 
 __all__ = [
@@ -75,6 +76,10 @@ class Subject:
     studies: Mapping[str, Study] = field(default_factory=dict)
 
 
+def _whole(_: Ready) -> Iterable[Piece]:
+    return ({},)
+
+
 def _only(_: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     (whole,) = parts
     return whole
@@ -101,7 +106,9 @@ class Entry:
     lacks: Callable[[Any], str | None] = lambda built: None
     alone: str = ALONE
     main: tuple[str, ...] = ()
-    figures: Callable[[Mapping[str, xr.Dataset]], Mapping[str, Any]] | None = None
+    figures: Deferred[Callable[[Mapping[str, xr.Dataset]], Mapping[str, Any]] | None] = Deferred(
+        None
+    )
     variables: Mapping[str, Variable] = field(default_factory=dict)
 
     def why_not(self, built: Ready) -> str | None:
@@ -131,10 +138,12 @@ class Analysis(Entry):
             `pieces`.
     """
 
-    compute: Callable[[Any, Piece, Progress], xr.Dataset]
-    pieces: Callable[[Any], Iterable[Piece]] = lambda built: ({},)
-    joined: Callable[[Any, Sequence[xr.Dataset]], xr.Dataset] = _only
-    onward: Callable[[Any, xr.Dataset, Progress], xr.Dataset | None] | None = None
+    compute: Deferred[Callable[[Any, Piece, Progress], xr.Dataset]] = Deferred()
+    pieces: Deferred[Callable[[Any], Iterable[Piece]]] = Deferred(_whole)
+    joined: Deferred[Callable[[Any, Sequence[xr.Dataset]], xr.Dataset]] = Deferred(_only)
+    onward: Deferred[Callable[[Any, xr.Dataset, Progress], xr.Dataset | None] | None] = Deferred(
+        None
+    )
 
     def parts(self, subject: Subject) -> "Iterable[Analysis]":
         """The analysis itself, unless a case lacks something that it needs."""

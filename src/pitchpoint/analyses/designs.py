@@ -61,11 +61,12 @@ class Designs:
         """Figures of those of a range that can be computed; why not of the others, as attribute."""
         points: dict[int, Ready] = {}
         reasons: dict[int, str] = {}
-        for number in range(piece["first"], piece["stop"]):
-            try:
-                points[number] = self.variant.built(self.changes[number])
-            except InputError as error:
-                reasons[number] = _told(error)
+        built = self.variant.built_each(self.changes[piece["first"] : piece["stop"]])
+        for number, one in enumerate(built, piece["first"]):
+            if isinstance(one, InputError):
+                reasons[number] = _told(one)
+            else:
+                points[number] = one
         found = _figures(points, reasons) if points else []
         data = joined(found) if found else xr.Dataset()
         return data.assign_attrs(reasons=json.dumps(reasons))

@@ -6,7 +6,8 @@ import numpy as np
 
 from pitchpoint.analyses.analysis import Unasked
 from pitchpoint.analyses.film_contacts import known
-from pitchpoint.analyses.torsion import rigid, wound_ups
+from pitchpoint.analyses.lacking import rigid
+from pitchpoint.analyses.torsion import wound_ups
 from pitchpoint.cases.build import Built
 from pitchpoint.errors import InputError
 from pitchpoint.status import Code

@@ -12,9 +12,8 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from pitchpoint import units
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
-from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films, without_films
-from pitchpoint.analyses.operation import untransmitted
+from pitchpoint.analyses.analysis import Piece, Progress
+from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
 from pitchpoint.cases.schema import LossMap
 from pitchpoint.cases.stages import Ready
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
@@ -22,7 +21,6 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
 __all__ = [
-    "FOUR_QUADRANTS",
     "both",
     "loss_of_output",
     "mirrored",
@@ -99,7 +97,7 @@ def speed_ratio(built: Ready) -> float:
     return float(built.backwards.operation.speed) / float(built.operation.speed)
 
 
-def _piece(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
+def quadrants_of(built: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
     """Loss under one load."""
     driven = _driven(built, str(piece["way"]))
     _, speeds, degrees = _axes(built, str(piece["way"]), between=bool(piece["between"]))
@@ -173,7 +171,7 @@ def _between_loads(
     return found
 
 
-def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
+def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """The whole map, with how near values between its nodes are, and what there is to say about it."""
     (loads, _, degrees), (_, speeds, _) = map_axes(built), map_axes(_driven_back(built))
     ratio = speed_ratio(built)
@@ -377,22 +375,3 @@ def _told(built: Ready, stuck: Values, lost: Values, parts: Sequence[xr.Dataset]
         if where[k].any()
     ]
     return [*found, *dict.fromkeys(t for part in parts for t in json.loads(part.attrs["warnings"]))]
-
-
-def _unasked(built: Ready) -> str | None:
-    asked = built.case.loss_map
-    why_not = untransmitted(built)
-    if why_not is None and (asked is None or asked.quadrants != 4):
-        return Unasked("loss_map.quadrants = 4 asks for it")
-    return why_not or without_films(built)
-
-
-FOUR_QUADRANTS = Analysis(
-    name="four_quadrants",
-    title="loss map of the output",
-    alone="",
-    lacks=_unasked,
-    compute=_piece,
-    pieces=pieces,
-    joined=_joined,
-)

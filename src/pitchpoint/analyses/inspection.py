@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, of_gears_with
+from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.teeth import drawing_of
 from pitchpoint.cases.build import Built
 from pitchpoint.gears.cylindrical.inspection import (
@@ -22,7 +22,7 @@ from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
 from pitchpoint.gears.cylindrical.table import CylindricalGears, Inspection
 from pitchpoint.results.store import dataset
 
-__all__ = ["INSPECTION"]
+__all__ = ["inspection_of", "inspection_part"]
 
 NOTE = (
     "Backlash is that of tooth thickness and centre distance; deviations of pitch, runout, misalignment, "
@@ -107,6 +107,11 @@ class _Measured:
             "over_balls": [ball * one.over_balls(self.ball) for one in thinned],
             "ball_contact_diameter": ball * 2.0 * hypot(base, gear.ball_roll(self.ball)),
         }
+
+
+def inspection_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    """Dataset of the part."""
+    return inspection_part(built)
 
 
 def inspection_part(built: Built) -> xr.Dataset:
@@ -247,14 +252,3 @@ def _tolerances(table: CylindricalGears, pair: list[_Measured]) -> dict[str, Any
         for number, one in zip(table.tolerance_class, pair, strict=True)
     ]
     return {"flank_tolerance": (("gear", "tolerance"), found)}
-
-
-INSPECTION = Analysis(
-    name="inspection",
-    title="inspection",
-    lacks=of_gears_with(
-        "inspection", "span, balls and backlash by tolerances are those of cylindrical gears"
-    ),
-    compute=lambda built, _, __: inspection_part(built),
-    main=("backlash_angle", "span_measurement", "over_balls", "disc_mass", "disc_inertia"),
-)

@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.figures import numbers
 from pitchpoint.analyses.kinematic_error import own_error
 from pitchpoint.analyses.torsion import engaged_at, kinematic_play, mean_friction, wound_ups
@@ -26,7 +26,7 @@ from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of
 
-__all__ = ["JOINT", "joint_part"]
+__all__ = ["joint_figures", "joint_of", "joint_part"]
 
 MOTORS = ("motor holds its speed", "motor runs free")
 
@@ -350,20 +350,13 @@ def _unsettled(names: Sequence[str], courses: Mapping[str, np.ndarray]) -> list[
     ]
 
 
-def _still(built: Built) -> str | None:
-    """Only where a case asks for it, and its gears have no vibration of another kind."""
-    if not built.transmits:
-        return Unasked("nothing is transmitted by a test rig")
-    if built.design.mesh.along_action:
-        return Unasked("the vibration of these gears is computed along their line of action")
-    return Unasked("the case has no [dynamics]") if built.case.dynamics is None else None
-
-
-def _computed(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+def joint_of(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+    """Dataset of the part."""
     return joint_part(built, progress)
 
 
-def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+def joint_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Entries of `--json`."""
     data = parts.get("joint")
     if data is None:
         return {"joint": {}}
@@ -378,13 +371,3 @@ def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     }
     waves = {name: numbers(data[name].values) for name in ("wave_order", "wave_amplitude")}
     return {"joint": by_motor | waves | {"excitation": data["excitation"].values.tolist()}}
-
-
-JOINT = Analysis(
-    name="joint",
-    title="torsional vibration",
-    lacks=_still,
-    compute=_computed,
-    main=("natural_frequency", "critical_speed", "torque_amplitude"),
-    figures=_figures,
-)

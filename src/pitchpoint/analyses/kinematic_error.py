@@ -10,7 +10,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.figures import error_ranges, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import Contacts
@@ -21,12 +21,12 @@ from pitchpoint.loading.compliance import Compliance, compliance
 from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
+from pitchpoint.programs import looping_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost
 from pitchpoint.status import told as told_of
 
-__all__ = ["KINEMATIC_ERROR", "kinematic_error_part", "own_error"]
+__all__ = ["error_figures", "error_of", "kinematic_error_part", "own_error"]
 
 PHASES = 2
 """States in each tooth period of bodies that couple many teeth: four for every wave of the highest order."""
@@ -180,19 +180,9 @@ def _added(
     return added_gap(deviations, mesh.spots(period.contacts, mesh.onward * turned))
 
 
-@program
+@looping_program
 def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> KinematicError:
     return kinematic_error(period.contacts, period.yields, period.loaded, added)
-
-
-def _exact(built: Built) -> str | None:
-    if any(built.deviations):
-        return None
-    if not built.transmits:
-        return "a test rig has no teeth"
-    if "deviations" not in type(built.case.gears).model_fields:
-        return "deviations of the teeth of these gears are not among the keys of a case"
-    return Unasked("the teeth have no deviations around their gears")
 
 
 _FOUND: WeakKeyDictionary[Built, xr.Dataset] = WeakKeyDictionary()
@@ -210,21 +200,13 @@ def own_error(built: Built, progress: Progress) -> xr.Dataset:
     return _FOUND[built]
 
 
-def _computed(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+def error_of(built: Built, _: Piece, progress: Progress) -> xr.Dataset:
+    """Dataset of the part."""
     return own_error(built, progress)
 
 
-def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+def error_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Entries of `--json`."""
     found = error_ranges(parts.get("kinematic_error"))
     ranges = {curve: dict(zip(c, numbers(v), strict=True)) for curve, c, v in found}
     return {"kinematic_error_range": ranges}
-
-
-KINEMATIC_ERROR = Analysis(
-    name="kinematic_error",
-    title="kinematic error",
-    lacks=_exact,
-    compute=_computed,
-    main=("kinematic_error_range",),
-    figures=_figures,
-)

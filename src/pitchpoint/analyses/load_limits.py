@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.analysis import Analysis, of_gears_with
+from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -24,7 +24,7 @@ from pitchpoint.gears.strain_wave.load_limits import (
 from pitchpoint.gears.strain_wave.table import LoadLimits, StrainWaveGears
 from pitchpoint.results.store import dataset
 
-__all__ = ["LOAD_LIMITS"]
+__all__ = ["load_limits_of", "load_limits_part"]
 
 PLACES = ("rim under the teeth", "wall of the cup, at its open end")
 AGAINST = ("ratcheting", "buckling")
@@ -35,6 +35,11 @@ ESTIMATE = (
     "which stiffen the rim and notch it, the cone to which the wave bends the cup, its bottom, and tooth "
     "forces that bend the rim: peaks are higher."
 )
+
+
+def load_limits_of(built: Built, _: Piece, __: Progress) -> xr.Dataset:
+    """Dataset of the part."""
+    return load_limits_part(built)
 
 
 def load_limits_part(built: Built) -> xr.Dataset:
@@ -160,12 +165,3 @@ def _failing(stresses: dict[str, np.ndarray], against: dict[str, np.ndarray]) ->
     for name, margin in zip(AGAINST, against.get("limit_margin", ()), strict=False):
         if margin < 1.0:
             yield fails(f"the torque on the flexspline is {1.0 / margin:.2f} times that of {name}.")
-
-
-LOAD_LIMITS = Analysis(
-    name="load_limits",
-    title="load limits",
-    lacks=of_gears_with("limits", "a flexspline is that of a strain wave gear"),
-    compute=lambda built, _, __: load_limits_part(built),
-    main=("alternating_stress", "torsional_stress", "mean_stress", "flexspline_torque"),
-)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
-from pitchpoint.analyses.operation import untransmitted, without_formula
+from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -30,7 +30,7 @@ from pitchpoint.efficiency.rows import NODES, one_engagement
 from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
-from pitchpoint.loading.sharing import LoadSharing
+from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
@@ -45,7 +45,6 @@ __all__ = [
     "maps",
     "pieces",
     "told_of_films",
-    "without_films",
 ]
 
 STATES = 1 << 20
@@ -314,16 +313,6 @@ def _figures(
 
 
 _figures_of_many = fast_program(_figures.function)
-
-
-def without_films(built: Ready) -> str | None:
-    """Why films are not solved over a map."""
-    why_not = without_formula(built)
-    if why_not is None or not isinstance(built, Built):
-        return None
-    if built.design.mesh.touching and built.case.loss_map is None:
-        return f"{why_not}, and one with a table [loss_map] has it from films at few of them"
-    return None if built.design.mesh.touching else why_not
 
 
 LOSS_MAP = Analysis(

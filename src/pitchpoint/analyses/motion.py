@@ -28,7 +28,7 @@ from pitchpoint.dynamics.system import modal_damping, reduced_mass
 from pitchpoint.dynamics.transient import Transient, transient
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FilmThickness
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset

@@ -17,6 +17,7 @@ from pitchpoint.analyses.figures import (
     of_operation,
     out_of_range,
 )
+from pitchpoint.analyses.lacking import untransmitted
 from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import beside, profiles, summaries
 from pitchpoint.cases.build import Built
@@ -29,8 +30,6 @@ __all__ = [
     "BACK_DRIVING",
     "LAWS_THERE",
     "OPERATION",
-    "untransmitted",
-    "without_formula",
 ]
 
 
@@ -125,22 +124,6 @@ def _backward_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     data = parts.get("back_driving")
     names = ("mean_efficiency", "locked", "jamming_coefficient")
     return {"back_driving": {} if data is None else by_law(data, names)}
-
-
-def untransmitted(built: Ready) -> str | None:
-    """Why there is no part on the power that goes through."""
-    return None if built.transmits else "nothing is transmitted by a test rig"
-
-
-def without_formula(built: Ready) -> str | None:
-    """Why there is no part on very many operating points, whose friction asks for formulas."""
-    solved = [law.name for law in built.laws if law.films is not None]
-    if not solved:
-        return None
-    return (
-        f"it takes friction at very many operating points, and '{solved[0]}' solves the films of each; a "
-        "case with formulas alone has it"
-    )
 
 
 OPERATION = Analysis(

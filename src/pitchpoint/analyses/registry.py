@@ -1,4 +1,4 @@
-"""All analyses, in the order in which their parts are worth having."""
+"""All analyses, in the order in which their parts are worth having; what computes a part is loaded for it."""
 
 from pitchpoint.analyses.along_action import (
     MOTION,
@@ -8,26 +8,73 @@ from pitchpoint.analyses.along_action import (
     STIFFNESS,
     VIBRATIONS,
 )
-from pitchpoint.analyses.analysis import Analysis, Several
+from pitchpoint.analyses.analysis import Analysis, Several, of_gears_with
 from pitchpoint.analyses.cycle import CYCLE
+from pitchpoint.analyses.figures import WIND_UP
 from pitchpoint.analyses.films import FILM, FILM_SQUEEZE, FINITE_FILM
-from pitchpoint.analyses.four_quadrants import FOUR_QUADRANTS
-from pitchpoint.analyses.inspection import INSPECTION
-from pitchpoint.analyses.joint import JOINT
-from pitchpoint.analyses.kinematic_error import KINEMATIC_ERROR
-from pitchpoint.analyses.load_limits import LOAD_LIMITS
+from pitchpoint.analyses.lacking import no_deviations, no_joint, no_quadrants, rigid
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
 from pitchpoint.analyses.running import RUNNING
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import STUDIES
 from pitchpoint.analyses.teeth import TEETH
-from pitchpoint.analyses.torsion import TORSION
 from pitchpoint.analyses.wear import WEAR
 from pitchpoint.registry import Registry
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = ["ANALYSES", "register"]
+
+INSPECTION = Analysis(
+    name="inspection",
+    title="inspection",
+    lacks=of_gears_with(
+        "inspection", "span, balls and backlash by tolerances are those of cylindrical gears"
+    ),
+    compute="pitchpoint.analyses.inspection:inspection_of",
+    main=("backlash_angle", "span_measurement", "over_balls", "disc_mass", "disc_inertia"),
+)
+LOAD_LIMITS = Analysis(
+    name="load_limits",
+    title="load limits",
+    lacks=of_gears_with("limits", "a flexspline is that of a strain wave gear"),
+    compute="pitchpoint.analyses.load_limits:load_limits_of",
+    main=("alternating_stress", "torsional_stress", "mean_stress", "flexspline_torque"),
+)
+TORSION = Analysis(
+    name="torsion",
+    title="torsion",
+    alone="",
+    lacks=rigid,
+    compute="pitchpoint.analyses.torsion:torsion_of",
+    main=(*WIND_UP, "kinematic_play"),
+    figures="pitchpoint.analyses.torsion:torsion_figures",
+)
+KINEMATIC_ERROR = Analysis(
+    name="kinematic_error",
+    title="kinematic error",
+    lacks=no_deviations,
+    compute="pitchpoint.analyses.kinematic_error:error_of",
+    main=("kinematic_error_range",),
+    figures="pitchpoint.analyses.kinematic_error:error_figures",
+)
+JOINT = Analysis(
+    name="joint",
+    title="torsional vibration",
+    lacks=no_joint,
+    compute="pitchpoint.analyses.joint:joint_of",
+    main=("natural_frequency", "critical_speed", "torque_amplitude"),
+    figures="pitchpoint.analyses.joint:joint_figures",
+)
+FOUR_QUADRANTS = Analysis(
+    name="four_quadrants",
+    title="loss map of the output",
+    alone="",
+    lacks=no_quadrants,
+    compute="pitchpoint.analyses.four_quadrants:quadrants_of",
+    pieces="pitchpoint.analyses.four_quadrants:pieces",
+    joined="pitchpoint.analyses.four_quadrants:joined_quadrants",
+)
 
 ANALYSES: Registry[Analysis | Several] = Registry(
     "analysis",

@@ -9,8 +9,8 @@ import xarray as xr
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
-from pitchpoint.analyses.operation import untransmitted, without_formula
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import TEMPERATURE
 from pitchpoint.cases.stages import BuiltDrive, Ready

@@ -1,20 +1,24 @@
 """Strength of cylindrical pairs: forces, flank pressure, root stress, safeties at the operating point."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
+from math import nan
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint._jax import array, jax
+from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, Progress
 from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails, in_stage
 from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.efficiency.summary import in_chunks, in_groups
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.results.store import dataset
 from pitchpoint.strength.load_factors import MOST_RESONANCE
-from pitchpoint.strength.rating import rated
+from pitchpoint.strength.rating import ROWS, ratings
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
 
 __all__ = ["STRENGTH", "ratings_of"]
@@ -67,7 +71,7 @@ def _unrated(built: Ready) -> str | None:
 def _strength(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
     """The rating of a pair, or of those stages of a drive that are pairs of cylindrical gears."""
     stages = _rated(built)
-    each = [_rating(one) for _, one in stages]
+    each = _ratings([one for _, one in stages])
     several = isinstance(built, BuiltDrive)
     values = {name: np.stack([found[name] for found in each]) for name in each[0]}
     dims = {name: ("stage", "gear")[: np.ndim(found)] for name, found in values.items()}
@@ -101,14 +105,28 @@ def _rated(built: Ready) -> list[tuple[int, Built]]:
     return [one for one in stages if one[1].case.gears.rated]
 
 
-def _rating(built: Built) -> dict[str, np.ndarray]:
-    case, mesh, given = built.case, built.design.mesh, built.rated
-    point, life = case.operation, None if case.strength is None else case.strength.life
-    first, second = built.motion
-    duty = given.duty(point.load, point.speed, (first, second), life)
-    ratio = array(built.dimensions["transverse_contact_ratio"])
-    found = rated(mesh.bare, ratio, duty, given.factors, given.strengths, given.finish)
-    return {name: np.asarray(value) for name, value in jax.device_get(found).items()}
+def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
+    """Ratings of pairs, together as far as their gears are of one kind."""
+
+    def of(alike: Sequence[Any]) -> Numbers:
+        return in_chunks(lambda rows: ratings(_bare(rows[0]), *rows[1:]), alike, size=ROWS)
+
+    found = in_groups(of, [_asked(one) for one in pairs])
+    return [{name: values[row] for name, values in found.items()} for row in range(len(pairs))]
+
+
+def _asked(built: Built) -> tuple[Any, ...]:
+    """A pair as `rated` takes it."""
+    mesh, given, table = built.design.mesh, built.rated, built.case.strength
+    ratio = nan if mesh.ends_at_tips else built.dimensions["transverse_contact_ratio"]
+    duty = given.duty(built.operation, None if table is None else table.life)
+    return mesh, np.asarray(ratio), duty, given.factors, given.strengths, given.finish
+
+
+def _bare(mesh: Mesh) -> Mesh:
+    """Bare meshes, with an axis of pairs in front."""
+    found: Mesh = jax.vmap(lambda one: one.bare)(mesh)
+    return found
 
 
 def _extremes(each: Sequence[Numbers]) -> dict[str, float]:
@@ -127,9 +145,12 @@ def ratings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     """
     if STRENGTH.why_not(points[0]) is not None:
         return {}
-    found = [_extremes([_rating(one) for _, one in _rated(point)]) for point in points]
+    pairs = [[one for _, one in _rated(point)] for point in points]
+    found = iter(_ratings([one for each in pairs for one in each]))
+    extremes = [_extremes([*islice(found, len(each))]) for each in pairs]
     return {
-        name: (("law", "point"), np.array([[one[name] for one in found]] * laws)) for name in RATING
+        name: (("law", "point"), np.array([[one[name] for one in extremes]] * laws))
+        for name in RATING
     }
 
 

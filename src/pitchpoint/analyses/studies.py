@@ -96,7 +96,7 @@ class _Planned:
     def compute(self, _: Ready, piece: Piece, progress: Progress) -> xr.Dataset:
         """Figures of a range of points."""
         changes = self.changes[piece["first"] : piece["stop"]]
-        points = [self.point(change) for change in changes]
+        points = self.points(changes)
         under = points[0].models
         extra = {**self._axis(changes), **more_of(points, len(under))}
         data = summaries(points, under, extra, progress, title=self.title)
@@ -110,14 +110,20 @@ class _Planned:
         values = [_number(change[self.swept]) for change in changes if self.swept]
         return {"axis": (("point",), np.array(values))} if self.swept else {}
 
-    def point(self, changes: Mapping[str, Any]) -> Ready:
-        """Case with the changes of a point."""
-        return _point(self.subject.variant, changes, self.where, self.swept)
+    def points(self, changes: Sequence[Mapping[str, Any]]) -> list[Ready]:
+        """Cases with the changes of points.
+
+        Raises:
+            InputError: what is wrong with the first one that cannot be built, with study and value.
+        """
+        return [
+            _point(one, change, self.where, self.swept)
+            for one, change in zip(self.subject.variant.built_each(changes), changes, strict=True)
+        ]
 
     def demand_ends(self) -> None:
         """InputError for what is wrong with the first point or the last."""
-        for change in (*self.changes[:1], *self.changes[1:][-1:]):
-            self.point(change)
+        self.points([*self.changes[:1], *self.changes[1:][-1:]])
 
 
 def more_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
@@ -228,15 +234,16 @@ def demand_films(built: Ready, variant: Variant, key: str, where: str) -> None:
         )
 
 
-def _point(variant: Variant, changes: Mapping[str, Any], where: str, swept: str = "") -> Ready:
+def _point(
+    built: Ready | InputError, changes: Mapping[str, Any], where: str, swept: str = ""
+) -> Ready:
     """Case with the changes of a study; what is wrong with it is told with study and value."""
-    try:
-        return variant.built(changes)
-    except InputError as error:
-        at = f"at {swept} = {_told(swept, changes[swept])}: " if swept else ""
-        inside = f"{shorten(error.key, 160)}: " if error.key and error.key != swept else ""
-        message = f"{at}{inside}{error.message}"
-        raise InputError(message, file=error.file, key=where, value=changes.get(swept)) from None
+    if not isinstance(built, InputError):
+        return built
+    at = f"at {swept} = {_told(swept, changes[swept])}: " if swept else ""
+    inside = f"{shorten(built.key, 160)}: " if built.key and built.key != swept else ""
+    message = f"{at}{inside}{built.message}"
+    raise InputError(message, file=built.file, key=where, value=changes.get(swept))
 
 
 def _told(key: str, value: Any) -> str:

@@ -1,13 +1,12 @@
 """Figures of operating points, under each of some friction laws."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Progress, silent
 from pitchpoint.analyses.caveats import (
     demand_convergence,
@@ -22,7 +21,7 @@ from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.rows import NODES
-from pitchpoint.efficiency.summary import summarise
+from pitchpoint.efficiency.summary import in_groups, summarise
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
@@ -41,8 +40,6 @@ __all__ = [
     "vibrations",
 ]
 
-
-Point = TypeVar("Point", bound=Ready)
 
 AT_CONTACT = ("film_thickness", "lambda_ratio", "pressure", "entrainment", "sliding_velocity")
 """Figures of a test rig, whose contact stays as it is."""
@@ -224,7 +221,11 @@ def _grouped(
             return drive_figures(each, models.stages, progress)
         return summarise(each, models, progress)
 
-    return _in_groups(points, of)
+    return in_groups(of, points, _design)
+
+
+def _design(point: Ready) -> Any:
+    return point.design
 
 
 def _by_films(points: Sequence[Built], law: str, progress: Progress) -> dict[str, np.ndarray]:
@@ -235,25 +236,6 @@ def _by_films(points: Sequence[Built], law: str, progress: Progress) -> dict[str
         runs.append(summarise([(point.design, point.operation)], models))
         progress(done)
     return {name: np.concatenate([run[name] for run in runs]) for name in runs[0]}
-
-
-def _in_groups(
-    points: Sequence[Point], compute: Callable[[Sequence[Point]], dict[str, np.ndarray]]
-) -> dict[str, np.ndarray]:
-    """Results [point ...] in order, from computations of points of equal static structure."""
-    groups: dict[Any, list[int]] = {}
-    for position, point in enumerate(points):
-        shapes = tuple(np.shape(leaf) for leaf in jax.tree.leaves(point.design))
-        groups.setdefault((jax.tree.structure(point.design), shapes), []).append(position)
-    parts = [(where, compute([points[i] for i in where])) for where in groups.values()]
-    result = {
-        name: np.empty((len(points), *values.shape[1:]), values.dtype)
-        for name, values in parts[0][1].items()
-    }
-    for where, values in parts:
-        for name in result:
-            result[name][where] = values[name]
-    return result
 
 
 def profiles(
@@ -316,5 +298,5 @@ def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
         return {}
     from pitchpoint.analyses.vibration import figures_of
 
-    found = _in_groups(points, figures_of)
+    found = in_groups(figures_of, points, _design)
     return {name: (("law", "point"), np.stack([values] * laws)) for name, values in found.items()}

@@ -9,7 +9,7 @@ import xarray as xr
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.analyses.analysis import Analysis, Piece, Progress, Unasked
+from pitchpoint.analyses.analysis import Piece, Progress
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
@@ -23,18 +23,17 @@ from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, OnBalls, opened
 from pitchpoint.loading.equilibrium import touch
-from pitchpoint.loading.sharing import LOAD_SHARING
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost, told
 
 __all__ = [
-    "TORSION",
     "engaged_at",
     "kinematic_play",
     "mean_friction",
-    "rigid",
+    "torsion_figures",
+    "torsion_of",
     "torsion_part",
     "wound_ups",
 ]
@@ -440,33 +439,12 @@ def kinematic_play(
     )
 
 
-def rigid(built: Ready) -> str | None:
-    """Why nothing is computed of how teeth yield; of a drive that of the first stage where nothing is."""
-    if isinstance(built, BuiltDrive):
-        each = zip(built.numbers, map(rigid, built.stages), strict=True)
-        return next((f"stage {number}: {why}" for number, why in each if why), None)
-    by_stiffness = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
-    dynamics, touching = built.case.dynamics, built.design.mesh.touching
-    if by_stiffness or dynamics is not None or not touching or any(built.deviations):
-        return None
-    if not built.transmits:
-        return "nothing is transmitted by a test rig, so that nothing winds up"
-    if LOAD_SHARING[built.case.gears.load_sharing].by_stiffness:
-        return (
-            f'load_sharing = "{built.case.models.load_sharing}" leaves out how teeth yield; '
-            '"from_stiffness", the usual one of these gears, tells how far they wind up'
-        )
-    return Unasked(
-        "nothing in the case asks how teeth yield, as gaps and deviations of flanks, [dynamics] and "
-        'load_sharing = "from_stiffness" do'
-    )
-
-
-def _torsion_of(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+def torsion_of(built: Ready, _: Piece, __: Progress) -> xr.Dataset:
+    """Dataset of the part."""
     return torsion_part(built)
 
 
-def _figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+def torsion_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Wind-up over torque, and the play of the loaded member between its flanks [rad]."""
     data = parts.get("torsion")
     if data is None:
@@ -488,14 +466,3 @@ def _slopes(data: xr.Dataset) -> dict[str, Any]:
     return {name: numbers(data[name].values) for name in names} | {
         "wind_up_part": {str(part): numbers(values) for part, values in parts}
     }
-
-
-TORSION = Analysis(
-    name="torsion",
-    title="torsion",
-    alone="",
-    lacks=rigid,
-    compute=_torsion_of,
-    main=(*WIND_UP, "kinematic_play"),
-    figures=_figures,
-)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
@@ -28,9 +28,11 @@ from pitchpoint.dynamics.vibration import (
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import in_chunks
 from pitchpoint.errors import ConvergenceError, InputError
+from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.loading.registry import TOOTH_COMPLIANCE
+from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import DIRECT, Code, Status, summary
@@ -66,18 +68,24 @@ def vibrating_of(built: Built) -> Vibrating:
     asked, mesh = built.case.dynamics, built.design.mesh
     assert asked is not None
     if asked.inertia is None:
-        inertia = mesh.inertia(jnp.stack([solid.density for solid in built.design.solids]))
+        densities = [float(solid.density) for solid in built.design.solids]
+        inertia = _inertia(mesh.bare, array(densities))
     else:
-        inertia = jnp.asarray(asked.inertia)
+        inertia = array(asked.inertia)
     errors = asked.profile_error
     return Vibrating(
         inertia=inertia,
-        damping_ratio=jnp.asarray(asked.damping_ratio),
-        error=jnp.asarray([error.amplitude for error in errors]),
-        error_phase=jnp.asarray([error.phase for error in errors]),
-        backlash=jnp.asarray(np.inf if asked.backlash is None else asked.backlash),
+        damping_ratio=array(asked.damping_ratio),
+        error=array([error.amplitude for error in errors]),
+        error_phase=array([error.phase for error in errors]),
+        backlash=array(np.inf if asked.backlash is None else asked.backlash),
         orders=tuple(int(error.order) for error in errors),
     )
+
+
+@program
+def _inertia(mesh: Mesh, density: Float[Array, "2"]) -> Array:
+    return mesh.inertia(density)
 
 
 def separating(built: Built) -> bool:

@@ -15,6 +15,7 @@ from pitchpoint.cases.films import film_model
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
+from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import (
     FORCE,
     TEMPERATURE,
@@ -42,7 +43,7 @@ from pitchpoint.cases.strength import Rated, check_strength, rated_case
 from pitchpoint.cases.wear import check_wear
 from pitchpoint.cases.worn import with_wear
 from pitchpoint.contact.contacts import TOUCH, Shape
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
@@ -58,8 +59,9 @@ from pitchpoint.gears.mesh import PATHS, Mesh
 from pitchpoint.gears.tooth_section import ToothSection
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.reactions import Bearing, InnerBearing
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, Terms
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.sharing import demand_sharing
+from pitchpoint.loading.tooth_compliance import Terms, terms_of, uncovered
 from pitchpoint.lubrication.applicability import applies
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
@@ -69,7 +71,7 @@ from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
-from pitchpoint.materials._leaves import Datum
+from pitchpoint.materials.data import Datum
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
@@ -174,7 +176,7 @@ class Built:
     @property
     def film(self) -> FilmThickness:
         """The film law of the case, with the heat in the inlet."""
-        return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case)
+        return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case.models)
 
     @cached_property
     def film_model(self) -> FilmModel | None:
@@ -547,21 +549,36 @@ def _models(
     """Models under each law of the case, or under the user's own."""
     names = [choice.name for choice in case.models.friction]
     laws = [_law(name, case, used, mesh) for name in names] if own is None else [own]
-    given = {choice.name: choice.parameters for choice in case.models.friction}
-    common = Models(
+    if any(law.films is not None for law in laws):
+        return _under(laws, _common(case.models), _given(case.models))
+    return _under_formulas(tuple(laws), case.models)
+
+
+@remembering
+def _under_formulas(laws: tuple[FrictionLaw, ...], choices: Choices) -> tuple[Models, ...]:
+    return _under(laws, _common(choices), _given(choices))
+
+
+def _given(choices: Choices) -> dict[str, Mapping[str, float]]:
+    """Parameters of friction laws that the case gives, by name of the law."""
+    return {choice.name: choice.parameters for choice in choices.friction}
+
+
+def _common(choices: Choices) -> Models:
+    """Models without a friction law."""
+    return Models(
         friction=(),
         choice=array(0),
         parameters={},
-        sharing=LOAD_SHARING[case.models.load_sharing],
-        rolling=_inlet(ROLLING_RESISTANCE[case.models.rolling_resistance], case),
-        compliance=TOOTH_COMPLIANCE[case.models.tooth_compliance].terms,
+        sharing=LOAD_SHARING[choices.load_sharing],
+        rolling=_inlet(ROLLING_RESISTANCE[choices.rolling_resistance], choices),
+        compliance=terms_of(choices.tooth_compliance),
     )
-    return _under(laws, common, given)
 
 
-def _inlet(law: Inlet, case: Case) -> Inlet:
+def _inlet(law: Inlet, choices: Choices) -> Inlet:
     """A law of film or of rolling resistance with the heat in the inlet that the case asks for."""
-    return with_inlet_heating(law, INLET_HEATING[case.models.inlet_heating])
+    return with_inlet_heating(law, INLET_HEATING[choices.inlet_heating])
 
 
 def _under(
@@ -661,7 +678,9 @@ def _check_models(case: Case, mesh: Mesh, wrong: Complaints) -> None:
             others = ", ".join(law.name for law in LAWS if applies(law, mesh) is None)
             told = f"{why_not}; choose one of {others}"
             wrong.add(InputError(told, key="models.friction", value=place))
-    wrong.under("models.load_sharing").tried(LOAD_SHARING[models.load_sharing].check, mesh)
+    wrong.under("models.load_sharing").tried(
+        demand_sharing, LOAD_SHARING[models.load_sharing], mesh
+    )
     wrong.tried(_check_map, case, mesh)
     if models.tooth_temperature != "isothermal":
         wrong.tried(_check_heat, case, mesh)
@@ -799,6 +818,7 @@ def _usual(key: str) -> object:
     return Dynamics.model_fields[key].default
 
 
+@remembering
 def drags(
     losses: Mapping[str, Loss], bodies: Sequence[str], inner: Collection[frozenset[str]]
 ) -> tuple[Drag, ...]:
@@ -878,7 +898,7 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
     if mesh.couples or (case.dynamics is None and not sharing.by_stiffness):
         return ()
     sections = _sections(mesh)
-    return TOOTH_COMPLIANCE[case.models.tooth_compliance].warnings(sections, case.gears.members)
+    return uncovered(TOOTH_COMPLIANCE[case.models.tooth_compliance], sections, case.gears.members)
 
 
 @program
@@ -1017,6 +1037,7 @@ def _check_temperature(temperature: float, oil: lubricants.LubricantRecord, key:
         )
 
 
+@remembering
 def _roughness(surface: Surface) -> Roughness:
     if surface.ra is not None and surface.rq is not None:
         (ra_1, ra_2), (rq_1, rq_2) = surface.ra, surface.rq

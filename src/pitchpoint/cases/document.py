@@ -269,6 +269,9 @@ def resolve(
         mark = {"value": copy.deepcopy(value), "status": "set"}
         merged = setting(merged, key, mark, name=name, usual=usual)
     if settings and folder is not None:
+        for place, *_ in _NAMING_FILES:
+            if place in merged:  # else a table of the file itself would be changed
+                merged[place] = copy.deepcopy(merged[place])
         _find_files(merged, folder)
     provenance: dict[str, Provenance] = {}
     return Document(name, strip(merged, provenance, name=name), provenance)
@@ -290,20 +293,35 @@ def setting(
     name: str = "--set",
     usual: Callable[[str, Tree], Any] = lambda key, tree: None,
 ) -> Tree:
-    """Copy of the tables with the value at a dotted key replaced; `a.b.1` is the value of gear 1."""
+    """The tables with the value at a dotted key replaced; `a.b.1` is the value of gear 1.
+
+    Tables along the key are copies, all others those of `tree`.
+    """
     if key.count(".") + _depth(value) > MAX_DEPTH:
         raise _too_deep(name).at(key=key)
-    result = copy.deepcopy(tree)
     *parents, last = key.split(".")
+    result = _copied(tree, parents)
     try:
         if last.isdecimal() and parents:
             node = _table(result, parents[:-1])
-            both = node.get(parents[-1], usual(".".join(parents), tree))
+            above = parents[-1]
+            both = node[above] if above in node else usual(".".join(parents), tree)
             node[parents[-1]] = _of_gear(both, last, value)
         else:
             put(result, key, value)
     except InputError as error:
         raise error.at(file=name, key=key) from None
+    return result
+
+
+def _copied(tree: Tree, parents: list[str]) -> Tree:
+    """Tables of which those along a key may be changed."""
+    result = node = dict(tree)
+    for part in parents:
+        inner = node.get(part)
+        if not isinstance(inner, dict):
+            break
+        node[part] = node = dict(inner)
     return result
 
 

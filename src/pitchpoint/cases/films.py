@@ -5,14 +5,14 @@ from dataclasses import fields, replace
 from typing import Any, Final
 
 from pitchpoint.cases.schema import FilmTable
-from pitchpoint.contact.end_profiles import END_PROFILES
+from pitchpoint.contact.registry import END_PROFILES
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
 from pitchpoint.lubrication.flash_temperature import Conductor
-from pitchpoint.materials.rheology import SHEAR_STRESS
+from pitchpoint.materials.registry import SHEAR_STRESS
 from pitchpoint.materials.solids import SolidRecord
 
 __all__ = [
@@ -131,7 +131,7 @@ def end_surfaces(table: FilmTable, width: float, modulus: float) -> tuple[Surfac
         return ()
     profile = END_PROFILES[table.end_profile]
     try:
-        return profile.surfaces(width=width, modulus=modulus, **table.profile_parameters)
+        return profile.function(**profile.of_face(width, modulus), **table.profile_parameters)
     except InputError as error:
         raise InputError(error.message, key=f"film.end_{error.key}") from None
 

@@ -12,7 +12,7 @@ from pydantic_core import core_schema
 from pitchpoint.cases.document import MARKS, STAGES, STATUSES
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import Case, DriveCase, measure_of, usual_words
-from pitchpoint.input.tables import alternatives
+from pitchpoint.input.tables import alternatives, sentences
 
 __all__ = ["case_schema"]
 
@@ -55,7 +55,7 @@ def case_schema() -> dict[str, Any]:
         wholes.append({"$ref": f"#/{_DEFS}/{model.__name__}"})
     for name, table in defs.items():
         _plain(table)
-        _loosen(table, models[name].model_fields)
+        _loosen(table, models[name])
     parts = {f"{name}{_PART}": _partial(table) for name, table in defs.items()}
     for model in (DriveCase, Case):
         properties |= parts[f"{model.__name__}{_PART}"]["properties"]
@@ -95,20 +95,21 @@ _OF_ONE_OR_SEVERAL = ("friction", "at")
 """Keys that take one value in place of a list of one."""
 
 
-def _loosen(table: dict[str, Any], fields: Mapping[str, FieldInfo]) -> None:
+def _loosen(table: dict[str, Any], model: type[BaseModel]) -> None:
     """Takes what the reader takes: marks, one in place of a list, stages in a list, sets of losses."""
+    told = sentences(model)
     for key, value in table.get("properties", {}).items():
-        words = _words(value, fields[key])
+        words = _words(value, model.model_fields[key], told.get(key, ""))
         options = [value, *_other_ways(key, value), {"$ref": f"#/{_DEFS}/mark"}]
         table["properties"][key] = {**words, "anyOf": options}
 
 
-def _words(value: dict[str, Any], info: FieldInfo) -> dict[str, Any]:
+def _words(value: dict[str, Any], info: FieldInfo, sentence: str) -> dict[str, Any]:
     """What is told of a key in place of what is told of its values; a usual value with its unit."""
     value.pop("description", None)
     default, usual = value.pop("default", None), usual_words(info)
     kept = isinstance(default, str | bool) and not usual
-    told = " ".join(filter(None, [info.description, _measured(value, info)]))
+    told = " ".join(filter(None, [sentence, _measured(value, info)]))
     return {"description": told, **({"default": default} if kept else {})}
 
 

@@ -6,17 +6,12 @@ from pitchpoint import units
 from pitchpoint.lubrication.conditions import UNITS
 from pitchpoint.lubrication.ehl.traction import EHL_LINE
 from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.registry import LAWS_OF_CASES
 from pitchpoint.registry import Registry
 
-__all__ = ["CASE_LAWS", "FRICTION", "limits_words"]
+__all__ = ["FRICTION", "limits_words"]
 
-CASE_LAWS: tuple[FrictionLaw, ...] = tuple(
-    law for publication in PUBLICATIONS.values() for law in publication.laws
-)
-"""Readings of a publication that are needed to reproduce its tables; no spread counts them."""
-
-FRICTION: Registry[FrictionLaw] = Registry("friction law", *LAWS, EHL_LINE, *CASE_LAWS)
+FRICTION: Registry[FrictionLaw] = Registry("friction law", *LAWS, EHL_LINE, places=LAWS_OF_CASES)
 
 
 def limits_words(name: str, limits: tuple[float, float]) -> str:

@@ -1,6 +1,6 @@
 """The schema of a case file: one table a class, every value with kind and allowed range."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import count, pairwise
 from math import inf, pi
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
@@ -27,10 +27,12 @@ from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, Gear
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
+from pitchpoint.published.registry import PUBLICATIONS, publication_of
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.registry import alike, letters, nearest
 from pitchpoint.results.chosen_units import unit_choice
+from pitchpoint.results.variables import VARIABLES
 
 __all__ = [
     "Case",
@@ -137,6 +139,7 @@ POSITION = Quantity("dimensionless", 0, 11, whole=True)
 
 Text = Annotated[str, BeforeValidator(text)]
 Unit = Annotated[str, BeforeValidator(lambda value: _unit(value))]
+Source = Annotated[Text, AfterValidator(lambda source: _with_its_variables(source))]
 
 
 def _unit(value: Any) -> str:
@@ -168,10 +171,26 @@ def _reductions() -> list[str]:
 
 
 def _variables() -> list[str]:
-    from pitchpoint.published.registry import PUBLICATIONS
-    from pitchpoint.results.variables import VARIABLES
+    return list(dict.fromkeys(name for one in (VARIABLES, *_published()) for name in one))
 
-    return [*VARIABLES, *(name for one in PUBLICATIONS.values() for name in one.variables)]
+
+def _published() -> Iterator[Iterable[str]]:
+    return (one.variables for one in PUBLICATIONS.values())
+
+
+def _variable(value: Any) -> str:
+    """Name of a variable; those of other publications are looked up where it is none of the known ones."""
+    return str(value) if value in VARIABLES else _ANY_VARIABLE(value)
+
+
+_ANY_VARIABLE = named(_variables, "quantity")
+_variable.known = _variables  # type: ignore[attr-defined]  # what the schema for editors lists
+
+
+def _with_its_variables(source: str) -> str:
+    """Key of a publication, whose variables may be read from now on."""
+    publication_of(source)
+    return source
 
 
 def _friction_laws() -> list[str]:
@@ -181,13 +200,13 @@ def _friction_laws() -> list[str]:
 
 
 def _sharings() -> list[str]:
-    from pitchpoint.loading.sharing import LOAD_SHARING
+    from pitchpoint.loading.registry import LOAD_SHARING
 
     return list(LOAD_SHARING)
 
 
 def _compliances() -> list[str]:
-    from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+    from pitchpoint.loading.registry import TOOTH_COMPLIANCE
 
     return list(TOOTH_COMPLIANCE)
 
@@ -223,7 +242,7 @@ def _rollings() -> list[str]:
 
 
 def _ellipses() -> list[str]:
-    from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
+    from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 
     return list(ELLIPTIC_CONTACT)
 
@@ -253,19 +272,19 @@ def _treatments() -> list[str]:
 
 
 def _viscosities() -> list[str]:
-    from pitchpoint.materials.rheology import VISCOSITY
+    from pitchpoint.materials.registry import VISCOSITY
 
     return list(VISCOSITY)
 
 
 def _densities() -> list[str]:
-    from pitchpoint.materials.rheology import DENSITY
+    from pitchpoint.materials.registry import DENSITY
 
     return list(DENSITY)
 
 
 def _shears() -> list[str]:
-    from pitchpoint.materials.rheology import SHEAR_STRESS
+    from pitchpoint.materials.registry import SHEAR_STRESS
 
     return list(SHEAR_STRESS)
 
@@ -284,7 +303,7 @@ def _asperities() -> list[str]:
 
 
 def _end_profiles() -> list[str]:
-    from pitchpoint.contact.end_profiles import END_PROFILES
+    from pitchpoint.contact.registry import END_PROFILES
 
     return list(END_PROFILES)
 
@@ -458,7 +477,7 @@ class Operating(Table):
 class FrictionChoice(BaseModel):
     """A friction law with values for its own parameters."""
 
-    model_config = ConfigDict(extra="allow", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="allow", frozen=True, defer_build=True)
 
     name: Annotated[str, BeforeValidator(named(_friction_laws, "friction law"))]
     """Friction law; parameters of its own may stand beside it."""
@@ -998,7 +1017,7 @@ class FilmTable(Table):
 
     @model_validator(mode="after")
     def _of_profile(self) -> "FilmTable":
-        from pitchpoint.contact.end_profiles import END_PROFILES
+        from pitchpoint.contact.registry import END_PROFILES
 
         given = self.profile_parameters
         if self.end_profile is None:
@@ -1022,7 +1041,7 @@ class FilmTable(Table):
     def _own(self) -> "FilmTable":
         from pitchpoint.lubrication.ehl.model import SMOOTH
         from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS
-        from pitchpoint.materials.rheology import SHEAR_STRESS
+        from pitchpoint.materials.registry import SHEAR_STRESS
 
         law = SHEAR_STRESS[self.shear_law or USUAL_SHEAR_STRESS]
         for key in self.shear_parameters:
@@ -1174,7 +1193,7 @@ class Target(Table):
     """Study that is read; this or a part."""
     part: Text = ""
     """Part of the result that is read; this or a study."""
-    variable: Annotated[str, BeforeValidator(named(_variables, "quantity"))] = ""
+    variable: Annotated[str, BeforeValidator(_variable)] = ""
     """Result variable that is read."""
     at: Annotated[tuple[Any, ...], BeforeValidator(_places)] = ()
     """Places on the axis that are read, one or a list; all that were computed unless given."""
@@ -1401,7 +1420,7 @@ class Case(Table):
     """Title of the case."""
     summary: Text = ""
     """What the case is, in a sentence or two."""
-    source: Text = ""
+    source: Source = ""
     """Key of the publication that the case is from, in the bibliography."""
     gears: Gears
     """Gears of the mesh; their family decides what keys the table has."""
@@ -1551,7 +1570,7 @@ class DriveCase(Table):
     """Title of the case."""
     summary: Text = ""
     """What the case is, in a sentence or two."""
-    source: Text = ""
+    source: Source = ""
     """Key of the publication that the case is from, in the bibliography."""
     stages: Annotated[dict[str, StageTable], BeforeValidator(_stages), _Numbered()]
     """Meshes from the input to the output, each a table [[stages]]; at most 5."""

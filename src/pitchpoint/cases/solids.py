@@ -9,13 +9,14 @@ import numpy as np
 from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.failures import fails
+from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import Case, Materials, SolidValues
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE, modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.materials import solids
-from pitchpoint.materials._leaves import Datum, Status
+from pitchpoint.materials.data import Datum, Status
 from pitchpoint.materials.solids import Solid, SolidRecord, celsius, heat_failure
 
 __all__ = ["SolidInUse", "datum", "failures", "heated", "heating", "solids_in_use", "surrounded"]
@@ -26,7 +27,7 @@ _STEEL_ABOVE = 150e9  # Pa; given by value, a stiffer material is taken to bear 
 _KEYS = ("gear_1", "gear_2")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SolidInUse:
     """Material of one gear.
 
@@ -214,11 +215,18 @@ def _upper(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+@remembering
 def _in_use(record: SolidRecord, key: str, temperature: float) -> SolidInUse:
     try:
-        return SolidInUse(record, record.build(temperature), temperature)
+        solid = _solid(record, temperature if record.young_at else None)
     except InputError as error:
         raise error.at(key=f"materials.{key}") from None
+    return SolidInUse(record, solid, temperature)
+
+
+@remembering
+def _solid(record: SolidRecord, temperature: float | None) -> Solid:
+    return record.build(temperature)
 
 
 def _record(given: SolidValues | str, key: str, document: Document) -> SolidRecord:

@@ -8,8 +8,10 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array
+from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import Case, StrengthTable
 from pitchpoint.cases.solids import SolidInUse
+from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.errors import InputError
 from pitchpoint.materials.lubricants import LubricantRecord
 from pitchpoint.materials.surfaces import Roughness
@@ -36,38 +38,47 @@ class Rated:
 
     Attributes:
         factors, strengths, finish: arrays.
-        assumed: what was not given, in the words of a list.
-        withheld: sentences on gears whose safeties are not known.
+        endured: load cycles of flanks and roots from which on both materials endure.
+        table: on strength.
+        used: materials of both gears, as they are used.
+        grade: what is to be said of the class of the gears for K_v; empty where nothing is.
+        helical: True for helical gears.
     """
 
     factors: Factors
     strengths: Strengths
+    endured: tuple[Array, Array]
     finish: Finish
-    assumed: tuple[str, ...]
-    withheld: tuple[str, ...]
+    table: StrengthTable
+    used: Used
+    grade: str
+    helical: bool
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What was not given, in the words of a list."""
+        return tuple(_assumed(self.table, self.grade, _plastic(self.used), helical=self.helical))
+
+    @property
+    def withheld(self) -> tuple[str, ...]:
+        """Sentences on gears whose safeties are not known."""
+        return tuple(_withheld(self.strengths, self.used))
 
     @property
     def sources(self) -> tuple[str, ...]:
         """Keys of the bibliography."""
-        plastic = bool(np.any(self.strengths.plastic))
+        plastic = any(_plastic(self.used))
         return (*_SOURCES, *("vdi_2736_2_2014",) * plastic)
 
-    def duty(
-        self, load: float, speed: float, rates: tuple[float, float], life: float | None
-    ) -> Duty:
+    def duty(self, point: Operation, life: float | None) -> Duty:
         """What the pair has to bear.
 
         Args:
-            load: torque on the driven gear [N m].
-            speed: of the driving gear [rad/s].
-            rates: of both gears for a radian of the driver.
+            point: torque on the driven gear, speed of the driving gear.
             life: time under load [s]; None if the teeth are to endure.
         """
-        constants = self.strengths.constants
-        cycles = [np.asarray(one)[2] for one in (constants.flank, constants.root)]
-        if life is not None:
-            cycles = [np.abs(rates) * speed * life / (2.0 * np.pi)] * 2
-        return Duty(array(load), array(speed), array(cycles[0]), array(cycles[1]))
+        flank, root = self.endured
+        return Duty(point.load, point.speed, flank, root, array(nan if life is None else life))
 
 
 def check_strength(case: Case, used: Used) -> None:
@@ -93,18 +104,26 @@ def rated_case(case: Case, used: Used, oil: LubricantRecord, roughness: Roughnes
         oil: of the case.
         roughness: of the flanks.
     """
-    table = case.strength or StrengthTable()
-    plastic = (used[0].plastic, used[1].plastic)
+    table = case.strength or _USUAL
+    plastic = _plastic(used)
     grade, of_grade = _class(table, case)
-    factors = _factors(table, grade, plastic)
-    strengths = _strengths(table, used, plastic)
+    mean_ra = (float(roughness.ra_1) + float(roughness.ra_2)) / 2.0
     return Rated(
-        factors,
-        strengths,
-        _finish(table, oil, roughness, _thinning(case)),
-        tuple(_assumed(table, of_grade, plastic, helical=_helical(case))),
-        tuple(_withheld(strengths, used)),
+        _factors(table, grade, plastic),
+        *_strengths(table, used, plastic),
+        _finish(table, oil.nu_1.value, mean_ra, _thinning(case)),
+        table,
+        used,
+        of_grade,
+        _helical(case),
     )
+
+
+_USUAL = StrengthTable()
+
+
+def _plastic(used: Used) -> tuple[bool, bool]:
+    return used[0].plastic, used[1].plastic
 
 
 def _helical(case: Case) -> bool:
@@ -130,6 +149,7 @@ def _class(table: StrengthTable, case: Case) -> tuple[int, str]:
     )
 
 
+@remembering
 def _factors(table: StrengthTable, grade: int, plastic: tuple[bool, bool]) -> Factors:
     spur, helical = CLASSES[grade]
     dynamic = 1.0 if any(plastic) else nan
@@ -151,9 +171,13 @@ def _given(value: float | None, usual: float) -> Array:
     return array(usual if value is None else value)
 
 
-def _strengths(table: StrengthTable, used: Used, plastic: tuple[bool, bool]) -> Strengths:
+@remembering
+def _strengths(
+    table: StrengthTable, used: Used, plastic: tuple[bool, bool]
+) -> tuple[Strengths, tuple[Array, Array]]:
+    """What both gears bear, and from how many cycles on they endure."""
     first, second = _treatments(table, used)
-    return Strengths(
+    found = Strengths(
         solids=(used[0].solid, used[1].solid),
         flank=array(_limits(table.sigma_hlim, "sigma_hlim", used)),
         root=array(_limits(table.sigma_flim, "sigma_flim", used)),
@@ -162,6 +186,8 @@ def _strengths(table: StrengthTable, used: Used, plastic: tuple[bool, bool]) -> 
         work_hardening=array(table.work_hardening or (1.0, 1.0)),
         mean_stress=array(table.mean_stress_factor or (1.0, 1.0)),
     )
+    endured = [[getattr(one, part).many for one in (first, second)] for part in ("flank", "root")]
+    return found, (array(endured[0]), array(endured[1]))
 
 
 def _limits(given: tuple[float, float] | None, name: str, used: Used) -> list[float]:
@@ -203,19 +229,20 @@ def _thinning(case: Case) -> tuple[float, float] | None:
     return None if allowed is None else allowed[1]
 
 
+@remembering
 def _finish(
     table: StrengthTable,
-    oil: LubricantRecord,
-    roughness: Roughness,
+    viscosity: float,
+    mean_ra: float,
     thinning: tuple[float, float] | None,
 ) -> Finish:
-    usual = _RZ_PER_RA * float(roughness.ra_1 + roughness.ra_2) / 2.0
+    usual = _RZ_PER_RA * mean_ra
     flank = usual if table.flank_roughness is None else sum(table.flank_roughness) / 2.0
     return Finish(
         thickness=array(thinning or (0.0, 0.0)),
         flank=array(max(flank, 1e-7)),  # a perfectly smooth flank has no roughness factor
         root=array(table.root_roughness or (_ROOT_ROUGHNESS, _ROOT_ROUGHNESS)),
-        viscosity=array(oil.nu_1.value),
+        viscosity=array(viscosity),
     )
 
 

@@ -16,7 +16,7 @@ from pitchpoint.cases.schema import Case, DriveCase, quantity_of
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.quantities import Pair, Quantity
-from pitchpoint.input.tables import alternatives, forms, tag
+from pitchpoint.input.tables import alternatives, forms, sentences, tag
 from pitchpoint.registry import alike, nearest
 
 __all__ = ["FAMILIES", "template"]
@@ -106,16 +106,16 @@ def _lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -> Ite
     yield ""
     yield from _remark(model)
     yield f"{'' if live else '# '}[{path}]"
-    inner = []
+    inner, told = [], sentences(model)
     for key, info in model.model_fields.items():
         tables = _inner(info, given.get(key))
         if tables is not None:
             inner.append((key, tables))
         elif live and key in given:
-            yield f"{key} = {_toml(given[key])}{_words(info, given[key])}"
+            yield f"{key} = {_toml(given[key])}{_words(info, told.get(key, ''))}"
         else:
             value = _example(info)
-            yield f"# {key} = {_toml(value)}{_words(info, value)}"
+            yield f"# {key} = {_toml(value)}{_words(info, told.get(key, ''))}"
     for key, table in inner:
         below = live and key in given and key != "deviations"
         yield from _lines(table, f"{path}.{key}", given.get(key, {}), live=below)
@@ -213,7 +213,7 @@ def _read(text: str) -> str | float:
     return int(number) if number == round(number) and abs(number) < 1e9 else number
 
 
-def _words(info: FieldInfo, value: Any) -> str:
+def _words(info: FieldInfo, sentence: str) -> str:
     """What a key is, and what it takes, as a remark behind it."""
     quantity, names = quantity_of(info), _names(info)
     if quantity is not None:
@@ -224,7 +224,7 @@ def _words(info: FieldInfo, value: Any) -> str:
         told = f"one of {', '.join(map(str, _options(info)))}" if len(_options(info)) > 1 else ""
     else:
         told = ""
-    words = "; ".join(filter(None, [(info.description or "").rstrip("."), told]))
+    words = "; ".join(filter(None, [sentence.rstrip("."), told]))
     return f"  # {words}" if words else ""
 
 

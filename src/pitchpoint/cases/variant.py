@@ -1,22 +1,26 @@
 """A case file in one variant, which can be built again with changed values."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from pitchpoint.cases.build import check_alone
 from pitchpoint.cases.document import Document, resolve
-from pitchpoint.cases.schema import usual_at, validate
+from pitchpoint.cases.schema import Case, DriveCase, usual_at, validate
 from pitchpoint.cases.stages import Ready, ready
 from pitchpoint.errors import Complaints, InputError
+from pitchpoint.gears.families import build_together
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 
 __all__ = [
     "Variant",
 ]
 
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 _TOLD = ("targets", "issues", "studies")
 
@@ -68,16 +72,41 @@ class Variant:
 
     def built(self, changes: Mapping[str, Any]) -> Ready:
         """Case with some values changed."""
+        return self._ready(*self._read(changes))
+
+    def built_each(self, changes: Sequence[Mapping[str, Any]]) -> list[Ready | InputError]:
+        """Cases with some values changed, or what is wrong with them; their gears are built together."""
+        read = [_or_error(self._read, each) for each in changes]
+        build_together(
+            (case.gears, case.operation.driver, int(case.models.slices))
+            for case, _ in (one for one in read if not isinstance(one, InputError))
+            if isinstance(case, Case)
+        )
+        return [
+            one if isinstance(one, InputError) else _or_error(self._ready, *one) for one in read
+        ]
+
+    def _read(self, changes: Mapping[str, Any]) -> tuple[Case | DriveCase, Document]:
+        """Case with some values changed, and the document that it is from."""
         document = (self.computed if changes else self).document(**changes)
         try:
-            case = validate(document)
+            return validate(document), document
         except InputError as error:
             wrong = Complaints(document.name)
             wrong.add(error)
             if not changes:
                 check_alone(document, wrong)
             raise wrong.error from None
+
+    def _ready(self, case: Case | DriveCase, document: Document) -> Ready:
         return ready(case, document, self.own)
+
+
+def _or_error(make: Callable[P, T], *given: P.args, **named: P.kwargs) -> T | InputError:
+    try:
+        return make(*given, **named)
+    except InputError as error:
+        return error
 
 
 def _without(tree: Mapping[str, Any]) -> dict[str, Any]:

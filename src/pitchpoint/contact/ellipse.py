@@ -1,22 +1,15 @@
 """Elliptic contacts of two solids: semi-axes, pressure, approach, and the shear below the surface."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.elliptic_integrals import carlson_rd, complete
 from pitchpoint.factored import Numbers
-from pitchpoint.registry import Registry
 from pitchpoint.roots import root
 
 __all__ = [
-    "ELLIPTIC_CONTACT",
-    "USUAL_ELLIPSE",
     "Ellipse",
-    "EllipticContact",
     "hamrock_brewe_1983",
     "hertz_1881",
     "largest_shear",
@@ -205,42 +198,3 @@ def _incomplete(depth: Array, squeeze: Array) -> tuple[Array, Array]:
     of_sine = scale * carlson_rd(cosine, square, one)
     of_cosine = squeeze**2 * scale * carlson_rd(cosine, one, square)
     return of_sine, of_cosine + depth * sine / jnp.sqrt(square)
-
-
-@dataclass(frozen=True, eq=False)
-class EllipticContact:
-    """A named way to an elliptic contact.
-
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        function: the contact from load, radius, transverse radius and modulus.
-        sources: keys of the bibliography.
-        note: caution for the user.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Ellipse]
-    sources: tuple[str, ...]
-    note: str = ""
-
-
-USUAL_ELLIPSE = "hertz_1881"
-"""Name of what is taken where nothing else is said."""
-
-ELLIPTIC_CONTACT = Registry(
-    "elliptic contact",
-    EllipticContact(
-        USUAL_ELLIPSE,
-        "elliptic integrals, as Hertz has them",
-        hertz_1881,
-        ("johnson_1985", "carlson_1995"),
-    ),
-    EllipticContact(
-        "hamrock_brewe_1983",
-        "powers of the ratio of radii in the place of elliptic integrals",
-        hamrock_brewe_1983,
-        ("hamrock_brewe_1983",),
-        "Pressure within 3 % of Hertz and approach within 5 % for ratios of radii from 0.01 to 100.",
-    ),
-)

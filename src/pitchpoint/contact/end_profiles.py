@@ -1,19 +1,13 @@
 """Ends of rollers and faces by name: what is missing there along the normal."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from inspect import signature
 from math import inf, pi, tan
 
 from pitchpoint._jax import array
 from pitchpoint.contact.modifications import Crowning, EndRelief, LogRelief
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
-from pitchpoint.registry import Registry
 
 __all__ = [
-    "END_PROFILES",
-    "EndProfile",
     "chamfered",
     "crowned",
     "dub_off",
@@ -102,60 +96,6 @@ def log_relieved(
     _positive(width=width, line_load=line_load, modulus=modulus, drop=drop)
     amount = 2.0 * line_load / (pi * modulus)
     return (LogRelief(array(amount), array(drop), array(width)),)
-
-
-@dataclass(frozen=True, eq=False)
-class EndProfile:
-    """A named shape of the ends of a contact line.
-
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        function: surfaces from the width of the face and its own numbers.
-        sources: keys of the bibliography.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., tuple[Surface, ...]]
-    sources: tuple[str, ...] = ()
-
-    @property
-    def parameters(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        """Names of its own numbers that have to be given, and of all that may be."""
-        own = [
-            one
-            for one in signature(self.function).parameters.values()
-            if one.name not in ("width", "modulus")
-        ]
-        needed = tuple(one.name for one in own if one.default is one.empty)
-        return needed, tuple(one.name for one in own)
-
-    def surfaces(self, *, width: float, modulus: float, **given: float) -> tuple[Surface, ...]:
-        """Surfaces of a face.
-
-        Args:
-            width: of the face [m].
-            modulus: E' of both bodies [Pa], for profiles that follow from a load.
-            given: its own numbers [SI].
-
-        Raises:
-            InputError: ends that do not fit on the face, with the key of the number.
-        """
-        elastic = {"modulus": modulus} if "modulus" in signature(self.function).parameters else {}
-        return self.function(width=width, **elastic, **given)
-
-
-END_PROFILES = Registry(
-    "end profile",
-    EndProfile("straight", "no relief", straight),
-    EndProfile("crowned", "an arc over the whole face", crowned),
-    EndProfile("chamfered", "a flat bevel at both ends", chamfered),
-    EndProfile("dub_off", "an arc at both ends, tangent to the face", dub_off),
-    EndProfile(
-        "log_relieved", "a logarithm for an even pressure", log_relieved, ("lundberg_1939",)
-    ),
-)
-"""What contact lines may end with."""
 
 
 def _positive(**given: float) -> None:

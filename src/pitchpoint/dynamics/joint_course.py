@@ -12,7 +12,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.joint import Joint, respond
 from pitchpoint.factored import Arrays
-from pitchpoint.programs import program
+from pitchpoint.programs import looping_program, program
 from pitchpoint.status import Code, Status
 
 __all__ = ["Course", "Drive", "Settled", "course", "fading", "settled"]
@@ -301,7 +301,7 @@ class _State(eqx.Module):
     output_rate: Array
 
 
-@program
+@looping_program
 def settled(
     joint: Joint, order: One, amplitude: One, speed: One, periods: Float[Arrays, ""]
 ) -> Settled:

@@ -23,7 +23,7 @@ from pitchpoint.efficiency.rows import CHUNK, NODES
 from pitchpoint.efficiency.summary import engaged, mean_friction
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.sharing import LoadSharing
+from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
 
 __all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "together"]

@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.factored import Arrays, Numbers, as_array
 from pitchpoint.gears.mesh import Mesh
@@ -20,8 +20,9 @@ from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
 from pitchpoint.loading.balance import Drag as TorqueOnBodies
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.sharing import LoadSharing, from_stiffness
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE, TeethAt, Terms
+from pitchpoint.loading.registry import LoadSharing
+from pitchpoint.loading.sharing import from_stiffness
+from pitchpoint.loading.tooth_compliance import TeethAt, Terms, terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
@@ -168,9 +169,7 @@ class Models(eqx.Module):
     parameters: Mapping[str, Mapping[str, Float[Array, ""]]]
     sharing: LoadSharing = eqx.field(static=True)
     rolling: RollingResistance = eqx.field(static=True)
-    compliance: Terms = eqx.field(
-        default_factory=lambda: TOOTH_COMPLIANCE["beam_foundation_weber"].terms
-    )
+    compliance: Terms = eqx.field(default_factory=lambda: terms_of("beam_foundation_weber"))
     held: Lanes | None = None
     held_rolling: Lanes | None = None
 

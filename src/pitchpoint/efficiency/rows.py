@@ -66,8 +66,14 @@ def balances(rows: Row, models: Models) -> Balance:
 
 
 def stacked(rows: list[Any]) -> Any:
-    """Trees of arrays as one with an axis in front."""
-    return jax.tree.map(lambda *leaves: np.stack(leaves), *rows)
+    """Trees of arrays as one with an axis in front; what is one object in all of them is looked at once."""
+    return jax.tree.map(_stack, *rows)
+
+
+def _stack(first: Any, *others: Any) -> np.ndarray:
+    if all(one is first for one in others):
+        return np.asarray(first)[None].repeat(1 + len(others), axis=0)
+    return np.stack((first, *others))
 
 
 def balance_in_rows(

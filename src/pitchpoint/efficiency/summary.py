@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import equinox as eqx
 import numpy as np
@@ -45,11 +45,14 @@ __all__ = [
     "engaged",
     "heat",
     "in_chunks",
+    "in_groups",
     "loss_factor",
     "mean_friction",
     "summarise",
     "summary",
 ]
+
+T = TypeVar("T")
 
 Point = tuple[Design, Operation]
 Prepared = tuple[Design, Operation, Engagement | None]
@@ -356,6 +359,33 @@ def in_chunks(
         if progress is not None:
             progress(done)
     return {name: np.concatenate([part[name] for part in chunks]) for name in chunks[0]}
+
+
+def in_groups(
+    compute: Callable[[Sequence[T]], Mapping[str, np.ndarray]],
+    inputs: Sequence[T],
+    tree: Callable[[T], Any] = lambda one: one,
+) -> dict[str, np.ndarray]:
+    """Results [point ...] in order, from computations of inputs of equal static structure.
+
+    Args:
+        compute: each quantity [point ...] of some inputs that are alike.
+        inputs: in any order.
+        tree: what is alike of them; they themselves unless given.
+    """
+    groups: dict[Any, list[int]] = {}
+    for position, one in enumerate(inputs):
+        leaves, structure = jax.tree.flatten(tree(one))
+        groups.setdefault((structure, *map(np.shape, leaves)), []).append(position)
+    parts = [(where, compute([inputs[i] for i in where])) for where in groups.values()]
+    result = {
+        name: np.empty((len(inputs), *values.shape[1:]), values.dtype)
+        for name, values in parts[0][1].items()
+    }
+    for where, values in parts:
+        for name in result:
+            result[name][where] = values[name]
+    return result
 
 
 @program

@@ -8,7 +8,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from pitchpoint.analyses.four_quadrants import FOUR_QUADRANTS, table_of
+from pitchpoint.analyses.four_quadrants import table_of
+from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import write_text

@@ -13,6 +13,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.status import Code, Status
 
 __all__ = [
+    "LEAST",
     "Designs",
     "Faults",
     "Group",
@@ -114,9 +115,13 @@ def rows(tree: T, where: Any) -> T:
     return found
 
 
+LEAST = 64
+"""Rows of the smallest batch: one program serves all that have no more designs."""
+
+
 def padded(tree: T, count: int) -> T:
-    """A batch of so many designs with its last one repeated up to a power of two: few programs serve all."""
-    size = 1 << (count - 1).bit_length()
+    """A batch of so many designs with its last one repeated up to 64 or a power of two: few programs."""
+    size = max(LEAST, 1 << (count - 1).bit_length())
     return rows(tree, np.minimum(np.arange(size), count - 1))
 
 

@@ -1,13 +1,15 @@
 """The gear families and test rigs of the library, one line each."""
 
-from functools import lru_cache, reduce
+from collections.abc import Iterable, Mapping
+from functools import reduce
 from importlib import import_module, resources
 from operator import or_
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, Tag
 
+from pitchpoint.errors import InputError
 from pitchpoint.gears.ball_on_disc.table import BallOnDiscRig
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
@@ -17,10 +19,9 @@ from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.input.tables import by, tag
 
 if TYPE_CHECKING:
-    from pitchpoint.gears.family import Family
-    from pitchpoint.gears.mesh import Mesh
+    from pitchpoint.gears.family import Family, Made
 
-__all__ = ["TABLES", "Gears", "built_gears", "family_of", "sample_of"]
+__all__ = ["TABLES", "Gears", "build_together", "built_gears", "family_of", "sample_of"]
 
 TABLES: tuple[type[GearsTable], ...] = (
     CylindricalGears,
@@ -53,11 +54,49 @@ def _folder(table: type[GearsTable]) -> str:
     return table.__module__.rpartition(".")[0]
 
 
-@lru_cache(maxsize=256)
-def built_gears(gears: GearsTable, driver: str, slices: int) -> tuple["Mesh", tuple[str, ...]]:
+MOST_KEPT = 1024
+"""Meshes that are kept: those of the designs that are computed together, and of stages."""
+
+MANY = 16
+"""Different gears from which on programs for many pay: they are others than that for one."""
+
+_KEPT: "dict[tuple[GearsTable, str, int], Made | InputError]" = {}
+
+
+def built_gears(gears: GearsTable, driver: str, slices: int) -> "Made":
     """Mesh and its warnings; a sweep that leaves the gears alone builds them once.
 
     Raises:
         InputError: gears that cannot run, with the key inside their table.
     """
-    return family_of(type(gears)).build(gears, driver, slices)
+    key = gears, driver, slices
+    found = _KEPT.get(key)
+    if found is None:
+        found = family_of(type(gears)).build(gears, driver, slices)
+        _keep({key: found})
+    if isinstance(found, InputError):
+        raise found
+    return found
+
+
+def build_together(asked: "Iterable[tuple[GearsTable, str, int]]") -> None:
+    """Build gears at once that `built_gears` is asked for next, as far as their family does so.
+
+    Args:
+        asked: tables with driver and slices.
+    """
+    groups: dict[Any, list[GearsTable]] = {}
+    for key in dict.fromkeys(asked):
+        if key not in _KEPT:
+            groups.setdefault((type(key[0]), *key[1:]), []).append(key[0])
+    for (table, driver, slices), gears in groups.items():
+        together = family_of(table).together
+        if together is not None and len(gears) > MANY:
+            keys = ((one, driver, slices) for one in gears)
+            _keep(dict(zip(keys, together(gears, driver, slices), strict=True)))
+
+
+def _keep(made: "Mapping[tuple[GearsTable, str, int], Made | InputError]") -> None:
+    _KEPT.update(made)
+    for key in [*_KEPT][: max(len(_KEPT) - MOST_KEPT, 0)]:
+        _KEPT.pop(key, None)

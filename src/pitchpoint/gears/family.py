@@ -1,6 +1,6 @@
 """What a case asks of a gear family beside what every mesh answers."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from math import ceil
 from typing import Any, Literal
@@ -9,10 +9,11 @@ import numpy as np
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.surface import Surfaces, Waves
+from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.table import Deviation
 
-__all__ = ["Family", "Followed", "Turning", "waves"]
+__all__ = ["Family", "Followed", "Made", "Turning", "waves"]
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,10 @@ class Turning:
     )
 
 
+Made = tuple[Mesh, tuple[str, ...]]
+"""A mesh and what is to be said of it."""
+
+
 @dataclass(frozen=True)
 class Family:
     """What a case asks of a family beside what every mesh answers.
@@ -67,14 +72,17 @@ class Family:
         turning: words of a turn around which they repeat themselves.
         drawing: dimensions of the arrays of a drawing.
         coordinates: labels along those dimensions.
+        together: as `build` for many tables at once, with the error in the place of gears that cannot run;
+            None where they are built one by one.
     """
 
-    build: Callable[[Any, str, int], tuple[Mesh, tuple[str, ...]]]
+    build: Callable[[Any, str, int], Made]
     following: Callable[[Any, Any], dict[str, Any]] = lambda gears, mesh: {}
     deviations: Callable[[Any, Any], Surfaces] = lambda gears, mesh: ((), ())
     turning: Turning = Turning()
     drawing: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, Any] = field(default_factory=dict)
+    together: Callable[[Sequence[Any], str, int], list[Made | InputError]] | None = None
 
 
 WAVES = 4

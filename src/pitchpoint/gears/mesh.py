@@ -368,6 +368,11 @@ class Mesh(eqx.Module):
         return self
 
     @property
+    def ends_at_tips(self) -> bool:
+        """True if contact ends at tip circles, so that a bare mesh has the contact ratio of this one."""
+        return True
+
+    @property
     def rated_pair(self) -> RatedPair:
         """What standards for the strength of cylindrical gears ask, see `GearsTable.rated`."""
         raise self._without("teeth that a standard rates")

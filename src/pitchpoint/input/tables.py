@@ -1,11 +1,16 @@
 """Tables of a case file: their base, and the one of several forms that a key in them picks."""
 
+import ast
+import inspect
+import sys
 from collections.abc import Iterator, Mapping
+from functools import cache
+from itertools import pairwise
 from typing import Any, get_args
 
 from pydantic import BaseModel, ConfigDict, Discriminator
 
-__all__ = ["DECIDING", "Table", "alternatives", "by", "forms", "tag"]
+__all__ = ["DECIDING", "Table", "alternatives", "by", "forms", "sentences", "tag"]
 
 DECIDING = ("family", "form")
 """Keys whose value says which of several tables is meant."""
@@ -14,10 +19,34 @@ DECIDING = ("family", "form")
 class Table(BaseModel):
     """A table of a case file: no unknown keys, values fixed once read.
 
-    The sentence under a key is what the reference, editors and new case files say of it.
+    The sentence under a key is what the reference, editors and new case files say of it, see `sentences`.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+
+
+def sentences(table: type[BaseModel]) -> dict[str, str]:
+    """The sentence under each key of a table, out of its source: nobody waits for it who does not ask."""
+    bases = (base for base in reversed(table.__mro__) if issubclass(base, Table | table))
+    return {
+        key: words
+        for base in bases
+        for key, words in _under_keys(base.__module__).get(base.__name__, [])
+    }
+
+
+@cache
+def _under_keys(module: str) -> dict[str, list[tuple[str, str]]]:
+    """Keys and the sentences under them by class of a module."""
+    tree = ast.parse(inspect.getsource(sys.modules[module]))
+    classes = (node for node in tree.body if isinstance(node, ast.ClassDef))
+    return {node.name: [*_told(node)] for node in classes}
+
+
+def _told(table: ast.ClassDef) -> Iterator[tuple[str, str]]:
+    for line, below in pairwise(table.body):
+        if isinstance(line, ast.AnnAssign) and isinstance(below, ast.Expr):
+            yield ast.unparse(line.target), inspect.cleandoc(ast.literal_eval(below.value))
 
 
 def by(key: str, *tables: type[Table]) -> Discriminator:

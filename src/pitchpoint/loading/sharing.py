@@ -1,25 +1,22 @@
 """Share of the load that each pair of teeth carries, by named models."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
-
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, Shape, along
+from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, along
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium
+from pitchpoint.loading.registry import LOAD_SHARING, LoadSharing
 from pitchpoint.programs import program
-from pitchpoint.registry import Registry
 
 __all__ = [
-    "LOAD_SHARING",
-    "LoadSharing",
+    "applies",
+    "demand_sharing",
     "equal",
     "from_stiffness",
+    "middle_of_path",
     "sanchez_2017",
     "single",
     "xu_2021_cosine",
@@ -27,74 +24,44 @@ __all__ = [
 ]
 
 Share = Float[Array, "pair slice *b"]
-Flanks = Literal["any", "touching", "wave"]
 
 _XU_END = jnp.pi / 8.0
 _ZHAO_END = jnp.pi / 5.0
 
 
-@dataclass(frozen=True, eq=False)
-class LoadSharing:
-    """One way of sharing the load.
+def applies(sharing: LoadSharing, mesh: Mesh) -> bool:
+    """True if a model holds for a mesh."""
+    return _limit(sharing, mesh) is None
 
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        function: share of each slice, summing to one, from contacts, mesh and how the pairs yield;
-            None for models that do not ask for that.
-        sources: keys of the bibliography.
-        ratio_range: contact ratios for which it holds, exclusive.
-        straight: True if it holds only for contact lines parallel to the axes.
-        by_stiffness: True if the function asks how the pairs yield.
-        shape: of contacts for which alone it holds; None for any.
-        flanks: "touching" if it holds only where all rigid flanks in mesh touch, "wave" only for teeth
-            that a wave presses into mesh, or "any".
-        hand_over: phases, beside entry and exit, at which the share jumps or bends.
-        note: caution for the user.
-    """
 
-    name: str
-    title: str
-    function: Callable[[Contacts, Mesh, Compliance | None], Share]
-    sources: tuple[str, ...]
-    ratio_range: tuple[float, float] = (0.0, float("inf"))
-    straight: bool = False
-    by_stiffness: bool = False
-    shape: Shape | None = None
-    flanks: Flanks = "any"
-    hand_over: Callable[[Float[Array, ""]], Float[Array, " event"]] | None = None
-    note: str = ""
+def demand_sharing(sharing: LoadSharing, mesh: Mesh) -> None:
+    """Raise InputError if a model does not hold for a mesh."""
+    limit = _limit(sharing, mesh)
+    if limit is None:
+        return
+    others = ", ".join(one.name for one in LOAD_SHARING.values() if applies(one, mesh))
+    raise InputError(f"'{sharing.name}' {limit}; choose one of {others}")
 
-    def applies(self, mesh: Mesh) -> bool:
-        """True if the model holds for this mesh."""
-        return self._limit(mesh) is None
 
-    def check(self, mesh: Mesh) -> None:
-        """Raise InputError if the model does not hold for this mesh."""
-        limit = self._limit(mesh)
-        if limit is None:
-            return
-        others = ", ".join(entry.name for entry in LOAD_SHARING.values() if entry.applies(mesh))
-        raise InputError(f"'{self.name}' {limit}; choose one of {others}")
-
-    def _limit(self, mesh: Mesh) -> str | None:
-        """What keeps the model from holding for this mesh, as the end of a sentence."""
-        low, high = self.ratio_range
-        if self.by_stiffness and not mesh.toothed:
-            return "needs teeth that yield, and this mesh has none"
-        if self.shape not in (None, mesh.shape):
-            return f"holds for {KINDS[self.shape]}, and these touch {TOUCH[mesh.shape]}"
-        if self.flanks == "touching" and not mesh.touching:
-            return "holds where all rigid flanks in mesh touch, and some of these have a gap"
-        if self.flanks == "wave" and mesh.counts != "wave":
-            return "holds for strain-wave gears, and these are not"
-        whole, overlap = map(float, _ratios(mesh))
-        if self.straight and overlap > 0.0:
-            return "holds for spur gears, and these are helical"
-        if not low < whole < high:
-            return (
-                f"holds for contact ratios between {low:g} and {high:g}, this pair has {whole:.4g}"
-            )
+def _limit(sharing: LoadSharing, mesh: Mesh) -> str | None:
+    """What keeps a model from holding for a mesh, as the end of a sentence."""
+    low, high = sharing.ratio_range
+    if sharing.by_stiffness and not mesh.toothed:
+        return "needs teeth that yield, and this mesh has none"
+    if sharing.shape not in (None, mesh.shape):
+        return f"holds for {KINDS[sharing.shape]}, and these touch {TOUCH[mesh.shape]}"
+    if sharing.flanks == "touching" and not mesh.touching:
+        return "holds where all rigid flanks in mesh touch, and some of these have a gap"
+    if sharing.flanks == "wave" and mesh.counts != "wave":
+        return "holds for strain-wave gears, and these are not"
+    if not sharing.straight and sharing.ratio_range == (0.0, float("inf")):
         return None
+    whole, overlap = map(float, _ratios(mesh))
+    if sharing.straight and overlap > 0.0:
+        return "holds for spur gears, and these are helical"
+    if not low < whole < high:
+        return f"holds for contact ratios between {low:g} and {high:g}, this pair has {whole:.4g}"
+    return None
 
 
 @program
@@ -154,6 +121,15 @@ def single(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -
     return _normalised(jnp.where(nearest & contacts.active, contacts.weight, 0.0))
 
 
+def middle_of_path(ratio: Float[Array, ""]) -> Float[Array, " event"]:
+    """Phase at which the pair nearest to the middle of the path changes.
+
+    Args:
+        ratio: length of the path in base pitches.
+    """
+    return jnp.mod((ratio + 1.0) / 2.0, 1.0)[None]
+
+
 def sanchez_2017(contacts: Contacts, mesh: Mesh, yielding: Compliance | None = None) -> Share:
     """Linear form of the load sharing ratio of spur gears with Hertz stiffness, 1 < eps < 2.
 
@@ -209,60 +185,3 @@ def _half_wave(contacts: Contacts, end: float) -> Share:
 
 def _normalised(share: Share) -> Share:
     return share / jnp.sum(share, axis=(0, 1), keepdims=True)
-
-
-LOAD_SHARING = Registry(
-    "load sharing model",
-    LoadSharing(
-        "sanchez_2017",
-        "linear share of a spur pair, 0.36 - 0.64 - 1 - 0.64 - 0.36",
-        sanchez_2017,
-        ("sanchez_2017", "tian_2024"),
-        (1.0, 2.0),
-        straight=True,
-        shape="line",
-        flanks="touching",
-        note="Spur pairs of equal modulus without tip relief or deviation.",
-    ),
-    LoadSharing(
-        "equal",
-        "equal load per length of contact line",
-        equal,
-        ("hohn_2010",),
-        flanks="touching",
-    ),
-    LoadSharing(
-        "from_stiffness",
-        "load in proportion to the stiffness of the teeth along each contact line",
-        from_stiffness,
-        ("weber_banaschek_1953",),
-        by_stiffness=True,
-        note="Thin slices side by side; `tooth_compliance` says how teeth yield.",
-    ),
-    LoadSharing(
-        "single",
-        "whole load on the pair nearest to the middle of the path",
-        single,
-        (),
-        straight=True,
-        flanks="touching",
-        hand_over=lambda ratio: jnp.mod((ratio + 1.0) / 2.0, 1.0)[None],
-        note="A bound: what a pair would carry if its neighbours did not help.",
-    ),
-    LoadSharing(
-        "xu_2021_cosine",
-        "cosine over 22.5 degrees on both sides of the long axis",
-        xu_2021_cosine,
-        ("xu_2021",),
-        flanks="wave",
-        note="A law for a strain-wave gear at its rated load: clearances and load do not enter.",
-    ),
-    LoadSharing(
-        "zhao_2022_cosine",
-        "cosine over 36 degrees on both sides of the long axis",
-        zhao_2022_cosine,
-        ("zhao_2022",),
-        flanks="wave",
-        note="A law for a strain-wave gear at its rated load: clearances and load do not enter.",
-    ),
-)

@@ -1,9 +1,8 @@
 """How far loaded teeth yield, and the stiffness of a pair of teeth per length of contact line."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
-from typing import Literal
 
 import equinox as eqx
 import numpy as np
@@ -16,19 +15,19 @@ from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
 from pitchpoint.loading.foundation import foundation_compliance, foundation_warnings
+from pitchpoint.loading.registry import TOOTH_COMPLIANCE, ToothCompliance
 from pitchpoint.materials.solids import Solid
-from pitchpoint.registry import Registry
 
 __all__ = [
-    "TOOTH_COMPLIANCE",
     "TeethAt",
     "Terms",
-    "ToothCompliance",
     "beam_compliance",
     "bending",
     "interpolate",
     "teeth_at",
+    "terms_of",
     "tooth_compliance",
+    "uncovered",
     "unit_stiffness",
 ]
 
@@ -56,52 +55,37 @@ class Terms(eqx.Module):
     common: Bool[Array, ""]
 
 
-@dataclass(frozen=True, eq=False)
-class ToothCompliance:
-    """One way of adding up how teeth yield.
+def terms_of(name: str) -> Terms:
+    """What a model takes into account, as numbers: all models share one compiled program.
 
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        foundation: True if the body under the tooth yields.
-        contact: "linear" (Hertz, one compliance for every load) or "weber" (depends on the load).
-        modulus: "separate" (each member its own) or "common" (2 E1 E2/(E1 + E2) for both).
-        sources: keys of the bibliography.
-        note: caution for the user.
+    Args:
+        name: in `TOOTH_COMPLIANCE`.
     """
+    model = TOOTH_COMPLIANCE[name]
+    return Terms(
+        foundation=jnp.asarray(float(model.foundation)),
+        weber=jnp.asarray(model.contact == "weber"),
+        common=jnp.asarray(model.modulus == "common"),
+    )
 
-    name: str
-    title: str
-    foundation: bool
-    contact: Literal["linear", "weber"]
-    modulus: Literal["separate", "common"]
-    sources: tuple[str, ...]
-    note: str = ""
 
-    @property
-    def terms(self) -> "Terms":
-        """What the model takes into account, as numbers: all models share one compiled program."""
-        return Terms(
-            foundation=jnp.asarray(float(self.foundation)),
-            weber=jnp.asarray(self.contact == "weber"),
-            common=jnp.asarray(self.modulus == "common"),
-        )
+def uncovered(
+    model: ToothCompliance, sections: Sections, names: Sequence[str] = ("gear 1", "gear 2")
+) -> tuple[str, ...]:
+    """Sentences on what a model does not cover for these teeth; none if it does.
 
-    def warnings(
-        self, sections: Sections, names: Sequence[str] = ("gear 1", "gear 2")
-    ) -> tuple[str, ...]:
-        """Sentences on what the model does not cover for these teeth; none if it does.
-
-        Args:
-            sections: the tooth of each member.
-            names: of the bodies that carry them.
-        """
-        if not self.foundation:
-            return ()
-        return tuple(
-            f"{name}: {sentence}"
-            for name, section in zip(names, sections, strict=True)
-            for sentence in foundation_warnings(section)
-        )
+    Args:
+        model: of `TOOTH_COMPLIANCE`.
+        sections: the tooth of each member.
+        names: of the bodies that carry them.
+    """
+    if not model.foundation:
+        return ()
+    return tuple(
+        f"{name}: {sentence}"
+        for name, section in zip(names, sections, strict=True)
+        for sentence in foundation_warnings(section)
+    )
 
 
 def beam_compliance(section: ToothSection, poisson: Float[Array, ""]) -> Float[Array, " node"]:
@@ -358,53 +342,3 @@ def _quadrature() -> tuple[np.ndarray, np.ndarray]:
     place = nodes[:, None] - length * unit**3
     basis = np.polynomial.chebyshev.chebvander(place.ravel(), FLANK_NODES - 1)
     return basis @ _to_coefficients(), length * 3.0 * unit**2 * weight
-
-
-_BEAM = ("weber_banaschek_1953", "atanasiu_2011")
-
-TOOTH_COMPLIANCE = Registry(
-    "tooth compliance",
-    ToothCompliance(
-        "beam_foundation_weber",
-        "beam on a yielding body, contact by Weber's law",
-        foundation=True,
-        contact="weber",
-        modulus="separate",
-        sources=(*_BEAM, "sainsot_2004", "johnson_1985"),
-    ),
-    ToothCompliance(
-        "beam_foundation_hertz",
-        "beam on a yielding body, linear contact",
-        foundation=True,
-        contact="linear",
-        modulus="separate",
-        sources=(*_BEAM, "sainsot_2004", "yang_sun_1985"),
-    ),
-    ToothCompliance(
-        "beam_weber",
-        "beam clamped at the root circle, contact by Weber's law",
-        foundation=False,
-        contact="weber",
-        modulus="separate",
-        sources=(*_BEAM, "johnson_1985"),
-        note="Without the body under the tooth a pair comes out two to three times too stiff.",
-    ),
-    ToothCompliance(
-        "beam_hertz",
-        "beam clamped at the root circle, linear contact",
-        foundation=False,
-        contact="linear",
-        modulus="separate",
-        sources=(*_BEAM, "yang_sun_1985"),
-        note="Without the body under the tooth a pair comes out two to three times too stiff.",
-    ),
-    ToothCompliance(
-        "beam_hertz_common_modulus",
-        "as beam_hertz, with 2 E1 E2/(E1 + E2) for both members",
-        foundation=False,
-        contact="linear",
-        modulus="common",
-        sources=(*_BEAM, "yang_sun_1985"),
-        note="One modulus for both members is right only where both teeth yield alike.",
-    ),
-)

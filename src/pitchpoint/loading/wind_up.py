@@ -13,7 +13,7 @@ from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
+from pitchpoint.programs import looping_program, program
 
 __all__ = ["Hysteresis", "WindUp", "body_parts", "hysteresis", "wind_up", "wound_up"]
 
@@ -167,7 +167,7 @@ def body_parts(
     return {part: under.get(part, none) + behind.get(part, none) for part in names}
 
 
-@program
+@looping_program
 def wound_up(
     mesh: Mesh,
     solids: tuple[Solid, Solid],

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
+from types import FunctionType
 from typing import Any, Protocol, runtime_checkable
 
 import equinox as eqx
@@ -11,7 +12,8 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, Shape
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT, USUAL_ELLIPSE, Ellipse, EllipticContact
+from pitchpoint.contact.ellipse import Ellipse
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Numbers, as_array, product
 from pitchpoint.gears.mesh import Reference
@@ -416,6 +418,13 @@ def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     Raises:
         InputError: the law asks for something that is neither a condition nor has a default.
     """
+    if isinstance(law, FunctionType):
+        wanted, parameters = _arguments(law)
+        return [*wanted], {**parameters}
+    return _read_arguments(law)
+
+
+def _read_arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     wanted, parameters = [], {}
     for name, parameter in inspect.signature(law).parameters.items():
         if name in UNITS:
@@ -428,6 +437,9 @@ def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
                 f"at a contact; conditions are {', '.join(UNITS)}"
             )
     return wanted, parameters
+
+
+_arguments = lru_cache(maxsize=256)(_read_arguments)  # each case asks its laws anew
 
 
 def evaluate(

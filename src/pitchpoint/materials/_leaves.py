@@ -1,62 +1,17 @@
-"""Helpers the material modules share: array leaves, and data files with a status for each value."""
+"""Array leaves, which the material modules share."""
 
 from __future__ import annotations
 
-import math
-import tomllib
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cache
-from importlib import resources
-from typing import Any, Literal, get_args
+from collections.abc import Sequence
 
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
-from pitchpoint.errors import InputError
 
-__all__ = ["Datum", "Status", "as_array", "check_positive", "read_data", "read_datum"]
-
-Status = Literal["printed", "derived", "digitised", "assumed", "fitted", "corrected", "given"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Datum:
-    """One value [SI], how it was come by, and the key of its reference."""
-
-    value: float
-    status: Status = "given"
-    source: str = ""
-    note: str = ""
+__all__ = ["as_array"]
 
 
 def as_array(value: ArrayLike | Sequence[float]) -> Float[Array, "..."]:
     """Return a float64 array: a leaf that is a Python float would retrace for each value."""
     return array(value, jnp.float64)
-
-
-@cache
-def read_data(name: str) -> dict[str, Any]:
-    """One file of the catalogue folder, read once; what it gives is not to be changed."""
-    text = resources.files(__package__).joinpath("catalogue", name).read_text(encoding="utf-8")
-    return tomllib.loads(text)
-
-
-def read_datum(entry: Mapping[str, Any], *, scale: float = 1.0) -> Datum:
-    """Build a value from its table in a data file, times `scale` into SI."""
-    if entry["status"] not in get_args(Status):
-        raise InputError(f'"{entry["status"]}" is not a status', allowed=get_args(Status))
-    return Datum(
-        value=float(entry["value"]) * scale,
-        status=entry["status"],
-        source=entry.get("source", ""),
-        note=entry.get("note", ""),
-    )
-
-
-def check_positive(name: str, values: Iterable[tuple[str, Datum]]) -> None:
-    """Refuse a value that is not a finite positive number."""
-    for key, datum in values:
-        if not (math.isfinite(datum.value) and datum.value > 0.0):
-            raise InputError(f"{datum.value} is not a positive number", key=f"{name}.{key}")

@@ -14,13 +14,8 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.factored import Numbers
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.materials.rheology import (
-    DENSITY,
-    SHEAR_STRESS,
-    VISCOSITY,
-    RheologyLaw,
-    roelands_index,
-)
+from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY, RheologyLaw
+from pitchpoint.materials.rheology import roelands_index
 from pitchpoint.registry import nearest
 
 __all__ = ["USUAL_DENSITY", "USUAL_SHEAR_STRESS", "USUAL_VISCOSITY", "Fluid"]

@@ -13,7 +13,8 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
+from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials.data import Datum, check_positive, read_data, read_datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
 from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
 from pitchpoint.programs import program

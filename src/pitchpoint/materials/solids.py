@@ -14,7 +14,8 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
-from pitchpoint.materials._leaves import Datum, as_array, check_positive, read_data, read_datum
+from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials.data import Datum, check_positive, read_data, read_datum
 from pitchpoint.registry import known_as, unknown_name
 
 __all__ = [

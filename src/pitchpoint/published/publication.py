@@ -8,8 +8,8 @@ from jaxtyping import Float
 
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.input.tables import Table
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.results.variable import Variable
+from pitchpoint.results.variables import VARIABLES
 
 __all__ = ["Beside", "Curves", "Point", "Publication", "Read", "Reading"]
 
@@ -86,7 +86,6 @@ class Publication:
 
     Attributes:
         name: key of its bibliography entry, which a case gives as its `source`.
-        laws: of friction, as its tables rest on them; any case may name them, no spread counts them.
         readings: each gives values by the name of their variable.
         variables: of the readings.
         beside: those that the report sets beside each other; none for most.
@@ -94,11 +93,17 @@ class Publication:
     """
 
     name: str
-    laws: tuple[FrictionLaw, ...] = ()
     readings: tuple[Reading, ...] = ()
     variables: Mapping[str, Variable] = field(default_factory=dict)
     beside: tuple[Beside, ...] = ()
     courses: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if taken := [key for key, one in self.variables.items() if VARIABLES.get(key, one) != one]:
+            raise ValueError(
+                f"{self.name} calls others by names that are taken: {', '.join(taken)}"
+            )
+        VARIABLES.update(self.variables)
 
     def read(self, point: Point) -> Read:
         """Values of all readings at a point."""

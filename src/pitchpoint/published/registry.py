@@ -1,21 +1,35 @@
-"""All publications that bring something of their own."""
+"""All publications that bring something of their own: each is loaded for the cases that name it."""
 
-from pitchpoint.published.atanasiu2011.publication import PUBLICATION as ATANASIU_2011
-from pitchpoint.published.liu_xiong_torus.publication import PUBLICATION as LIU_XIONG_TORUS
-from pitchpoint.published.publication import Publication
-from pitchpoint.published.tian2024.publication import PUBLICATION as TIAN_2024
-from pitchpoint.published.xu2021.publication import PUBLICATION as XU_2021
-from pitchpoint.published.zhao2022.publication import PUBLICATION as ZHAO_2022
+from typing import TYPE_CHECKING
+
 from pitchpoint.registry import Registry
-from pitchpoint.results.variables import VARIABLES
 
-__all__ = ["PUBLICATIONS"]
+if TYPE_CHECKING:
+    from pitchpoint.published.publication import Publication
 
-PUBLICATIONS: Registry[Publication] = Registry(
-    "publication", ATANASIU_2011, LIU_XIONG_TORUS, TIAN_2024, XU_2021, ZHAO_2022
+__all__ = ["LAWS_OF_CASES", "PUBLICATIONS", "publication_of"]
+
+PUBLICATIONS: "Registry[Publication]" = Registry(
+    "publication",
+    places={
+        "atanasiu_2011": "pitchpoint.published.atanasiu2011.publication:PUBLICATION",
+        "liu_xiong_2017": "pitchpoint.published.liu_xiong_torus.publication:PUBLICATION",
+        "tian_2024": "pitchpoint.published.tian2024.publication:PUBLICATION",
+        "xu_2021": "pitchpoint.published.xu2021.publication:PUBLICATION",
+        "zhao_2022": "pitchpoint.published.zhao2022.publication:PUBLICATION",
+    },
 )
 
-for _each in PUBLICATIONS.values():
-    if _taken := [key for key, one in _each.variables.items() if VARIABLES.get(key, one) != one]:
-        raise ValueError(f"{_each.name} calls others by names that are taken: {', '.join(_taken)}")
-    VARIABLES.update(_each.variables)
+LAWS_OF_CASES = {
+    "tian2024.method_1": "pitchpoint.published.tian2024.friction:METHOD_1",
+    "tian2024.method_1_factor_1": "pitchpoint.published.tian2024.friction:METHOD_1_FACTOR_1",
+    "tian2024.method_1_nominal": "pitchpoint.published.tian2024.friction:METHOD_1_NOMINAL",
+    "tian2024.method_2": "pitchpoint.published.tian2024.friction:METHOD_2",
+}
+"""Places of readings of friction that are needed to reproduce tables; no spread counts them."""
+
+
+def publication_of(source: str) -> "Publication | None":
+    """What the publication with this key brings, its variables known from now on; None for others."""
+    known = source in PUBLICATIONS
+    return PUBLICATIONS[source] if known else None

@@ -6,16 +6,15 @@ from typing import Any
 
 from pitchpoint import units
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.laws import CASE_LAWS, FRICTION, limits_words
+from pitchpoint.cases.laws import FRICTION, limits_words
 from pitchpoint.cases.loss_sets import loss_sets
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point
 from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
 from pitchpoint.lubrication.conditions import Law, shape_of
@@ -25,8 +24,9 @@ from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
-from pitchpoint.materials._leaves import Datum
-from pitchpoint.materials.rheology import DENSITY, SHEAR_STRESS, VISCOSITY
+from pitchpoint.materials.data import Datum
+from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
+from pitchpoint.published.registry import LAWS_OF_CASES
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.wear.laws import WEAR_LAWS
@@ -134,7 +134,7 @@ def _friction_range(law: FrictionLaw) -> str:
     limits += ["film at least Rq"] if law.full_film else []
     limits += [f"coefficient at most {law.largest:g}"] if law.largest < inf else []
     place = "each contact" if law.local else "whole mesh"
-    own = "; only for its case" if law in CASE_LAWS else ""
+    own = "; only for its case" if law.name in LAWS_OF_CASES else ""
     return "; ".join([place + own, _shape(law), *limits])
 
 

@@ -37,8 +37,7 @@ from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
-from pitchpoint.loading.sharing import LOAD_SHARING
-from pitchpoint.loading.tooth_compliance import TOOTH_COMPLIANCE
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
 from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL
 from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
@@ -47,8 +46,9 @@ from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw
 from pitchpoint.lubrication.inlet_heating import INLET_HEATING
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-from pitchpoint.materials.rheology import DENSITY, SHEAR_STRESS, VISCOSITY
+from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.programs import surroundings
+from pitchpoint.published.registry import publication_of
 from pitchpoint.registry import nearest
 from pitchpoint.results.store import (
     fingerprint,
@@ -445,6 +445,7 @@ def _unwatched(_: Path | None) -> Iterator[Progress]:
 
 def _opened(path: Path) -> Outcome:
     manifest = Manifest.read(path).model_dump()
+    publication_of(manifest["source"])  # whose variables the parts may hold
     parts = {name: load(path.parent / f"{name}.nc") for name in manifest["parts"]}
     return Outcome(manifest, parts)
 

@@ -1,11 +1,15 @@
 """Forces, stresses and safeties of one cylindrical pair, from its dimensions, duty, factors and materials."""
 
 import dataclasses
+from math import nan
+from typing import Any
 
 import equinox as eqx
+import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import RatedPair
 from pitchpoint.materials.solids import Solid
@@ -13,13 +17,16 @@ from pitchpoint.programs import program
 from pitchpoint.strength import flank, limits, load_factors, root, vdi_2736
 from pitchpoint.strength.forces import ToothForces, tooth_forces
 
-__all__ = ["Duty", "Factors", "Finish", "Strengths", "rate", "rated"]
+__all__ = ["ROWS", "Duty", "Factors", "Finish", "Strengths", "rate", "rated", "ratings"]
+
+ROWS = 64
+"""Pairs that are rated together: one compiled program serves any number of them."""
 
 _SHARPEST = 1e-3
 """Radius in modules of a ring's fillet without one: its notch lies beyond the standard, and is told."""
 
-Both = Float[Array, "2"]
-One = Float[Array, ""]
+Both = Float[Arrays, "2"]
+One = Float[Arrays, ""]
 Rating = dict[str, Float[Array, "..."]]
 
 
@@ -29,13 +36,15 @@ class Duty(eqx.Module):
     Attributes:
         load: torque on the driven gear [N m].
         speed: of the driving gear [rad/s].
-        cycles_flank, cycles_root: load cycles of both gears that their life factors count.
+        cycles_flank, cycles_root: load cycles of both gears that their life factors count, without a life.
+        life: time under load, whose cycles count [s]; not a number where none is asked.
     """
 
     load: One
     speed: One
     cycles_flank: Both
     cycles_root: Both
+    life: One = eqx.field(default_factory=lambda: np.array(nan))
 
 
 class Factors(eqx.Module):
@@ -79,7 +88,7 @@ class Strengths(eqx.Module):
     flank: Both
     root: Both
     constants: limits.Constants
-    plastic: Bool[Array, "2"]
+    plastic: Bool[Arrays, "2"]
     work_hardening: Both
     mean_stress: Both
 
@@ -101,6 +110,16 @@ class Finish(eqx.Module):
 
 
 @program
+def ratings(*rows: Any) -> Rating:
+    """The ratings of some meshes, see `rated`.
+
+    Args:
+        rows: what `rated` takes, each with an axis of pairs in front.
+    """
+    found: Rating = eqx.filter_vmap(rated)(*rows)
+    return found
+
+
 def rated(
     mesh: Mesh,
     contact_ratio: One,
@@ -113,14 +132,24 @@ def rated(
 
     Args:
         mesh: with a `rated_pair`, bare.
-        contact_ratio: eps_alpha of the pair as it runs, undercut included.
+        contact_ratio: eps_alpha of the pair as it runs; not a number where that of the bare mesh is it.
         duty, factors, strengths, finish: as `rate` takes them.
     """
-    pair = dataclasses.replace(mesh.rated_pair, transverse_contact_ratio=contact_ratio)
+    pair = mesh.rated_pair
+    ratio = _or(contact_ratio, pair.transverse_contact_ratio)
+    pair = dataclasses.replace(pair, transverse_contact_ratio=ratio)
     reference = jnp.abs(pair.reference_radii)
     force = duty.load / jnp.sum(mesh.loaded * reference)
     speed = duty.speed * jnp.abs(mesh.motion[0]) * reference[0]
-    return rate(pair, force, speed, duty, factors, strengths, finish)
+    return rate(pair, force, speed, _counted(mesh, duty), factors, strengths, finish)
+
+
+def _counted(mesh: Mesh, duty: Duty) -> Duty:
+    """The duty with the cycles of the life that is asked."""
+    endless = jnp.isnan(duty.life)
+    turns = jnp.abs(mesh.motion) * duty.speed * jnp.where(endless, 0.0, duty.life) / (2.0 * jnp.pi)
+    flank, root = (jnp.where(endless, one, turns) for one in (duty.cycles_flank, duty.cycles_root))
+    return dataclasses.replace(duty, cycles_flank=flank, cycles_root=root)
 
 
 def rate(

@@ -13,7 +13,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
-from pitchpoint.gears.designs import Faults, Number
+from pitchpoint.gears.designs import Faults, Number, each, padded
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
 from pitchpoint.programs import program
 from pitchpoint.roots import root
@@ -21,7 +21,7 @@ from pitchpoint.roots import root
 if TYPE_CHECKING:
     from pitchpoint.gears.cylindrical.pair import CylindricalPair
 
-__all__ = ["cannot_run", "check_cylindrical"]
+__all__ = ["cannot_run", "check_cylindrical", "check_cylindrical_pairs"]
 
 _THIN_TIP = 0.2  # modules
 _SMALL_CLEARANCE = 0.1  # modules
@@ -130,7 +130,37 @@ def check_cylindrical(pair: CylindricalPair) -> list[str]:
 
     Source: geometry of ISO 21771:2007; tool tip of ISO 53:1998.
     """
-    whole, gears = _measure(pair)
+    return _told(*_measure(pair))
+
+
+def check_cylindrical_pairs(group: CylindricalPair) -> list[list[str] | InputError]:
+    """The same for each of some pairs, with the error in the place of warnings.
+
+    Args:
+        group: with an axis of designs in front, of one static structure.
+    """
+    alike = each(_plain, group, 1)
+    count = len(group.module)
+    numbers = jax.device_get(_measures_of_many(padded(alike, count)))
+    columns = [{key: values.tolist() for key, values in part.items()} for part in numbers]
+    return [
+        _told_or_error(
+            group, [{key: values[row] for key, values in part.items()} for part in columns]
+        )
+        for row in range(count)
+    ]
+
+
+def _told_or_error(
+    pair: CylindricalPair, numbers: Sequence[Mapping[str, Number]]
+) -> list[str] | InputError:
+    try:
+        return _told(*_records(pair, numbers))
+    except InputError as error:
+        return error
+
+
+def _told(whole: _Pair, gears: list[_Gear]) -> list[str]:
     for beside in _stages(whole, gears):
         wrong = Complaints()
         for faults in beside:
@@ -176,9 +206,13 @@ def _refuse_first(faults: Faults) -> None:
 
 
 def _measure(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
-    alike = dataclasses.replace(pair, lanes=2, slices=1)  # of no account here: few programs
-    numbers = jax.device_get(_measures(alike))
+    numbers = jax.device_get(_measures(_plain(pair)))
     return _records(pair, [{key: float(x) for key, x in part.items()} for part in numbers])
+
+
+def _plain(pair: CylindricalPair) -> CylindricalPair:
+    """Without what is of no account here: few programs."""
+    return dataclasses.replace(pair, lanes=2, slices=1)
 
 
 def _named(pair: CylindricalPair) -> tuple[_Pair, list[_Gear]]:
@@ -211,6 +245,11 @@ def _measures(pair: CylindricalPair) -> list[dict[str, Float[Array, ""]]]:
         _gear_measures(first) | _meeting_measures(pair, first, second),
         _gear_measures(second) | _meeting_measures(pair, second, first),
     ]
+
+
+@program
+def _measures_of_many(group: CylindricalPair) -> list[dict[str, Float[Array, " design"]]]:
+    return each(_measures, group, 1)
 
 
 def _pair_measures(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:

@@ -21,6 +21,7 @@ from pitchpoint.status import Code, Status
 __all__ = [
     "build_cylindrical_pair",
     "build_cylindrical_pairs",
+    "cylindrical_pairs_apart",
     "designed",
     "with_bores",
 ]
@@ -158,22 +159,49 @@ def build_cylindrical_pairs(**values: Any) -> Designs[CylindricalPair]:
         >>> [round(1e3 * float(pair.centre_distance), 2) for pair in designs][:3]
         [81.0, 81.3, 81.58]
     """
+    groups = [Group(_with_lanes(pair, ratio), which) for pair, ratio, which in _groups(values)]
+    order = np.argsort(np.concatenate([group.numbers for group in groups]))
+    each_status = [_over(_judged, _plain(group.mesh), axes=1) for group in groups]
+    status: Status = jax.tree.map(lambda *parts: np.concatenate(parts)[order], *each_status)
+    return Designs(tuple(groups), status, check_cylindrical)
+
+
+def cylindrical_pairs_apart(
+    **values: Any,
+) -> Iterator[tuple[Group[CylindricalPair], list[CylindricalPair | None]]]:
+    """Groups as those of `build_cylindrical_pairs`, and each pair of them as `build_cylindrical_pair` has it.
+
+    Pairs hold arrays of NumPy; there is None in the place of one whose flanks cannot meet.
+    """
+    for batch, ratio, which in _groups(values):
+        lanes = [
+            lanes_for(one, helical=batch.helical) if _in_reach(one) else 0
+            for one in np.asarray(ratio).tolist()
+        ]
+        structures = {
+            count: jax.tree.structure(_replaced(batch, 1, lanes=count)) for count in {*lanes} - {0}
+        }
+        leaves = [np.asarray(leaf) for leaf in jax.tree.leaves(batch)]
+        pairs = [
+            jax.tree.unflatten(structures[count], [leaf[row, ...] for leaf in leaves])
+            if count
+            else None
+            for row, count in enumerate(lanes)
+        ]
+        yield Group(batch, which), pairs
+
+
+def _groups(values: Values) -> Iterator[Grown]:
+    """Batches of pairs of one static structure, their contact ratios, and which designs they are."""
     given = signature(build_cylindrical_pair).bind(**values)
     given.apply_defaults()
     slices = given.arguments.pop("slices")
     table = _table(given.arguments)
     flags = np.stack([table["helix_angle"] != 0.0, table["teeth"][:, 1] < 0], axis=1)
-    groups = [
-        Group(_with_lanes(pair, ratio), numbers[which])
-        for kind, numbers in alike(flags)
-        for pair, ratio, which in _grown(
-            _opened(_of(table, numbers) | {"slices": slices}, *kind), axes=1
-        )
-    ]
-    order = np.argsort(np.concatenate([group.numbers for group in groups]))
-    each_status = [_over(_judged, _plain(group.mesh), axes=1) for group in groups]
-    status: Status = jax.tree.map(lambda *parts: np.concatenate(parts)[order], *each_status)
-    return Designs(tuple(groups), status, check_cylindrical)
+    for kind, numbers in alike(flags):
+        opened = _opened(_of(table, numbers) | {"slices": slices}, *kind)
+        for pair, ratio, which in _grown(opened, axes=1):
+            yield pair, ratio, numbers[which]
 
 
 def designed(pair: CylindricalPair) -> tuple[CylindricalPair, Status]:

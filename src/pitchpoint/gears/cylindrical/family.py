@@ -1,13 +1,21 @@
 """A pair of cylindrical gears from its table in a case file."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
+from pitchpoint._jax import array, jax
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS
-from pitchpoint.gears.cylindrical.checks import check_cylindrical
-from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, with_bores
+from pitchpoint.gears.cylindrical.checks import check_cylindrical, check_cylindrical_pairs
+from pitchpoint.gears.cylindrical.design import (
+    build_cylindrical_pair,
+    cylindrical_pairs_apart,
+    with_bores,
+)
 from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,
@@ -17,10 +25,9 @@ from pitchpoint.gears.cylindrical.modified import (
 )
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
-from pitchpoint.gears.family import Family, waves
+from pitchpoint.gears.family import Family, Made, waves
 from pitchpoint.gears.involute import usual_depths
 from pitchpoint.gears.layers import LAYERS, labels
-from pitchpoint.gears.mesh import Mesh
 
 __all__ = ["FAMILY"]
 
@@ -29,11 +36,63 @@ USUAL_TIP = 0.25
 _RING_FILLET = 0.2  # fits the narrow spaces of most rings
 
 
-def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> tuple[Mesh, tuple[str, ...]]:
-    pair = _pair(gears, driver=2 if driver == "gear 2" else 1, slices=slices)
+def _cylindrical(gears: CylindricalGears, driver: str, slices: int) -> Made:
+    pair = build_cylindrical_pair(**_given(gears, driver), slices=slices)
+    pair = with_bores(pair, gears.bore_diameter)
     _check_field(pair, gears)
-    told = (*check_cylindrical(pair), *_shortened(pair, gears), *_beyond_iso_1328(pair, gears))
-    return _with_flanks(pair, gears, slices), told
+    return _made(pair, gears, slices, check_cylindrical(pair))
+
+
+def _cylindrical_together(
+    tables: Sequence[CylindricalGears], driver: str, slices: int
+) -> list[Made | InputError]:
+    """The same for many tables; those that leave other values open are built apart from each other."""
+    found: dict[int, Made | InputError] = {}
+    groups: dict[frozenset[str], list[int]] = {}
+    given = [_given(gears, driver) for gears in tables]
+    for number, values in enumerate(given):
+        groups.setdefault(frozenset(key for key in values if values[key] is None), []).append(
+            number
+        )
+    for left, numbers in groups.items():
+        columns = {
+            key: np.array([given[n][key] for n in numbers]) for key in given[0].keys() - left
+        }
+        for group, pairs in cylindrical_pairs_apart(**columns, slices=slices):
+            each = zip(group.numbers, pairs, check_cylindrical_pairs(group.mesh), strict=True)
+            for number, pair, told in each:
+                at = numbers[number]
+                found[at] = _made_or_error(pair, tables[at], slices, told)
+    return [found[number] for number in range(len(tables))]
+
+
+def _made_or_error(
+    pair: CylindricalPair | None,
+    gears: CylindricalGears,
+    slices: int,
+    told: list[str] | InputError,
+) -> Made | InputError:
+    if pair is None:
+        assert isinstance(told, InputError)
+        return told
+    try:
+        if any(pair.shortened) or any(getattr(gears, key) is not None for key in _COMPUTED):
+            pair = jax.tree.map(array, pair)
+        pair = with_bores(pair, gears.bore_diameter)
+        _check_field(pair, gears)
+        return told if isinstance(told, InputError) else _made(pair, gears, slices, told)
+    except InputError as error:
+        return error
+
+
+_COMPUTED = ("bore_diameter", "modifications", "misalignment", "deviations", "tolerance_class")
+"""Keys that ask dimensions of a pair before it is computed: as arrays of JAX, not of NumPy."""
+
+
+def _made(pair: CylindricalPair, gears: CylindricalGears, slices: int, told: list[str]) -> Made:
+    """A pair that can run with its flanks and all that is to be said of it."""
+    every = (*told, *_shortened(pair, gears), *_beyond_iso_1328(pair, gears))
+    return _with_flanks(pair, gears, slices), every
 
 
 def _with_flanks(pair: CylindricalPair, gears: CylindricalGears, slices: int) -> CylindricalPair:
@@ -100,29 +159,28 @@ def _shortened(pair: CylindricalPair, gears: CylindricalGears) -> list[str]:
     ]
 
 
-def _pair(gears: CylindricalGears, driver: int, slices: int) -> CylindricalPair:
+def _given(gears: CylindricalGears, driver: str) -> dict[str, Any]:
+    """Arguments of `build_cylindrical_pair` by name."""
     dedendum, usual = usual_depths(gears.addendum, gears.dedendum, None, gears.pressure_angle)
     fillet = gears.fillet_radius or tuple(
         _RING_FILLET if teeth < 0 else each for teeth, each in zip(gears.teeth, usual, strict=True)
     )
-    pair = build_cylindrical_pair(
-        teeth=(int(gears.teeth[0]), int(gears.teeth[1])),
-        module=gears.module,
-        pressure_angle=gears.pressure_angle,
-        helix_angle=gears.helix_angle,
-        face_width=gears.face_width,
-        profile_shift=gears.profile_shift,
-        addendum=gears.addendum,
-        dedendum=dedendum,
-        fillet_radius=(fillet[0], fillet[1]),
-        tip_alteration=gears.tip_alteration,
-        least_tip=_least_tip(gears),
-        centre_distance=gears.centre_distance,
-        driver=driver,
-        right_flank=gears.flank == "right",
-        slices=slices,
-    )
-    return with_bores(pair, gears.bore_diameter)
+    return {
+        "teeth": (int(gears.teeth[0]), int(gears.teeth[1])),
+        "module": gears.module,
+        "pressure_angle": gears.pressure_angle,
+        "helix_angle": gears.helix_angle,
+        "face_width": gears.face_width,
+        "profile_shift": gears.profile_shift,
+        "addendum": gears.addendum,
+        "dedendum": dedendum,
+        "fillet_radius": (fillet[0], fillet[1]),
+        "tip_alteration": gears.tip_alteration,
+        "least_tip": _least_tip(gears),
+        "centre_distance": gears.centre_distance,
+        "driver": 2 if driver == "gear 2" else 1,
+        "right_flank": gears.flank == "right",
+    }
 
 
 _FOLLOWING = {
@@ -152,4 +210,5 @@ FAMILY = Family(
     _gear_deviations,
     drawing={**LAYERS, "points": ("point",)},
     coordinates=labels(MEMBERS, ("N1", "N2")),
+    together=_cylindrical_together,
 )

@@ -202,25 +202,25 @@ class InvolutePair(Mesh):
         "rim_ratio",
     )
 
-    teeth: Float[Array, "2"]
-    module: Float[Array, ""]
-    pressure_angle: Float[Array, ""]
-    helix_angle: Float[Array, ""]
-    profile_shift: Float[Array, "2"]
-    tip_alteration: Float[Array, "2"]
-    addendum: Float[Array, "2"]
-    dedendum: Float[Array, "2"]
-    fillet_radius: Float[Array, "2"]
-    least_tip: Float[Array, ""]
-    face_width: Float[Array, ""]
-    centre_distance: Float[Array, ""]
-    rim_ratio: Float[Array, "2"]
-    wheel_drives: Bool[Array, ""]
-    right_flank: Bool[Array, ""]
+    teeth: Float[Arrays, "2"]
+    module: Float[Arrays, ""]
+    pressure_angle: Float[Arrays, ""]
+    helix_angle: Float[Arrays, ""]
+    profile_shift: Float[Arrays, "2"]
+    tip_alteration: Float[Arrays, "2"]
+    addendum: Float[Arrays, "2"]
+    dedendum: Float[Arrays, "2"]
+    fillet_radius: Float[Arrays, "2"]
+    least_tip: Float[Arrays, ""]
+    face_width: Float[Arrays, ""]
+    centre_distance: Float[Arrays, ""]
+    rim_ratio: Float[Arrays, "2"]
+    wheel_drives: Bool[Arrays, ""]
+    right_flank: Bool[Arrays, ""]
     follows: tuple[bool, bool] = eqx.field(static=True)
     shortened: tuple[bool, bool] = eqx.field(static=True)
     undercut: tuple[bool, bool] = eqx.field(static=True)
-    crossing: Float[Array, "2"]
+    crossing: Float[Arrays, "2"]
     helical: bool = eqx.field(static=True)
     internal: bool = eqx.field(static=True)
     lanes: int = eqx.field(static=True)

@@ -39,6 +39,11 @@ class CylindricalPair(InvolutePair):
         )
 
     @property
+    def ends_at_tips(self) -> bool:
+        """Undercuts end it before."""
+        return not any(self.undercut)
+
+    @property
     def rated_pair(self) -> RatedPair:
         """What standards for the strength of cylindrical gears ask."""
         line, gears = self.line, self.gears

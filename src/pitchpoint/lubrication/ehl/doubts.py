@@ -17,7 +17,7 @@ from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
 from pitchpoint.lubrication.groups import line_groups
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.materials.rheology import SHEAR_STRESS
+from pitchpoint.materials.registry import SHEAR_STRESS
 from pitchpoint.status import Code
 
 __all__ = [

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from math import cos, sin, sqrt, tan
 
 import numpy as np
+from jaxtyping import Array, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jax
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.programs import program
 from pitchpoint.published.publication import Point
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]
@@ -55,19 +57,23 @@ def readings(point: Point) -> dict[str, float]:
     assert isinstance(gears, CylindricalGears)
     assert isinstance(mesh, CylindricalPair)
     angle = float(np.arctan(tan(gears.pressure_angle) / cos(gears.helix_angle)))
-    pair = mesh.standard
-    density = jnp.stack([solid.density for solid in design.solids])
-    inertia, action = mesh.inertia(density), mesh.line_of_action
+    densities = [float(solid.density) for solid in design.solids]
+    inertia, action = jax.device_get(_inertia_and_arms(mesh.bare, array(densities)))
     return {
         "printed_undercut_limit_1": undercut_limit(
             teeth=gears.teeth[0],
             pressure_angle=angle,
             helix_angle=gears.helix_angle,
-            dedendum=float(pair.dedendum[0]),
-            fillet_radius=float(mesh.fillet_radius[0]),
+            dedendum=float(np.asarray(mesh.dedendum)[0]),
+            fillet_radius=float(np.asarray(mesh.fillet_radius)[0]),
         ),
         "printed_equivalent_mass": equivalent_mass(
             inertia=[float(value) for value in inertia],
             base_radius=[abs(float(value)) for value in action],
         ),
     }
+
+
+@program
+def _inertia_and_arms(mesh: CylindricalPair, density: Float[Array, "2"]) -> tuple[Array, Array]:
+    return mesh.inertia(density), mesh.line_of_action

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.contact.ellipse import ELLIPTIC_CONTACT
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.bodies import Body, across
 from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
@@ -18,7 +18,7 @@ from pitchpoint.dynamics.passage import passage, polynomial
 from pitchpoint.dynamics.right_hand_side import Moving, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.loading.sharing import LOAD_SHARING
+from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
 from pitchpoint.lubrication.friction_coefficient import LAWS
 from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE

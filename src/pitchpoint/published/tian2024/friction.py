@@ -8,7 +8,14 @@ from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.friction_coefficient import FrictionLaw, xu_2007
 
-__all__ = ["LAWS", "method_1", "method_2"]
+__all__ = [
+    "METHOD_1",
+    "METHOD_1_FACTOR_1",
+    "METHOD_1_NOMINAL",
+    "METHOD_2",
+    "method_1",
+    "method_2",
+]
 
 Each = Float[Numbers, "*#b"]
 
@@ -89,51 +96,52 @@ _CASE_1 = {
     "roughness_ra": 0.8e-6,
 }
 
-LAWS = (
-    FrictionLaw(
-        "tian2024.method_1",
-        "Method I of Tian et al. (2024)",
-        method_1,
-        ("tian_2024",),
-        ({"line_load": 117.3e3, **_CASE_1}, 0.0543983233897726 * 2**-0.2 * 117.3**-0.0651),
-        local=True,
-        note="A mean law used with local load and an unexplained factor 2; only to reproduce the paper.",
+METHOD_1 = FrictionLaw(
+    "tian2024.method_1",
+    "Method I of Tian et al. (2024)",
+    method_1,
+    ("tian_2024",),
+    ({"line_load": 117.3e3, **_CASE_1}, 0.0543983233897726 * 2**-0.2 * 117.3**-0.0651),
+    local=True,
+    note="A mean law used with local load and an unexplained factor 2; only to reproduce the paper.",
+)
+
+METHOD_1_FACTOR_1 = FrictionLaw(
+    "tian2024.method_1_factor_1",
+    "Method I of Tian et al. (2024) without the factor 2",
+    partial(method_1, factor=1.0),
+    ("tian_2024",),
+    ({"line_load": 117.3e3, **_CASE_1}, 0.0543983233897726 * 117.3**-0.0651),
+    local=True,
+    note="Reproduces the value quoted from Diez-Ibarbia et al. in Table 3.",
+)
+
+METHOD_1_NOMINAL = FrictionLaw(
+    "tian2024.method_1_nominal",
+    "Method I of Tian et al. (2024) with nominal load",
+    method_1_nominal,
+    ("tian_2024",),
+    ({"reference_line_load": 117.3e3, **_CASE_1}, 0.0543983233897726 * 117.3**-0.0651),
+    local=False,
+    note="With the loss factor H_V it reproduces the value quoted from Hohn in Table 3.",
+)
+
+METHOD_2 = FrictionLaw(
+    "tian2024.method_2",
+    "Method II of Tian et al. (2024)",
+    method_2,
+    ("tian_2024", "xu_2007"),
+    (
+        {
+            "pressure": 1e9,
+            "slide_roll_ratio": 0.3,
+            "entrainment": 10.0,
+            "viscosity": 0.010,
+            "radius": 0.01,
+            "roughness_ra": 0.5e-6,
+        },
+        0.0210243789171055,
     ),
-    FrictionLaw(
-        "tian2024.method_1_factor_1",
-        "Method I of Tian et al. (2024) without the factor 2",
-        partial(method_1, factor=1.0),
-        ("tian_2024",),
-        ({"line_load": 117.3e3, **_CASE_1}, 0.0543983233897726 * 117.3**-0.0651),
-        local=True,
-        note="Reproduces the value quoted from Diez-Ibarbia et al. in Table 3.",
-    ),
-    FrictionLaw(
-        "tian2024.method_1_nominal",
-        "Method I of Tian et al. (2024) with nominal load",
-        method_1_nominal,
-        ("tian_2024",),
-        ({"reference_line_load": 117.3e3, **_CASE_1}, 0.0543983233897726 * 117.3**-0.0651),
-        local=False,
-        note="With the loss factor H_V it reproduces the value quoted from Hohn in Table 3.",
-    ),
-    FrictionLaw(
-        "tian2024.method_2",
-        "Method II of Tian et al. (2024)",
-        method_2,
-        ("tian_2024", "xu_2007"),
-        (
-            {
-                "pressure": 1e9,
-                "slide_roll_ratio": 0.3,
-                "entrainment": 10.0,
-                "viscosity": 0.010,
-                "radius": 0.01,
-                "roughness_ra": 0.5e-6,
-            },
-            0.0210243789171055,
-        ),
-        note="Xu et al. (2007) with the Ra of one flank in place of the composite Rq.",
-        full_film=True,
-    ),
+    note="Xu et al. (2007) with the Ra of one flank in place of the composite Rq.",
+    full_film=True,
 )

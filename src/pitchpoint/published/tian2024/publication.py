@@ -1,8 +1,7 @@
-"""Friction laws as Tian et al. (2024) read them."""
+"""Tian et al. (2024): its laws of friction stand in `friction`, and any case may name them."""
 
 from pitchpoint.published.publication import Publication
-from pitchpoint.published.tian2024 import friction
 
 __all__ = ["PUBLICATION"]
 
-PUBLICATION = Publication(name="tian_2024", laws=friction.LAWS)
+PUBLICATION = Publication(name="tian_2024")

@@ -1,0 +1,93 @@
+"""Why a part of a result does not exist for a case; asked of every case, so that nothing is computed here."""
+
+from pitchpoint.analyses.analysis import Unasked
+from pitchpoint.cases.build import Built
+from pitchpoint.cases.stages import BuiltDrive, Ready
+from pitchpoint.loading.registry import LOAD_SHARING
+
+__all__ = [
+    "no_deviations",
+    "no_joint",
+    "no_quadrants",
+    "rigid",
+    "untransmitted",
+    "without_films",
+    "without_formula",
+]
+
+
+def rigid(built: Ready) -> str | None:
+    """Why nothing is computed of how teeth yield; of a drive that of the first stage where nothing is."""
+    if isinstance(built, BuiltDrive):
+        each = zip(built.numbers, map(rigid, built.stages), strict=True)
+        return next((f"stage {number}: {why}" for number, why in each if why), None)
+    by_stiffness = LOAD_SHARING[built.case.models.load_sharing].by_stiffness
+    dynamics, touching = built.case.dynamics, built.design.mesh.touching
+    if by_stiffness or dynamics is not None or not touching or any(built.deviations):
+        return None
+    if not built.transmits:
+        return "nothing is transmitted by a test rig, so that nothing winds up"
+    if LOAD_SHARING[built.case.gears.load_sharing].by_stiffness:
+        return (
+            f'load_sharing = "{built.case.models.load_sharing}" leaves out how teeth yield; '
+            '"from_stiffness", the usual one of these gears, tells how far they wind up'
+        )
+    return Unasked(
+        "nothing in the case asks how teeth yield, as gaps and deviations of flanks, [dynamics] and "
+        'load_sharing = "from_stiffness" do'
+    )
+
+
+def untransmitted(built: Ready) -> str | None:
+    """Why there is no part on the power that goes through."""
+    return None if built.transmits else "nothing is transmitted by a test rig"
+
+
+def without_formula(built: Ready) -> str | None:
+    """Why there is no part on very many operating points, whose friction asks for formulas."""
+    solved = [law.name for law in built.laws if law.films is not None]
+    if not solved:
+        return None
+    return (
+        f"it takes friction at very many operating points, and '{solved[0]}' solves the films of each; a "
+        "case with formulas alone has it"
+    )
+
+
+def without_films(built: Ready) -> str | None:
+    """Why films are not solved over a map."""
+    why_not = without_formula(built)
+    if why_not is None or not isinstance(built, Built):
+        return None
+    if built.design.mesh.touching and built.case.loss_map is None:
+        return f"{why_not}, and one with a table [loss_map] has it from films at few of them"
+    return None if built.design.mesh.touching else why_not
+
+
+def no_joint(built: Built) -> str | None:
+    """Only where a case asks for it, and its gears have no vibration of another kind."""
+    if not built.transmits:
+        return Unasked("nothing is transmitted by a test rig")
+    if built.design.mesh.along_action:
+        return Unasked("the vibration of these gears is computed along their line of action")
+    return Unasked("the case has no [dynamics]") if built.case.dynamics is None else None
+
+
+def no_quadrants(built: Ready) -> str | None:
+    """Why there is no map of the output."""
+    asked = built.case.loss_map
+    why_not = untransmitted(built)
+    if why_not is None and (asked is None or asked.quadrants != 4):
+        return Unasked("loss_map.quadrants = 4 asks for it")
+    return why_not or without_films(built)
+
+
+def no_deviations(built: Built) -> str | None:
+    """Why the teeth make no kinematic error."""
+    if any(built.deviations):
+        return None
+    if not built.transmits:
+        return "a test rig has no teeth"
+    if "deviations" not in type(built.case.gears).model_fields:
+        return "deviations of the teeth of these gears are not among the keys of a case"
+    return Unasked("the teeth have no deviations around their gears")

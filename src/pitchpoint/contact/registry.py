@@ -1,0 +1,110 @@
+"""What a case may choose of contacts by name: how ellipses follow from their load, and the ends of lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from inspect import signature
+from typing import TYPE_CHECKING
+
+from pitchpoint.registry import Deferred, Registry
+
+if TYPE_CHECKING:
+    from pitchpoint.contact.ellipse import Ellipse
+    from pitchpoint.contact.surface import Surface
+
+__all__ = ["ELLIPTIC_CONTACT", "END_PROFILES", "USUAL_ELLIPSE", "EllipticContact", "EndProfile"]
+
+
+@dataclass(frozen=True, eq=False)
+class EllipticContact:
+    """A named way to an elliptic contact.
+
+    Attributes:
+        name, title: by which it is picked, and what it says.
+        function: the contact from load, radius, transverse radius and modulus.
+        sources: keys of the bibliography.
+        note: caution for the user.
+    """
+
+    name: str
+    title: str
+    function: Deferred[Callable[..., Ellipse]] = Deferred()
+    sources: tuple[str, ...] = ()
+    note: str = ""
+
+
+USUAL_ELLIPSE = "hertz_1881"
+"""Name of what is taken where nothing else is said."""
+
+
+ELLIPTIC_CONTACT = Registry(
+    "elliptic contact",
+    EllipticContact(
+        USUAL_ELLIPSE,
+        "elliptic integrals, as Hertz has them",
+        "pitchpoint.contact.ellipse:hertz_1881",
+        ("johnson_1985", "carlson_1995"),
+    ),
+    EllipticContact(
+        "hamrock_brewe_1983",
+        "powers of the ratio of radii in the place of elliptic integrals",
+        "pitchpoint.contact.ellipse:hamrock_brewe_1983",
+        ("hamrock_brewe_1983",),
+        "Pressure within 3 % of Hertz and approach within 5 % for ratios of radii from 0.01 to 100.",
+    ),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class EndProfile:
+    """A named shape of the ends of a contact line.
+
+    Attributes:
+        name, title: by which it is picked, and what it says.
+        function: surfaces from the width of the face and its own numbers.
+        sources: keys of the bibliography.
+    """
+
+    name: str
+    title: str
+    function: Deferred[Callable[..., tuple[Surface, ...]]] = Deferred()
+    sources: tuple[str, ...] = ()
+
+    @property
+    def parameters(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Names of its own numbers that have to be given, and of all that may be."""
+        own = [
+            one
+            for one in signature(self.function).parameters.values()
+            if one.name not in ("width", "modulus")
+        ]
+        needed = tuple(one.name for one in own if one.default is one.empty)
+        return needed, tuple(one.name for one in own)
+
+    def of_face(self, width: float, modulus: float) -> dict[str, float]:
+        """What the function asks for beside its own numbers [m, Pa]: the modulus where a load decides."""
+        known = {"width": width, "modulus": modulus}
+        return {name: known[name] for name in signature(self.function).parameters if name in known}
+
+
+END_PROFILES = Registry(
+    "end profile",
+    EndProfile("straight", "no relief", "pitchpoint.contact.end_profiles:straight"),
+    EndProfile("crowned", "an arc over the whole face", "pitchpoint.contact.end_profiles:crowned"),
+    EndProfile(
+        "chamfered", "a flat bevel at both ends", "pitchpoint.contact.end_profiles:chamfered"
+    ),
+    EndProfile(
+        "dub_off",
+        "an arc at both ends, tangent to the face",
+        "pitchpoint.contact.end_profiles:dub_off",
+    ),
+    EndProfile(
+        "log_relieved",
+        "a logarithm for an even pressure",
+        "pitchpoint.contact.end_profiles:log_relieved",
+        ("lundberg_1939",),
+    ),
+)
+"""What contact lines may end with."""
