@@ -46,7 +46,7 @@ class GivenViscosity(eqx.Module):
     def viscosity(self, temperature: jax.Array) -> jax.Array:
         return self.given
 
-    kinematic_viscosity = pressure_viscosity = viscosity
+    kinematic_viscosity = pressure_viscosity = viscosity_slope = conductivity = viscosity
 
 
 def own_law(*, slide_roll_ratio: jax.Array, pressure: jax.Array) -> jax.Array:

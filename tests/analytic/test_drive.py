@@ -9,9 +9,11 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import Stage, chained, drive_cycle
-from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
+from pitchpoint.efficiency.drive_summary import mean_friction_of_drive
+from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, extremes
 from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import starting_torque_of_drive
+from pitchpoint.efficiency.summary import mean_friction
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.reactions import Bearing
@@ -49,20 +51,21 @@ def models(mu, sharing="equal", compliance="beam_hertz"):
 
 @eqx.filter_jit
 def answers(drive, point, mu):
-    found = drive_cycle(drive, point, [models(mu)] * len(drive.stages), nodes=4)
-    last = found.states[-1]
+    laws = [models(mu)] * len(drive.stages)
+    found = drive_cycle(drive, point, laws, nodes=4, few=None)
+    lost = [jnp.squeeze(one.loss) for one in found.states]
     return {
-        "input": found.input_torque,
-        "lost": sum(found.states[k].loss[(..., *[None] * k)] for k in range(len(found.states))),
-        "out": last.output_power[(..., *[None] * (len(found.states) - 1))],
+        "input": jnp.squeeze(found.input_torque),
+        "lost": sum(one[(..., *[None] * k)] for k, one in enumerate(lost)),
+        "out": jnp.squeeze(found.states[-1].output_power)[(..., *[None] * (len(lost) - 1))],
         "mean_input": found.mean_input_torque,
         "losses": found.mean_losses,
         "efficiency": found.mean_efficiency,
         "ripple": found.ripple,
         "locked": found.locked,
         "code": found.status.code,
-        "force": [one.balance.force for one in found.states],
-        "drag": found.states[0].balance.drag,
+        "force": [jnp.squeeze(one.balance.force) for one in found.states],
+        "drag": jnp.squeeze(found.states[0].balance.drag),
     }
 
 
@@ -204,3 +207,46 @@ def test_a_loss_between_two_shafts_of_a_stage_is_overcome_by_that_stage():
     same = solved(chained([FIRST, dataclasses.replace(SECOND, design=own)]), 0.0)
     np.testing.assert_allclose(same["input"], found["input"], rtol=1e-14)
     assert np.all(found["input"] > free["input"])
+
+
+XU = next(law for law in LAWS if law.name == "xu_2007")
+THIRD = Stage(design((17, 55), 4e-3), (2, 3), place=jnp.asarray(0.12), turn=jnp.asarray(1.0))
+BEARINGS = [bearing(1, -0.03, 0.1), bearing(1, 0.1, -0.03), bearing(2, 0.03, 0.15)]
+
+
+@eqx.filter_jit
+def every_figure(drive, few):
+    """Of three stages under a law that asks for the load; extremes of all meetings, phase by phase."""
+    points = jax.tree.map(lambda value: value * jnp.asarray([1.0, 0.95]), POINT)
+    laws = [dataclasses.replace(models(0.0), friction=(XU,), parameters={})] * 3
+    found = drive_cycle(drive, points, laws, nodes=4, few=few)
+    low, high = found.extremes(found.input_torque)
+    if few is None:
+        low = high = found.input_torque.reshape(2, *[one.size for one in found.weights[::-1]])
+        for _ in range(3):
+            low = extremes(low, 4, smooth=True)[0]
+            high = extremes(high, 4, smooth=True)[1]
+    force = [found.mean(mean_friction(one), k) for k, one in enumerate(found.states)]
+    return {
+        "means": [found.mean_input_torque, found.mean_efficiency, *found.mean_losses, *force],
+        "friction": mean_friction_of_drive(found),
+        "pressed": [found.mean(load, k) for k, on in enumerate(found.pressed) for load in on],
+        "ends": [low, high],
+        "error": found.meeting_error,
+        "count": sum(one.input_torque.size for one in found.states),
+    }
+
+
+@pytest.mark.parametrize("drag", [[], BEARINGS], ids=["alone", "bearings"])
+def test_few_loads_stand_for_all_meetings_of_three_stages(drag):
+    drag = [dataclasses.replace(one, between=jnp.append(one.between, 0.0)) for one in drag]
+    drive = chained([FIRST, SECOND, THIRD], drag)
+    few, every = (jax.tree.map(np.asarray, every_figure(drive, few)) for few in (5, None))
+    assert few["count"] < every["count"] / (2 if drag else 6)
+    for name in ("means", "friction", "pressed"):
+        np.testing.assert_allclose(few[name], every[name], rtol=1e-8, atol=1e-12, err_msg=name)
+    np.testing.assert_allclose(few["ends"], every["ends"], rtol=1e-5)
+    lost, all_lost = (np.sum(one["means"][2:5], axis=0) for one in (few, every))
+    assert np.all(np.abs(lost / all_lost - 1.0) <= few["error"])
+    assert np.all((few["error"] > 0.0) & (few["error"] < 1e-6))
+    assert not every["error"].any()

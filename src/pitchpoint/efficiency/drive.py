@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -10,6 +11,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.efficiency.drag import Drag, bearing_loads
+from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
     ROUNDING,
     Design,
@@ -26,10 +28,25 @@ from pitchpoint.loading.reactions import Bearing
 from pitchpoint.programs import program
 from pitchpoint.status import Status
 
-__all__ = ["Drive", "DriveCycle", "Stage", "braked", "chained", "drive_cycle", "owner"]
+__all__ = [
+    "MET",
+    "Behind",
+    "Drive",
+    "DriveCycle",
+    "Stage",
+    "braked",
+    "chained",
+    "drive_cycle",
+    "felt",
+    "owner",
+]
 
 Each = Float[Array, "*#b"]
-Meetings = Float[Array, "..."]
+Met = Float[Array, "*#b load behind node"]
+Values = Float[Array, "..."]
+
+MET = (-3, -2, -1)
+"""Axes of the states of a stage along which loads and phases meet."""
 
 
 class Stage(eqx.Module):
@@ -155,50 +172,50 @@ def owner(drag: Drag, stages: Sequence[Stage]) -> int:
 
 
 class DriveCycle(eqx.Module):
-    """States of all meshes over their periods, each at every phase of those behind it.
+    """States of all meshes over their periods, each under the loads that phases of those behind it make.
 
     Between two meshes whose tooth numbers on their common shaft have no common divisor every pair of
     phases comes up, so means over both periods are those over a turn; the ripple is that of the worst
     meeting of phases.
 
     Attributes:
-        states: of the stages from the input to the output, batch axes `*b`, then the nodes of the last
-            stage, of the one before it, and so on down to the own.
+        states: of the stages from the input to the output, batch axes `*b load behind node`: loads, phases of
+            the stage behind as far as they are kept, see `Meetings`, and nodes of the own period.
         pressed: for each stage the loads on the bearings of the places that it overcomes: those of the
             drive in order, then its own [N].
         weights: of the nodes of each stage; they sum to one.
+        meetings: loads of each stage, and how often they are.
         speed: of the input [rad/s].
         nodes: static, nodes in each segment between events.
         smooth: static, for each stage True if its states are smooth between events.
     """
 
     states: tuple[State, ...]
-    pressed: tuple[tuple[Each, ...], ...]
+    pressed: tuple[tuple[Values, ...], ...]
     weights: tuple[Float[Array, " _"], ...]
+    meetings: tuple[Meetings, ...]
     speed: Each
     nodes: int = eqx.field(static=True)
     smooth: tuple[bool, ...] = eqx.field(static=True)
 
-    def mean(self, values: Meetings, stage: int = 0) -> Meetings:
+    def mean(self, values: Values, stage: int = 0) -> Each:
         """Mean over the periods of a stage and of those behind it.
 
         Args:
             values: of that stage, see `states`.
             stage: counted from zero.
         """
+        return jnp.sum(self._under_loads(values, stage) * self.meetings[stage].weight, (-2, -1))
+
+    def _under_loads(self, values: Values, stage: int) -> Float[Array, "*b load behind"]:
+        """Mean over the own period of a stage."""
         every = self.states[stage].input_torque
         values = jnp.broadcast_to(values, jnp.broadcast_shapes(values.shape, every.shape))
-        for weight in self.weights[stage:]:
-            values = values @ weight
-        return values
-
-    def over(self, stage: int) -> tuple[int, ...]:
-        """Axes of the values of a stage along which phases meet."""
-        return tuple(range(stage - len(self.states), 0))
+        return values @ self.weights[stage]
 
     @property
-    def input_torque(self) -> Float[Array, "*#b"]:
-        """Torque at the input at every meeting of phases [N m]."""
+    def input_torque(self) -> Float[Array, "*#b load behind node"]:
+        """Torque at the input under every load of the first stage at every phase of it [N m]."""
         return self.states[0].input_torque
 
     @property
@@ -206,19 +223,17 @@ class DriveCycle(eqx.Module):
         """Mean torque at the input [N m]."""
         return self.mean(self.input_torque)
 
-    def extremes(self, values: Meetings) -> tuple[Meetings, Meetings]:
+    def extremes(self, values: Met) -> tuple[Each, Each]:
         """Smallest and largest value over all meetings of phases, between the nodes too.
 
         Args:
             values: of the first stage, see `states`.
 
-        From the extremes over the phase of one stage after the other, see `quasi_static.extremes`.
+        From the extremes over the phase of one stage after the other, see `quasi_static.extremes`: a stage
+        takes most where the one behind it does, since more load is not carried by less torque.
         """
-        low = high = values
-        for smooth in self.smooth:
-            low = extremes(low, self.nodes, smooth=smooth)[0]
-            high = extremes(high, self.nodes, smooth=smooth)[1]
-        return low, high
+        smooth = self.smooth[: 2 if self.meetings[0].kept else 1]
+        return _extremes(values, self.nodes, smooth)
 
     @property
     def ripple(self) -> Each:
@@ -230,18 +245,31 @@ class DriveCycle(eqx.Module):
         return high - low
 
     @property
-    def efficiency(self) -> Float[Array, "*#b"]:
-        """Power out over power in at every meeting of phases; NaN where no power is transmitted.
+    def efficiency(self) -> Float[Array, "*#b load behind node"]:
+        """Power out over power in at every state of the first stage; NaN where no power is transmitted.
 
-        From the balance of power at that meeting.
+        From the balance of power there.
         """
-        power_out = self.states[-1].output_power[(..., *(None for _ in self.states[1:]))]
+        power_out = self.mean_output_power[..., None, None, None]
         return _quotient(power_out, self.states[0].input_power)
 
     @property
     def mean_losses(self) -> Float[Array, "stage *#b"]:
         """Mean power lost in each stage and beside its teeth [W]."""
         return jnp.stack([self.mean(one.loss, k) for k, one in enumerate(self.states)])
+
+    @property
+    def meeting_error(self) -> Each:
+        """How far few loads are off that stand for all meetings of phases, over the mean loss at most.
+
+        From the mean losses with every second of the few loads alone, where less than all of them are taken.
+        """
+        off: list[Each] = []
+        for k, (one, met) in enumerate(zip(self.states, self.meetings, strict=True)):
+            apart = self._under_loads(one.loss, k) * (met.weight - met.coarse)
+            off.append(jnp.abs(jnp.sum(apart, (-2, -1))))
+        lost = jnp.sum(self.mean_losses, axis=0)
+        return jnp.where(lost > 0.0, sum(off) / jnp.where(lost > 0.0, lost, 1.0), 0.0)
 
     @property
     def mean_output_power(self) -> Each:
@@ -284,8 +312,20 @@ class DriveCycle(eqx.Module):
     @property
     def locked(self) -> Bool[Array, "*#b"]:
         """True where friction locks a mesh at some meeting of phases."""
-        each = [jnp.any(one.balance.locked, axis=self.over(k)) for k, one in enumerate(self.states)]
+        each = [jnp.any(one.balance.locked, axis=MET) for one in self.states]
         return jnp.any(jnp.stack(each), axis=0)
+
+
+def _extremes(
+    values: Values, nodes: int, smooth: Sequence[bool], axes: int = 3
+) -> tuple[Values, Values]:
+    """Smallest and largest value over so many last axes, of which the last ones are phases."""
+    low = high = values
+    for one in smooth:
+        low = extremes(low, nodes, smooth=one)[0]
+        high = extremes(high, nodes, smooth=one)[1]
+    others = tuple(range(len(smooth) - axes, 0))
+    return jnp.min(low, axis=others), jnp.max(high, axis=others)
 
 
 def _quotient(power_out: Each, power_in: Each) -> Each:
@@ -300,6 +340,7 @@ def drive_cycle(
     models: Sequence[Models],
     nodes: int = 12,
     engaged: Engagement | None = None,
+    few: int | None = FEW,
 ) -> DriveCycle:
     """States of all meshes of a drive, from its output to its input.
 
@@ -312,15 +353,18 @@ def drive_cycle(
         nodes: Gauss-Lobatto nodes in each segment of each period.
         engaged: contacts and shares of the last stage at so many nodes, where all loads at the output are
             one and they are known already.
+        few: odd number of loads of a stage that stand for all meetings of phases behind it; None for each
+            meeting by itself, of which there are as many as the product of the nodes of all stages.
 
     From the balance of torques on every shaft, see `balance`.
     """
     if len(models) != len(drive.stages):
         raise InputError(f"{len(models)} models were given for {len(drive.stages)} stages")
     states: list[State] = []
-    pressed: list[tuple[Each, ...]] = []
+    pressed: list[tuple[Values, ...]] = []
     weights: list[Float[Array, " node"]] = []
-    load, ratios = operation.load, drive.ratios
+    every = [unmet(operation.load)]
+    ratios, smooth = drive.ratios, tuple(stage.design.mesh.touching for stage in drive.stages)
     for number in reversed(range(len(drive.stages))):
         stage, laws = drive.stages[number], models[number]
         known, engaged = engaged, None
@@ -328,47 +372,83 @@ def drive_cycle(
             phase, weight = cycle_nodes(stage.design.mesh, laws.sharing, nodes)
         else:
             phase, weight = known.phase, known.weight
-        behind = (1,) * (len(states) + 1)
         point = Operation(
-            load=load[..., None],
-            speed=(operation.speed * ratios[number]).reshape(*operation.speed.shape, *behind),
-            temperature=operation.temperature.reshape(*operation.temperature.shape, *behind),
+            load=every[0].load[..., None],
+            speed=(operation.speed * ratios[number])[..., None, None, None],
+            temperature=operation.temperature[..., None, None, None],
         )
-        drag = braked(drive, number, states[0] if states else None)
+        behind = Behind(states[0], every[0]) if every[0].kept else None
+        drag = braked(drive, number, behind)
         found = state(replace(stage.design, drag=drag), point, phase, laws, engaged=known)
         loads = bearing_loads(drag, stage.design.mesh, found.contacts, found.balance.load)
         states.insert(0, found)
         pressed.insert(0, tuple(loads))
         weights.insert(0, weight)
         load = found.input_torque
-    smooth = tuple(stage.design.mesh.touching for stage in drive.stages)
-    return DriveCycle(tuple(states), tuple(pressed), tuple(weights), operation.speed, nodes, smooth)
+        if number > 0:
+            often = every[0].weight[..., None] * weight
+            kept, phases = felt(drive, number - 1), smooth[number : number + 1 + every[0].kept]
+            if kept:
+                ends = _extremes(jnp.moveaxis(load, -1, -3), nodes, phases[1:], axes=2)
+            else:
+                ends = _extremes(load[..., None, :, :, :], nodes, phases)
+            every.insert(0, meetings(load, often, ends, kept=kept, few=few))
+    return DriveCycle(
+        tuple(states), tuple(pressed), tuple(weights), tuple(every), operation.speed, nodes, smooth
+    )
 
 
-def braked(drive: Drive, number: int, behind: State | None = None) -> tuple[Drag, ...]:
+class Behind(NamedTuple):
+    """The stage behind another one, whose teeth load the bearings of the same shaft.
+
+    Attributes:
+        state: of it.
+        meetings: loads of the stage before it, which go with its phase.
+    """
+
+    state: State
+    meetings: Meetings
+
+
+def braked(drive: Drive, number: int, behind: Behind | None = None) -> tuple[Drag, ...]:
     """Losses of the drive that a stage overcomes, in its coordinates, then its own.
 
     Args:
         drive: of which.
         number: of the stage.
-        behind: state of the stage behind it, which loads the bearings of the same shaft; it does not without.
+        behind: the stage behind it, which loads the bearings of the same shaft; it does not without.
 
     From `Drive.owners`.
     """
-    stage, (_, last) = drive.stages[number], drive.links[number]
+    stage = drive.stages[number]
     found = []
-    for own, drag in zip(drive.owners, drive.drag, strict=True):
-        if own != number:
-            continue
+    for drag in _overcome(drive, number):
         seat = drag.seat
         if isinstance(seat, Bearing):
             beside = None
-            if behind is not None and seat.coordinate == last:
+            if behind is not None and _common(drive, number, seat):
                 beside = _beside(seat, stage, drive.stages[number + 1], behind)
             seat = replace(_seated(seat, stage), beside=beside)
         between = jnp.stack([drag.between[one] for one in stage.shafts])
         found.append(replace(drag, between=between, seat=seat))
     return (*found, *stage.design.drag)
+
+
+def _overcome(drive: Drive, number: int) -> list[Drag]:
+    """Losses of the drive that a stage overcomes."""
+    every = zip(drive.owners, drive.drag, strict=True)
+    return [drag for owner, drag in every if owner == number]
+
+
+def _common(drive: Drive, number: int, seat: Bearing) -> bool:
+    """True if a bearing sits on the shaft that a stage has in common with the one behind it."""
+    return number + 1 < len(drive.stages) and seat.coordinate == drive.links[number][1]
+
+
+def felt(drive: Drive, number: int) -> bool:
+    """True if bearings that a stage overcomes feel the teeth of the stage behind it."""
+    seats = [drag.seat for drag in _overcome(drive, number)]
+    return any(isinstance(seat, Bearing) and _common(drive, number, seat) for seat in seats)
 
 
 def _seated(seat: Bearing, stage: Stage) -> Bearing:
@@ -378,10 +458,11 @@ def _seated(seat: Bearing, stage: Stage) -> Bearing:
     return replace(seat, coordinate=coordinate, place=seat.place - stage.place, other=other)
 
 
-def _beside(seat: Bearing, stage: Stage, behind: Stage, found: State) -> Float[Array, "3 *#b"]:
+def _beside(seat: Bearing, stage: Stage, after: Stage, behind: Behind) -> Float[Array, "3 *#b"]:
     """Load on a bearing by the stage behind, in the frame of a stage [N]."""
-    mesh = behind.design.mesh
-    x, y, z = _seated(seat, behind).borne(mesh, found.contacts, found.balance.load)
-    angle = behind.turn - stage.turn
+    state = behind.state
+    borne = _seated(seat, after).borne(after.design.mesh, state.contacts, state.balance.load)
+    x, y, z = behind.meetings.following(borne)
+    angle = after.turn - stage.turn
     cosine, sine = jnp.cos(angle), jnp.sin(angle)
     return jnp.stack([cosine * x - sine * y, sine * x + cosine * y, z])[..., None]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
+from typing import NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -9,7 +10,8 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.efficiency.drive import Drive, DriveCycle, drive_cycle
+from pitchpoint.efficiency.drive import MET, Drive, DriveCycle, drive_cycle, felt
+from pitchpoint.efficiency.meetings import FEW, Meetings, among_few, few_between
 from pitchpoint.efficiency.quasi_static import (
     Engagement,
     Models,
@@ -24,15 +26,9 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.programs import program
 
-__all__ = ["drive_figures", "drive_nodes", "together"]
+__all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "together"]
 
-FEW_NODES = 4
-"""Nodes in each segment of each period below which a drive goes only where memory asks for it."""
-
-FEWEST_NODES = 3
-"""Nodes in each segment that the formula of Lobatto needs."""
-
-MOST_BYTES = 1.5e9
+MOST_BYTES = 4e8
 """Memory that the states of one chunk of points may take [B]."""
 
 OF_A_MEETING = 680.0
@@ -45,45 +41,44 @@ Point = tuple[Drive, Operation]
 
 
 def drive_nodes(stages: int) -> int:
-    """Nodes in each segment of each period; phases of more stages meet at fewer of them.
+    """Nodes in each segment of each period; those of several stages meet.
 
     Example:
-        >>> drive_nodes(1), drive_nodes(2)
-        (24, 12)
+        >>> drive_nodes(1), drive_nodes(2), drive_nodes(3)
+        (24, 12, 12)
     """
-    return max(NODES // stages, FEW_NODES)
+    return NODES if stages == 1 else NODES // 2
 
 
-def together(drive: Drive, models: Sequence[Models]) -> tuple[int, int]:
-    """Points that are computed together, and nodes in each segment, so that memory suffices.
+def together(drive: Drive, models: Sequence[Models]) -> int:
+    """Points that are computed together, so that memory suffices.
 
     Args:
         drive: any.
         models: laws of each stage.
 
     Raises:
-        InputError: a single point at the fewest nodes takes too much memory.
+        InputError: a single point takes too much memory.
     """
-    for nodes in range(drive_nodes(len(drive.stages)), FEWEST_NODES - 1, -1):
-        needed = _memory(drive, models, nodes)
-        if needed <= MOST_BYTES:
-            return min(CHUNK, int(MOST_BYTES // needed)), nodes
-    raise InputError(
-        f"the meetings of the phases of these stages would take {needed / 1e9:.2g} GB of memory, and "
-        f"{MOST_BYTES / 1e9:g} GB is the most allowed; take fewer stages, or fewer slices of their contact "
-        "lines with models.slices",
-        key="stages",
-    )
+    needed = _memory(drive, models, drive_nodes(len(drive.stages)))
+    if needed > MOST_BYTES:
+        raise InputError(
+            f"the meetings of the phases of these stages would take {needed / 1e9:.2g} GB of memory, and "
+            f"{MOST_BYTES / 1e9:g} GB is the most allowed; take fewer slices of their contact lines with "
+            "models.slices",
+            key="stages",
+        )
+    return min(CHUNK, int(MOST_BYTES // needed))
 
 
 def _memory(drive: Drive, models: Sequence[Models], nodes: int) -> float:
     """Memory for the states of a drive at one operating point [B], from that of compiled programs."""
-    meetings, needed = 1, 0.0
-    for stage, laws in zip(drive.stages[::-1], models[::-1], strict=True):
-        mesh = stage.design.mesh
-        lanes, phases = eqx.filter_eval_shape(_sizes, mesh, laws.sharing, nodes)
-        meetings *= phases.size
-        needed += meetings * max(OF_A_MEETING, OF_A_LANE[mesh.touching] * lanes.size)
+    loads, needed = 1, 0.0
+    for number in reversed(range(len(drive.stages))):
+        mesh = drive.stages[number].design.mesh
+        lanes, phases = eqx.filter_eval_shape(_sizes, mesh, models[number].sharing, nodes)
+        needed += loads * phases.size * max(OF_A_MEETING, OF_A_LANE[mesh.touching] * lanes.size)
+        loads = FEW if not felt(drive, number - 1) else phases.size * min(loads, FEW)
     return needed
 
 
@@ -108,11 +103,11 @@ def drive_figures(
     """
     parts: list[dict[str, np.ndarray]] = []
     done = 0
-    size, nodes = together(points[0][0], models)
+    size = together(points[0][0], models)
     for drive, operations in _of_one_drive(points, models):
         for start in range(0, len(operations), size):
             some = operations[start : start + size]
-            parts.append(_chunk(drive, some, models, size, nodes))
+            parts.append(_chunk(drive, some, models, size))
             done += len(some)
             if progress is not None:
                 progress(done)
@@ -138,12 +133,12 @@ def _of_one_drive(
 
 
 def _chunk(
-    drive: Drive, operations: Sequence[Operation], models: Sequence[Models], size: int, nodes: int
+    drive: Drive, operations: Sequence[Operation], models: Sequence[Models], size: int
 ) -> dict[str, np.ndarray]:
     """Figures of a few operating points of one drive, filled up by repetition."""
     filled = [*operations, *([operations[-1]] * (size - len(operations)))]
     stacked: Operation = jax.tree.map(lambda *v: array(np.stack(v)), *filled)
-    last = drive.stages[-1].design
+    last, nodes = drive.stages[-1].design, drive_nodes(len(drive.stages))
     known = engaged(last, operations[0], models[-1], nodes)
     found = jax.device_get(_figures(drive, stacked, tuple(models), nodes, known))
     return {name: np.asarray(values)[: len(operations)] for name, values in found.items()}
@@ -170,7 +165,7 @@ def _of_drive(found: DriveCycle) -> dict[str, Array]:
     """Figures of the whole drive [point]."""
     low, high = found.extremes(found.efficiency)
     # Between the nodes the interpolation may overshoot; no state is better than free of loss.
-    most = jnp.max(found.efficiency, axis=found.over(0))
+    most = jnp.max(found.efficiency, axis=MET)
     torque_low, torque_high = found.extremes(found.input_torque)
     acting, limit = _nearest_to_jamming(found)
     drag = [found.mean(one.drag_loss, k) for k, one in enumerate(found.states)]
@@ -183,7 +178,7 @@ def _of_drive(found: DriveCycle) -> dict[str, Array]:
         "mean_input_torque": found.mean_input_torque,
         "min_input_torque": torque_low,
         "max_input_torque": torque_high,
-        "mean_friction": _mean_friction(found),
+        "mean_friction": mean_friction_of_drive(found),
         "residual": _worst(found, jnp.max, lambda one: one.balance.residual),
         "iterations": jnp.max(jnp.stack([jnp.max(s.balance.iterations) for s in found.states])),
         "locked": found.locked,
@@ -191,27 +186,69 @@ def _of_drive(found: DriveCycle) -> dict[str, Array]:
         "nearest_friction": acting,
         "nearest_jamming_coefficient": limit,
         "largest_contact_force_ratio": _worst(found, jnp.max, lambda one: one.contact_force_ratio),
+        "meeting_error": found.meeting_error,
     }
 
 
-def _mean_friction(found: DriveCycle) -> Array:
-    """Friction coefficient weighted with the load of the contacts of all stages [point]."""
-    normal = weighted = jnp.zeros(())
-    for k, one in enumerate(found.states):
-        ahead = (..., *(None for _ in range(k)))
-        load = one.balance.load
-        normal = normal + total(load)[ahead]
-        weighted = weighted + total(load * one.balance.friction)[ahead]
-    loaded = normal > 0.0
-    return found.mean(jnp.where(loaded, weighted / jnp.where(loaded, normal, 1.0), 0.0))
+def mean_friction_of_drive(found: DriveCycle) -> Array:
+    """Friction coefficient weighted with the load of the contacts of all stages [point].
+
+    Args:
+        found: states of a drive.
+    """
+    forces = _Forces.none(found.states[-1])
+    every = [*zip(found.states, found.weights, strict=True)]
+    for (one, weight), met in zip(every[:0:-1], found.meetings[-2::-1], strict=True):
+        forces = forces.with_stage(one, weight).met(met)
+    whole = forces.with_stage(*every[0])
+    loaded = whole.normal > 0.0
+    mean = jnp.where(loaded, whole.rubbing / jnp.where(loaded, whole.normal, 1.0), 0.0)
+    return jnp.sum(mean, axis=(0, *MET))
+
+
+class _Forces(NamedTuple):
+    """Sums of the forces in the stages behind that go with each load, see `few_between` [sum *b load behind].
+
+    Attributes:
+        normal: of the contacts [N].
+        often: weight of each.
+        rubbing: friction force times that weight [N].
+    """
+
+    normal: Array
+    often: Array
+    rubbing: Array
+
+    @classmethod
+    def none(cls, last: State) -> "_Forces":
+        """Without any stage."""
+        zero = jnp.zeros((1, *last.input_torque.shape[:-1]))
+        return cls(zero, zero + 1.0, zero)
+
+    def with_stage(self, one: State, weight: Array) -> "_Forces":
+        """With those of a stage at every node of it, along a last axis."""
+        normal, often, rubbing = (values[..., None] for values in self)
+        load, friction = one.balance.load, one.balance.friction
+        rubbing = (rubbing + often * total(load * friction)) * weight
+        return _Forces(normal + total(load), often * weight, rubbing)
+
+    def met(self, loads: Meetings) -> "_Forces":
+        """The same by the loads of the next stage, and few sums of normal forces."""
+        low, high = (end(self.normal, axis=(0, -3, -2)) for end in (jnp.min, jnp.max))
+        if not loads.kept:
+            low, high = jnp.min(low, axis=-1, keepdims=True), jnp.max(high, axis=-1, keepdims=True)
+        part = among_few(self.normal, low[..., None, None, :], high[..., None, None, :])
+        often, rubbing = (
+            loads.summed(jnp.sum(part * values, axis=1)) for values in (self.often, self.rubbing)
+        )
+        return _Forces(jnp.moveaxis(few_between(low, high), -1, 0)[..., None, :], often, rubbing)
 
 
 def _worst(
     found: DriveCycle, reduce: Callable[..., Array], values: Callable[[State], Array]
 ) -> Array:
     """Worst value of all stages and meetings [point]."""
-    every = [_met(one, values(one)) for one in found.states]
-    each = [reduce(one, axis=found.over(k)) for k, one in enumerate(every)]
+    each = [reduce(_met(one, values(one)), axis=MET) for one in found.states]
     return reduce(jnp.stack(each), axis=0)
 
 
@@ -223,10 +260,9 @@ def _met(state: State, values: Array) -> Array:
 def _nearest_to_jamming(found: DriveCycle) -> tuple[Array, Array]:
     """Friction coefficient where a stage is nearest to locking, and the one at which it locks there."""
     ends: list[tuple[Array, Array]] = []
-    for k, one in enumerate(found.states):
-        count = len(found.over(k))
+    for one in found.states:
         acting, limit = (
-            _met(one, values).reshape(*one.input_torque.shape[:-count], -1)
+            _met(one, values).reshape(*one.input_torque.shape[: -len(MET)], -1)
             for values in (one.balance.largest_friction, one.balance.jamming)
         )
         ends.append((acting, limit))

@@ -481,6 +481,9 @@ VARIABLES: dict[str, Variable] = {
     "no_load_torque": torque("mean input torque without load", "T_0"),
     "starting_torque": torque("input torque that starts the drive", "T_start"),
     "back_driving_torque": torque("output torque that starts the drive backwards", "T_back"),
+    "meeting_error": percent(
+        "most that few loads of a stage are off for all meetings of phases, over the mean loss", ""
+    ),
     "stage": Variable("stage", "", "1"),
     "stage_loss": power("mean power loss of the stage and its shaft", "P_loss"),
     "stage_drag_loss": power("mean power loss beside the teeth of the stage", "P_drag"),
