@@ -22,7 +22,11 @@ GIVEN = {
 
 
 def share(**changed):
-    given = {name: jnp.asarray(value) for name, value in {**GIVEN, **changed}.items()}
+    return _share({name: jnp.asarray(value) for name, value in {**GIVEN, **changed}.items()})
+
+
+@jax.jit
+def _share(given):
     return masjedi_khonsari_2012(**given)
 
 

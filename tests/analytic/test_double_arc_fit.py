@@ -37,6 +37,7 @@ def test_the_merit_told_is_that_of_the_tooth_told(found):
     assert figures.objective == pytest.approx(objective, abs=1e-14)
 
 
+@pytest.mark.whole
 def test_the_same_seed_finds_the_same_tooth_and_tells_its_progress(found):
     told = []
     again = fit_double_arc(**SHORT, progress=lambda count, best: told.append((count, best)))
@@ -87,6 +88,7 @@ def test_the_tooth_found_makes_a_drive_without_interference(found):
     assert touching == pytest.approx(found.merit.touching_share, abs=0.1)
 
 
+@pytest.mark.whole
 def test_another_clearance_and_rim_are_kept():
     given = {"clearance": 0.35, "rim": 1.5}
     found = fit_double_arc(**SHORT, **given)

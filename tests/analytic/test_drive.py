@@ -197,6 +197,7 @@ def test_stages_that_do_not_follow_each_other():
         chained([FIRST, SECOND], [Drag([1.0, 0.0, -1.0], seal_torque=0.1)])
 
 
+@pytest.mark.whole
 def test_a_loss_between_two_shafts_of_a_stage_is_overcome_by_that_stage():
     """Torque times the difference of speeds; the shafts of an external pair turn against each other."""
     braked = chained([FIRST, SECOND], [Drag([0.0, 1.0, -1.0], seal_torque=0.1)])

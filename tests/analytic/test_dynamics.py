@@ -248,6 +248,7 @@ def test_motion_and_energy_with_jumps_errors_and_arms(ratio):
     assert all(abs(part) > 1e-4 * abs(work.damping) for part in (work.mesh, work.error, work.arm))
 
 
+@pytest.mark.whole
 def test_short_elements_resolve_a_fast_profile_error():
     base = rounded()
     excite = eqx.tree_at(
@@ -287,6 +288,7 @@ def test_smooth_stiffness_has_the_static_limit_and_a_jump_rings_for_ever():
     np.testing.assert_allclose(*ringing, rtol=1e-3)
 
 
+@pytest.mark.whole
 def test_harmonic_balance_agrees():
     sys, excite = system(7.3, 0.05), rounded()
     by_time = solve(sys, excite, FINE)
@@ -341,8 +343,13 @@ def peak(scale, integrator=by_series):
 
 @pytest.mark.parametrize(
     "derivative",
-    [jax.grad(peak), jax.jacfwd(peak), jax.grad(lambda scale: peak(scale, by_steps))],
-    ids=["reverse", "forward", "steps"],
+    [
+        pytest.param(jax.grad(peak), marks=pytest.mark.whole, id="reverse"),
+        pytest.param(jax.jacfwd(peak), id="forward"),
+        pytest.param(
+            jax.grad(lambda scale: peak(scale, by_steps)), marks=pytest.mark.whole, id="steps"
+        ),
+    ],
 )
 def test_gradient_of_peak_to_peak(derivative):
     value, step = jax.jit(peak), 1e-3
@@ -363,6 +370,7 @@ def test_status_says_what_the_linear_model_leaves_out():
     assert not bool(jnp.isnan(undamped.displacement).any())
 
 
+@pytest.mark.whole
 def test_two_coordinates():
     """A second body on a bearing: coupled by arms that change, damping of both modes alike."""
     base = rounded()
