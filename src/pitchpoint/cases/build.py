@@ -248,19 +248,22 @@ class Built:
         """The models of the case under other friction laws, with the parameters of their formulas."""
         return _under(laws, self.models[0], {})
 
-    @cached_property
+    @property
     def dimensions(self) -> dict[str, Any]:
         """Main dimensions of the mesh as plain numbers."""
-        found: dict[str, Any] = jax.device_get(_dimensions(self.design.mesh))
-        return found
+        return self._of_mesh["dimensions"]
 
-    @cached_property
+    @property
     def nominal(self) -> dict[str, Any]:
         """Nominal motion, driver, loaded member, period, sense and events of the mesh, as plain numbers.
 
         The speed of its pitch circles, zero where it has none, is for a unit rate of the driver.
         """
-        found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
+        return self._of_mesh["nominal"]
+
+    @cached_property
+    def _of_mesh(self) -> dict[str, dict[str, Any]]:
+        found: dict[str, dict[str, Any]] = jax.device_get(_numbers(self.design.mesh))
         return found
 
     @property
@@ -622,7 +625,7 @@ def _under(
 
 def tooth_size(mesh: Mesh) -> float | None:
     """Module of the teeth [m], which is about the height that their flanks have; None without teeth."""
-    found = jax.device_get(_dimensions(mesh)).get("module")
+    found = jax.device_get(_numbers(mesh)["dimensions"]).get("module")
     return None if found is None else float(found)
 
 
@@ -925,13 +928,9 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
 
 
 @program
-def _dimensions(mesh: Mesh) -> dict[str, Any]:
-    return mesh.dimensions()
-
-
-@program
-def _nominal(mesh: Mesh) -> dict[str, Any]:
-    return {
+def _numbers(mesh: Mesh) -> dict[str, dict[str, Any]]:
+    """Dimensions and nominal motion, which every case asks for."""
+    nominal = {
         "motion": mesh.motion,
         "driver": mesh.driver,
         "loaded": mesh.loaded,
@@ -940,6 +939,7 @@ def _nominal(mesh: Mesh) -> dict[str, Any]:
         "events": mesh.events(),
         "pitch_line_speed": mesh.reference.pitch_line_speed if mesh.pitch_point else jnp.zeros(()),
     }
+    return {"dimensions": mesh.dimensions(), "nominal": nominal}
 
 
 @program
