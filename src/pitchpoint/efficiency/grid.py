@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import numpy as np
@@ -21,7 +22,7 @@ ROWS = 256
 COLUMNS = 4096
 """Most positions of one block."""
 
-_ROWS, _COLUMNS = 64, 128
+_ROWS, _COLUMNS = 32, 128
 """Operating points and positions that are solved together: their work arrays stay in the cache of a core."""
 
 
@@ -69,32 +70,51 @@ def state_grid(
         taken = np.minimum(np.arange(first, first + rows), count - 1)
         part = _taken((design, operation), taken, count)
         for start in range(0, places, columns):
-            at = phase[np.minimum(np.arange(start, start + columns), places - 1)]
-            found = _solved(part, at, models)
-            wide, tall = min(columns, places - start), min(rows, count - first)
-            force, torque, efficiency, residual = (values[:tall, :wide] for values in found)
-            solved = jnp.isfinite(force)
-            largest = float(jnp.max(jnp.where(solved, residual, 0.0)))
-            locked = int(jnp.sum(~solved))
+            at = np.minimum(np.arange(start, start + columns), places - 1)
+            found = _solved(part, np.asarray(phase)[at], models)
+            tall, wide = min(rows, count - first), min(columns, places - start)
+            force, torque, efficiency = (_cut(values, tall, wide) for values in found.states)
+            locked = int(jnp.sum(~jnp.isfinite(force))) if bool(found.locks) else 0
+            largest = float(found.residual)
             yield Block((first, start), force, torque, efficiency, largest, locked)
 
 
-Columns = tuple[Array, Array, Array, Array]
 Inputs = tuple[Design, Operation]
+States = tuple[Array, Array, Array]
 
 
-def _solved(inputs: Inputs, phase: Array, models: Models) -> Columns:
+class _Solved(NamedTuple):
+    """Force, torque and efficiency, and what became of their balances.
+
+    Attributes:
+        states: of the whole block.
+        residual: largest of the states that have a balance.
+        near: True if the residuals of all states are small.
+        locks: True if some state has no balance.
+    """
+
+    states: States
+    residual: Array
+    near: Array
+    locks: Array
+
+
+def _solved(inputs: Inputs, phase: Array, models: Models) -> _Solved:
     found = _block(inputs, phase, models, quick=True)
-    if bool(jnp.all(found[-1] <= TOLERANCE)):
-        return found
-    return _block(inputs, phase, models, quick=False)
+    return found if bool(found.near) else _block(inputs, phase, models, quick=False)
+
+
+def _cut(values: Array, rows: int, columns: int) -> Array:
+    """The first rows and columns; all of them are not copied, which takes time."""
+    return values if values.shape == (rows, columns) else values[:rows, :columns]
 
 
 def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
     """Rows of everything that has one value for each operating point, batch axes last but one."""
 
     def take(leaf: Array) -> Array:
-        return leaf[rows] if jnp.ndim(leaf) and leaf.shape[0] == count else leaf
+        # By NumPy: JAX would start a program for each of them.
+        return np.asarray(leaf)[rows] if jnp.ndim(leaf) and leaf.shape[0] == count else leaf
 
     design, operation = inputs
     oil, surfaces = jax.tree.map(take, (design.lubricant, design.roughness))
@@ -105,10 +125,14 @@ def _taken(inputs: Inputs, rows: np.ndarray, count: int) -> Inputs:
 
 
 @fast_program
-def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> Columns:
-    """States in tiles of rows and columns: what varies along one of them is computed once for the other."""
+def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> _Solved:
+    """States in tiles of rows and columns: what varies along one of them is computed once for the other.
+
+    Tiles are written where they belong: put together afterwards they would be copied twice.
+    """
     count, places = inputs[1].load.shape[0], phase.shape[0]
     rows, columns = min(count, _ROWS), min(places, _COLUMNS)
+    strips = jnp.pad(phase, (0, -places % columns), mode="edge").reshape(-1, columns)
 
     def per_row(leaf: Any) -> bool:
         return eqx.is_array(leaf) and jnp.ndim(leaf) == 2 and leaf.shape[0] == count
@@ -116,24 +140,39 @@ def _block(inputs: Inputs, phase: Array, models: Models, quick: bool) -> Columns
     rowwise, whole = eqx.partition(inputs, per_row)
     stacked = jax.tree.map(lambda leaf: leaf.reshape(-1, rows, *leaf.shape[1:]), rowwise)
 
-    def strip(at: Float[Array, " column"]) -> Columns:
+    def strip(number: Array, before: _Solved) -> _Solved:
+        at = strips[number]
         known = _engaged(inputs[0], at, models)
 
-        def tile(part: Inputs) -> Columns:
+        def tile(place: Array, before: _Solved) -> _Solved:
+            part = jax.tree.map(lambda leaf: leaf[place], stacked)
             design, operation = eqx.combine(part, whole)
             found = state(design, operation, at, models, quick=quick, engaged=known)
             balance = found.balance
-            return balance.force, found.input_torque, found.efficiency, balance.residual
+            each = balance.force, found.input_torque, found.efficiency
+            return _joined(before, each, balance.residual, (place * rows, number * columns))
 
-        out: Columns = jax.lax.map(tile, stacked)
-        return out
+        done: _Solved = jax.lax.fori_loop(0, count // rows, tile, before)
+        return done
 
-    strips = jnp.pad(phase, (0, -places % columns), mode="edge").reshape(-1, columns)
-    out: Columns = jax.lax.map(strip, strips)
-    force, torque, efficiency, residual = (
-        jnp.moveaxis(x, 0, 2).reshape(count, -1)[:, :places] for x in out
+    blank = jnp.zeros((count, strips.size))
+    none = _Solved((blank, blank, blank), jnp.zeros(()), jnp.asarray(True), jnp.asarray(False))
+    found: _Solved = jax.lax.fori_loop(0, strips.shape[0], strip, none)
+    return found._replace(states=tuple(one[:, :places] for one in found.states))
+
+
+def _joined(before: _Solved, tile: States, residual: Array, corner: tuple[Array, Array]) -> _Solved:
+    """States with those of one more tile, whose first row and column are told."""
+    solved = jnp.isfinite(tile[0])
+    largest = jnp.max(jnp.where(solved, residual, 0.0))
+    return _Solved(
+        tuple(
+            map(partial(jax.lax.dynamic_update_slice, start_indices=corner), before.states, tile)
+        ),
+        jnp.maximum(before.residual, largest),
+        before.near & jnp.all(residual <= TOLERANCE),
+        before.locks | ~jnp.all(solved),
     )
-    return force, torque, efficiency, residual
 
 
 def _engaged(design: Design, phase: Float[Array, " column"], models: Models) -> Engagement | None:

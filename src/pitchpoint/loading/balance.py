@@ -263,13 +263,13 @@ def balance(
         grip = grip - equation.pressed(ratio) / jnp.where(ratio == 0.0, 1.0, ratio)
     residual = jnp.abs(jnp.abs(along(torque, loaded)) - load) / equation.safe_load
     residual = jnp.where(equation.carried < 0.0, jnp.inf, residual + left)
-    locked = lost | (grip <= 0.0)
+    if guess is not None:
+        ratio, torque, residual, grip = _apart((ratio, torque, residual, grip))
+    locked = (ratio > _ALMOST * most) | (grip <= 0.0)
     slip = along(equation.friction_arms, loaded)
     hold = -equation.side * total(slip) / equation.arm
     # The inner choice keeps the slope finite where the outer one leaves the quotient out: else it is NaN.
     jamming = jnp.where(hold > 0.0, 1.0 / jnp.where(hold > 0.0, hold, 1.0), jnp.inf)
-    if guess is not None:
-        ratio, torque, residual, grip = _apart((ratio, torque, residual, grip))
     solved = (residual <= UNSOLVED) & (ratio > 0.0) & (equation.carried >= 0.0) & ~locked
     return Balance(
         force=_where(solved, ratio * equation.frictionless),
