@@ -139,6 +139,7 @@ class Reading(NamedTuple):
     positions: bool = False
 
 
+@eqx.filter_jit
 def read_as(pair: CylindricalPair, phase: jax.Array, reading: Reading) -> jax.Array:
     """Stiffness of the mesh by a reading [N/m]."""
     positions = even_in_pressure_angle if reading.positions else along_line_of_action
@@ -206,7 +207,7 @@ def compare(pair: CylindricalPair, phase: np.ndarray, rival: dict[str, float] | 
         "positions": Reading(positions=True),
         "all three": Reading(lever=True, root=True, positions=True),
     }
-    own = total_stiffness(pair, at)
+    own = stiffness_of_one(pair, at)
     assert np.allclose(read_as(pair, at, Reading()), own, rtol=1e-12)
     found = {"pitchpoint": own} | {name: read_as(pair, at, r) for name, r in readings.items()}
     table = {name: described(values, phase) for name, values in found.items()}

@@ -15,11 +15,13 @@ from collections.abc import Callable
 from typing import Any
 
 import bench
+import equinox as eqx
 import jax
 import numpy as np
 import wear_numpy as rival
 
 from pitchpoint._jax import array, jnp
+from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
 from pitchpoint.gears.designs import rows
@@ -81,13 +83,19 @@ def of(given: Given, number: int) -> Given:
     return found
 
 
+@eqx.filter_jit
+def springs_of(design: Design, operation: Operation, contacts: Contacts) -> jax.Array:
+    """Compliance of each pair of teeth."""
+    given = design.mesh, contacts, design.solids, MODELS.compliance
+    return compliance(*given, operation.load).of_teeth(contacts)
+
+
 def as_rival(given: Given) -> rival.Pair:
     """A drive as plain numbers."""
     design, operation, _ = given
     start, cells = as_new(design, operation, MODELS, parts=PARTS, count=CELLS)
     mesh, contacts = design.mesh, start.contacts
-    terms = MODELS.compliance
-    springs = compliance(mesh, contacts, design.solids, terms, operation.load).of_teeth(contacts)
+    springs = springs_of(design, operation, contacts)
     speed = np.einsum("kdpsn,d->kpn", contacts.surface, mesh.motion)
     arm = float(np.abs(np.einsum("dpsn,d->psn", contacts.normal, mesh.loaded)).max())
     return rival.Pair(
