@@ -13,7 +13,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.surface import Spot, missing
-from pitchpoint.contact.worn import Worn
+from pitchpoint.contact.worn import Worn, WornAt
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING
@@ -516,6 +516,23 @@ def test_contacts_feel_the_second_difference_over_their_width():
     assert found[1] == pytest.approx(0.0, abs=1e-12)
     over = np.asarray(bends(even, spot(np.array([1.0 + span[0]]), np.array([0.0]))))
     assert over[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_places_that_stay_feel_the_same_of_a_worn_flank():
+    """From before the first cell to behind the last one, where flanks go straight on."""
+    depth, span = np.random.default_rng(6).random((12, 1)), array([0.05, 1.0])
+    worn = Worn(array(depth), array([0.0, 1.0]), array([-1.0, 1.0]), span)
+    places = np.linspace(-0.1, 1.1, 60)
+    at = spot(places, np.zeros(60))
+
+    @eqx.filter_jit
+    def both(worn: Worn, at: Spot) -> tuple[jax.Array, jax.Array]:
+        stays = WornAt.of(worn, at)
+        return stays.missing(at), stays.bent(at)
+
+    height, bend = map(np.asarray, both(worn, at))
+    assert height == pytest.approx(np.asarray(heights(worn, at)), rel=1e-12)
+    assert bend == pytest.approx(np.asarray(bends(worn, at)), rel=1e-12, abs=1e-10)
 
 
 @pytest.mark.whole

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from itertools import product
-from typing import ClassVar
+from typing import ClassVar, Self
 
 from jaxtyping import Array, Bool, Float
 
@@ -11,7 +11,7 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Lanes, Spot, Surface, Surfaces, with_surfaces
 from pitchpoint.factored import Arrays
 
-__all__ = ["FLATTEST", "Worn", "new_and_worn", "with_worn"]
+__all__ = ["FLATTEST", "Worn", "WornAt", "new_and_worn", "with_worn"]
 
 FLATTEST = 0.1
 """Part of their relative curvature as new that contacts keep at least: flatter flanks conform."""
@@ -64,6 +64,54 @@ class Worn(Surface):
             (one * other * self.depth[k, j] for (k, one), (j, other) in product(along, aside)),
             jnp.zeros(jnp.broadcast_shapes(flank.shape, across.shape)),
         )
+
+
+class WornAt(Surface):
+    """Depth of wear that is the same across the face, at places that stay: each feels a sum over the cells.
+
+    Many states of the flanks then cost two products of a matrix each, and no search for cells.
+
+    Attributes:
+        depth: mean depth of each cell along the flank [m].
+        height: part of each cell in the depth at every place.
+        bend: the same of the second difference along the flank [1/m2].
+    """
+
+    both: ClassVar[bool] = False
+
+    depth: Float[Array, " cell"]
+    height: Float[Array, "*b cell"]
+    bend: Float[Array, "*b cell"]
+
+    @classmethod
+    def of(cls, worn: Worn, spot: Spot) -> Self:
+        """A worn flank at places.
+
+        Args:
+            worn: with one strip across the face.
+            spot: the places.
+        """
+        given, span = (worn.flank, worn.depth.shape[0]), worn.span[0]
+        height = _parts(spot.flank[None], (1.0,), *given, straight=False)
+        bend = _parts(_beside(spot.flank, span), (-2.0, 1.0, 1.0), *given, straight=True) / span**2
+        return cls(worn.depth[:, 0], height, bend)
+
+    def at(self, depth: Float[Array, " cell"]) -> Self:
+        """The same with other depths.
+
+        Args:
+            depth: of each cell [m].
+        """
+        return replace(self, depth=depth)
+
+    def missing(self, spot: Spot) -> Lanes:
+        """Depth at each of the places."""
+        return self.height @ self.depth
+
+    def bent(self, spot: Spot) -> Float[Array, "2 *#b"]:
+        """Second differences there, as `Worn` has them."""
+        along = self.bend @ self.depth
+        return jnp.stack([along, jnp.zeros_like(along)])
 
 
 def _beside(place: Lanes, span: Array) -> Lanes:
@@ -136,3 +184,33 @@ def _weights(
         (number + 1, later),
         (jnp.minimum(number + 2, cells - 1), jnp.where(high, 2.0, 1.0) * after),
     ]
+
+
+def _parts(
+    places: Float[Arrays, "place *b"],
+    times: tuple[float, ...],
+    ends: Float[Array, "2"],
+    cells: int,
+    *,
+    straight: bool,
+) -> Float[Array, "*b cell"]:
+    """Weights of all cells, four at least, in a sum over places: those of `_weights` in a row."""
+    anywhere = (places - ends[0]) / (ends[1] - ends[0]) * cells - 0.5
+    at = jnp.clip(anywhere, 0.0, cells - 1.0)
+    beyond = anywhere - at if straight else jnp.zeros_like(at)
+    low, before = _spline(at + 1.0), jnp.minimum(beyond, 0.0)
+    high, behind = _spline(at - cells), jnp.maximum(beyond, 0.0)
+    cell = jnp.arange(float(cells))
+    found = sum(n * _spline(one[..., None] - cell) for n, one in zip(times, at, strict=True))
+    # What would lie beyond an end goes straight on from the last two cells.
+    first, last = (2.0 * low - before, before - low), (-high - behind, 2.0 * high + behind)
+    for number, part in zip((0, 1, cells - 2, cells - 1), (*first, *last), strict=True):
+        whole = jnp.tensordot(jnp.asarray(times), part, 1)
+        found = found + jnp.where(cell == number, whole[..., None], 0.0)
+    return jnp.asarray(found)
+
+
+def _spline(distance: Arrays) -> Arrays:
+    """The cubic B-spline, by the distance from its middle in cells."""
+    away = jnp.abs(distance)
+    return (jnp.maximum(2.0 - away, 0.0) ** 3 - 4.0 * jnp.maximum(1.0 - away, 0.0) ** 3) / 6.0

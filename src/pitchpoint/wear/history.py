@@ -11,8 +11,8 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.contact.surface import Spot
-from pitchpoint.contact.worn import Worn, with_worn
+from pitchpoint.contact.surface import Spot, Surfaces
+from pitchpoint.contact.worn import Worn, WornAt, with_worn
 from pitchpoint.efficiency.quasi_static import (
     Coupling,
     Design,
@@ -246,6 +246,7 @@ class Start(eqx.Module):
         spots: where they lie on both members.
         body: compliance of what is under the teeth; None where it does not couple them.
         teeth: where the contacts lie on them; None where the sharing of the load does not ask how they yield.
+        felt: worn flanks at these spots, for many states of them; None where each is looked at anew.
     """
 
     phase: Float[Array, " node"]
@@ -254,6 +255,7 @@ class Start(eqx.Module):
     spots: tuple[Spot, Spot]
     body: Coupling | None
     teeth: TeethAt | None
+    felt: tuple[WornAt, WornAt] | None = None
 
     @classmethod
     def of(cls, design: Design, models: Models, parts: int) -> Self:
@@ -272,6 +274,30 @@ class Start(eqx.Module):
             teeth = teeth_at(contacts, *given)
             body = mesh.body_compliance(contacts, design.solids) if mesh.couples else None
         return cls(phase, weight, contacts, mesh.spots(contacts, phase), body, teeth)
+
+    def on(self, cells: Cells) -> Self:
+        """The same for many states of flanks, where the wear is the same across the face.
+
+        Args:
+            cells: on both flanks.
+        """
+        if cells.strips > 1 or cells.count < 4:
+            return self
+        first, second = cells.surfaces(jnp.zeros((2, cells.count, 1)))
+        felt = WornAt.of(first, self.spots[0]), WornAt.of(second, self.spots[1])
+        return replace(self, felt=felt)
+
+    def worn(self, cells: Cells, depth: Depths) -> Surfaces:
+        """What wear has added to both members.
+
+        Args:
+            cells: on both flanks.
+            depth: worn off so far [m].
+        """
+        if self.felt is None:
+            first, second = cells.surfaces(depth)
+            return (first,), (second,)
+        return (self.felt[0].at(depth[0, :, 0]),), (self.felt[1].at(depth[1, :, 0]),)
 
     def engaged(self, share: Lanes, contacts: Contacts | None = None) -> Engagement:
         """Contacts over the period, as new or as they are worn, and what they carry.
@@ -465,8 +491,7 @@ def worn_contacts(
         start: with flanks as new.
         depth: worn off so far [m].
     """
-    first, second = cells.surfaces(depth)
-    return with_worn(start.contacts, ((first,), (second,)), start.spots)
+    return with_worn(start.contacts, start.worn(cells, depth), start.spots)
 
 
 @program

@@ -112,6 +112,7 @@ def _worn(
     share = models.share(design, start.contacts, operation.load, start.body, start.teeth)
     flank, across, span = reached(*travelled(design, operation, models, start.engaged(share)))
     own = dataclasses.replace(cells, flank=flank, across=across, span=span)
+    start = start.on(own)
 
     def turn(depth: Array) -> Turn:
         return turn_alone(design, operation, models, wear, own, start, depth)
