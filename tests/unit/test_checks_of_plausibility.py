@@ -57,9 +57,9 @@ def at_work(*gears: SolidInUse, law: Any = CONSTANT, **changes: Any) -> AtWork:
         solids=gears or (STEEL, STEEL),
         design=SimpleNamespace(
             mesh=SimpleNamespace(shape=shape, largest_radius=largest),
-            modulus=226e9,
             roughness=SimpleNamespace(**flanks),
         ),
+        modulus=226e9,
         case=SimpleNamespace(
             models=SimpleNamespace(rolling_resistance=rolling),
             operation=SimpleNamespace(speed=100.0),

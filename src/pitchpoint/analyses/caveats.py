@@ -331,7 +331,7 @@ def _rise(built: Built, run: Mapping[str, np.ndarray]) -> np.ndarray:
     entrainment, sliding = (np.abs(run[name]) for name in ("entrainment", "sliding_velocity"))
     heat = np.pi / 4.0 * run["pressure"] * run["friction"] * sliding
     # Half-width 4 p R/E' of a dry line contact.
-    half_width = 4.0 * run["pressure"] * run["radius"] / float(built.design.modulus)
+    half_width = 4.0 * run["pressure"] * run["radius"] / built.modulus
     speeds = entrainment + 0.5 * sliding, np.abs(entrainment - 0.5 * sliding)
     flash = shared_flash(
         heat=heat, half_width=half_width, speed_a=speeds[0], speed_b=speeds[1], bodies=(a, b)

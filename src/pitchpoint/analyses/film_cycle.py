@@ -317,7 +317,7 @@ def _below_hertz(built: Built, states: States, figures: Mapping[str, np.ndarray]
     most = np.argmax(np.where(states["loaded"], states["pressure"], 0.0))
     pressure, radius = (states[name].reshape(-1)[most] for name in ("pressure", "radius"))
     # b = 4 p R/E' of a dry line contact.
-    half_width = 4.0 * pressure * radius / float(built.design.modulus)
+    half_width = 4.0 * pressure * radius / built.modulus
     ratio = float(built.design.roughness.composite_rq) * radius / half_width**2
     lacks = 1.0 - figures["largest_film_pressure"] / pressure
     if not (lacks > LOWER and ratio > UNEVEN):

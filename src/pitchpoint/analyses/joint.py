@@ -226,9 +226,16 @@ def _joint(built: Built, torsion: _Torsion, free: bool) -> Joint:
     given = torsion.curve, array(built.case.operation.load)
     none, motor = array(0.0), both[0] if free else array(np.inf)
     joint = Joint(*given, motor, both[1], none, array(ratio), torsion.sliding)
-    mass = reduced_mass(both, jnp.ones(2))
-    damping = modal_damping(mass[None, None], joint.stiffness[None, None], asked.damping_ratio)
-    return replace(joint, damping=damping[0, 0])
+    return replace(joint, damping=_damping(joint, both, array(asked.damping_ratio)))
+
+
+@program
+def _damping(
+    joint: Joint, inertias: Float[Array, "2"], ratio: Float[Array, ""]
+) -> Float[Array, ""]:
+    """Damping of the joint by its ratio [N m s]; stiffness is sought in a loop."""
+    mass = reduced_mass(inertias, jnp.ones(2))
+    return modal_damping(mass[None, None], joint.stiffness[None, None], ratio)[0, 0]
 
 
 def _speeds(built: Built, critical: np.ndarray, waves: _Waves) -> np.ndarray:

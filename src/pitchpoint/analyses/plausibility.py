@@ -161,7 +161,7 @@ def _bears(used: SolidInUse, shape: Shape) -> Iterator[tuple[float, str]]:
 
 def contact_strain(at: AtWork) -> str | None:
     """A pressure beside which the modulus is small, of materials whose limit nobody knows."""
-    largest, modulus = at.largest("pressure"), float(at.built.design.modulus)
+    largest, modulus = at.largest("pressure"), at.built.modulus
     if largest <= SMALL_STRAIN * modulus or hertz_pressure(at):
         return None
     return (

@@ -213,7 +213,7 @@ def _profile(built: Built, found: dict[str, np.ndarray]) -> tuple[Surface, ...]:
             "leave it out",
             key="film.end_profile",
         )
-    return end_surfaces(asked(built), float(lengths.max()), float(built.design.modulus))
+    return end_surfaces(asked(built), float(lengths.max()), built.modulus)
 
 
 # ---- along the lines

@@ -72,7 +72,7 @@ from pitchpoint.lubrication.registry import (
 )
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.data import Datum
-from pitchpoint.materials.solids import SolidRecord
+from pitchpoint.materials.solids import SolidRecord, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
@@ -260,6 +260,11 @@ class Built:
         The speed of its pitch circles, zero where it has none, is for a unit rate of the driver.
         """
         return self._of_mesh["nominal"]
+
+    @cached_property
+    def modulus(self) -> float:
+        """Reduced modulus E' of the solids [Pa]."""
+        return float(_modulus(*self.design.solids))
 
     @cached_property
     def _of_mesh(self) -> dict[str, dict[str, Any]]:
@@ -940,6 +945,9 @@ def _numbers(mesh: Mesh) -> dict[str, dict[str, Any]]:
         "pitch_line_speed": mesh.reference.pitch_line_speed if mesh.pitch_point else jnp.zeros(()),
     }
     return {"dimensions": mesh.dimensions(), "nominal": nominal}
+
+
+_modulus = program(reduced_modulus)
 
 
 @program

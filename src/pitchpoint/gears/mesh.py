@@ -10,7 +10,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jnp
+from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, with_surfaces
 from pitchpoint.contact.worn import new_and_worn, with_worn
@@ -246,7 +246,7 @@ class Mesh(eqx.Module):
     @property
     def largest_radius(self) -> Float[Array, ""]:
         """Relative radius of curvature at which conformal contacts are cut [m]; infinite where none is."""
-        return jnp.asarray(inf)
+        return array(inf)
 
     @property
     def yielding(self) -> tuple[str, str]:
@@ -296,7 +296,7 @@ class Mesh(eqx.Module):
     @property
     def contact_room(self) -> Float[Array, ""]:
         """From elliptic contacts to the nearest end of a face [m]; infinite where no face ends."""
-        return jnp.asarray(inf)
+        return array(inf)
 
     def largest_inclination(self, semi_axis: Float[Array, "..."]) -> Float[Array, "..."]:
         """Inclination of the axes at which elliptic contacts reach an end of a face [rad]; infinite without.
