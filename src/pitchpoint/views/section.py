@@ -217,7 +217,7 @@ def _has(outcome: Outcome, part: str) -> bool:
 Words = str | Callable[[Page], str]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Section:
     """One section of the report, and what its results add to the answer at the top and to the screen.
 
