@@ -1,6 +1,6 @@
 """A ball pressed on a plane, without a lubricant: the package beside tamaas 2.9.0, on one thread.
 
-    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/dry_contact.py --rival PYTHON
+    taskset -c 0 .venv/bin/python benchmarks/dry_contact.py --rival PYTHON
 
 PYTHON is the interpreter of an environment with tamaas, as `rivals/tamaas_hertz.py` makes it; without it the
 package is timed alone. 129 x 129 cells over 3 radii of the contact. Accuracy is told twice: against Hertz,
@@ -9,7 +9,6 @@ its operator of two half spaces. Its periodic one solves another problem, rows o
 of the processor, without compilation; the kernel of a grid is told apart. Then straight rollers.
 """
 
-import argparse
 import json
 import os
 import subprocess
@@ -19,9 +18,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
-
+import bench
 import numpy as np
 
 from pitchpoint._jax import jax
@@ -29,8 +26,10 @@ from pitchpoint.contact.dry_contact import dry_contact
 from pitchpoint.contact.gaps import elliptic_gap, line_gap
 from pitchpoint.contact.half_space import HalfSpace, graded_edges, half_space
 
-RIVAL = Path(__file__).parent / "rivals" / "tamaas_hertz.py"
-CELLS, WIDTH, TURNS = 129, 3.0, 5
+SIZES = bench.sizes(__doc__, rival="tamaas", cells=(129, 33), rollers=(128, 32), turns=(5, 1))
+CELLS, WIDTH = SIZES.cells, 3.0
+RIVAL = bench.RIVALS / "tamaas_hertz.py"
+RIVALS_CELLS = 129
 MODULUS, LOAD, LARGEST = 2.0, 4.0 / 3.0, 2.0 / np.pi
 
 
@@ -38,7 +37,7 @@ def timed(action: Callable[[], Any]) -> tuple[float, Any]:
     """Least processor time after a first run, and the result."""
     jax.block_until_ready(action())
     times = []
-    for _ in range(TURNS):
+    for _ in range(SIZES.turns):
         begin = time.process_time()
         found = jax.block_until_ready(action())
         times.append(time.process_time() - begin)
@@ -63,7 +62,8 @@ def rivals(python: str, save: str) -> Iterator[dict[str, Any]]:
     yield from map(json.loads, done.stdout.splitlines())
 
 
-def beside_hertz(python: str | None) -> None:
+def beside_hertz(python: str | None) -> float:
+    """Seconds of a ball, with what Hertz and tamaas find."""
     kernel, (bodies, gap) = timed(ball)
     seconds, found = timed(lambda: dry_contact(bodies, gap, MODULUS, load=LOAD))
     pressure = np.asarray(found.pressure) / LARGEST
@@ -72,9 +72,10 @@ def beside_hertz(python: str | None) -> None:
         f"{float(found.status.residual):.0e}, largest pressure {pressure.max():.5f} of Hertz; kernel of the "
         f"grid {kernel:.3f} s"
     )
-    if python is None:
+    assert abs(pressure.max() - 1.0) < 0.02, "Hertz finds another pressure"
+    if python is None or CELLS != RIVALS_CELLS:
         print("tamaas is left out: `--rival PYTHON` names the python of an environment with it")
-        return
+        return seconds
     with tempfile.TemporaryDirectory() as folder:
         save = str(Path(folder) / "pressure.npy")
         told = list(rivals(python, save))
@@ -87,11 +88,14 @@ def beside_hertz(python: str | None) -> None:
             f"with our kernel counted; off its solution by {one['off']:.0e}, largest pressure "
             f"{one['largest']:.5f} of Hertz"
         )
+    assert off < 1e-6, "tamaas finds other pressures"
+    return seconds
 
 
 def rollers() -> None:
     """Straight rollers of 56.5 half-widths under the load of Hertz."""
-    for nodes, cells in ((129, 128), (257, 256)):
+    for cells in (SIZES.rollers, 2 * SIZES.rollers):
+        nodes = cells + 1
         edges = graded_edges(56.5, cells, 0.02)
         kernel, bodies = timed(lambda: half_space(np.linspace(-2.0, 2.0, nodes), edges))  # noqa: B023
         gap = np.asarray(line_gap(bodies, 1.0, 0.0))
@@ -105,12 +109,7 @@ def rollers() -> None:
         )
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--rival", help="python of an environment with tamaas")
-    beside_hertz(parser.parse_args().rival)
-    rollers()
-
-
 if __name__ == "__main__":
-    main()
+    seconds_of_ball = beside_hertz(SIZES.rival)
+    rollers()
+    bench.last_line(seconds=seconds_of_ball)

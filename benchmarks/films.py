@@ -1,6 +1,6 @@
 """Line contacts with an oil film: the package beside a loop in NumPy.
 
-    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/films.py
+    taskset -c 0 .venv/bin/python benchmarks/films.py
 
 64 contacts of .4 to 1.5 GPa and .3 to 10 m/s. `rivals/ehl_line.py` solves one after the other with the same
 equations, the same scheme and as many nodes on a uniform grid of its own; its films are compared. Then a mesh
@@ -8,18 +8,12 @@ cycle of 100 phases with two pairs of teeth, and ten thousand contacts without p
 they take. Times are those of the processor, the first run, which compiles, is told apart.
 """
 
-import os
 import resource
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
-sys.path.insert(0, str(Path(__file__).parent / "rivals"))
-
+import bench
 import ehl_line as rival
 import numpy as np
 
@@ -29,7 +23,9 @@ from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.materials.fluid import Fluid
 
 MODULUS, RADIUS, VISCOSITY, ALPHA = 2.26e11, 0.01, 0.04, 2.2e-8
-TURNS = 5
+SIZES = bench.sizes(
+    __doc__, contacts=(64, 4), nodes=(129, 129), phases=(100, 3), many=(10_000, 20), turns=(5, 1)
+)
 
 
 def drawn(count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -49,15 +45,17 @@ def contacts(load: Any, speed: Any, **more: Any) -> LineContact:
 def timed(action: Callable[[], Any]) -> tuple[float, float, Any]:
     """Processor time of the first run and the least of those after it, and the result."""
     times = []
-    for _ in range(TURNS + 1):
+    for _ in range(SIZES.turns + 1):
         begin = time.process_time()
         found = action()
         times.append(time.process_time() - begin)
     return times[0], min(times[1:]), found
 
 
-def beside_the_rival(nodes: int) -> None:
-    load, speed = drawn(64)
+def beside_the_rival(nodes: int) -> float:
+    """How many times as long the loop takes."""
+    count = SIZES.contacts
+    load, speed = drawn(count)
     cases = [
         rival.Case(w, u, RADIUS, MODULUS, VISCOSITY, ALPHA)
         for w, u in zip(load, speed, strict=True)
@@ -67,16 +65,19 @@ def beside_the_rival(nodes: int) -> None:
     width = np.asarray(films.film.half_width)
     middle = [one.film[np.argmin(np.abs(one.x))] for one in theirs]
     off = films.film.central_film / (np.array(middle) * width**2 / RADIUS) - 1.0
+    apart = np.nanmedian(np.abs(off))
     print(
-        f"64 contacts on {nodes} nodes: loop {1e3 * loop / 64:.2f} ms each, "
-        f"{sum(one.residual < 1e-9 for one in theirs)} solved; package {1e3 * ours / 64:.2f} ms each, "
+        f"{count} contacts on {nodes} nodes: loop {1e3 * loop / count:.2f} ms each, "
+        f"{sum(one.residual < 1e-9 for one in theirs)} solved; package {1e3 * ours / count:.2f} ms each, "
         f"{int(films.solved.sum())} solved, {loop / ours:.1f} times as fast, first run {first:.1f} s; "
-        f"films differ by {100 * np.nanmedian(np.abs(off)):.2g} % in the median"
+        f"films differ by {100 * apart:.2g} % in the median"
     )
+    assert apart < 0.1, "the rival finds other films"
+    return loop / ours
 
 
 def a_mesh_cycle() -> None:
-    phase = np.linspace(0.0, 1.0, 100)[:, None]
+    phase = np.linspace(0.0, 1.0, SIZES.phases)[:, None]
     share = np.clip(np.stack([phase, 1.0 - phase], axis=-1)[:, 0], 0.05, None)
     load, radius = 2.5e5 * share, 0.004 + 0.006 * np.hstack([phase, 1.0 - phase])
     rough = Rough(rq=0.4e-6, modulus=MODULUS)
@@ -91,26 +92,26 @@ def a_mesh_cycle() -> None:
     )
     first, again, films = timed(lambda: solve_lines(case))
     print(
-        f"mesh cycle of 100 phases with 2 pairs, rough, 129 nodes: {again:.2f} s, first run {first:.1f} s, "
-        f"{int(films.solved.sum())} of 200 solved"
+        f"mesh cycle of {SIZES.phases} phases with 2 pairs, rough, 129 nodes: {again:.2f} s, "
+        f"first run {first:.1f} s, {int(films.solved.sum())} of {2 * SIZES.phases} solved"
     )
 
 
 def many() -> None:
-    load, speed = drawn(10_000)
+    load, speed = drawn(SIZES.many)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     begin = time.process_time()
     films = solve_lines(contacts(load, speed), nodes=65, profiles=False)
     took = time.process_time() - begin
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     print(
-        f"10000 contacts on 65 nodes without profiles: {took:.1f} s, {int(films.solved.sum())} solved, "
-        f"{grown:.0f} MB more memory at the most"
+        f"{SIZES.many} contacts on 65 nodes without profiles: {took:.1f} s, "
+        f"{int(films.solved.sum())} solved, {grown:.0f} MB more memory at the most"
     )
 
 
 if __name__ == "__main__":
-    for nodes in (129, 257):
-        beside_the_rival(nodes)
+    ratio, finer = map(beside_the_rival, (SIZES.nodes, 2 * SIZES.nodes - 1))
     a_mesh_cycle()
     many()
+    bench.last_line(ratio=ratio, finer=finer)

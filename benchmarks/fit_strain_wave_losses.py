@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
+import bench
 import equinox as eqx
 import numpy as np
 from scipy.optimize import least_squares
@@ -104,8 +105,8 @@ class Assumed:
         return drive.computed(f0, f1, self.friction)
 
 
-def told(rated: Rows, other: Rows, assumed: Assumed) -> str:
-    """Constants, deviations and rows at the other ratio as a line of a table."""
+def fitted(rated: Rows, other: Rows, assumed: Assumed) -> float:
+    """Largest deviation [%]; constants, deviations and rows at the other ratio are printed as a line."""
 
     def away(constants: np.ndarray) -> np.ndarray:
         return assumed.computed(rated, constants) - rated.printed
@@ -115,7 +116,8 @@ def told(rated: Rows, other: Rows, assumed: Assumed) -> str:
     given = (assumed.friction, assumed.f0, assumed.f1, *found, missed.mean(), missed.max())
     line = "{:8.3f} {:6.2f} {:8.5f} {:8.2f} {:8.4f} {:8.3f} {:8.3f}".format(*given)
     pairs = zip(there, there - other.printed, strict=True)
-    return line + "".join(f" {value:8.2f} ({miss:+.2f})" for value, miss in pairs)
+    print(line + "".join(f" {value:8.2f} ({miss:+.2f})" for value, miss in pairs))
+    return float(missed.max())
 
 
 def drive(size: float, ratio: int, dry: float) -> Built:
@@ -158,6 +160,7 @@ def both_ways(dry: float) -> np.ndarray:
 def main() -> None:
     """Print constants, deviations, and what they cannot tell."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--small", action="store_true", help="the fit alone, as CI has it")
     parser.add_argument("--friction", type=float, default=0.1, help="of the teeth")
     place = loss_sets()[SET].places[PLACE]
     parser.add_argument("--f0", type=float, default=place["f0"][0].value, help="of a round bearing")
@@ -170,11 +173,22 @@ def main() -> None:
     print(
         "friction  f0      f1     f0 grows f1 grows   mean      max  -10 and 40 degC at ratio 160"
     )
-    print(told(rated, other, Assumed(asked.friction, asked.f0, asked.f1)))
+    largest = fitted(rated, other, Assumed(asked.friction, asked.f0, asked.f1))
+    if not asked.small:
+        as_others_assume(rated, other)
+        breakaway(place["breakaway_dry"][0].value)
+    bench.last_line(largest_deviation=largest)
+
+
+def as_others_assume(rated: Rows, other: Rows) -> None:
+    """Print the fit with other parts that are assumed."""
     print("\nother parts assumed:")
     for friction, f0, f1 in product((0.05, 0.15), (1.0, 2.0, 2.6), (0.0, 0.0003, 0.0009)):
-        print(told(rated, other, Assumed(friction, f0, f1)))
-    start = place["breakaway_dry"][0].value
+        fitted(rated, other, Assumed(friction, f0, f1))
+
+
+def breakaway(start: float) -> None:
+    """Print the fit of what is lost without load at rest."""
     found = least_squares(lambda dry: np.log(both_ways(float(dry[0]))).ravel(), [start])
     dry = float(found.x[0])
     print(f"\nbreakaway_dry {dry:.2f} N/m; computed over printed, starting and back-driving:")

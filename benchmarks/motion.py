@@ -1,6 +1,6 @@
 """Transients of a spur pair with friction in the loop: the package beside solve_ivp and a compiled loop.
 
-    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/motion.py
+    taskset -c 0 .venv/bin/python benchmarks/motion.py
 
 One case is twenty mesh cycles from the nominal speed, with the friction of Xu et al. (2007) at the force and
 speeds of the moment, teeth that may part, and bearings that yield (six coordinates) or do not (two).
@@ -11,19 +11,13 @@ the same method, where numba is installed. What the package does beyond its riva
 forces, and the force of every pair at the end. Times are those of the processor, compilation is told apart.
 """
 
-import argparse
 import dataclasses
-import os
 import statistics
-import sys
 import time
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 
-os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
-sys.path.insert(0, str(Path(__file__).parent / "rivals"))
-
+import bench
 import diffrax
 import equinox as eqx
 import numpy as np
@@ -37,8 +31,7 @@ from pitchpoint.dynamics.transient import Transient, transient, transient_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 
@@ -48,6 +41,7 @@ BEARING, BEARING_DAMPING, VISCOUS = 2e8, 4e3, 0.1
 STIFFNESS, RELAXATION, CREEP, PHASE = (3e8, 0.0, -0.3e8), 2e-6, 1e-3, 0.4
 SPEED, LOAD, DRIVE = 100.0, 100.0, 0.55
 TEMPERATURE, TOLERANCE = 328.15, 1e-10
+SIZES = bench.sizes(__doc__, cycles=(20, 4), points=(64, 2), more=(1024, 0), repeats=(5, 1))
 AGREE = 2e-6
 """Largest difference to the rival, of rates to their swing and of places to that of the closing."""
 
@@ -120,14 +114,15 @@ def timed(work: Callable[[], object]) -> float:
     return time.process_time() - start
 
 
-def one_case(own: Design, bearings: bool, repeats: int) -> None:
+def one_case(own: Design, bearings: bool) -> float:
+    """How many times as long the rival takes."""
     moves, rates = moving(own, bearings), SPEED * np.asarray(own.mesh.motion)
     size = moves.mass.shape[0]
     cycle = float(own.mesh.period) / SPEED
-    times = np.linspace(0.0, 20.0 * cycle, 41)
+    times = np.linspace(0.0, SIZES.cycles * cycle, 2 * SIZES.cycles + 1)
     ours = partial(transient, moves, times, rate=np.pad(rates, (0, size - 2)))
     first = timed(ours)
-    each = statistics.median(timed(ours) for _ in range(repeats))
+    each = statistics.median(timed(ours) for _ in range(SIZES.repeats))
     found: Transient = ours()
     start = np.zeros(12)
     start[6:8] = rates
@@ -159,9 +154,11 @@ def one_case(own: Design, bearings: bool, repeats: int) -> None:
     )
     assert max(away, apart) < AGREE, "the rival computes something else"
     print(f"  ratio {rivals / each:.0f} (goal 50)")
+    return rivals / each
 
 
-def many(own: Design, bearings: bool, count: int, repeats: int) -> None:
+def many(own: Design, bearings: bool, count: int) -> None:
+    repeats = min(SIZES.repeats, 3)
     moves, motion = moving(own, bearings), np.asarray(own.mesh.motion)
     size = moves.mass.shape[0]
     times = array(np.linspace(0.0, 2.0 * float(own.mesh.period) / SPEED, 3))
@@ -231,15 +228,11 @@ def many(own: Design, bearings: bool, count: int, repeats: int) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--points", type=int, nargs="*", default=[64, 1024])
-    parser.add_argument("--repeats", type=int, default=5)
-    asked = parser.parse_args()
     own = design()
-    for bearings in (True, False):
-        one_case(own, bearings, asked.repeats)
-    for count in asked.points:
-        many(own, True, count, min(asked.repeats, 3))
+    ratios = {name: one_case(own, name == "six") for name in ("six", "two")}
+    for count in filter(None, (SIZES.points, SIZES.more)):
+        many(own, True, count)
+    bench.last_line(**ratios)
 
 
 if __name__ == "__main__":

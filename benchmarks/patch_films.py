@@ -1,25 +1,20 @@
 """Films of contacts of finite length: processor seconds on 129 x 128 and 257 x 256, and memory.
 
-    OPENBLAS_NUM_THREADS=1 .venv/bin/python benchmarks/patch_films.py --rival PYTHON
+    .venv/bin/python benchmarks/patch_films.py --rival PYTHON
 
 PYTHON is the interpreter of an environment with slippy, as `rivals/slippy_point.py` makes it; without it the
 package is timed alone. Programs are compiled before the clock starts. The dry contact and all coarser grids
 count. The rival's film is that of its own grid; ours on finer ones tell how far both are off.
 """
 
-import argparse
 import json
 import os
 import resource
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false"
-
+import bench
 import numpy as np
 
 from pitchpoint._jax import array
@@ -33,8 +28,9 @@ MODULUS, OIL = 2.26e11, Fluid(viscosity=0.04, pressure_viscosity=2.2e-8)
 LONG = 56.5
 """Length of the lines over their half-width."""
 
-FINE, FINER = (129, 128), (257, 256)
-RIVAL, RIVALS_NODES = Path(__file__).parent / "rivals" / "slippy_point.py", 65
+SIZES = bench.sizes(__doc__, rival="slippy", cells=(128, 32), cases=(9, 1), balls=(3, 0))
+FINE, FINER = (SIZES.cells + 1, SIZES.cells), (2 * SIZES.cells + 1, 2 * SIZES.cells)
+RIVAL, RIVALS_NODES = bench.RIVALS / "slippy_point.py", 65
 
 
 def line(
@@ -97,8 +93,9 @@ def timed(contact: PatchContact, grid: tuple[int, int]) -> tuple[float, Solved]:
 
 def rows() -> Iterator[tuple[str, float]]:
     """Cases with their seconds, told as they come."""
-    for name, made in CASES.items():
+    for name, made in list(CASES.items())[: SIZES.cases]:
         seconds, (_, _, state, _) = timed(made(), FINE)
+        assert state.residual < ENOUGH, f"{name} is not solved"
         print(
             f"{name}: {seconds:.2f} s, {state.steps} steps, residual {state.residual:.0e}",
             flush=True,
@@ -125,7 +122,7 @@ def rivals_ball() -> PatchContact:
 def beside_slippy(python: str | None) -> None:
     """Print the ball of the rival on three grids, and the rival."""
     contact, own = rivals_ball(), {}
-    for nodes in (RIVALS_NODES, 129, 257):
+    for nodes in (RIVALS_NODES, 129, 257)[: SIZES.balls]:
         own[nodes], found = timed(contact, (nodes, nodes - 1))
         film = 1e9 * middle(found)
         print(f"ball of slippy, {nodes}: {own[nodes]:.2f} s, film {film:.0f} nm", flush=True)
@@ -145,6 +142,7 @@ def beside_slippy(python: str | None) -> None:
         f"slippy, {RIVALS_NODES}: {told['seconds']:.2f} s, {ratio:.1f} times as long, "
         f"film {1e9 * told['film']:.0f} nm"
     )
+    assert abs(told["film"] / middle(found) - 1.0) < 0.2, "slippy finds another film"
 
 
 def middle(found: Solved) -> float:
@@ -157,22 +155,21 @@ def middle(found: Solved) -> float:
     return float(gap[len(gap) // 2, node])
 
 
-def main() -> int:
+def main() -> None:
     """Print the figures."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--rival", help="python of an environment with slippy")
-    beside_slippy(parser.parse_args().rival)
+    beside_slippy(SIZES.rival)
     seconds = dict(rows())
-    print(f"median: {np.median(list(seconds.values())):.2f} s")
+    median = float(np.median(list(seconds.values())))
+    print(f"median: {median:.2f} s")
     first = next(iter(CASES))
-    finer, (_, _, state, _) = timed(CASES[first](), FINER)
+    finer, (_, _, state, _) = timed(CASES[first](), FINE if SIZES.small else FINER)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     print(
-        f"{first} on 257 x 256: {finer:.1f} s, {finer / seconds[first]:.1f} times, "
+        f"{first} on {FINER[0]} x {FINER[1]}: {finer:.1f} s, {finer / seconds[first]:.1f} times, "
         f"{state.steps} steps, residual {state.residual:.0e}, {memory:.1f} GB"
     )
-    return 0
+    bench.last_line(seconds=median)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

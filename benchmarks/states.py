@@ -30,8 +30,7 @@ from pitchpoint.efficiency.grid import state_grid
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness
 

@@ -1,6 +1,6 @@
 """Mesh stiffness, microseconds a point: the package beside ross-rotordynamics, on one thread.
 
-    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/stiffness.py --rival PYTHON
+    taskset -c 0 .venv/bin/python benchmarks/stiffness.py --rival PYTHON
 
 PYTHON is the interpreter of an environment with ross, as `rivals/ross_mesh_stiffness.py` makes it;
 without it only the package is timed. A point is one position of the mesh: the stiffness of all
@@ -17,18 +17,15 @@ contact evenly in pressure angle, from where the rack's flank ends, not evenly a
 action between the tips.
 """
 
-import argparse
 import dataclasses
 import json
-import os
 import statistics
 import subprocess
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import NamedTuple
 
-os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+import bench
 import equinox as eqx
 import jax
 import numpy as np
@@ -43,7 +40,7 @@ from pitchpoint.loading.foundation import sainsot_2004
 from pitchpoint.loading.tooth_compliance import beam_compliance, interpolate, terms_of
 from pitchpoint.materials.solids import Solid
 
-RIVAL = Path(__file__).parent / "rivals" / "ross_mesh_stiffness.py"
+RIVAL = bench.RIVALS / "ross_mesh_stiffness.py"
 STEEL = Solid(young=206e9, poisson=0.3, density=7810.0)
 TERMS = terms_of("beam_foundation_hertz")
 LOAD = jnp.asarray(100.0)
@@ -142,6 +139,7 @@ class Reading(NamedTuple):
     positions: bool = False
 
 
+@eqx.filter_jit
 def read_as(pair: CylindricalPair, phase: jax.Array, reading: Reading) -> jax.Array:
     """Stiffness of the mesh by a reading [N/m]."""
     positions = even_in_pressure_angle if reading.positions else along_line_of_action
@@ -165,8 +163,7 @@ def timed(work: Callable[[], jax.Array]) -> float:
 def run_rival(python: str, points: int) -> dict[str, float]:
     """What the rival prints about one run of its own, on one thread."""
     command = [python, str(RIVAL), "--points", str(points), "--repeats", "3"]
-    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     found: dict[str, float] = json.loads(done.stdout)["runs"][0]
     return found
 
@@ -177,12 +174,8 @@ def described(values: jax.Array, phase: np.ndarray) -> np.ndarray:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--positions", type=int, default=61)
-    parser.add_argument("--designs", type=int, default=1000)
-    parser.add_argument("--repeats", type=int, default=9)
-    parser.add_argument("--rival", help="python of an environment with ross-rotordynamics")
-    asked = parser.parse_args()
+    usual = {"positions": (61, 11), "designs": (1000, 20), "repeats": (9, 1)}
+    asked = bench.sizes(__doc__, rival="ross-rotordynamics", **usual)
     pair, phase = rival_pair(), np.linspace(0.0, 1.0, asked.positions)
     many, at = random_designs(asked.designs), jnp.asarray(phase)
     own: dict[str, tuple[Callable[[], jax.Array], int]] = {
@@ -192,14 +185,17 @@ def main() -> None:
     for name, (work, _) in own.items():
         print(f"{name}: first call with compilation {timed(work):.2f} s")
     rival = run_rival(asked.rival, asked.positions) if asked.rival else None
+    points = []
     for name, (work, count) in own.items():
         seconds = statistics.median(timed(work) for _ in range(asked.repeats))
         point = seconds / count / asked.positions
+        points.append(1e6 * point)
         ratio = f", ross over it {rival['seconds_per_point'] / point:.0f}" if rival else ""
         print(f"{name}: {point * 1e6:.3f} us a point{ratio} (goal 1000)")
     if rival:
         print(f"ross: {rival['seconds_per_point'] * 1e6:.0f} us a point")
     compare(pair, phase, rival)
+    bench.last_line(microseconds_alone=points[0], microseconds_together=points[1])
 
 
 def compare(pair: CylindricalPair, phase: np.ndarray, rival: dict[str, float] | None) -> None:
@@ -211,7 +207,7 @@ def compare(pair: CylindricalPair, phase: np.ndarray, rival: dict[str, float] | 
         "positions": Reading(positions=True),
         "all three": Reading(lever=True, root=True, positions=True),
     }
-    own = total_stiffness(pair, at)
+    own = stiffness_of_one(pair, at)
     assert np.allclose(read_as(pair, at, Reading()), own, rtol=1e-12)
     found = {"pitchpoint": own} | {name: read_as(pair, at, r) for name, r in readings.items()}
     table = {name: described(values, phase) for name, values in found.items()}
@@ -223,6 +219,9 @@ def compare(pair: CylindricalPair, phase: np.ndarray, rival: dict[str, float] | 
         cells = "".join(f"{value:9.2f}" for value in row)
         away = "".join(f"{value:+8.2%}" for value in row / table["ross"] - 1.0) if rival else ""
         print(f"{name:22s}{cells}  {away}")
+    if rival:
+        close = np.allclose(table["all three"], table["ross"], rtol=0.01)
+        assert close, "ross finds another stiffness"
 
 
 if __name__ == "__main__":

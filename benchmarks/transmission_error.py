@@ -1,6 +1,6 @@
 """Dynamic transmission error, microseconds a case: the package beside solve_ivp, on one thread.
 
-    OPENBLAS_NUM_THREADS=1 taskset -c 0 .venv/bin/python benchmarks/transmission_error.py
+    taskset -c 0 .venv/bin/python benchmarks/transmission_error.py
 
 A case is a design at a load: helical gears with few teeth like the first pair of Atanasiu et al.
 (2011), steel on polyamide, of random profile shifts, width, damping and load. Its figures are mean
@@ -11,19 +11,13 @@ them alone the package then reads the force of the whole mesh. Told apart is wha
 beyond its rival: stiffness from the design, force of every pair. Compile time is told apart.
 """
 
-import argparse
 import dataclasses
-import os
 import statistics
-import sys
 import tempfile
 import time
 from collections.abc import Callable
-from pathlib import Path
 
-os.environ["XLA_FLAGS"] = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
-sys.path.insert(0, str(Path(__file__).parent / "rivals"))
-
+import bench
 import dte_solve_ivp as rival
 import equinox as eqx
 import jax
@@ -49,6 +43,8 @@ SOLIDS = (
 )
 TERMS = terms_of("beam_foundation_weber")
 SPEED = 1800.0 * np.pi / 30.0
+AGREE = 1e-4
+"""Largest deviation of a figure from the rival's at a tight tolerance."""
 
 
 class Design(eqx.Module):
@@ -159,19 +155,18 @@ def timed(work: Callable[[], object]) -> float:
     return time.process_time() - start
 
 
-def compare(own: Figures, theirs: rival.Steady) -> None:
-    count = theirs.mean.size
+def compare(own: Figures, theirs: rival.Steady) -> float:
+    """Largest deviation of a figure, after each has been printed."""
+    count, largest = theirs.mean.size, 0.0
     for name in ("mean", "peak_to_peak", "dynamic_factor"):
         away = np.max(np.abs(np.asarray(own[name])[:count] / getattr(theirs, name) - 1.0))
         print(f"  {name}: {away:.1e}")
+        largest = max(largest, float(away))
+    return largest
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--looped", type=int, default=20, help="cases of the loop")
-    parser.add_argument("--repeats", type=int, default=5)
-    asked = parser.parse_args()
+    asked = bench.sizes(__doc__, cases=(1000, 4), looped=(20, 1), repeats=(5, 1))
     designs, pair = random_designs(asked.cases), base_pair()
     print(
         f"stiffness: first call with compilation {timed(lambda: all_excited(pair, designs)):.2f} s"
@@ -193,13 +188,17 @@ def main() -> None:
     loop = min(timed(lambda: rival.steady(some)) for _ in range(2)) / asked.looped
     together = timed(lambda: rival.steady_together(cases)) / asked.cases
     print(f"solve_ivp: loop {loop * 1e6:.0f} us a case, together {together * 1e6:.0f} us a case")
+    ratio = 0.0
     for name, work in own.items():
         each = statistics.median(timed(work) for _ in range(asked.repeats)) / asked.cases
-        text = f"loop over it {loop / each:.0f}, together over it {together / each:.1f}"
+        ratio = loop / each
+        text = f"loop over it {ratio:.0f}, together over it {together / each:.1f}"
         print(f"{name}: {each * 1e6:.0f} us a case{'' if 'design' in name else ', ' + text}")
     print("largest deviation from solve_ivp at its tolerance and at a tight one (asked 1e-4)")
     compare(found, rival.steady(some))
-    compare(found, rival.steady(some, rival.TIGHT))
+    away = compare(found, rival.steady(some, rival.TIGHT))
+    assert away < AGREE, "solve_ivp finds another motion"
+    bench.last_line(ratio=ratio)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,8 @@ from pitchpoint import programs  # noqa: E402
 MOST_MAPS = 30_000
 """Memory maps of a process (Linux allows 65,530) beyond which compiled programs are given back."""
 
-programs.MOST_PROGRAMS = 10**9  # here their maps are counted, and programs shared across a thousand
+# Here their maps are counted, and programs shared across a thousand.
+programs.MOST_PROGRAMS = programs.MOST_MEMORY = 10**12
 
 METER = Meter()
 SPENT: dict[str, Spent] = defaultdict(Spent)

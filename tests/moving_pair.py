@@ -3,15 +3,14 @@
 import numpy as np
 
 from pitchpoint._jax import array
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.passage import passage
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -45,7 +45,7 @@ _LAZY: dict[str, str] = {
     "mean_loss_gradient": "pitchpoint.efficiency.gradients",
     "input_torque_gradient": "pitchpoint.efficiency.gradients",
     "ripple_gradient": "pitchpoint.efficiency.gradients",
-    "FrictionLaw": "pitchpoint.lubrication.friction_coefficient",
+    "FrictionLaw": "pitchpoint.lubrication.registry",
     "FilmModel": "pitchpoint.lubrication.ehl.model",
     "LineContact": "pitchpoint.lubrication.ehl.line",
     "Fluid": "pitchpoint.materials.fluid",

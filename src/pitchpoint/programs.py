@@ -6,6 +6,7 @@ gives it (`jax.export`), under a digest of all that decides it: the code that it
 JAX, the structure of the arguments. What has no such name (a law of the user's own) is traced as ever.
 """
 
+import gc
 import hashlib
 import json
 import logging
@@ -16,10 +17,12 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from ctypes import CDLL
 from dataclasses import fields, is_dataclass
 from functools import cache, partial, update_wrapper
 from importlib import import_module
 from importlib.metadata import version
+from mmap import PAGESIZE
 from pathlib import Path
 from types import FunctionType
 from typing import Any, Generic, ParamSpec, TypeVar
@@ -110,22 +113,26 @@ class Program(Generic[P, R]):
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Results of the function; NumPy and JAX arrays count alike as arguments."""
         leaves, structure = jax.tree.flatten((args, kwargs))
-        arrays = [leaf for leaf in leaves if _is_array(leaf)]
-        if any(isinstance(leaf, jax.core.Tracer) for leaf in arrays):
+        kinds = [*map(type, leaves)]
+        # To ask each leaf what it is takes three times as long.
+        numeric = {kind: _of_arrays(kind) for kind in {*kinds}}
+        if any(issubclass(kind, jax.core.Tracer) for kind in numeric):
             return self.traced(*args, **kwargs)
-        static = tuple(None if _is_array(leaf) else (leaf, type(leaf)) for leaf in leaves)
-        key = structure, static, tuple((leaf.shape, leaf.dtype) for leaf in arrays)
+        pairs = [*zip(leaves, kinds, strict=True)]
+        arrays = [leaf for leaf, kind in pairs if numeric[kind]]
+        told = ((leaf.shape, leaf.dtype) if numeric[kind] else (leaf, kind) for leaf, kind in pairs)
+        key = structure, tuple(told)
         if key not in self.ready:
-            self.ready[key] = self._made(structure, static, arrays, (args, kwargs))
+            self.ready[key] = self._made(leaves, structure, arrays, (args, kwargs))
         compute = self.ready[key]
         found: R = self.traced(*args, **kwargs) if compute is None else compute(*arrays)
         return found
 
     def _made(
-        self, structure: Any, static: tuple[Any, ...], arrays: list[Any], given: Any
+        self, leaves: list[Any], structure: Any, arrays: list[Any], given: Any
     ) -> Callable[..., Any] | None:
         """What computes for arguments of this structure, kept before or traced now; None without a name."""
-        flat = _Flat(self.function, structure, static)
+        flat = _Flat(self.function, structure, leaves)
         traced = jax.jit(flat)
         try:
             path = self._path(given)
@@ -173,8 +180,11 @@ _MADE: "WeakSet[Program[..., Any]]" = WeakSet()
 
 
 MOST_PROGRAMS = 1000
-"""Programs that a process keeps loaded: each takes half a megabyte and some six memory maps, of which
-Linux allows a process 65,530."""
+"""Programs that a process keeps loaded: each takes some six memory maps, of which Linux allows a process
+65,530."""
+
+MOST_MEMORY = 1 << 30
+"""Memory that a process takes on before its programs are given back [B]; a program takes some megabytes."""
 
 _LOADED = Counter[str]()
 
@@ -187,9 +197,20 @@ def _count(event: str, duration_secs: float, **_: str | int) -> None:
 jax.monitoring.register_event_duration_secs_listener(_count)
 
 
+def _memory() -> int:
+    """What the process has of memory [B]; 0 where the system does not tell."""
+    try:
+        return int(Path("/proc/self/statm").read_bytes().split()[1]) * PAGESIZE
+    except OSError:
+        return 0
+
+
+_LOADED["memory"] = _memory()
+
+
 def bound_programs() -> None:
-    """Forget all programs once there are many; what is needed again comes from disk."""
-    if _LOADED["programs"] > MOST_PROGRAMS:
+    """Forget all programs once there are many, or much memory; what is needed again comes from disk."""
+    if _LOADED["programs"] > MOST_PROGRAMS or _memory() - _LOADED["memory"] > MOST_MEMORY:
         forget()
 
 
@@ -198,7 +219,11 @@ def forget() -> None:
     for one in _MADE:
         one.ready.clear()
     jax.clear_caches()
+    gc.collect()
+    with suppress(AttributeError, OSError):  # glibc keeps to itself what is freed
+        CDLL(None).malloc_trim(0)
     _LOADED.clear()
+    _LOADED["memory"] = _memory()
 
 
 def program(function: Callable[P, R]) -> Program[P, R]:
@@ -219,10 +244,9 @@ def fast_program(function: Callable[P, R]) -> Program[P, R]:
 class _Flat:
     """The function of the arrays alone; remembers how its results are put together."""
 
-    def __init__(
-        self, function: Callable[..., Any], structure: Any, static: tuple[Any, ...]
-    ) -> None:
-        self.function, self.structure, self.static = function, structure, static
+    def __init__(self, function: Callable[..., Any], structure: Any, leaves: list[Any]) -> None:
+        self.function, self.structure = function, structure
+        self.static = [None if _is_array(leaf) else (leaf,) for leaf in leaves]
         self.outline: Any = None
         self.__name__ = self.__qualname__ = getattr(function, "__name__", "program")
 
@@ -241,6 +265,12 @@ class _Flat:
 
 def _is_array(leaf: Any) -> bool:
     return isinstance(leaf, jax.Array | np.ndarray | np.generic)
+
+
+@cache
+def _of_arrays(kind: type) -> bool:
+    """As `_is_array` of what is not traced, which asks each array anew."""
+    return issubclass(kind, jax.Array | np.ndarray | np.generic)
 
 
 def _outline(value: Any, leaves: list[Any]) -> Any:
@@ -346,9 +376,10 @@ MOST_KEPT = 1000
 def _make_room(folder: Path) -> None:
     """Delete the programs that were asked for longest ago: those of earlier versions."""
     with suppress(OSError):
-        by_use = sorted(folder.iterdir(), key=lambda path: path.stat().st_mtime_ns)
-        for path in by_use[:-MOST_KEPT]:
-            path.unlink(missing_ok=True)
+        if len(os.listdir(folder)) > MOST_KEPT:
+            by_use = sorted(folder.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+            for path in by_use[: MOST_KEPT // 10 - MOST_KEPT]:  # a tenth more, to look seldom
+                path.unlink(missing_ok=True)
 
 
 def _read(path: Path) -> tuple[Any, bytes] | None:

@@ -16,6 +16,7 @@ __all__ = [
     "Deferred",
     "Registry",
     "alike",
+    "code_at",
     "known_as",
     "letters",
     "listed",
@@ -73,14 +74,20 @@ class Deferred(Generic[Code]):
             return self._usual
         held = entry.__dict__[self._name]
         if isinstance(held, str):
-            held = entry.__dict__[self._name] = _at(held)
+            held = entry.__dict__[self._name] = code_at(held)
         return held
 
     def __set__(self, entry: object, given: Code | str) -> None:
         entry.__dict__[self._name] = given
 
 
-def _at(place: str) -> Any:
+def code_at(place: str) -> Any:
+    """What stands at a place, "module:name"; only now it is loaded.
+
+    Example:
+        >>> code_at("math:sqrt")(9.0)
+        3.0
+    """
     module, _, name = place.partition(":")
     return getattr(import_module(module), name)
 
@@ -108,7 +115,7 @@ class Registry(Mapping[str, Entry]):
             )
         entry = self._entries[found]
         if isinstance(entry, str):
-            entry = self._entries[found] = _at(entry)
+            entry = self._entries[found] = code_at(entry)
         return entry
 
     def __contains__(self, name: object) -> bool:

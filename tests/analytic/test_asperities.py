@@ -1,5 +1,6 @@
 """Asperities and the flow between them: integrals by another quadrature, limits, slopes, tables."""
 
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -39,22 +40,33 @@ def integral(order, ratio):
     return sum(part for part, _ in parts)
 
 
+@partial(jax.jit, static_argnums=1)
+def moment_and_slope(ratio, order):
+    return jax.value_and_grad(gaussian_moment)(ratio, order)
+
+
+mean_gap_of = jax.jit(mean_gap)
+flow_of = jax.jit(patir_cheng_1978, static_argnames="pattern")
+shear_of = jax.jit(patir_cheng_1979_shear, static_argnames=("share", "patterns"))
+
+
 @pytest.mark.parametrize("order", [-0.5, 0.5, 1.5, 2.5])
 @pytest.mark.parametrize("ratio", [-20.0, -12.1, -11.9, -3.0, -0.4, 0.0, 0.7, 2.0, 4.0, 8.0, 20.0])
 def test_moments_of_gaussian_heights(order, ratio):
-    assert float(gaussian_moment(ratio, order)) == pytest.approx(integral(order, ratio), rel=1e-9)
+    found = float(moment_and_slope(ratio, order)[0])
+    assert found == pytest.approx(integral(order, ratio), rel=1e-9)
 
 
 @pytest.mark.parametrize("order", [-0.5, 0.5, 1.5, 2.5])
 @pytest.mark.parametrize("ratio", [-15.0, -1.0, 0.0, 0.5, 3.0])
 def test_slope_of_a_moment_against_differences(order, ratio):
-    slope = float(jax.grad(lambda u: gaussian_moment(u, order))(jnp.asarray(ratio)))
-    ahead, behind = (float(gaussian_moment(ratio + step, order)) for step in (1e-5, -1e-5))
+    slope = float(moment_and_slope(ratio, order)[1])
+    ahead, behind = (float(moment_and_slope(ratio + step, order)[0]) for step in (1e-5, -1e-5))
     assert slope == pytest.approx((ahead - behind) / 2e-5, rel=1e-6)
 
 
 def test_asperities_in_full_contact_bear_as_their_mean_height():
-    assert float(gaussian_moment(-200.0, 2.5)) == pytest.approx(200.0**2.5, rel=1e-4)
+    assert float(moment_and_slope(-200.0, 2.5)[0]) == pytest.approx(200.0**2.5, rel=1e-4)
 
 
 def test_the_usual_fit_is_as_near_as_it_says():
@@ -64,7 +76,7 @@ def test_the_usual_fit_is_as_near_as_it_says():
         (2.0, -0.11, 0.0),
         (3.0, -0.75, -0.7),
     ):
-        off = float(hu_1994(ratio=ratio)) / float(gaussian_moment(ratio, 2.5)) - 1.0
+        off = float(hu_1994(ratio=ratio)) / float(moment_and_slope(ratio, 2.5)[0]) - 1.0
         assert low <= off <= high
     assert float(hu_1994(ratio=5.0)) == 0.0
 
@@ -117,18 +129,18 @@ LAWS = {
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_values_and_slopes_are_finite_everywhere(law):
-    found, slope = jax.vmap(jax.value_and_grad(law))(EVERYWHERE)
+    found, slope = jax.jit(jax.vmap(jax.value_and_grad(law)))(EVERYWHERE)
     assert np.isfinite(found).all() and np.isfinite(slope).all()
 
 
 def test_mean_gap_of_gaussian_heights():
     for ratio in (-4.0, -1.0, 0.0, 0.7, 5.0):
         expected = quad(lambda z, u=ratio: (z + u) * norm.pdf(z), -ratio, -ratio + 12.0)[0]
-        found = float(mean_gap(gap=ratio * 0.3e-6, roughness_rq=0.3e-6))
+        found = float(mean_gap_of(gap=ratio * 0.3e-6, roughness_rq=0.3e-6))
         assert found == pytest.approx(0.3e-6 * expected, rel=1e-8)
-    gaps = np.asarray(mean_gap(gap=jnp.linspace(-20e-6, 6e-6, 99), roughness_rq=1e-6))
+    gaps = np.asarray(mean_gap_of(gap=jnp.linspace(-20e-6, 6e-6, 99), roughness_rq=1e-6))
     assert (gaps > 0.0).all() and (np.diff(gaps) > 0.0).all()
-    assert float(mean_gap(gap=2e-6, roughness_rq=0.0)) == 2e-6
+    assert float(mean_gap_of(gap=2e-6, roughness_rq=0.0)) == 2e-6
 
 
 @pytest.mark.parametrize(
@@ -141,14 +153,12 @@ def test_mean_gap_of_gaussian_heights():
     ],
 )
 def test_pressure_flow_factor_as_tabulated(pattern, ratio, expected):
-    assert float(patir_cheng_1978(ratio=ratio, pattern=pattern)) == pytest.approx(
-        expected, rel=1e-12
-    )
+    assert float(flow_of(ratio=ratio, pattern=pattern)) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_flow_is_that_of_smooth_surfaces_in_a_wide_gap_and_positive_in_any(pattern):
-    factor = np.asarray(patir_cheng_1978(ratio=jnp.linspace(-8.0, 12.0, 401), pattern=pattern))
+    factor = np.asarray(flow_of(ratio=jnp.linspace(-8.0, 12.0, 401), pattern=pattern))
     assert (factor > 0.0).all()
     assert factor[-1] == pytest.approx(1.0, abs=0.03)
 
@@ -157,13 +167,13 @@ def test_flow_is_that_of_smooth_surfaces_in_a_wide_gap_and_positive_in_any(patte
     ("pattern", "sign"), [(1.0 / 9.0, 1.0), (0.25, 1.0), (1.0, 1.0), (6.0, -1.0)]
 )
 def test_roughness_hinders_across_the_flow_and_helps_along_it(pattern, sign):
-    factor = np.asarray(patir_cheng_1978(ratio=jnp.linspace(-8.0, 12.0, 401), pattern=pattern))
+    factor = np.asarray(flow_of(ratio=jnp.linspace(-8.0, 12.0, 401), pattern=pattern))
     assert (sign * np.diff(factor) >= -1e-15).all()
 
 
 def test_shear_flow_factor_as_tabulated():
     def of(ratio, **given):
-        return float(patir_cheng_1979_shear(ratio=ratio, **given))
+        return float(shear_of(ratio=ratio, **given))
 
     assert of(2.0, share=1.0) == pytest.approx(1.899 * 2.0**0.98 * np.exp(-1.84 + 0.2), rel=1e-12)
     assert of(8.0, share=1.0) == pytest.approx(1.126 * np.exp(-2.0), rel=1e-12)
@@ -176,12 +186,12 @@ def test_shear_flow_factor_as_tabulated():
 def test_both_branches_of_the_shear_flow_factor_meet(pattern):
     """A wrong constant of the table would show: each row has its own."""
     near, far = (
-        float(patir_cheng_1979_shear(ratio=ratio, share=1.0, patterns=(pattern, 1.0)))
+        float(shear_of(ratio=ratio, share=1.0, patterns=(pattern, 1.0)))
         for ratio in (5.0, 5.0 + 1e-12)
     )
     assert near == pytest.approx(far, rel=2e-3)
     low, high = (
-        float(patir_cheng_1979_shear(ratio=ratio, share=1.0, patterns=(pattern, 1.0)))
+        float(shear_of(ratio=ratio, share=1.0, patterns=(pattern, 1.0)))
         for ratio in (0.5 - 1e-9, 0.5 + 1e-9)
     )
     assert low == pytest.approx(high, rel=1e-7)

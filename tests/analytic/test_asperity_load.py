@@ -5,7 +5,8 @@ import pytest
 
 from pitchpoint import citations
 from pitchpoint._jax import jax, jnp
-from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, masjedi_khonsari_2012
+from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012
+from pitchpoint.lubrication.registry import ASPERITY_LOAD
 
 MODULUS, RADIUS, ALPHA = 2.26e11, 0.01, 4500.0 / 2.26e11
 GIVEN = {
@@ -21,7 +22,11 @@ GIVEN = {
 
 
 def share(**changed):
-    given = {name: jnp.asarray(value) for name, value in {**GIVEN, **changed}.items()}
+    return _share({name: jnp.asarray(value) for name, value in {**GIVEN, **changed}.items()})
+
+
+@jax.jit
+def _share(given):
     return masjedi_khonsari_2012(**given)
 
 

@@ -150,7 +150,7 @@ def test_balls_that_go_on_moving_give_no_figures(monkeypatch):
     given = {"gap": GAP, "arm": ARM, "active": np.ones(LANES, bool)}
     lanes = {name: jnp.asarray(values)[:, None, None] for name, values in given.items()}
     own = jnp.asarray(OWN)[:, None, None]
-    found = equilibrium(own, body(), **lanes, load=jnp.asarray([300.0]))
+    found = eqx.filter_jit(equilibrium)(own, body(), **lanes, load=jnp.asarray([300.0]))
     for values in (found.force, found.share, found.approach, found.stiffness, found.balls):
         assert np.all(np.isnan(values))
     assert int(found.status.code[0]) == Code.NOT_CONVERGED

@@ -131,8 +131,8 @@ def test_parts_in_series_turn_with_the_driver():
     "given",
     [
         {"support_stiffness": 2e9},
-        {"behind": Behind(), "bearing": Balls()},
-        {"behind": Behind(), "bearing": Balls(play=8e-6)},
+        pytest.param({"behind": Behind(), "bearing": Balls()}, marks=pytest.mark.whole),
+        pytest.param({"behind": Behind(), "bearing": Balls(play=8e-6)}, marks=pytest.mark.whole),
     ],
 )
 def test_parts_sum_up_to_the_wind_up(given):
@@ -159,6 +159,7 @@ def test_the_whole_drive_goes_with_the_cube_of_its_size():
         np.testing.assert_allclose(ratio, turned["stiffness"], rtol=1e-7)
 
 
+@pytest.mark.whole
 def test_derivatives_go_through_all_that_yields():
     """By thickness of the rim, bending of the race, stiffness of the balls, and the bottom of the cup."""
     drive = build(bearing=Balls(), behind=Behind())
@@ -184,6 +185,7 @@ def test_derivatives_go_through_all_that_yields():
         assert abs(float(slope)) > 1e-3 * float(value)
 
 
+@pytest.mark.whole
 def test_a_thicker_circular_spline_is_stiffer():
     gone = [
         float(np.mean(at(build(behind=Behind(outside_diameter=d)), 40.0)[0].wind_up))
@@ -315,6 +317,7 @@ def test_the_first_slope_falls_with_the_play():
     assert slopes[0] > 1.2 * slopes[1] > 1.44 * slopes[2]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("number", [23, 24])
 def test_balls_stand_elsewhere_as_far_from_here_as_they_come(number):
     """Ends change places by half a pitch of an odd number, and an even one stands alike after a whole."""

@@ -9,9 +9,10 @@ from strain_wave_positions import DoubleArc, Drive, Made
 
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.strain_wave import double_arc_fit
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, DoubleArcForm, build_strain_wave
+from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.double_arc_fit import fit_double_arc, merit_of
 from pitchpoint.gears.strain_wave.drive import StrainWave
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
 
 TEETH = (100, 102)
 START = DOUBLE_ARCS["liu"]
@@ -36,6 +37,7 @@ def test_the_merit_told_is_that_of_the_tooth_told(found):
     assert figures.objective == pytest.approx(objective, abs=1e-14)
 
 
+@pytest.mark.whole
 def test_the_same_seed_finds_the_same_tooth_and_tells_its_progress(found):
     told = []
     again = fit_double_arc(**SHORT, progress=lambda count, best: told.append((count, best)))
@@ -86,6 +88,7 @@ def test_the_tooth_found_makes_a_drive_without_interference(found):
     assert touching == pytest.approx(found.merit.touching_share, abs=0.1)
 
 
+@pytest.mark.whole
 def test_another_clearance_and_rim_are_kept():
     given = {"clearance": 0.35, "rim": 1.5}
     found = fit_double_arc(**SHORT, **given)

@@ -8,10 +8,11 @@ import pytest
 
 from pitchpoint import citations
 from pitchpoint._jax import jax, jnp
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS, palmgren_1959
-from pitchpoint.efficiency.breakaway import BREAKAWAY, dry_and_viscous
+from pitchpoint.efficiency.bearing_loss import palmgren_1959
+from pitchpoint.efficiency.breakaway import dry_and_viscous
 from pitchpoint.efficiency.drag import Drag, at_rest
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.running_torque import no_load_torque, starting_torque
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
@@ -19,8 +20,7 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.reactions import Bearing
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -194,6 +194,7 @@ def test_the_drive_backwards_locks_before_it_does_forwards():
 RACK = "family = 'rack_and_pinion'\nteeth = 20\nmodule = '3 mm'\nface_width = '29 mm'\n"
 
 
+@pytest.mark.whole
 def test_figures_of_a_drive_that_a_rack_drives_have_one_unit_each():
     case = built(stages(FIRST, RACK) + COMMON.replace('torque = "300 N m"', 'force = "3000 N"'))
     assert (case.driver, case.loaded) == ("shaft 1", "shaft 3")
@@ -236,6 +237,7 @@ def size(case):
     return together(case.design, case.models[0].stages)
 
 
+@pytest.mark.whole
 def test_points_together_follow_from_the_memory_of_their_meetings():
     assert size(two()) == 8
     five = stages(*[HELICAL] * 5) + COMMON
@@ -259,10 +261,11 @@ def test_axial_forces_on_a_shaft_counteract_but_for_those_of_two_gears_of_one_nu
 
 def thrust(one, member):
     """Axial component of the normals that press on a member of a stage."""
-    contacts = one.design.mesh.contacts(jnp.zeros(1))
+    contacts = eqx.filter_jit(type(one.design.mesh).contacts)(one.design.mesh, jnp.zeros(1))
     return (-1.0, 1.0)[member] * float(np.sum(contacts.direction[2] * contacts.active))
 
 
+@pytest.mark.whole
 def test_stiffness_at_the_output_is_that_of_springs_in_series():
     by_stiffness = {"models.load_sharing": "from_stiffness"}
     whole = part(TORSION, built(TWO, **by_stiffness))
@@ -294,6 +297,7 @@ seal_torque = "0.02 N m"
 """
 
 
+@pytest.mark.whole
 def test_a_spur_pair_before_a_strain_wave_gear_keeps_its_power():
     text = f"[[stages]]\n[stages.gears]\n{FIRST}[[stages]]\n{WAVE}{COMMON}"
     text = text.replace("300 N m", "25 N m")

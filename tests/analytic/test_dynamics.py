@@ -7,12 +7,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.energy import energies
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.harmonic_balance import harmonic_balance
 from pitchpoint.dynamics.integration import by_steps
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.series import by_series
 from pitchpoint.dynamics.steady_state import separating_steady_state, steady_state
 from pitchpoint.dynamics.sweep import speed_sweep
@@ -248,6 +248,7 @@ def test_motion_and_energy_with_jumps_errors_and_arms(ratio):
     assert all(abs(part) > 1e-4 * abs(work.damping) for part in (work.mesh, work.error, work.arm))
 
 
+@pytest.mark.whole
 def test_short_elements_resolve_a_fast_profile_error():
     base = rounded()
     excite = eqx.tree_at(
@@ -287,6 +288,7 @@ def test_smooth_stiffness_has_the_static_limit_and_a_jump_rings_for_ever():
     np.testing.assert_allclose(*ringing, rtol=1e-3)
 
 
+@pytest.mark.whole
 def test_harmonic_balance_agrees():
     sys, excite = system(7.3, 0.05), rounded()
     by_time = solve(sys, excite, FINE)
@@ -341,8 +343,13 @@ def peak(scale, integrator=by_series):
 
 @pytest.mark.parametrize(
     "derivative",
-    [jax.grad(peak), jax.jacfwd(peak), jax.grad(lambda scale: peak(scale, by_steps))],
-    ids=["reverse", "forward", "steps"],
+    [
+        pytest.param(jax.grad(peak), marks=pytest.mark.whole, id="reverse"),
+        pytest.param(jax.jacfwd(peak), id="forward"),
+        pytest.param(
+            jax.grad(lambda scale: peak(scale, by_steps)), marks=pytest.mark.whole, id="steps"
+        ),
+    ],
 )
 def test_gradient_of_peak_to_peak(derivative):
     value, step = jax.jit(peak), 1e-3
@@ -363,6 +370,7 @@ def test_status_says_what_the_linear_model_leaves_out():
     assert not bool(jnp.isnan(undamped.displacement).any())
 
 
+@pytest.mark.whole
 def test_two_coordinates():
     """A second body on a bearing: coupled by arms that change, damping of both modes alike."""
     base = rounded()
@@ -451,6 +459,7 @@ def test_sweeps_up_and_down_follow_different_branches(branches):
     assert bool(jax.vmap(lambda r: r.separated)(down)[differ[1]])
 
 
+@pytest.mark.whole
 def test_a_motion_of_twice_the_period_is_not_returned():
     sys, excite = system(1.0 / 0.66, 0.03), steps(1.0 / 1.4, 0.4)
     before = separate(system(1.0 / 0.64, 0.03), excite, UNIT)

@@ -5,7 +5,6 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.film_thickness import (
-    FILM_THICKNESS,
     dowson_1968,
     dowson_higginson_1959,
     dowson_toyoda_1979,
@@ -14,7 +13,8 @@ from pitchpoint.lubrication.film_thickness import (
     pan_hamrock_1989,
     pan_hamrock_1989_central,
 )
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE, wu_cheng_1991
+from pitchpoint.lubrication.registry import FILM_THICKNESS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991
 
 MODULUS = 206e9 / 0.91
 OIL = {"entrainment": 2.0, "viscosity": 0.015, "pressure_viscosity": 2.2e-8}

@@ -5,11 +5,8 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.conditions import UNITS, arguments
-from pitchpoint.lubrication.friction_coefficient import (
-    LAWS,
-    iso_tr_14179_2,
-    xu_2007,
-)
+from pitchpoint.lubrication.friction_coefficient import iso_tr_14179_2, xu_2007
+from pitchpoint.lubrication.registry import LAWS
 
 BY_NAME = {law.name: law for law in LAWS}
 

@@ -9,16 +9,14 @@ from bare_contacts import conditions
 from pitchpoint import citations
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.lubrication.conditions import arguments, evaluate
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
 from pitchpoint.lubrication.inlet_heating import (
-    INLET_HEATING,
     aihara_1987,
     murch_wilson_1975,
     wilson_sheu_1983,
     with_inlet_heating,
     zhu_cheng_1988,
 )
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import FILM_THICKNESS, INLET_HEATING, ROLLING_RESISTANCE
 
 FACTORS = [murch_wilson_1975, wilson_sheu_1983, zhu_cheng_1988, aihara_1987]
 AT = {"thermal_loading": 4.0, "slide_roll_ratio": 0.5, "pressure": 1e9, "modulus": 226.4e9}

@@ -16,7 +16,7 @@ from pitchpoint.gears.strain_wave.load_limits import (
     von_mises,
 )
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
-from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
+from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
 
 RADIUS = 0.03
 ANGLES = np.linspace(0.0, np.pi, 73)

@@ -9,10 +9,10 @@ from sound import quick_first
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.dynamics.bodies import Body, across, motor
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.passage import passage, polynomial, tabulated
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.steady_motion import (
     steady_motion,
@@ -25,8 +25,7 @@ from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program
@@ -134,6 +133,7 @@ def _vibration(design, point, terms, vibrating):
     return steady(moved, driven, GRID), moved.damping
 
 
+@pytest.mark.whole
 def test_parametric_work_of_a_period_is_that_of_springs_that_change_while_pressed():
     """And of the places from which they push, since Weber's contact stiffens with its load."""
     found = steady_motion(alone(), SPEED, GRID)

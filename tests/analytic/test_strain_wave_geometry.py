@@ -18,14 +18,9 @@ from strain_wave_positions import bend, drive, slope
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.errors import InputError
-from pitchpoint.gears.strain_wave.design import (
-    DOUBLE_ARCS,
-    DoubleArcForm,
-    InvoluteForm,
-    build_strain_wave,
-    double_arc_flank,
-)
-from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
+from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave, double_arc_flank
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES, DoubleArcForm
+from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
 
 MODULE, RIM = 0.3e-3, 0.7e-3
 INVOLUTE = InvoluteForm(3.32)

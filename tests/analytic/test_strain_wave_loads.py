@@ -15,11 +15,11 @@ from strain_wave_positions import drive
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagement
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
+from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 
 CONSTANT = next(law for law in LAWS if law.name == "constant")
 FRICTION = 0.1

@@ -16,8 +16,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import program
@@ -192,6 +191,7 @@ def test_bearings_give_way_to_the_teeth(started):
         np.testing.assert_allclose(shift[:, -1], expected, atol=1e-6 * np.max(np.abs(shift)))
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("driver", [1, 2])
 def test_contacts_travel_with_the_flanks(driver):
     bodies = [gear(1e-3, viscous=3.0), gear(6e-3, viscous=12.0)]
@@ -362,6 +362,7 @@ def test_discs_reach_a_common_speed_in_the_time_of_the_textbook():
     np.testing.assert_allclose(found.energy.mesh, 0.0, atol=1e-8 * found.energy.kinetic[0])
 
 
+@pytest.mark.whole
 def test_a_block_on_a_belt_slips_sticks_and_slips_the_other_way():
     mass, frequency, belt, start = 1.0, 100.0, 0.05, 0.12
     held = mass * frequency**2

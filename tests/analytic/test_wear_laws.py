@@ -14,10 +14,8 @@ from pitchpoint.lubrication.conditions import demand_shape, shape_of
 from pitchpoint.units import parse
 from pitchpoint.wear import vdi_2736
 from pitchpoint.wear.film_defect import fractional_film_defect
-from pitchpoint.wear.laws import (
-    UNITS,
-    WEAR_LAWS,
-)
+from pitchpoint.wear.laws import UNITS
+from pitchpoint.wear.registry import WEAR_LAWS
 from pitchpoint.wear.stages import run_in_end, severe_start
 
 GAS = 8.31446261815324

@@ -13,9 +13,9 @@ from flank_curves import Ball, Curves, Discs, Involutes, RackFlanks, TorusFlanks
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import along, total
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
 from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
+from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.gears.ball_on_disc.mesh import BallOnDisc
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
@@ -23,12 +23,12 @@ from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.design import build_strain_wave
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.sharing import applies
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

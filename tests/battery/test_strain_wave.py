@@ -17,11 +17,11 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import along
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.strain_wave import MEMBERS
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, InvoluteForm, build_strain_wave
+from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -29,8 +29,8 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
+from pitchpoint.views.registry import FILM as SECTION
 from pitchpoint.views.report import render
-from pitchpoint.views.sections.film import FILM as SECTION
 from pitchpoint.views.sections.film import film_answer
 
 CASE = f"""{PAIR}

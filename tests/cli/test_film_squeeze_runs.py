@@ -23,8 +23,8 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
+from pitchpoint.views.registry import FILM_SQUEEZE as SECTION
 from pitchpoint.views.report import render
-from pitchpoint.views.sections.film_squeeze import FILM_SQUEEZE as SECTION
 
 SQUEEZE = """
 [models]

@@ -25,9 +25,9 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
+from pitchpoint.views.registry import FINITE_FILM as SECTION
 from pitchpoint.views.report import render
 from pitchpoint.views.screen import shown
-from pitchpoint.views.sections.finite_film import FINITE_FILM as SECTION
 
 MODELS = '[models]\nfriction = { name = "constant", coefficient = 0.05 }\n'
 FINITE = '[film]\nsolver = "finite_line"\nphases = 3\nnodes = 33\n'

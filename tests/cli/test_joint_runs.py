@@ -14,8 +14,8 @@ from pitchpoint.errors import ConvergenceError
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome
+from pitchpoint.views.registry import JOINT as SECTION
 from pitchpoint.views.report import render
-from pitchpoint.views.sections.joint import JOINT as SECTION
 from pitchpoint.views.sections.joint import critical_rows
 
 DRIVE = f"""{WAVE}

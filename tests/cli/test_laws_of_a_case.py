@@ -13,8 +13,7 @@ from pitchpoint.analyses.cycle import CYCLE
 from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING
+from pitchpoint.lubrication.registry import FILM_THICKNESS, INLET_HEATING
 from pitchpoint.views.inputs import input_rows
 
 TREE = tomllib.loads(PAIR)

@@ -19,8 +19,8 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
+from pitchpoint.views.registry import MOTION as SECTION
 from pitchpoint.views.report import render
-from pitchpoint.views.sections.motion import MOTION as SECTION
 
 CASE = f"""{PAIR}
 [models]

@@ -21,10 +21,11 @@ from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_result
 from pitchpoint.views import show
+from pitchpoint.views.registry import TORSION
 from pitchpoint.views.sections.answer import summary
 from pitchpoint.views.sections.beside import running_rows, starting_answer
 from pitchpoint.views.sections.kinematic_error import error_rows, kinematic_error_answer
-from pitchpoint.views.sections.torsion import TORSION, wind_up_rows
+from pitchpoint.views.sections.torsion import wind_up_rows
 
 DRIVE = (
     WAVE

@@ -25,9 +25,9 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures
 from pitchpoint.runs.run import Outcome, describe, load_case
 from pitchpoint.views.figures import Panel
+from pitchpoint.views.registry import WEAR as SECTION
 from pitchpoint.views.report import render
 from pitchpoint.views.section import Page
-from pitchpoint.views.sections.wear import WEAR as SECTION
 from pitchpoint.wear import history
 
 MODELS = """

@@ -26,8 +26,9 @@ from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
 from pitchpoint.efficiency.running_torque import starting_torque
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.gears.strain_wave.ball_bearing import Balls
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.in_series import Behind
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wind_up

@@ -61,7 +61,7 @@ def test_a_small_change_of_the_inputs_makes_rows_miss(changes):
 
 
 def test_a_reading_of_the_paper_is_not_in_the_library():
-    from pitchpoint.lubrication.friction_coefficient import LAWS
+    from pitchpoint.lubrication.registry import LAWS
 
     assert not [law.name for law in LAWS if "tian" in law.name]
 

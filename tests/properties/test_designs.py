@@ -14,13 +14,9 @@ from pitchpoint.gears.cylindrical.design import (
     build_cylindrical_pairs,
     designed,
 )
-from pitchpoint.gears.strain_wave.design import (
-    DOUBLE_ARCS,
-    INTERFERENCE,
-    build_strain_wave,
-    build_strain_waves,
-)
+from pitchpoint.gears.strain_wave.design import INTERFERENCE, build_strain_wave, build_strain_waves
 from pitchpoint.gears.strain_wave.design import designed as designed_wave
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 

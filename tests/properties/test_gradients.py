@@ -22,8 +22,7 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle,
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -33,7 +33,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.table import WIDTH
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.units import si_unit
 

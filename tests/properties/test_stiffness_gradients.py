@@ -12,8 +12,7 @@ from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.vibration import Vibrating, excited, steady, transmission_figures
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness

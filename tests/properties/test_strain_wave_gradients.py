@@ -16,11 +16,11 @@ import pytest
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, build_strain_wave
+from pitchpoint.gears.strain_wave.design import build_strain_wave
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.wind_up import wind_up
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -19,7 +19,7 @@ from pitchpoint.analyses.plausibility import (
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import BY_VALUE, SolidInUse
 from pitchpoint.citations import cite
-from pitchpoint.lubrication.friction_coefficient import BOUNDARY
+from pitchpoint.lubrication.registry import BOUNDARY
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum
 

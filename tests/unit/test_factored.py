@@ -7,7 +7,7 @@ import pytest
 
 from pitchpoint.factored import Factored, as_array, log, product, root, scaled
 from pitchpoint.lubrication.conditions import arguments
-from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.lubrication.registry import LAWS
 
 ROW = jnp.asarray([[0.5, 2.0, 3.0]])
 COLUMN = jnp.asarray([[0.1], [7.0]])

@@ -19,12 +19,13 @@ from pitchpoint.cases.schema import Case, quantity_at, validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.surface import Waves
 from pitchpoint.errors import InputError
-from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS, check_strain_wave
+from pitchpoint.gears.strain_wave.design import check_strain_wave
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.reactions import InnerBearing
 from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.lubrication.registry import LAWS
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.views.inputs import input_rows
 

@@ -58,10 +58,16 @@ def absolute(node: ast.ImportFrom, package: tuple[str, ...]) -> str:
     return ".".join([*above, *filter(None, [node.module])])
 
 
+PLACE = re.compile(r"pitchpoint(\.\w+)+:\w+")
+"""Code that a registry has loaded when it is chosen."""
+
+
 def imported(tree: ast.AST, package: tuple[str, ...]) -> Iterator[str]:
-    """Dotted name of everything that is imported, inside functions and type-checking blocks too."""
+    """Dotted name of all that is imported, in functions and for type checking too, or named by its place."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
+        if isinstance(node, ast.Constant) and PLACE.fullmatch(str(node.value)):
+            yield str(node.value).partition(":")[0]
+        elif isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             yield from (f"{absolute(node, package)}.{alias.name}" for alias in node.names)
@@ -112,6 +118,8 @@ def test_every_room_has_a_place() -> None:
         ("gears/pair.py", "from pitchpoint import __version__", False),
         ("units.py", "from pitchpoint.errors import InputError", False),
         ("gears/pair.py", "import pitchpoint.loading.sharing", True),
+        ("gears/registry.py", "PLACE = 'pitchpoint.loading.sharing:equal'", True),
+        ("loading/registry.py", "PLACE = 'pitchpoint.gears.involute:involute'", False),
         ("gears/pair.py", "def f():\n    from ..loading import sharing", True),
         ("gears/pair.py", "from pitchpoint import views", True),
         ("gears/pair.py", "from pitchpoint import SpurPair", True),

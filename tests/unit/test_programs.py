@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from pitchpoint import programs
-from pitchpoint.lubrication.friction_coefficient import LAWS, xu_2007
+from pitchpoint.lubrication.friction_coefficient import xu_2007
+from pitchpoint.lubrication.registry import LAWS
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.programs import Program, program
 
@@ -177,6 +178,53 @@ def test_many_programs_are_unloaded_together(monkeypatch):
     assert double._cache_size() == 0
     assert programs._LOADED["programs"] == 0
     assert float(double(jnp.asarray(3.0))) == 6.0
+
+
+def test_programs_are_given_back_with_each_share_of_memory(kept, monkeypatch):
+    monkeypatch.setattr(programs, "MOST_MEMORY", 1000)
+    program = Program(moved, programs.QUICK)
+    held = []
+    for memory in (500, 1400, 1600, 1600, 2500, 2700):
+        monkeypatch.setattr(programs, "_memory", lambda memory=memory: memory)
+        if not held:
+            programs.forget()  # counted from here on
+        program(Bodies(jnp.arange(3.0), "b"), by=1.0)
+        programs.bound_programs()
+        held.append(bool(program.ready))
+    assert held == [True, True, False, True, True, False]
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="asks Linux for its memory")
+def test_memory_that_is_given_back_counts_no_more(monkeypatch):
+    before = programs._memory()
+    assert before > 10_000_000
+    numbers = np.ones(20_000_000)
+    assert programs._memory() - before > 0.9 * numbers.nbytes
+    del numbers
+    programs.forget()
+    assert programs._memory() - before < 100_000_000
+
+
+def test_types_that_count_as_arrays_are_told_by_their_class(kept):
+    twice = Program(moved, programs.QUICK)
+    for mass in (jnp.ones(2), np.ones(2)):
+        twice(Bodies(mass, "b"), by=1.0)
+    twice(Bodies(np.float64(2.0), "b"), by=1.0)
+    twice(Bodies(2.0, "b"), by=1.0)  # a number is static
+    assert len(twice.ready) == 3
+    with_weights = jax.jit(lambda mass: twice(Bodies(mass, "b"), by=1.0)["force"])
+    assert with_weights(np.ones(2)).tolist() == [1.0, 1.0]
+    assert len(twice.ready) == 3
+
+
+def test_flags_of_the_compiler_are_heeded(monkeypatch):
+    monkeypatch.setenv("XLA_FLAGS", "--xla_backend_optimization_level=3 --xla_dump_to=nowhere")
+    others = {"xla_llvm_disable_expensive_passes": True, "xla_cpu_use_fusion_emitters": False}
+    assert programs._options(0) == others
+    monkeypatch.setenv("XLA_FLAGS", "")
+    assert programs._options(1) == {**others, "xla_backend_optimization_level": 1}
+    looping = programs.looping_program(moved)
+    assert looping.options == programs.LOOPING
 
 
 THREADS = """

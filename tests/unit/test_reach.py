@@ -25,7 +25,7 @@ def name_of(path: Path, root: Path) -> str:
 
 
 def imports(path: Path) -> Iterator[str]:
-    """Names that a file imports, and what they could be parts of; inside functions too."""
+    """Names that a file imports or has in strings, and what they could be parts of; inside functions too."""
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -33,6 +33,8 @@ def imports(path: Path) -> Iterator[str]:
             assert node.level == 0, "a relative import is not seen"
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
             yield str(node.module)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value.partition(":")[0]
 
 
 FILES = {name_of(path, SOURCE): path for path in SOURCE.rglob("*.py")}

@@ -4,7 +4,7 @@ import pytest
 
 from pitchpoint.cases.library import names, path_of
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.lubrication.registry import LAWS
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.registry import Registry, alike, known_as, letters, nearest, unknown_name
 from pitchpoint.runs.catalogue import entries

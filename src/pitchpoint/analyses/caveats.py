@@ -8,18 +8,20 @@ import numpy as np
 
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.failures import fails
-from pitchpoint.cases.laws import FRICTION, limits_words
+from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import SPEED, TEMPERATURE
 from pitchpoint.cases.stages import Ready
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.lubrication.applicability import Limited
-from pitchpoint.lubrication.asperity_load import AsperityLoad
-from pitchpoint.lubrication.film_thickness import FilmThickness
+from pitchpoint.lubrication.applicability import Limited, limits_words
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import (
+    ROLLING_RESISTANCE,
+    AsperityLoad,
+    FilmThickness,
+    FrictionLaw,
+)
 from pitchpoint.status import Code
 
 __all__ = [

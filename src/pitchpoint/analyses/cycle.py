@@ -22,8 +22,8 @@ from pitchpoint.analyses.caveats import (
 from pitchpoint.analyses.plausibility import AtWork, implausible
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.build import Built
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
+from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code, locked_or_lost
 from pitchpoint.status import told as told_of

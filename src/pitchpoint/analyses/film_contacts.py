@@ -26,7 +26,7 @@ from pitchpoint.efficiency.summary import engaged
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.conditions import Conditions, evaluate, shape_of
 from pitchpoint.lubrication.ehl.model import FilmModel
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
+from pitchpoint.lubrication.registry import FILM_THICKNESS, FilmThickness
 from pitchpoint.programs import program
 
 __all__ = [

@@ -11,8 +11,7 @@ from pitchpoint.analyses.caveats import cold_warning, conformal_warning
 from pitchpoint.analyses.film_contacts import asked, film_laws, film_model_of
 from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.build import Built
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
-from pitchpoint.lubrication.ehl.model import SMOOTH
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 from pitchpoint.status import told as told_of

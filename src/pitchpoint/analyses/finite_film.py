@@ -16,13 +16,13 @@ from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contac
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.films import patch_grid
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.doubts import extent_of, kind_of
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
 from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code
 

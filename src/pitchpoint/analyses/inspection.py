@@ -162,9 +162,8 @@ def inspection_part(built: Built) -> xr.Dataset:
 def _measured(number: int, built: Built, table: CylindricalGears, asked: Inspection) -> _Measured:
     mesh: Any = built.design.mesh
     drawn, angles = drawing_of(built), (float(mesh.pressure_angle), float(mesh.helix_angle))
-    gear = Toothing(
-        float(mesh.teeth[number]), float(mesh.module), *angles, float(mesh.profile_shift[number])
-    )
+    teeth, shift = (float(np.asarray(both)[number]) for both in (mesh.teeth, mesh.profile_shift))
+    gear = Toothing(teeth, float(mesh.module), *angles, shift)
     tip = float(drawn["tip_radius"][number])
     form, active, end = (
         _roll(gear, float(drawn[name][number]))
@@ -221,9 +220,10 @@ def _discs(built: Built) -> dict[str, Any]:
     """Mass and moment of inertia of both gears as discs, as a vibration takes them."""
     mesh: Any = built.design.mesh
     drawn, found = drawing_of(built), []
+    teeth, rims = np.asarray(mesh.teeth), np.asarray(mesh.rim_ratio)
     for number, solid in enumerate(built.design.solids):
-        ring = float(mesh.teeth[number]) < 0.0
-        root, rim = float(drawn["root_radius"][number]), float(mesh.rim_ratio[number])
+        ring = float(teeth[number]) < 0.0
+        root, rim = float(drawn["root_radius"][number]), float(rims[number])
         found.append(
             disc(
                 density=float(solid.density),

@@ -31,7 +31,7 @@ from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.registry import LoadSharing
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import locked_or_lost

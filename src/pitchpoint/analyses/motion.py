@@ -17,11 +17,11 @@ from pitchpoint.cases.build import Built
 from pitchpoint.cases.schema import MotionTable
 from pitchpoint.contact.contacts import along
 from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, motor
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.modes import Modes, along_action, mean_stiffness, modes
 from pitchpoint.dynamics.passage import passage, tabulated
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import Moving
 from pitchpoint.dynamics.steady_motion import Motion, film, periodic_motion
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
@@ -29,7 +29,7 @@ from pitchpoint.dynamics.transient import Transient, transient
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.film_thickness import FilmThickness
+from pitchpoint.lubrication.registry import FilmThickness
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code

@@ -22,8 +22,7 @@ from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.cases.stages import Ready
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.lubrication.friction_coefficient import BOUNDARY, FrictionLaw
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials import solids
 from pitchpoint.materials.solids import celsius
 from pitchpoint.registry import Registry

@@ -22,7 +22,7 @@ from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.rows import NODES
 from pitchpoint.efficiency.summary import in_groups, summarise
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
 from pitchpoint.status import Code, locked_or_lost

@@ -11,9 +11,9 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.build import Built
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.sweep import speed_sweep
 from pitchpoint.dynamics.system import System

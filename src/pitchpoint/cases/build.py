@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, reduce
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import equinox as eqx
 import numpy as np
@@ -11,8 +11,6 @@ from pydantic import TypeAdapter, ValidationError
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.films import film_model
-from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets, named_set
 from pitchpoint.cases.remembered import remembering
@@ -40,15 +38,12 @@ from pitchpoint.cases.solids import (
     surrounded,
 )
 from pitchpoint.cases.strength import Rated, check_strength, rated_case
-from pitchpoint.cases.wear import check_wear
-from pitchpoint.cases.worn import with_wear
 from pitchpoint.contact.contacts import TOUCH, Shape
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE
 from pitchpoint.contact.surface import Surfaces
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-from pitchpoint.efficiency.breakaway import BREAKAWAY
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.summary import engaged
 from pitchpoint.efficiency.warm_teeth import balance
 from pitchpoint.errors import Complaints, InputError
@@ -63,19 +58,28 @@ from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.loading.sharing import demand_sharing
 from pitchpoint.loading.tooth_compliance import Terms, terms_of, uncovered
 from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD, AsperityLoad
 from pitchpoint.lubrication.conditions import Law, arguments, demand_shape
-from pitchpoint.lubrication.ehl.model import FilmModel
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import LAWS, FrictionLaw
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING, Inlet, with_inlet_heating
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
+from pitchpoint.lubrication.registry import (
+    ASPERITY_LOAD,
+    FILM_THICKNESS,
+    INLET_HEATING,
+    LAWS,
+    ROLLING_RESISTANCE,
+    AsperityLoad,
+    FilmThickness,
+    FrictionLaw,
+)
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.data import Datum
+from pitchpoint.materials.solids import SolidRecord
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.programs import bound_programs, program
 from pitchpoint.results.variable import End
 from pitchpoint.status import Code, Status
+
+if TYPE_CHECKING:
+    from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
     "ALONE",
@@ -179,14 +183,14 @@ class Built:
         return _inlet(FILM_THICKNESS[self.case.models.film_thickness], self.case.models)
 
     @cached_property
-    def film_model(self) -> FilmModel | None:
+    def film_model(self) -> "FilmModel | None":
         """How films of the contacts are solved; None where no table, law or wear asks for them."""
         table, wear = self.case.film, self.case.wear
         if table is None and (wear is None or wear.load_ratio == "formula"):
             return next((law.films for law in self.laws if law.films is not None), None)
         solids = [used.record for used in self.solids]
         usual = FilmTable(solver="line")
-        return film_model(table or usual, solids, tooth_size(self.design.mesh))
+        return _film_model(table or usual, solids, tooth_size(self.design.mesh))
 
     @property
     def asperities(self) -> AsperityLoad | None:
@@ -244,19 +248,22 @@ class Built:
         """The models of the case under other friction laws, with the parameters of their formulas."""
         return _under(laws, self.models[0], {})
 
-    @cached_property
+    @property
     def dimensions(self) -> dict[str, Any]:
         """Main dimensions of the mesh as plain numbers."""
-        found: dict[str, Any] = jax.device_get(_dimensions(self.design.mesh))
-        return found
+        return self._of_mesh["dimensions"]
 
-    @cached_property
+    @property
     def nominal(self) -> dict[str, Any]:
         """Nominal motion, driver, loaded member, period, sense and events of the mesh, as plain numbers.
 
         The speed of its pitch circles, zero where it has none, is for a unit rate of the driver.
         """
-        found: dict[str, Any] = jax.device_get(_nominal(self.design.mesh))
+        return self._of_mesh["nominal"]
+
+    @cached_property
+    def _of_mesh(self) -> dict[str, dict[str, Any]]:
+        found: dict[str, dict[str, Any]] = jax.device_get(_numbers(self.design.mesh))
         return found
 
     @property
@@ -455,6 +462,8 @@ def _sound(model: TypeAdapter[T], table: Any) -> T | None:
 
 def _worn(case: Case, gears: tuple[Mesh, tuple[str, ...]]) -> tuple[Mesh, tuple[str, ...]]:
     """Gears with the wear of their flanks, and what is to be said of them."""
+    from pitchpoint.cases.worn import with_wear
+
     assert case.worn is not None
     mesh, told = with_wear(gears[0], case.gears, case.worn)
     return mesh, (*gears[1], told)
@@ -487,11 +496,28 @@ def _check_parts(
         wrong.tried(_check_hardness, case, used)
         wrong.tried(check_strength, case, used)
     if case.film is not None:
-        wrong.tried(height_maps, case.film)
-        if used is not None:
-            wrong.tried(film_model, case.film, [one.record for one in used], None)
-    if mesh is not None and used is not None:
+        _check_films(case.film, used, wrong)
+    if case.wear is not None and mesh is not None and used is not None:
+        from pitchpoint.cases.wear import check_wear
+
         wrong.tried(check_wear, case, mesh, used)
+
+
+def _check_films(
+    table: FilmTable, used: tuple[SolidInUse, SolidInUse] | None, wrong: Complaints
+) -> None:
+    from pitchpoint.cases.height_maps import height_maps
+
+    wrong.tried(height_maps, table)
+    if used is not None:
+        wrong.tried(_film_model, table, [one.record for one in used], None)
+
+
+def _film_model(table: FilmTable, solids: Sequence[SolidRecord], size: float | None) -> "FilmModel":
+    """How films are solved; loaded with what solves them, which few cases ask for."""
+    from pitchpoint.cases.films import film_model
+
+    return film_model(table, solids, size)
 
 
 def _extrapolated(built: Built) -> list[str]:
@@ -599,7 +625,7 @@ def _under(
 
 def tooth_size(mesh: Mesh) -> float | None:
     """Module of the teeth [m], which is about the height that their flanks have; None without teeth."""
-    found = jax.device_get(_dimensions(mesh)).get("module")
+    found = jax.device_get(_numbers(mesh)["dimensions"]).get("module")
     return None if found is None else float(found)
 
 
@@ -610,7 +636,7 @@ def _law(name: str, case: Case, used: Sequence[SolidInUse], mesh: Mesh) -> Frict
         return law
     size = tooth_size(mesh)
     if case.film is not None:
-        return replace(law, films=film_model(case.film, [one.record for one in used], size))
+        return replace(law, films=_film_model(case.film, [one.record for one in used], size))
     return law if size is None else replace(law, films=replace(law.films, inlet=size))
 
 
@@ -902,13 +928,9 @@ def _yielding(case: Case, mesh: Mesh) -> tuple[str, ...]:
 
 
 @program
-def _dimensions(mesh: Mesh) -> dict[str, Any]:
-    return mesh.dimensions()
-
-
-@program
-def _nominal(mesh: Mesh) -> dict[str, Any]:
-    return {
+def _numbers(mesh: Mesh) -> dict[str, dict[str, Any]]:
+    """Dimensions and nominal motion, which every case asks for."""
+    nominal = {
         "motion": mesh.motion,
         "driver": mesh.driver,
         "loaded": mesh.loaded,
@@ -917,6 +939,7 @@ def _nominal(mesh: Mesh) -> dict[str, Any]:
         "events": mesh.events(),
         "pitch_line_speed": mesh.reference.pitch_line_speed if mesh.pitch_point else jnp.zeros(()),
     }
+    return {"dimensions": mesh.dimensions(), "nominal": nominal}
 
 
 @program

@@ -8,9 +8,9 @@ from pitchpoint.cases.schema import FilmTable
 from pitchpoint.contact.registry import END_PROFILES
 from pitchpoint.contact.surface import Surface
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
 from pitchpoint.lubrication.ehl.line import FLOODED
-from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.registry import SHEAR_STRESS
 from pitchpoint.materials.solids import SolidRecord

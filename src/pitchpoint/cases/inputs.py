@@ -10,14 +10,13 @@ from pydantic import BaseModel
 from pitchpoint._jax import array
 from pitchpoint.cases.build import Built
 from pitchpoint.cases.document import STAGES, Document, Provenance, leaves
-from pitchpoint.cases.films import CHOICE_NOTES, film_choices
 from pitchpoint.cases.height_maps import MEMBERS, digest_of
 from pitchpoint.cases.loss_sets import SET, marks_of
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.schema import Case, DriveCase, FrictionChoice, Study, quantity_at
 from pitchpoint.cases.stages import BuiltDrive, Ready
 from pitchpoint.gears.family import Followed
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.units import hardness_scale
 
@@ -140,6 +139,8 @@ def _of_films(built: Built) -> dict[str, Followed]:
     """Choices by which films are solved, as they are where the case leaves them open."""
     if built.film_model is None:
         return {}
+    from pitchpoint.cases.films import CHOICE_NOTES, film_choices
+
     every = film_choices(built.film_model, built.case.film)
     return {
         key: Followed(value, "default", CHOICE_NOTES.get(key, "")) for key, value in every.items()

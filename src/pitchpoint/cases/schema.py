@@ -20,19 +20,38 @@ from pydantic.fields import FieldInfo
 
 from pitchpoint import units
 from pitchpoint.cases.document import STAGES, Document, check_name
+from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import expanded, named_set
+from pitchpoint.contact.registry import ELLIPTIC_CONTACT, END_PROFILES
+from pitchpoint.dynamics.registry import CONTACT_LAWS
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import CollectedInputError, Complaints, InputError, shorten
 from pitchpoint.gears.families import Gears
 from pitchpoint.gears.table import BORE, DEVIATION, MASS, PHASE, Deviation, GearsTable
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named, shown, text
 from pitchpoint.input.tables import DECIDING, Table, alternatives, by, forms
+from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.lubrication.ehl.registry import ASPERITIES, SMOOTH, THERMAL
+from pitchpoint.lubrication.registry import (
+    ASPERITY_LOAD,
+    FILM_THICKNESS,
+    INLET_HEATING,
+    ROLLING_RESISTANCE,
+)
+from pitchpoint.materials.data import base_names, oil_names, solid_names
+from pitchpoint.materials.registry import DENSITY as LAWS_OF_DENSITY
+from pitchpoint.materials.registry import SHEAR_STRESS, USUAL_SHEAR_STRESS
+from pitchpoint.materials.registry import VISCOSITY as LAWS_OF_VISCOSITY
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.registry import PUBLICATIONS, publication_of
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear
 from pitchpoint.registry import alike, letters, nearest
 from pitchpoint.results.chosen_units import unit_choice
+from pitchpoint.results.reductions import REDUCTIONS
 from pitchpoint.results.variables import VARIABLES
+from pitchpoint.strength.treatments import TREATMENTS
+from pitchpoint.wear.registry import WEAR_LAWS
 
 __all__ = [
     "Case",
@@ -164,12 +183,6 @@ def _flag(value: Any) -> bool:
     return value
 
 
-def _reductions() -> list[str]:
-    from pitchpoint.results.reductions import REDUCTIONS
-
-    return list(REDUCTIONS)
-
-
 def _variables() -> list[str]:
     return list(dict.fromkeys(name for one in (VARIABLES, *_published()) for name in one))
 
@@ -193,143 +206,8 @@ def _with_its_variables(source: str) -> str:
     return source
 
 
-def _friction_laws() -> list[str]:
-    from pitchpoint.cases.laws import FRICTION
-
-    return list(FRICTION)
-
-
-def _sharings() -> list[str]:
-    from pitchpoint.loading.registry import LOAD_SHARING
-
-    return list(LOAD_SHARING)
-
-
-def _compliances() -> list[str]:
-    from pitchpoint.loading.registry import TOOTH_COMPLIANCE
-
-    return list(TOOTH_COMPLIANCE)
-
-
-def _contact_laws() -> list[str]:
-    from pitchpoint.dynamics.contact_law import CONTACT_LAWS
-
-    return list(CONTACT_LAWS)
-
-
-def _tooth_temperatures() -> list[str]:
-    from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
-
-    return list(TOOTH_TEMPERATURE)
-
-
-def _bearing_losses() -> list[str]:
-    from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-
-    return list(BEARING_LOSS)
-
-
-def _breakaways() -> list[str]:
-    from pitchpoint.efficiency.breakaway import BREAKAWAY
-
-    return list(BREAKAWAY)
-
-
-def _rollings() -> list[str]:
-    from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
-
-    return list(ROLLING_RESISTANCE)
-
-
-def _ellipses() -> list[str]:
-    from pitchpoint.contact.registry import ELLIPTIC_CONTACT
-
-    return list(ELLIPTIC_CONTACT)
-
-
-def _films() -> list[str]:
-    from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
-
-    return list(FILM_THICKNESS)
-
-
-def _heatings() -> list[str]:
-    from pitchpoint.lubrication.inlet_heating import INLET_HEATING
-
-    return list(INLET_HEATING)
-
-
-def _wear_laws() -> list[str]:
-    from pitchpoint.wear.laws import WEAR_LAWS
-
-    return list(WEAR_LAWS)
-
-
-def _treatments() -> list[str]:
-    from pitchpoint.strength.treatments import TREATMENTS
-
-    return list(TREATMENTS)
-
-
-def _viscosities() -> list[str]:
-    from pitchpoint.materials.registry import VISCOSITY
-
-    return list(VISCOSITY)
-
-
-def _densities() -> list[str]:
-    from pitchpoint.materials.registry import DENSITY
-
-    return list(DENSITY)
-
-
-def _shears() -> list[str]:
-    from pitchpoint.materials.registry import SHEAR_STRESS
-
-    return list(SHEAR_STRESS)
-
-
-def _thermals() -> list[str]:
-    from pitchpoint.lubrication.ehl.conduction import THERMAL
-
-    return list(THERMAL)
-
-
 def _asperities() -> list[str]:
-    from pitchpoint.lubrication.ehl.model import SMOOTH
-    from pitchpoint.lubrication.ehl.texture import ASPERITIES
-
     return [SMOOTH, *ASPERITIES]
-
-
-def _end_profiles() -> list[str]:
-    from pitchpoint.contact.registry import END_PROFILES
-
-    return list(END_PROFILES)
-
-
-def _asperity_loads() -> list[str]:
-    from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
-
-    return list(ASPERITY_LOAD)
-
-
-def _oils() -> list[str]:
-    from pitchpoint.materials.lubricants import catalogue
-
-    return list(catalogue())
-
-
-def _solids() -> list[str]:
-    from pitchpoint.materials.solids import catalogue
-
-    return list(catalogue())
-
-
-def _bases() -> list[str]:
-    from pitchpoint.materials.lubricants import base_oils
-
-    return list(base_oils())
 
 
 class SolidValues(Table):
@@ -352,7 +230,7 @@ class SolidValues(Table):
     """Specific heat, for the heat of contacts; not known unless given."""
 
 
-SolidName = Annotated[str, BeforeValidator(named(_solids, "material"))]
+SolidName = Annotated[str, BeforeValidator(named(solid_names, "material"))]
 
 
 class Materials(Table):
@@ -375,9 +253,9 @@ class Oil(Table):
     the line through that one and the one at 40 degC: it changes at 25 degC too.
     """
 
-    name: Annotated[str, BeforeValidator(named(_oils, "lubricant"))] | None = None
+    name: Annotated[str, BeforeValidator(named(oil_names, "lubricant"))] | None = None
     """Oil of the catalogue; values beside it take the place of its own."""
-    base: Annotated[str, BeforeValidator(named(_bases, "class of base oil"))] | None = None
+    base: Annotated[str, BeforeValidator(named(base_names, "class of base oil"))] | None = None
     """Class of base oil, for what an oil by value leaves open; needed without a name."""
     viscosity_40: Annotated[float, VISCOSITY] | None = None
     """Kinematic viscosity at 40 degC; that of the named oil unless given, needed without one."""
@@ -412,7 +290,7 @@ class Oil(Table):
             )
         if self.name is None and self.base is None:
             raise InputError(
-                f"an oil by value needs its base, one of {', '.join(_bases())}, for density, "
+                f"an oil by value needs its base, one of {', '.join(base_names())}, for density, "
                 "pressure-viscosity coefficient and lubricant factor where they are not given"
             )
         return self
@@ -479,7 +357,7 @@ class FrictionChoice(BaseModel):
 
     model_config = ConfigDict(extra="allow", frozen=True, defer_build=True)
 
-    name: Annotated[str, BeforeValidator(named(_friction_laws, "friction law"))]
+    name: Annotated[str, BeforeValidator(named(FRICTION.keys, "friction law"))]
     """Friction law; parameters of its own may stand beside it."""
 
     @property
@@ -489,11 +367,12 @@ class FrictionChoice(BaseModel):
 
     @model_validator(mode="after")
     def _own(self) -> "FrictionChoice":
-        from pitchpoint.cases.laws import FRICTION
+        if not self.model_extra:
+            return self
         from pitchpoint.lubrication.conditions import arguments
 
         _, known = arguments(FRICTION[self.name].function)
-        for key, value in (self.model_extra or {}).items():
+        for key, value in self.model_extra.items():
             if key not in known:
                 has = nearest(key, known) if known else "; it has none"
                 raise InputError(f"is no parameter of {self.name}{has}", key=shorten(key))
@@ -533,37 +412,41 @@ class Choices(Table):
         FrictionChoice(name="iso_tr_14179_2"),
     )
     """Friction laws, a name or a list, the first one leading; that usual for the family unless given."""
-    load_sharing: Annotated[str, BeforeValidator(named(_sharings, "load sharing model"))] = "equal"
+    load_sharing: Annotated[
+        str, BeforeValidator(named(LOAD_SHARING.keys, "load sharing model"))
+    ] = "equal"
     """How pairs share the load; from_stiffness where the family or modified flanks ask for it."""
-    rolling_resistance: Annotated[str, BeforeValidator(named(_rollings, "rolling resistance"))] = (
-        "none"
-    )
+    rolling_resistance: Annotated[
+        str, BeforeValidator(named(ROLLING_RESISTANCE.keys, "rolling resistance"))
+    ] = "none"
     """Law of the rolling resistance of the contacts."""
-    film_thickness: Annotated[str, BeforeValidator(named(_films, "film thickness law"))] = (
-        "dowson_higginson_1959"
-    )
+    film_thickness: Annotated[
+        str, BeforeValidator(named(FILM_THICKNESS.keys, "film thickness law"))
+    ] = "dowson_higginson_1959"
     """Law of the film thickness; hamrock_dowson_1977 for contacts that are ellipses."""
-    inlet_heating: Annotated[str, BeforeValidator(named(_heatings, "inlet heating"))] = "none"
-    """How the heat of shear in the inlet thins films and lowers rolling resistance."""
-    asperity_load: Annotated[str, BeforeValidator(named(_asperity_loads, "asperity load law"))] = (
+    inlet_heating: Annotated[str, BeforeValidator(named(INLET_HEATING.keys, "inlet heating"))] = (
         "none"
     )
+    """How the heat of shear in the inlet thins films and lowers rolling resistance."""
+    asperity_load: Annotated[
+        str, BeforeValidator(named(ASPERITY_LOAD.keys, "asperity load law"))
+    ] = "none"
     """Law of the part of the load that asperities carry L_a."""
-    elliptic_contact: Annotated[str, BeforeValidator(named(_ellipses, "elliptic contact"))] = (
-        "hertz_1881"
-    )
+    elliptic_contact: Annotated[
+        str, BeforeValidator(named(ELLIPTIC_CONTACT.keys, "elliptic contact"))
+    ] = "hertz_1881"
     """How axes and pressure of an elliptic contact follow from its load."""
     tooth_compliance: Annotated[
-        str, BeforeValidator(named(_compliances, "tooth compliance model"))
+        str, BeforeValidator(named(TOOTH_COMPLIANCE.keys, "tooth compliance model"))
     ] = "beam_foundation_weber"
     """Model by which teeth yield under load."""
     tooth_temperature: Annotated[
-        str, BeforeValidator(named(_tooth_temperatures, "tooth temperature model"))
+        str, BeforeValidator(named(TOOTH_TEMPERATURE.keys, "tooth temperature model"))
     ] = "isothermal"
     """Model of the temperature that their own loss gives plastic teeth."""
-    tooth_contact: Annotated[str, BeforeValidator(named(_contact_laws, "law of tooth contact"))] = (
-        "linear"
-    )
+    tooth_contact: Annotated[
+        str, BeforeValidator(named(CONTACT_LAWS.keys, "law of tooth contact"))
+    ] = "linear"
     """Whether teeth in a vibration never part, or part and meet their back flanks."""
     slices: Annotated[float, SLICES, AfterValidator(_slices)] = 12.0
     """Slices of each contact line: an even number, or 1 for its middle alone."""
@@ -601,7 +484,9 @@ class Loss(Table):
 
     between: tuple[Text, Text]
     """The two bodies that brake each other; one of them may be the housing."""
-    bearing: Annotated[str, BeforeValidator(named(_bearing_losses, "bearing loss model"))] = "none"
+    bearing: Annotated[str, BeforeValidator(named(BEARING_LOSS.keys, "bearing loss model"))] = (
+        "none"
+    )
     """Model of a rolling bearing between them."""
     mean_diameter: Annotated[float, BORE] | None = None
     """Mean diameter d_m of bearing or seal lip; needed by models of bearing and breakaway."""
@@ -625,7 +510,7 @@ class Loss(Table):
     """Exponent of the relative speed in the churning torque."""
     breakaway_torque: Annotated[float, TORQUE] = 0.0
     """Torque that holds the bodies at rest, beside bearing and seal; for starting alone."""
-    breakaway: Annotated[str, BeforeValidator(named(_breakaways, "breakaway model"))] = "none"
+    breakaway: Annotated[str, BeforeValidator(named(BREAKAWAY.keys, "breakaway model"))] = "none"
     """Model of a torque that holds the bodies at rest, which adds to breakaway_torque."""
     breakaway_dry: Annotated[float, OVER_SQUARE] | None = None
     """Dry part of that model at a preload of 1, over the square of mean_diameter."""
@@ -652,9 +537,6 @@ class Loss(Table):
 
     @model_validator(mode="after")
     def _complete(self) -> "Loss":
-        from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-        from pitchpoint.efficiency.breakaway import BREAKAWAY
-
         moving = self._asked(self.bearing, BEARING_LOSS[self.bearing].factors, self.factors)
         holding = [f"breakaway_{name}" for name in self.breakaway_factors]
         wanted = [f"breakaway_{name}" for name in BREAKAWAY[self.breakaway].factors]
@@ -930,7 +812,9 @@ class FilmTable(Table):
     """Measured heights of the surfaces; none unless given."""
     ends: Literal["half_space", "mirrored"] | None = None
     """Whether bodies go on beyond a line or both end with it; half_space unless given."""
-    end_profile: Annotated[str, BeforeValidator(named(_end_profiles, "end profile"))] | None = None
+    end_profile: Annotated[str, BeforeValidator(named(END_PROFILES.keys, "end profile"))] | None = (
+        None
+    )
     """Profile of the ends of contact lines; none unless given."""
     end_length: Annotated[float, END_LENGTH] | None = None
     """Length of each end along the face, of chamfered and dub_off ends."""
@@ -943,15 +827,22 @@ class FilmTable(Table):
     end_drop: Annotated[float, END_LENGTH] | None = None
     """Largest drop of log_relieved ends; without bound unless given."""
     viscosity_law: (
-        Annotated[str, BeforeValidator(named(_viscosities, "law of viscosity under pressure"))]
+        Annotated[
+            str, BeforeValidator(named(LAWS_OF_VISCOSITY.keys, "law of viscosity under pressure"))
+        ]
         | None
     ) = None
     """Law of the viscosity under pressure; roelands_1966 unless given."""
     density_law: (
-        Annotated[str, BeforeValidator(named(_densities, "law of density under pressure"))] | None
+        Annotated[
+            str, BeforeValidator(named(LAWS_OF_DENSITY.keys, "law of density under pressure"))
+        ]
+        | None
     ) = None
     """Law of the density under pressure; dowson_higginson_1966 unless given."""
-    shear_law: Annotated[str, BeforeValidator(named(_shears, "law of shear stress"))] | None = None
+    shear_law: (
+        Annotated[str, BeforeValidator(named(SHEAR_STRESS.keys, "law of shear stress"))] | None
+    ) = None
     """Law of the shear stress; ree_eyring_1955 unless given."""
     eyring_stress: Annotated[float, STRESS] | None = None
     """Eyring stress of ree_eyring_1955; 5 MPa unless given, assumed."""
@@ -974,7 +865,7 @@ class FilmTable(Table):
     inlet: Annotated[float, INLET] | None = None
     """Distance ahead of a contact at which oil begins; a module, without teeth flooded, unless given."""
     thermal: (
-        Annotated[str, BeforeValidator(named(_thermals, "thermal effect of a film"))] | None
+        Annotated[str, BeforeValidator(named(THERMAL.keys, "thermal effect of a film"))] | None
     ) = None
     """Heat in the film; isothermal unless given."""
 
@@ -1017,8 +908,6 @@ class FilmTable(Table):
 
     @model_validator(mode="after")
     def _of_profile(self) -> "FilmTable":
-        from pitchpoint.contact.registry import END_PROFILES
-
         given = self.profile_parameters
         if self.end_profile is None:
             for name in given:
@@ -1039,10 +928,6 @@ class FilmTable(Table):
 
     @model_validator(mode="after")
     def _own(self) -> "FilmTable":
-        from pitchpoint.lubrication.ehl.model import SMOOTH
-        from pitchpoint.materials.fluid import USUAL_SHEAR_STRESS
-        from pitchpoint.materials.registry import SHEAR_STRESS
-
         law = SHEAR_STRESS[self.shear_law or USUAL_SHEAR_STRESS]
         for key in self.shear_parameters:
             if key not in law.parameters:
@@ -1197,7 +1082,7 @@ class Target(Table):
     """Result variable that is read."""
     at: Annotated[tuple[Any, ...], BeforeValidator(_places)] = ()
     """Places on the axis that are read, one or a list; all that were computed unless given."""
-    reduce: Annotated[str, BeforeValidator(named(_reductions, "reduction"))] = "value"
+    reduce: Annotated[str, BeforeValidator(named(REDUCTIONS.keys, "reduction"))] = "value"
     """How one number is made of the values at these places."""
     law: tuple[Annotated[float, POSITION], ...] = (0.0,)
     """Positions of the friction laws that are read, from 0."""
@@ -1294,7 +1179,7 @@ class WearTable(Table):
     told where they take seconds: not of teeth on a ring that share their load by its stiffness.
     """
 
-    law: Annotated[str, BeforeValidator(named(_wear_laws, "wear law"))]
+    law: Annotated[str, BeforeValidator(named(WEAR_LAWS.keys, "wear law"))]
     """Law of the specific wear rate."""
     cycles: Annotated[float, WEAR_TURNS]
     """Turns of the driver over which flanks wear."""
@@ -1346,7 +1231,7 @@ class WornTable(Table):
     """Turns of the driver up to which flanks are worn; all that the file has unless given."""
 
 
-_TREATMENT = named(_treatments, "heat treatment")
+_TREATMENT = named(TREATMENTS.keys, "heat treatment")
 
 
 class StrengthTable(Table):

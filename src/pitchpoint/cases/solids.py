@@ -11,7 +11,8 @@ from pitchpoint.cases.document import Document
 from pitchpoint.cases.failures import fails
 from pitchpoint.cases.remembered import remembering
 from pitchpoint.cases.schema import Case, Materials, SolidValues
-from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE, modulus_at
+from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
+from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import Heated
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh

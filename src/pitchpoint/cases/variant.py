@@ -12,7 +12,7 @@ from pitchpoint.cases.schema import Case, DriveCase, usual_at, validate
 from pitchpoint.cases.stages import Ready, ready
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import build_together
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import FrictionLaw
 
 __all__ = [
     "Variant",

@@ -13,12 +13,13 @@ from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import KINDS, TOUCH
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
-from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
+from pitchpoint.lubrication.ehl.model import FilmModel
+from pitchpoint.lubrication.ehl.registry import SMOOTH
 from pitchpoint.lubrication.flash_temperature import Conductor
+from pitchpoint.lubrication.registry import ASPERITY_LOAD
 from pitchpoint.wear.history import WearModel
-from pitchpoint.wear.laws import WEAR_LAWS, WearLaw
 from pitchpoint.wear.march import Limit
+from pitchpoint.wear.registry import WEAR_LAWS, WearLaw
 
 __all__ = ["ASSUMED_COEFFICIENT", "check_wear", "limit_of", "told_of_wear", "wear_model"]
 

@@ -1,36 +1,12 @@
 """Force between two teeth from their stretch: the named models of contact and separation."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.registry import Registry
 
-__all__ = ["CONTACT_LAWS", "ContactLaw", "linear", "separating"]
+__all__ = ["linear", "separating"]
 
 Each = Float[Array, "*b"]
-
-
-@dataclass(frozen=True)
-class ContactLaw:
-    """One way in which teeth push on each other.
-
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        function: force over stiffness, and its derivative, from stretch and backlash.
-        linear: True where one solution of a linear system is the answer.
-        sources: keys of the bibliography.
-        note: caution for the user.
-    """
-
-    name: str
-    title: str
-    function: Callable[[Each, Float[Array, ""]], tuple[Each, Each]]
-    linear: bool = False
-    sources: tuple[str, ...] = ()
-    note: str = ""
 
 
 def linear(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
@@ -58,12 +34,3 @@ def separating(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
     back = jnp.where(behind > 0.0, jnp.where(jnp.isfinite(behind), behind, 0.0), 0.0)
     touching = (stretch > 0.0) | (behind > 0.0)
     return jnp.maximum(stretch, 0.0) - back, jnp.where(touching, 1.0, 0.0)
-
-
-CONTACT_LAWS = Registry(
-    "contact law",
-    ContactLaw("linear", "teeth never part", linear, linear=True),
-    ContactLaw(
-        "separating", "teeth may part, and meet their back flanks beyond the backlash", separating
-    ),
-)

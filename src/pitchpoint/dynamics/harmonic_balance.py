@@ -5,10 +5,10 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.response import Response, respond
 from pitchpoint.dynamics.system import System
 from pitchpoint.status import Code

@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.contact_law import ContactLaw
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import Course
 from pitchpoint.dynamics.floquet import STABLE, multipliers
+from pitchpoint.dynamics.registry import ContactLaw
 from pitchpoint.factored import Numbers
 from pitchpoint.status import Code, Status
 

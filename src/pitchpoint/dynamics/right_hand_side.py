@@ -16,9 +16,9 @@ from pitchpoint.dynamics.bodies import (
     moved_masses,
     on_all_coordinates,
 )
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.passage import Passage, on_springs
+from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.lubrication.conditions import Conditions, evaluate

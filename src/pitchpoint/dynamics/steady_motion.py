@@ -37,7 +37,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.period import nodes
 from pitchpoint.lubrication.conditions import evaluate
-from pitchpoint.lubrication.film_thickness import FilmThickness
+from pitchpoint.lubrication.registry import FilmThickness
 from pitchpoint.programs import fast_program
 from pitchpoint.status import Code, Status
 

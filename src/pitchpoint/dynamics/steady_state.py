@@ -5,12 +5,12 @@ from collections.abc import Callable
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Course, Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.integration import pieces
 from pitchpoint.dynamics.maps import Map, chain, inverse_matrix
+from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.response import Response, respond
 from pitchpoint.dynamics.series import by_series
 from pitchpoint.dynamics.shooting import Shot, shoot

@@ -4,11 +4,11 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.equations import equations
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.integration import pieces
+from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.shooting import shoot
 from pitchpoint.dynamics.steady_state import respond_to, resting, scaled_start

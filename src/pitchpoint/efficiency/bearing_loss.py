@@ -4,10 +4,8 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.efficiency.drag_model import DragModel
-from pitchpoint.registry import Registry
 
-__all__ = ["BEARING_LOSS", "none", "palmgren_1959"]
+__all__ = ["none", "palmgren_1959"]
 
 
 def none(
@@ -63,19 +61,3 @@ def palmgren_1959(
     diameter = jnp.asarray(mean_diameter)
     lubricant = 1e-10 * jnp.asarray(f0) * jnp.where(viscous, power, 160.0) * (diameter * 1e3) ** 3
     return lubricant + jnp.asarray(f1) * load * diameter
-
-
-BEARING_LOSS = Registry(
-    "bearing loss model",
-    DragModel("none", "bearings without friction", none),
-    DragModel(
-        "palmgren_1959",
-        "torque of the lubricant with (viscosity times speed)^(2/3), torque in proportion to the load",
-        palmgren_1959,
-        ("f0", "f1"),
-        ("palmgren_1959",),
-        "Rolling bearings without contact seals; f0 and f1 are those of the bearing's maker.",
-    ),
-)
-"""Models of the friction torque of a rolling bearing: keywords `speed` [rad/s], `load` [N],
-`kinematic_viscosity` [m2/s], `mean_diameter` [m] and the factors, which a maker's catalogue gives."""

@@ -4,10 +4,8 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.efficiency.drag_model import DragModel
-from pitchpoint.registry import Registry
 
-__all__ = ["BREAKAWAY", "dry_and_viscous", "none"]
+__all__ = ["dry_and_viscous", "none"]
 
 REFERENCE_VISCOSITY = 100e-6
 """Kinematic viscosity at which the viscous part of the breakaway torque is stated [m2/s]."""
@@ -56,20 +54,3 @@ def dry_and_viscous(
     thicker = jnp.asarray(kinematic_viscosity) / REFERENCE_VISCOSITY
     held = jnp.asarray(dry) * preload + jnp.asarray(viscous) * jnp.exp(2.0 / 3.0 * jnp.log(thicker))
     return held * jnp.asarray(mean_diameter) ** 2
-
-
-BREAKAWAY = Registry(
-    "breakaway model",
-    DragModel("none", "nothing beyond the friction in motion", none),
-    DragModel(
-        "dry_and_viscous",
-        "square of the diameter times a dry part, with the preload, and one with viscosity^(2/3)",
-        dry_and_viscous,
-        ("dry", "viscous", "preload"),
-        (),
-        "No published law: growth with the size as starting torques of catalogues show it, the power of "
-        "the viscosity as in Palmgren's law. The cold stiffening of a grease is left out.",
-    ),
-)
-"""Models of the torque at which bodies begin to turn against each other: keywords `mean_diameter` [m],
-`kinematic_viscosity` [m2/s] and the factors of the model."""

@@ -9,9 +9,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-from pitchpoint.efficiency.breakaway import BREAKAWAY
-from pitchpoint.efficiency.drag_model import DragModel
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, DragModel
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
-from pitchpoint.lubrication.ehl.traction import FilmTraction
 from pitchpoint.status import Code, Status
 
 __all__ = ["InTurns", "balance_under", "first_turn", "in_turns"]
@@ -127,7 +127,9 @@ def _begin(
     models: Models,
     known: Engagement,
     progress: Callable[[int], None] | None = None,
-) -> tuple[Models, Engagement, FilmTraction]:
+) -> tuple[Models, Engagement, Any]:
+    from pitchpoint.lubrication.ehl.traction import FilmTraction
+
     films = models.law.films
     assert films is not None
     own = models.rolling.name != "none"

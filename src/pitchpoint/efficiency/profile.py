@@ -19,10 +19,8 @@ from pitchpoint.efficiency.quasi_static import (
 from pitchpoint.efficiency.rows import one_engagement
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.applicability import Limited
-from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.conditions import evaluate
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import LAWS
+from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, AsperityLoad, FilmThickness
 from pitchpoint.programs import program
 
 __all__ = ["FINE", "profile"]

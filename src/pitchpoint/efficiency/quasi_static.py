@@ -25,8 +25,7 @@ from pitchpoint.loading.sharing import from_stiffness
 from pitchpoint.loading.tooth_compliance import TeethAt, Terms, terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.conditions import Conditions, evaluate
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.lubrication.rolling_resistance import RollingResistance
+from pitchpoint.lubrication.registry import FrictionLaw, RollingResistance
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness

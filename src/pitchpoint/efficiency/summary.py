@@ -30,7 +30,7 @@ from pitchpoint.efficiency.rows import (
     NODES,
     Row,
     balances,
-    engagements,
+    known_engagements,
     one_engagement,
     stacked,
 )
@@ -221,7 +221,7 @@ def at_points(design: Design, operation: Operation, models: Models) -> dict[str,
         models: laws.
     """
     alone, designs = models.without_friction, stacked([design] * CHUNK)
-    known = engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
+    known = known_engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
     count = operation.load.shape[0]
 
     def some(start: int) -> dict[str, np.ndarray]:
@@ -241,7 +241,7 @@ def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
     design, operation, known = chunk
     alone = models.without_friction
     if known is None:
-        known = engagements(design, operation.load, alone)
+        known = known_engagements(design, operation.load, alone)
     rows = design, operation, known
     return _summaries(rows, balances(rows, models), alone)
 
@@ -272,7 +272,9 @@ def _prepared(points: Sequence[Point], models: Models) -> Iterator[Prepared]:
     before: Design | None = None
     known: Engagement | None = None
     for design, operation in points:
-        like = known if before is not None and _alike(before, design) else None
+        like = (
+            known if known is not None and before is not None and _alike(before, design) else None
+        )
         known = engaged(design, operation, models, like=like)
         before = design
         # The compliance of the bodies has done its work, and of many points it would be large.

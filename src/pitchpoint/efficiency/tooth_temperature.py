@@ -1,7 +1,5 @@
 """Temperature of plastic gear teeth in steady running, and the modulus that belongs to it."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from jaxtyping import Float
@@ -10,12 +8,9 @@ from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Numbers
 from pitchpoint.materials.solids import SolidRecord, celsius, heat_failure
-from pitchpoint.registry import Registry
 
 __all__ = [
-    "TOOTH_TEMPERATURE",
     "ModulusInUse",
-    "ThermalModel",
     "ToothTemperature",
     "isothermal",
     "modulus_at",
@@ -52,17 +47,6 @@ class ModulusInUse(NamedTuple):
 
     young: Each
     status: str
-
-
-@dataclass(frozen=True, eq=False)
-class ThermalModel:
-    """A named model of tooth temperature; `function` gives flank and root in K."""
-
-    name: str
-    title: str
-    function: Callable[..., ToothTemperature]
-    sources: tuple[str, ...] = ()
-    note: str = ""
 
 
 def isothermal(*, ambient: Each) -> ToothTemperature:
@@ -202,17 +186,3 @@ def _softer(record: SolidRecord, temperature: float) -> str:
     if known is None or temperature < known.value + _NEAR:
         return ""
     return ", where the true one is lower: stiffness comes out too high, transmission error too low"
-
-
-TOOTH_TEMPERATURE = Registry(
-    "thermal model",
-    ThermalModel("isothermal", "teeth at the temperature of their surroundings", isothermal),
-    ThermalModel(
-        "vdi_2736_2",
-        "flank and root temperature of a plastic gear",
-        vdi_2736_2,
-        ("vdi_2736_2_2014", "fernandes_2022", "tkuhn39_2026"),
-        "Plastic gears against steel or plastic in steady running; the guideline was not at hand, "
-        "z is the gear's own number of teeth.",
-    ),
-)

@@ -1,7 +1,7 @@
 """Values of a case file with kind and allowed range, as pydantic types."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
@@ -166,7 +166,7 @@ class Pair:
         return both, both
 
 
-def named(registry: Callable[[], Sequence[str]], kind: str) -> Callable[[Any], str]:
+def named(registry: Callable[[], Collection[str]], kind: str) -> Callable[[Any], str]:
     """Validator of a name out of a registry that is looked up when it is needed."""
 
     def read(value: Any) -> str:

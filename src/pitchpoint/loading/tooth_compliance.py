@@ -8,7 +8,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.contact.flattening import line_compression, yang_sun_1985
@@ -63,9 +63,9 @@ def terms_of(name: str) -> Terms:
     """
     model = TOOTH_COMPLIANCE[name]
     return Terms(
-        foundation=jnp.asarray(float(model.foundation)),
-        weber=jnp.asarray(model.contact == "weber"),
-        common=jnp.asarray(model.modulus == "common"),
+        foundation=array(float(model.foundation)),
+        weber=array(model.contact == "weber"),
+        common=array(model.modulus == "common"),
     )
 
 

@@ -1,12 +1,13 @@
 """Which laws hold for the contacts of a mesh, by what they ask for."""
 
-from pitchpoint.gears.mesh import Mesh
-from pitchpoint.lubrication.asperity_load import AsperityLoad
-from pitchpoint.lubrication.conditions import arguments, of_other_shape
-from pitchpoint.lubrication.film_thickness import FilmThickness
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from math import inf
 
-__all__ = ["OF_PITCH_POINT", "Limited", "applies", "asks_for_pitch_point"]
+from pitchpoint import units
+from pitchpoint.gears.mesh import Mesh
+from pitchpoint.lubrication.conditions import UNITS, arguments, of_other_shape
+from pitchpoint.lubrication.registry import AsperityLoad, FilmThickness, FrictionLaw
+
+__all__ = ["OF_PITCH_POINT", "Limited", "applies", "asks_for_pitch_point", "limits_words"]
 
 Limited = FrictionLaw | FilmThickness | AsperityLoad
 """Laws with ranges of conditions, outside of which they answer and results say so."""
@@ -27,7 +28,7 @@ def asks_for_pitch_point(law: FrictionLaw) -> bool:
     """True if a law asks for what only a mesh with a pitch point has.
 
     Example:
-        >>> from pitchpoint.lubrication.friction_coefficient import LAWS
+        >>> from pitchpoint.lubrication.registry import LAWS
         >>> [law.name for law in LAWS if asks_for_pitch_point(law)]
         ['iso_tr_14179_2']
     """
@@ -47,3 +48,28 @@ def applies(law: FrictionLaw, mesh: Mesh) -> str | None:
     if mesh.pitch_point or not asks_for_pitch_point(law):
         return None
     return f"'{law.name}' is a law for a whole mesh, and these gears have no pitch point"
+
+
+def limits_words(name: str, limits: tuple[float, float]) -> str:
+    """Range of a condition that a law asks for, in words.
+
+    Args:
+        name: of the condition.
+        limits: smallest and largest value [SI]; infinite where there is none.
+
+    Example:
+        >>> limits_words("viscosity", (1e-3, float("inf")))
+        'at least 1 mPa s'
+    """
+    low, high = (_shown(name, value) for value in limits)
+    if limits[1] == inf:
+        return f"at least {low}"
+    return f"at most {high}" if limits[0] == -inf else f"{low} to {high}"
+
+
+_SHOWN = {"viscosity": ("mPa s", "dynamic viscosity"), "roughness_ra": ("um", "length")}
+
+
+def _shown(name: str, value: float) -> str:
+    unit, kind = _SHOWN.get(name, (UNITS[name], ""))
+    return f"{units.convert(value, unit, kind) if kind else value:g} {unit}".removesuffix(" 1")

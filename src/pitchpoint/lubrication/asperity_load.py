@@ -1,43 +1,18 @@
 """Part of the load that asperities carry beside the film, by published regressions."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.groups import line_groups
-from pitchpoint.registry import Registry
 
-__all__ = ["ASPERITY_LOAD", "AsperityLoad", "masjedi_khonsari_2012", "none"]
+__all__ = ["masjedi_khonsari_2012", "none"]
 
 Each = Float[Numbers, "*#b"]
 
 _LEAST = 1e-30  # below any group of a contact, with logarithms that are finite
-
-
-@dataclass(frozen=True, eq=False)
-class AsperityLoad:
-    """A named law of the asperity load ratio; `function` gives the part of the load, 0 to 1.
-
-    It holds for contacts of one `shape`, or of any (None); outside of its `ranges`, of conditions in SI, it
-    still answers, and the result says so.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    sources: tuple[str, ...] = ()
-    note: str = ""
-    shape: Shape | None = None
-    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-
-    @property
-    def rivals(self) -> "list[AsperityLoad]":
-        """Laws of the library."""
-        return list(ASPERITY_LOAD.values())
 
 
 def none() -> Each:
@@ -98,25 +73,3 @@ def _log(value: Each) -> Array:
 
 def _sum(logs: Mapping[str, Array], **powers: float) -> Array:
     return jnp.asarray(sum(power * logs[name] for name, power in powers.items()))
-
-
-ASPERITY_LOAD = Registry(
-    "asperity load law",
-    AsperityLoad("none", "no load on asperities", none),
-    AsperityLoad(
-        "masjedi_khonsari_2012",
-        "Masjedi-Khonsari, rough line contact",
-        masjedi_khonsari_2012,
-        ("masjedi_khonsari_2012", "zhao_2022"),
-        "Asks for the hardness of both gears, of which the softer one counts. The limits are recalled, "
-        "unconfirmed, as are its film formulas, which are left out for that.",
-        "line",
-        {
-            "load_parameter": (2e-5, 5e-4),
-            "speed_parameter": (1e-12, 1e-10),
-            "material_parameter": (2500.0, 7500.0),
-            "roughness_parameter": (0.0, 5e-5),
-            "hardness_parameter": (0.005, 0.03),
-        },
-    ),
-)

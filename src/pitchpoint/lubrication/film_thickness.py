@@ -1,19 +1,12 @@
 """Film thickness of EHL contacts by published regressions."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
-
-from jaxtyping import Array, Float
+from jaxtyping import Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.groups import line_groups
-from pitchpoint.registry import Registry
 
 __all__ = [
-    "FILM_THICKNESS",
-    "FilmThickness",
     "dowson_1968",
     "dowson_higginson_1959",
     "dowson_toyoda_1979",
@@ -27,31 +20,6 @@ __all__ = [
 Each = Float[Numbers, "*#b"]
 
 _LEAST = 1e-30  # below any group of a contact, with logarithms and powers that are finite
-
-
-@dataclass(frozen=True, eq=False)
-class FilmThickness:
-    """A named film law; `function` gives metres, `place` says minimum or central film.
-
-    It holds for contacts of one `shape`; outside of its `ranges`, of conditions in SI, it still answers,
-    and the result says so. Without any no source was found that states one. Where `heating` is given it
-    is multiplied by that factor of the heat in the inlet.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    sources: tuple[str, ...]
-    place: str
-    shape: Shape = "line"
-    note: str = ""
-    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    heating: Callable[..., Array] | None = None
-
-    @property
-    def rivals(self) -> "Iterable[FilmThickness]":
-        """Film laws of the library."""
-        return FILM_THICKNESS.values()
 
 
 def dowson_higginson_1959(
@@ -370,89 +338,3 @@ def _product(
     logs = [jnp.log(jnp.where(film, group, 1.0)) for group in (load, speed, material)]
     total = sum(power * log for power, log in zip(exponents, logs, strict=True))
     return jnp.where(film, factor * jnp.exp(total), 0.0)
-
-
-_HAMROCK_DOWSON = {"ellipticity": (1.0, 8.0)}
-_PAN_HAMROCK = {
-    "load_parameter": (0.2045e-4, 5.0e-4),
-    "speed_parameter": (1.0e-12, 5.05e-11),
-    "material_parameter": (2504.0, 7511.0),
-}
-_PAN_HAMROCK_NOTE = (
-    "Fitted to an oil that is compressible and follows Roelands; limits recalled, unconfirmed."
-)
-
-FILM_THICKNESS = Registry(
-    "film thickness law",
-    FilmThickness(
-        "dowson_higginson_1959",
-        "Dowson-Higginson, line",
-        dowson_higginson_1959,
-        ("dowson_higginson_1959",),
-        "minimum",
-    ),
-    FilmThickness(
-        "dowson_1968",
-        "Dowson, line",
-        dowson_1968,
-        ("dowson_1968",),
-        "minimum",
-        note="The later exponent of the material parameter, 0.54 for 0.6.",
-    ),
-    FilmThickness(
-        "dowson_toyoda_1979",
-        "Dowson-Toyoda, line, central film",
-        dowson_toyoda_1979,
-        ("dowson_toyoda_1979",),
-        "central",
-    ),
-    FilmThickness(
-        "pan_hamrock_1989",
-        "Pan-Hamrock, line",
-        pan_hamrock_1989,
-        ("pan_hamrock_1989",),
-        "minimum",
-        note=_PAN_HAMROCK_NOTE,
-        ranges=_PAN_HAMROCK,
-    ),
-    FilmThickness(
-        "pan_hamrock_1989_central",
-        "Pan-Hamrock, line, central film",
-        pan_hamrock_1989_central,
-        ("pan_hamrock_1989",),
-        "central",
-        note=_PAN_HAMROCK_NOTE,
-        ranges=_PAN_HAMROCK,
-    ),
-    FilmThickness(
-        "moes_1992",
-        "Moes, line, central film in every regime",
-        moes_1992,
-        ("moes_1992",),
-        "central",
-        note=(
-            "Of an incompressible oil that follows Barus: 12 to 19 % thicker than solutions with a "
-            "compressible oil at 0.4 to 1.5 GPa."
-        ),
-    ),
-    FilmThickness(
-        "hamrock_dowson_1977",
-        "Hamrock-Dowson, ellipse",
-        hamrock_dowson_1977,
-        ("hamrock_dowson_1977",),
-        "minimum",
-        "ellipse",
-        "Fitted to contacts as wide across the rolling direction as along it, or wider, up to a ratio of 8.",
-        _HAMROCK_DOWSON,
-    ),
-    FilmThickness(
-        "hamrock_dowson_1977_central",
-        "Hamrock-Dowson, ellipse, central film",
-        hamrock_dowson_1977_central,
-        ("hamrock_dowson_1977",),
-        "central",
-        "ellipse",
-        "Fitted to contacts as wide across the rolling direction as along it, or wider, up to a ratio of 8.",
-        _HAMROCK_DOWSON,
-    ),
-)

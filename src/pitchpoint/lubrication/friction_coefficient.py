@@ -9,8 +9,6 @@ not depend on each other.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
 from functools import reduce
 from operator import or_
 from typing import Final
@@ -19,13 +17,9 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Numbers, as_array, log, scaled
-from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
-    "LAWS",
-    "FrictionLaw",
     "constant",
     "frictionless",
     "iso_tr_14179_2",
@@ -37,8 +31,6 @@ Each = Float[Numbers, "*#b"]
 # Far below any physical value in fitted units, large enough for finite powers and gradients.
 _FLOOR: Final = 1e-12
 
-BOUNDARY: Final = 0.2
-"""Coefficient that steel in oil does not exceed in boundary lubrication, where it is about 0.1."""
 
 _XU: Final = (
     -8.916465,
@@ -51,49 +43,6 @@ _XU: Final = (
     -0.390958,
     0.620305,
 )
-
-
-@dataclass(frozen=True, eq=False)
-class FrictionLaw:
-    """A friction law with what a user needs to choose it.
-
-    Attributes:
-        name: name of the function.
-        title: name to show.
-        function: the law; keyword-only, SI in, coefficient out.
-        sources: keys of the bibliography.
-        ranges: range of arguments in SI, of its fit or of its form, as the note says; empty where
-            no source states one.
-        largest: coefficient beyond which it describes no lubricated contact that it was fitted to.
-        whole: True if it was fitted to whole losses of gears, with those of rolling in them.
-        local: True if the law holds at each contact, False if it gives one mean for the mesh.
-        note: what it was fitted on, and cautions.
-        full_film: True if it describes contacts that a film separates.
-        check: arguments in SI and the value computed from the printed formula in printed units; None of a
-            law that is no formula.
-        shape: of the contacts for which it holds; None where what it asks for says that.
-        films: choices by which the films of the contacts are solved, in turns with the balance of forces;
-            None of a formula.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    sources: tuple[str, ...]
-    check: tuple[dict[str, float], float] | None = None
-    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    local: bool = True
-    note: str = ""
-    full_film: bool = False
-    largest: float = math.inf
-    whole: bool = False
-    shape: Shape | None = None
-    films: FilmModel | None = None
-
-    @property
-    def rivals(self) -> "Iterable[FrictionLaw]":
-        """Laws of the library."""
-        return LAWS
 
 
 def _power_product(*factors: tuple[Each, float], exponent: Each | float = 0.0) -> Array:
@@ -231,77 +180,3 @@ def xu_2007(
         # Far beyond any sense already; without the limit a rough flank overflows.
         exponent=jnp.minimum(f, 50.0),
     )
-
-
-LAWS: Final[tuple[FrictionLaw, ...]] = (
-    FrictionLaw(
-        name="constant",
-        title="Constant coefficient",
-        function=constant,
-        sources=(),
-        check=({"coefficient": 0.06}, 0.06),
-        note="One coefficient for every contact. The default 0.05 is a round figure, not a fit.",
-    ),
-    FrictionLaw(
-        name="frictionless",
-        title="Frictionless",
-        function=frictionless,
-        sources=(),
-        check=({}, 0.0),
-        note="No friction: the reference case.",
-    ),
-    FrictionLaw(
-        name="iso_tr_14179_2",
-        title="ISO/TR 14179-2 (Schlenk), mesh mean",
-        function=iso_tr_14179_2,
-        sources=("iso_tr_14179_2_2001", "tian_2024"),
-        check=(
-            {
-                "reference_line_load": 117.3e3,
-                "reference_sum_speed": 2.90,
-                "reference_radius": 6.156e-3,
-                "viscosity": 0.050,
-                "roughness_ra": 0.8e-6,
-                "lubricant_factor": 1.0,
-            },
-            0.0543983233897726,
-        ),
-        local=False,
-        note=(
-            "Mean coefficient fitted to losses of gear test rigs, those of rolling among them; use it"
-            " with the load of the whole mesh and without a rolling resistance. X_L differs between"
-            " oils, about 0.6 to 1. No range of the fit was found: the limits are those of its form,"
-            " by which flanks without roughness have no friction, and of steel in oil."
-        ),
-        shape="line",
-        ranges={"roughness_ra": (1e-8, math.inf)},
-        largest=BOUNDARY,
-        whole=True,
-    ),
-    FrictionLaw(
-        name="xu_2007",
-        title="Xu and Kahraman 2007, EHL regression",
-        function=xu_2007,
-        sources=("xu_2007", "xu_2005"),
-        check=(
-            {
-                "pressure": 1e9,
-                "slide_roll_ratio": 0.3,
-                "entrainment": 10.0,
-                "viscosity": 0.010,
-                "radius": 0.01,
-                "roughness_rq": 0.5e-6,
-            },
-            0.0210243789171055,
-        ),
-        note=(
-            "Regression of thermal EHL solutions for one 75W90 gear oil. Zero at pure rolling;"
-            " doubly exponential in roughness, so too high for rough flanks or mixed friction. No"
-            " range of the fit was found: the limits are those of its form, which takes the logarithm"
-            " of the viscosity in mPa s, and of a full film."
-        ),
-        ranges={"viscosity": (1e-3, math.inf)},
-        full_film=True,
-        largest=BOUNDARY,
-    ),
-)

@@ -5,7 +5,7 @@ speed and k the conductivity of the oil. Effects named `none` leave the isotherm
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, TypeVar
 
@@ -13,14 +13,10 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers, as_array
-from pitchpoint.lubrication.film_thickness import FilmThickness
-from pitchpoint.lubrication.rolling_resistance import RollingResistance
-from pitchpoint.registry import Registry
+from pitchpoint.lubrication.registry import FilmThickness, InletHeating, RollingResistance
 
 __all__ = [
-    "INLET_HEATING",
     "Inlet",
-    "InletHeating",
     "aihara_1987",
     "murch_wilson_1975",
     "wilson_sheu_1983",
@@ -33,27 +29,6 @@ Inlet = TypeVar("Inlet", FilmThickness, RollingResistance)
 
 _LEAST = 1e-12
 """Thermal loading below which powers are taken of it: its factor is one to 8 digits."""
-
-
-@dataclass(frozen=True, eq=False)
-class InletHeating:
-    """A named effect of the heat in the inlet.
-
-    Attributes:
-        name: by which it is chosen.
-        title: name to show.
-        film: factor of the film thickness; None for none.
-        rolling: factor of the rolling resistance; None for none.
-        sources: keys of the bibliography.
-        note: what it was fitted to, and cautions.
-    """
-
-    name: str
-    title: str
-    film: Callable[..., Array] | None = None
-    rolling: Callable[..., Array] | None = None
-    sources: tuple[str, ...] = ()
-    note: str = ""
 
 
 def murch_wilson_1975(*, thermal_loading: Each) -> Each:
@@ -154,34 +129,3 @@ def with_inlet_heating(law: Inlet, heating: InletHeating) -> Inlet:
 def _with(law: Any, factor: Callable[..., Array]) -> Any:
     """One record for each pair: another one of the same content would be another program."""
     return replace(law, heating=factor)
-
-
-INLET_HEATING = Registry(
-    "inlet heating",
-    InletHeating("none", "isothermal inlet"),
-    InletHeating(
-        "murch_wilson_1975",
-        "Murch-Wilson, Aihara; pure rolling",
-        murch_wilson_1975,
-        aihara_1987,
-        ("murch_wilson_1975", "wilson_sheu_1983", "aihara_1987"),
-        "Line contacts that roll; the resistance was measured for a thermal loading up to several tens.",
-    ),
-    InletHeating(
-        "wilson_sheu_1983",
-        "Wilson-Sheu, Aihara; sliding too",
-        wilson_sheu_1983,
-        aihara_1987,
-        ("wilson_sheu_1983", "aihara_1987"),
-        "Line contacts that roll and slide; sliding does not enter the factor of the resistance.",
-    ),
-    InletHeating(
-        "zhu_cheng_1988",
-        "Zhu-Cheng, one factor for film and rolling resistance",
-        zhu_cheng_1988,
-        zhu_cheng_1988,
-        ("zhou_hoeprich_1991",),
-        "Rolling and sliding contacts under pressure; known from Gupta et al. (1992) too. Torques of tapered "
-        "roller bearings support it for the resistance.",
-    ),
-)

@@ -1,19 +1,12 @@
 """Rolling resistance of lubricated contacts: the pressure of the inlet film works against both surfaces."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.lubrication.groups import line_groups
-from pitchpoint.registry import Registry
 
 __all__ = [
-    "ROLLING_RESISTANCE",
-    "RollingResistance",
     "none",
     "wu_cheng_1991",
     "wu_cheng_1991_strips",
@@ -23,29 +16,6 @@ Each = Float[Numbers, "*#b"]
 
 _OVER_STRIPS = 0.9923525509789987
 """Mean of (1 - y^2)^0.0126 from -1 to 1: sqrt(pi)/2 Gamma(1.0126)/Gamma(1.5126)."""
-
-
-@dataclass(frozen=True, eq=False)
-class RollingResistance:
-    """A named model of rolling resistance; `function` gives N per metre of contact line and surface.
-
-    Of elliptic contacts it gives N for each surface, over their whole width. It holds for contacts of one
-    `shape`, or of any (None). Where `heating` is given it is multiplied by that factor of the heat in the
-    inlet.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    sources: tuple[str, ...] = ()
-    note: str = ""
-    shape: Shape | None = None
-    heating: Callable[..., Array] | None = None
-
-    @property
-    def rivals(self) -> "Iterable[RollingResistance]":
-        """Models of the library."""
-        return ROLLING_RESISTANCE.values()
 
 
 def none() -> Each:
@@ -144,27 +114,3 @@ def wu_cheng_1991_strips(
 
 def _log(value: Each, positive: Bool[Arrays, "*#b"] | bool) -> Each:
     return jnp.log(jnp.where(positive, value, 1.0))
-
-
-ROLLING_RESISTANCE = Registry(
-    "rolling resistance",
-    RollingResistance("none", "no rolling resistance", none),
-    RollingResistance(
-        "wu_cheng_1991",
-        "isothermal rolling resistance of a line contact",
-        wu_cheng_1991,
-        ("goksem_hargreaves_1978", "wu_cheng_1991"),
-        "Fully flooded line contacts; force per length and surface, it brakes both. Isothermal: it rises "
-        "with speed where measured ones level off, which inlet_heating follows (Aihara 1987).",
-        "line",
-    ),
-    RollingResistance(
-        "wu_cheng_1991_strips",
-        "isothermal rolling resistance of a wide elliptic contact, strip by strip",
-        wu_cheng_1991_strips,
-        ("goksem_hargreaves_1978", "wu_cheng_1991"),
-        "Fully flooded contacts, wide across the rolling direction; force per surface, it brakes both. "
-        "Isothermal: it rises with speed where measured ones level off, which inlet_heating follows.",
-        "ellipse",
-    ),
-)

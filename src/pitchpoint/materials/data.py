@@ -12,7 +12,16 @@ from typing import Any, Literal, get_args
 
 from pitchpoint.errors import InputError
 
-__all__ = ["Datum", "Status", "check_positive", "read_data", "read_datum"]
+__all__ = [
+    "Datum",
+    "Status",
+    "base_names",
+    "check_positive",
+    "oil_names",
+    "read_data",
+    "read_datum",
+    "solid_names",
+]
 
 Status = Literal["printed", "derived", "digitised", "assumed", "fitted", "corrected", "given"]
 
@@ -51,3 +60,18 @@ def check_positive(name: str, values: Iterable[tuple[str, Datum]]) -> None:
     for key, datum in values:
         if not (math.isfinite(datum.value) and datum.value > 0.0):
             raise InputError(f"{datum.value} is not a positive number", key=f"{name}.{key}")
+
+
+def oil_names() -> list[str]:
+    """Names of the oils of the catalogue."""
+    return [*read_data("lubricants.toml")["oil"]]
+
+
+def base_names() -> list[str]:
+    """Names of the classes of base oils."""
+    return [*read_data("lubricants.toml")["base"]]
+
+
+def solid_names() -> list[str]:
+    """Names of the materials of the catalogue."""
+    return [*read_data("solids.toml")]

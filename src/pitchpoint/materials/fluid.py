@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final
 
 import equinox as eqx
 import numpy as np
@@ -14,18 +13,21 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.factored import Numbers
 from pitchpoint.materials._leaves import as_array
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY, RheologyLaw
+from pitchpoint.materials.registry import (
+    DENSITY,
+    SHEAR_STRESS,
+    USUAL_DENSITY,
+    USUAL_SHEAR_STRESS,
+    USUAL_VISCOSITY,
+    VISCOSITY,
+    RheologyLaw,
+)
 from pitchpoint.materials.rheology import roelands_index
 from pitchpoint.registry import nearest
 
-__all__ = ["USUAL_DENSITY", "USUAL_SHEAR_STRESS", "USUAL_VISCOSITY", "Fluid"]
+__all__ = ["Fluid"]
 
 Each = Float[Numbers, "*#b"]
-
-USUAL_VISCOSITY: Final = "roelands_1966"
-USUAL_DENSITY: Final = "dowson_higginson_1966"
-USUAL_SHEAR_STRESS: Final = "ree_eyring_1955"
-"""Shear law unless another is chosen: a Newtonian oil draws far too much in contacts under pressure."""
 
 
 class Fluid(eqx.Module):

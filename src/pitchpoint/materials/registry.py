@@ -15,7 +15,21 @@ from pitchpoint.registry import Deferred, Registry
 if TYPE_CHECKING:
     from jaxtyping import Array
 
-__all__ = ["DENSITY", "LEAST_PRESSURE", "SHEAR_STRESS", "VISCOSITY", "RheologyLaw"]
+__all__ = [
+    "DENSITY",
+    "LEAST_PRESSURE",
+    "SHEAR_STRESS",
+    "USUAL_DENSITY",
+    "USUAL_SHEAR_STRESS",
+    "USUAL_VISCOSITY",
+    "VISCOSITY",
+    "RheologyLaw",
+]
+
+USUAL_VISCOSITY: Final = "roelands_1966"
+USUAL_DENSITY: Final = "dowson_higginson_1966"
+USUAL_SHEAR_STRESS: Final = "ree_eyring_1955"
+"""Shear law unless another is chosen: a Newtonian oil draws far too much in contacts under pressure."""
 
 LEAST_PRESSURE: Final = -5e7
 """Pressure below which nothing changes any more [Pa]: no oil bears such tension, its film breaks."""

@@ -84,9 +84,8 @@ class Roughness(eqx.Module):
             >>> round(float(Roughness.from_ra(0.8e-6).composite_rq) * 1e6, 4)
             1.418
         """
-        first = as_array(ra_1)
-        second = first if ra_2 is None else as_array(ra_2)
-        return cls(ra_1=first, ra_2=second, rq_1=RQ_PER_RA * first, rq_2=RQ_PER_RA * second)
+        second = ra_1 if ra_2 is None else ra_2
+        return cls(ra_1=ra_1, ra_2=second, rq_1=RQ_PER_RA * ra_1, rq_2=RQ_PER_RA * second)
 
     @classmethod
     def from_rq(cls, rq_1: ArrayLike, rq_2: ArrayLike | None = None) -> Roughness:

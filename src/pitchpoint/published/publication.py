@@ -1,15 +1,21 @@
 """What a publication brings to the cases that name it as their source."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
-from pitchpoint.efficiency.quasi_static import Design, Operation
-from pitchpoint.input.tables import Table
+from pitchpoint.registry import code_at
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
+
+if TYPE_CHECKING:
+    from pitchpoint.efficiency.quasi_static import Design, Operation
+    from pitchpoint.input.tables import Table
 
 __all__ = ["Beside", "Curves", "Point", "Publication", "Read", "Reading"]
 
@@ -86,14 +92,14 @@ class Publication:
 
     Attributes:
         name: key of its bibliography entry, which a case gives as its `source`.
-        readings: each gives values by the name of their variable.
+        readings: each gives values by the name of their variable; as places, loaded when they are read.
         variables: of the readings.
         beside: those that the report sets beside each other; none for most.
         courses: dimension of each reading that is a course, by name.
     """
 
     name: str
-    readings: tuple[Reading, ...] = ()
+    readings: tuple[Reading | str, ...] = ()
     variables: Mapping[str, Variable] = field(default_factory=dict)
     beside: tuple[Beside, ...] = ()
     courses: Mapping[str, str] = field(default_factory=dict)
@@ -107,5 +113,6 @@ class Publication:
 
     def read(self, point: Point) -> Read:
         """Values of all readings at a point."""
-        found = [reading(point) for reading in self.readings]
+        each = (code_at(one) if isinstance(one, str) else one for one in self.readings)
+        found = [reading(point) for reading in each]
         return {name: value for one in found for name, value in one.items()}

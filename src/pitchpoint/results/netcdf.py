@@ -4,6 +4,8 @@ xarray and h5netcdf take a tenfold of the time of h5py itself, for the many smal
 long as its numerics.
 """
 
+from collections.abc import Hashable, Mapping
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -30,24 +32,34 @@ def encode(data: xr.Dataset) -> bytes:
             or numbers.
     """
     with h5py.File.in_memory(track_order=True) as file:
-        made = f"version=2,pitchpoint={version('pitchpoint')},hdf5={h5py.version.hdf5_version}"
+        made = f"version=2,pitchpoint={_version()},hdf5={h5py.version.hdf5_version}"
         file.attrs["_NCProperties"] = np.bytes_(made)
-        scales = [_scale(file, data, str(name), number) for number, name in enumerate(data.sizes)]
-        for name, variable in data.variables.items():
-            if name not in data.sizes:
+        sizes, variables, coords = dict(data.sizes), dict(data.variables), set(data.coords)
+        others = {str(name): set(variables[name].dims) for name in coords - sizes.keys()}
+        numbers = {name: number for number, name in enumerate(sizes)}
+        scales = [
+            _scale(file, str(name), size, variables.get(name), numbers[name])
+            for name, size in sizes.items()
+        ]
+        for name, variable in variables.items():
+            if name not in sizes:
                 made = _variable(file, str(name), variable)
-                _attach(made, variable, list(data.sizes), scales)
-                if name in data.data_vars:
-                    _describe(made, _beside(data, variable))
+                _attach(made, [numbers[dim] for dim in variable.dims], scales)
+                if name not in coords:
+                    _describe(made, _beside(others, variable))
         _describe(file, data.attrs)
         file.flush()
         return bytes(file.id.get_file_image())
 
 
-def _beside(data: xr.Dataset, variable: xr.Variable) -> dict[str, str]:
+@cache
+def _version() -> str:
+    return version("pitchpoint")
+
+
+def _beside(others: Mapping[str, set[Hashable]], variable: xr.Variable) -> dict[str, str]:
     """Coordinates along dimensions of a variable that are no dimensions themselves, by name."""
-    others = {name: one for name, one in data.coords.items() if name not in data.sizes}
-    names = sorted(str(name) for name, one in others.items() if set(one.dims) <= set(variable.dims))
+    names = sorted(name for name, dims in others.items() if dims <= set(variable.dims))
     return {_COORDINATES: " ".join(names)} if names else {}
 
 
@@ -63,15 +75,17 @@ def decode(image: bytes) -> xr.Dataset:
         return xr.Dataset(variables, attrs=_described(file)).set_coords(beside)
 
 
-def _scale(file: h5py.File, data: xr.Dataset, name: str, number: int) -> h5py.Dataset:
+def _scale(
+    file: h5py.File, name: str, size: int, coordinate: xr.Variable | None, number: int
+) -> h5py.Dataset:
     """Dimension: with its coordinate, or an array of nothing that has its length."""
-    if name in data.variables:
-        scale = _variable(file, name, data.variables[name])
+    if coordinate is not None:
+        scale = _variable(file, name, coordinate)
         scale.make_scale(name)
     else:
-        scale = _array(file, name, shape=(data.sizes[name],), dtype=">f4")
-        scale.make_scale(f"{_NO_VARIABLE}{data.sizes[name]:10}")
-    scale.attrs[_NUMBER] = np.int32(number)
+        scale = _array(file, name, shape=(size,), dtype=">f4")
+        scale.make_scale(f"{_NO_VARIABLE}{size:10}")
+    _put(scale, _NUMBER, np.int32(number))
     return scale
 
 
@@ -97,21 +111,38 @@ def _array(file: h5py.File, name: str, **what: Any) -> h5py.Dataset:
     return file.create_dataset(name, maxshape=grows, track_order=True, **what)
 
 
-def _attach(
-    made: h5py.Dataset, variable: xr.Variable, names: list[Any], scales: list[h5py.Dataset]
-) -> None:
-    numbers = [names.index(name) for name in variable.dims]
+def _attach(made: h5py.Dataset, numbers: list[int], scales: list[h5py.Dataset]) -> None:
     if numbers:
-        made.attrs[_NUMBERS] = np.array(numbers, np.int32)
+        _put(made, _NUMBERS, np.array(numbers, np.int32))
     for axis, number in enumerate(numbers):
         h5py.h5ds.attach_scale(made.id, scales[number].id, axis)
 
 
-def _describe(item: h5py.File | h5py.Dataset, attributes: dict[Any, Any]) -> None:
+def _describe(item: h5py.File | h5py.Dataset, attributes: Mapping[Any, Any]) -> None:
     """Attributes: texts, in which HDF5 takes no zero, and numbers as arrays of one, as netCDF has them."""
     for name, value in attributes.items():
         text = isinstance(value, str)
-        item.attrs[name] = value.replace("\0", "\\0") if text else np.atleast_1d(value)
+        _put(item, name, value.replace("\0", "\\0") if text else np.atleast_1d(value))
+
+
+def _put(item: h5py.File | h5py.Dataset, name: str, value: Any) -> None:
+    """A new attribute, as `item.attrs` writes it; that takes three times as long to find out its type."""
+    values = np.asarray(value, _TEXT if isinstance(value, str) else None)
+    kind, held = _kinds(values.dtype)
+    made = h5py.h5a.create(item.id, name.encode(), kind, _space(values.shape))
+    made.write(values, mtype=held)
+
+
+@cache
+def _space(shape: tuple[int, ...]) -> h5py.h5s.SpaceID:
+    return h5py.h5s.create_simple(shape)
+
+
+@cache
+def _kinds(dtype: "np.dtype[Any]") -> tuple[h5py.h5t.TypeID, h5py.h5t.TypeID]:
+    """Type of an attribute in the file and in memory."""
+    known = _TEXT if dtype == _TEXT else dtype
+    return h5py.h5t.py_create(known, logical=True), h5py.h5t.py_create(known)
 
 
 def _read(name: str, item: h5py.Dataset, scales: list[str]) -> xr.Variable:

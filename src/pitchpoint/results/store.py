@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -67,25 +68,31 @@ def dataset(
         {name: (dims, np.asarray(values)) for name, (dims, values) in variables.items()},
         coords=dict(coordinates),
     )
-    describe(data, {name: one.where(travels) for name, one in VARIABLES.items()})
+    known = VARIABLES.keys() & data.variables.keys()
+    describe(data, {name: VARIABLES[name].where(travels) for name in known})
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
-        version=version("pitchpoint"),
+        version=_version(),
     )
     return data
 
 
 def describe(data: xr.Dataset, variables: Mapping[str, Variable]) -> None:
     """Write unit, long name and symbol to those variables of a dataset that are described."""
-    for name in data.variables:
+    for name, values in data.variables.items():
         own = variables.get(str(name))
         if own is not None:
-            data[name].attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
+            values.attrs.update(units=own.unit, long_name=own.long_name, symbol=own.symbol)
+
+
+@cache
+def _version() -> str:
+    return version("pitchpoint")
 
 
 def fingerprint(*parts: Any) -> str:
     """Short digest of inputs: equal inputs of one version of the package, equal digest."""
-    text = json.dumps([version("pitchpoint"), *parts], sort_keys=True, default=str)
+    text = json.dumps([_version(), *parts], sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

@@ -24,7 +24,7 @@ from pitchpoint.cases.schema import DriveCase, StageTable, in_form, keys, quanti
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import Quantity, shown
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.registry import nearest
 from pitchpoint.runs.reading import variants_of
 

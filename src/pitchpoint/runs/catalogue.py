@@ -6,30 +6,31 @@ from typing import Any
 
 from pitchpoint import units
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.cases.laws import FRICTION, limits_words
+from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-from pitchpoint.efficiency.breakaway import BREAKAWAY
-from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
-from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
+from pitchpoint.dynamics.registry import CONTACT_LAWS
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
+from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
-from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point
-from pitchpoint.lubrication.asperity_load import ASPERITY_LOAD
+from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point, limits_words
 from pitchpoint.lubrication.conditions import Law, shape_of
-from pitchpoint.lubrication.ehl.texture import ASPERITIES
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.ehl.registry import ASPERITIES
+from pitchpoint.lubrication.registry import (
+    ASPERITY_LOAD,
+    FILM_THICKNESS,
+    INLET_HEATING,
+    ROLLING_RESISTANCE,
+    FilmThickness,
+    FrictionLaw,
+)
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.data import Datum
 from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.published.registry import LAWS_OF_CASES
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.wear.laws import WEAR_LAWS
+from pitchpoint.wear.registry import WEAR_LAWS
 
 __all__ = ["entries", "figures"]
 

@@ -12,7 +12,7 @@ from pitchpoint.cases.library import as_text, find, path_of
 from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten, visible
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.registry import nearest
 
 __all__ = ["variants_of"]

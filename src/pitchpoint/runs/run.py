@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from itertools import count
 from math import prod
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
 import xarray as xr
@@ -31,21 +31,19 @@ from pitchpoint.cases.schema import Loss, Study, validate
 from pitchpoint.cases.stages import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import cite
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
-from pitchpoint.efficiency.bearing_loss import BEARING_LOSS
-from pitchpoint.efficiency.breakaway import BREAKAWAY
-from pitchpoint.efficiency.tooth_temperature import TOOTH_TEMPERATURE
+from pitchpoint.dynamics.registry import CONTACT_LAWS
+from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.mesh import PATHS
 from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import arguments
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL
-from pitchpoint.lubrication.ehl.model import SMOOTH, FilmModel
-from pitchpoint.lubrication.ehl.texture import ASPERITIES
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
-from pitchpoint.lubrication.inlet_heating import INLET_HEATING
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
+from pitchpoint.lubrication.registry import (
+    FILM_THICKNESS,
+    INLET_HEATING,
+    ROLLING_RESISTANCE,
+    FrictionLaw,
+)
 from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
 from pitchpoint.programs import surroundings
 from pitchpoint.published.registry import publication_of
@@ -63,6 +61,9 @@ from pitchpoint.results.store import (
 from pitchpoint.results.target_rows import Row
 from pitchpoint.runs.case import Case, CaseLike, as_case, held
 from pitchpoint.runs.jobs import Job, job_of, jobs
+
+if TYPE_CHECKING:
+    from pitchpoint.lubrication.ehl.model import FilmModel
 
 __all__ = [
     "MEETINGS",
@@ -700,7 +701,7 @@ def _of_mesh(built: Built) -> dict[str, Any]:
     return found
 
 
-def _of_films(model: FilmModel) -> dict[str, Any]:
+def _of_films(model: "FilmModel") -> dict[str, Any]:
     """Models behind films that are solved, by effect."""
     found: dict[str, Any] = {
         "viscosity under pressure": VISCOSITY[model.viscosity_law],

@@ -7,7 +7,7 @@ from itertools import cycle
 import numpy as np
 import xarray as xr
 
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import (

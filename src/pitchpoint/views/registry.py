@@ -1,7 +1,7 @@
-"""All sections of the report and the screen."""
+"""All sections of the report and the screen; those of parts that few results have are loaded for them."""
 
 from pitchpoint.registry import Registry
-from pitchpoint.views.section import Section
+from pitchpoint.views.section import Section, of_part
 from pitchpoint.views.sections.answer import ANSWER
 from pitchpoint.views.sections.arc import ARC
 from pitchpoint.views.sections.beside import BESIDE
@@ -9,32 +9,123 @@ from pitchpoint.views.sections.compared import COMPARED
 from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.designs import DESIGNS
 from pitchpoint.views.sections.drive import DRIVE
-from pitchpoint.views.sections.film import FILM
-from pitchpoint.views.sections.film_squeeze import FILM_SQUEEZE
-from pitchpoint.views.sections.finite_film import FINITE_FILM
 from pitchpoint.views.sections.formulas import FORMULAS
 from pitchpoint.views.sections.four_quadrants import FOUR_QUADRANTS
 from pitchpoint.views.sections.inputs import INPUTS
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.issues import ISSUES
-from pitchpoint.views.sections.joint import JOINT
-from pitchpoint.views.sections.kinematic_error import KINEMATIC_ERROR
-from pitchpoint.views.sections.load_limits import LOAD_LIMITS
 from pitchpoint.views.sections.loss_map import LOSS_MAP
 from pitchpoint.views.sections.models import MODELS
-from pitchpoint.views.sections.motion import MOTION
 from pitchpoint.views.sections.path import PATH
 from pitchpoint.views.sections.sources import SOURCES
 from pitchpoint.views.sections.stages import STAGES
-from pitchpoint.views.sections.stiffness import STIFFNESS
 from pitchpoint.views.sections.strength import STRENGTH
 from pitchpoint.views.sections.studies import STUDIES
 from pitchpoint.views.sections.teeth import TEETH
-from pitchpoint.views.sections.torsion import TORSION
 from pitchpoint.views.sections.vibration import VIBRATION
-from pitchpoint.views.sections.wear import WEAR
 
 __all__ = ["SECTIONS", "in_order", "register_section"]
+
+FILM = Section(
+    name="film",
+    title="Films solved",
+    short="Films",
+    order=230.0,
+    parts=("film",),
+    blocks="pitchpoint.views.sections.film:film_blocks",
+    answer=of_part("film", "pitchpoint.views.sections.film:film_facts"),
+    screen=of_part("film", "pitchpoint.views.sections.film:film_printed"),
+)
+FINITE_FILM = Section(
+    name="finite_film",
+    title="Films of finite contacts",
+    short="Finite contacts",
+    order=231.0,
+    parts=("finite_film",),
+    blocks="pitchpoint.views.sections.finite_film:finite_film_blocks",
+    answer=of_part("finite_film", "pitchpoint.views.sections.finite_film:finite_film_facts"),
+    screen=of_part("finite_film", "pitchpoint.views.sections.finite_film:finite_film_printed"),
+)
+FILM_SQUEEZE = Section(
+    name="film_squeeze",
+    title="Squeeze of films over the engagement",
+    short="Squeeze",
+    order=232.0,
+    parts=("film_squeeze",),
+    blocks="pitchpoint.views.sections.film_squeeze:squeeze_blocks",
+    answer=of_part("film_squeeze", "pitchpoint.views.sections.film_squeeze:squeeze_facts"),
+    screen=of_part("film_squeeze", "pitchpoint.views.sections.film_squeeze:squeeze_printed"),
+)
+WEAR = Section(
+    name="wear",
+    title="Wear",
+    short="Wear",
+    order=234.0,
+    parts=("wear",),
+    blocks="pitchpoint.views.sections.wear:wear_blocks",
+    answer=of_part("wear", "pitchpoint.views.sections.wear:wear_facts"),
+    screen=of_part("wear", "pitchpoint.views.sections.wear:wear_printed"),
+)
+TORSION = Section(
+    name="torsion",
+    title="Torsion",
+    short="Torsion",
+    order=300.0,
+    parts=("torsion",),
+    blocks="pitchpoint.views.sections.torsion:torsion_blocks",
+    answer=of_part("torsion", "pitchpoint.views.sections.torsion:torsion_facts"),
+    screen=of_part("torsion", "pitchpoint.views.sections.torsion:torsion_printed"),
+)
+KINEMATIC_ERROR = Section(
+    name="kinematic",
+    title="Kinematic error",
+    short="Kinematic error",
+    order=310.0,
+    parts=("kinematic_error",),
+    blocks="pitchpoint.views.sections.kinematic_error:error_blocks",
+    answer=of_part("kinematic_error", "pitchpoint.views.sections.kinematic_error:error_facts"),
+    screen=of_part("kinematic_error", "pitchpoint.views.sections.kinematic_error:error_printed"),
+)
+JOINT = Section(
+    name="joint",
+    title="Torsional vibration of the joint",
+    short="Joint",
+    order=320.0,
+    parts=("joint",),
+    blocks="pitchpoint.views.sections.joint:joint_blocks",
+    answer=of_part("joint", "pitchpoint.views.sections.joint:joint_facts"),
+    screen=of_part("joint", "pitchpoint.views.sections.joint:joint_printed"),
+)
+STIFFNESS = Section(
+    name="stiffness",
+    title="Mesh stiffness",
+    short="Mesh stiffness",
+    order=400.0,
+    parts=("stiffness",),
+    blocks="pitchpoint.views.sections.stiffness:stiffness_blocks",
+    answer=of_part("stiffness", "pitchpoint.views.sections.stiffness:stiffness_facts"),
+    warns=of_part("stiffness", "pitchpoint.views.sections.stiffness:stiffness_warnings"),
+)
+LOAD_LIMITS = Section(
+    name="load_limits",
+    title="Load limits of flexspline and wave generator",
+    short="Load limits",
+    order=106.0,
+    parts=("load_limits",),
+    blocks="pitchpoint.views.sections.load_limits:limits_blocks",
+    answer=of_part("load_limits", "pitchpoint.views.sections.load_limits:limits_facts"),
+    screen=of_part("load_limits", "pitchpoint.views.sections.load_limits:limits_printed"),
+)
+MOTION = Section(
+    name="motion",
+    title="Motion with friction",
+    short="Motion",
+    order=420.0,
+    parts=("motion",),
+    blocks="pitchpoint.views.sections.motion:motion_blocks",
+    answer=of_part("motion", "pitchpoint.views.sections.motion:motion_facts"),
+    screen=of_part("motion", "pitchpoint.views.sections.motion:motion_printed"),
+)
 
 SECTIONS: Registry[Section] = Registry(
     "section",

@@ -6,9 +6,11 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pitchpoint.kept import base_folder, prepared, read, write
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.run import Outcome
@@ -146,10 +148,26 @@ def _drawn(block: Drawn) -> "markupsafe.Markup":
 
 @cache
 def packed_plotly() -> str:
-    """plotly.js, compressed: it is most of the page."""
-    from plotly.offline import get_plotlyjs
+    """plotly.js, compressed: it is most of the page, and is kept, since packing it takes .2 s."""
+    folder = _kept_pages()
+    path = None if folder is None else folder / f"plotly-{version('plotly')}"
+    packed = None if path is None else read(path)
+    if packed is None:
+        from plotly.offline import get_plotlyjs
 
-    return base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode()
+        packed = base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0))
+        if path is not None:
+            write(path, packed)
+    return packed.decode()
+
+
+@cache
+def _kept_pages() -> Path | None:
+    """Folder of what pages are made of; None where the user has none that is private."""
+    try:
+        return prepared(base_folder() / "pages")
+    except RuntimeError:
+        return None
 
 
 @cache
@@ -157,7 +175,9 @@ def environment() -> "jinja2.Environment":
     """Templates of pages, with what they ask for."""
     import jinja2
 
+    kept = _kept_pages()
     made = jinja2.Environment(
+        bytecode_cache=None if kept is None else jinja2.FileSystemBytecodeCache(str(kept)),
         loader=jinja2.PackageLoader("pitchpoint.views"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from pitchpoint.registry import Deferred, code_at
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Curves, Panel
 
@@ -22,6 +23,7 @@ __all__ = [
     "Table",
     "Variants",
     "by_variant",
+    "of_part",
     "panels",
     "reason",
     "said",
@@ -243,7 +245,7 @@ class Section:
     short: Words
     order: float
     parts: tuple[str, ...] = ()
-    blocks: Callable[[Page], Iterable[Block]]
+    blocks: Deferred[Callable[[Page], Iterable[Block]]] = Deferred()
     lacks: Callable[[Page], str | None] | None = None
     answer: Callable[[Outcome], Iterable[tuple[str, str]]] = lambda outcome: ()
     card: Callable[[Outcome, str], Iterable[tuple[str, str]]] = lambda outcome, law: ()
@@ -259,6 +261,20 @@ class Section:
         if self.lacks is not None:
             return self.lacks(page)
         return None if page.having(*self.parts) else reason(page, *self.parts)
+
+
+def of_part(part: str, place: str) -> Callable[..., Any]:
+    """What a section says of an outcome that has a part, loaded for such alone; nothing of the others.
+
+    Args:
+        part: of a result.
+        place: of the function, see `registry.code_at`.
+    """
+
+    def told(outcome: Outcome, *law: str) -> Any:
+        return code_at(place)(outcome, *law) if part in outcome.parts else ()
+
+    return told
 
 
 def reason(page: Page, *parts: str) -> str:

@@ -26,10 +26,10 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, as_array
 from pitchpoint.gears.period import edges
 from pitchpoint.loading.tooth_compliance import TeethAt, teeth_at
-from pitchpoint.lubrication.asperity_load import AsperityLoad
 from pitchpoint.lubrication.conditions import UNITS, Conditions, evaluate
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
+from pitchpoint.lubrication.registry import AsperityLoad
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.programs import program
 from pitchpoint.wear.film_defect import fractional_film_defect

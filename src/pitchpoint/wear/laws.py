@@ -5,22 +5,17 @@ A law takes SI values by keyword and returns the specific wear rate k of one mem
 its arguments broadcast.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from types import MappingProxyType
 
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Shape
 from pitchpoint.factored import Numbers, log, root
 from pitchpoint.lubrication import conditions
-from pitchpoint.registry import Registry
 
 __all__ = [
     "UNITS",
-    "WEAR_LAWS",
-    "WearLaw",
     "archard_1953",
     "janakiraman_2013",
     "masjedi_khonsari_2015",
@@ -43,28 +38,6 @@ UNITS: Mapping[str, str] = MappingProxyType(
     }
 )
 """Unit of everything that a wear law may ask for: conditions at a contact, and what belongs to wear alone."""
-
-
-@dataclass(frozen=True, eq=False)
-class WearLaw:
-    """A named wear law; `function` gives the specific wear rate of one member [1/Pa].
-
-    It holds for contacts of one `shape`, or of any (None). `ranges` are of its arguments in SI; empty where
-    no source states any.
-    """
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    sources: tuple[str, ...]
-    note: str = ""
-    shape: Shape | None = None
-    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-
-    @property
-    def rivals(self) -> "list[WearLaw]":
-        """Laws of the library."""
-        return list(WEAR_LAWS.values())
 
 
 def archard_1953(*, coefficient: Each, hardness: Each) -> Float[Array, "..."]:
@@ -183,40 +156,3 @@ def vdi_2736(*, rate: Each) -> Float[Array, "..."]:
         1.03e-15
     """
     return jnp.asarray(rate, dtype=float)
-
-
-WEAR_LAWS = Registry(
-    "wear law",
-    WearLaw(
-        "archard_1953",
-        "Archard, dry",
-        archard_1953,
-        ("archard_1953", "zhao_2022"),
-        "The coefficient is of the pair of materials; recalled values of dry metals are 1e-6 to 1e-4.",
-    ),
-    WearLaw(
-        "masjedi_khonsari_2015",
-        "Masjedi-Khonsari, mixed lubrication",
-        masjedi_khonsari_2015,
-        ("masjedi_khonsari_2015", "zhao_2022"),
-        "Archard's dry coefficient on the part of the load that asperities carry, where the adsorbed film "
-        "has defects. The heat of adsorption decides about orders of magnitude.",
-    ),
-    WearLaw(
-        "janakiraman_2013",
-        "Janakiraman, lubricated steel rollers",
-        janakiraman_2013,
-        ("janakiraman_2013", "zhao_2022"),
-        "Contains hardness and lubrication. The range of its tests is not printed in what was at hand, so "
-        "that nothing can say where it is left; between pressure-viscosity coefficients of 25 and 15 1/GPa "
-        "it changes by a factor of 43.",
-        "line",
-    ),
-    WearLaw(
-        "vdi_2736",
-        "specific wear rate by value, VDI 2736",
-        vdi_2736,
-        ("vdi_2736_2_2014", "tkuhn39_2026"),
-        "Of plastics; the guideline has it with the mean depth over the flank.",
-    ),
-)

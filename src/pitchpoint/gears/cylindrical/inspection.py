@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
-from math import acos, asin, atan, ceil, cos, floor, log10, nan, pi, sin, tan
+from math import acos, asin, atan, ceil, cos, floor, inf, log10, nan, pi, sin, tan
 
 __all__ = ["Backlash", "Toothing", "backlash", "backlash_limits", "disc"]
 
@@ -248,12 +248,13 @@ def involute(angle: float) -> float:
 
 def inverse_involute(value: float) -> float:
     """Angle whose involute function has a value [rad]; NaN where there is none below 86 degrees."""
-    from scipy.optimize import brentq
-
     last = 1.5
-    if not 0.0 <= value <= involute(last):
-        return nan
-    return float(brentq(lambda angle: involute(angle) - value, 0.0, last, xtol=1e-15))
+    if not 0.0 < value <= involute(last):
+        return 0.0 if value == 0.0 else nan
+    angle, before = min((3.0 * value) ** (1.0 / 3.0), last), inf
+    while angle < before:  # Newton's steps from above only fall, as the curve bends upwards
+        before, angle = angle, angle - (involute(angle) - value) / tan(angle) ** 2
+    return before
 
 
 def _rounded_up(value: float) -> float:

@@ -30,14 +30,13 @@ from pitchpoint.gears.strain_wave.groove import (
 )
 from pitchpoint.gears.strain_wave.in_series import Behind, Cup, InSeries, in_series
 from pitchpoint.gears.strain_wave.proportions import rim_by_strain
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES, DoubleArcForm
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
-from pitchpoint.gears.strain_wave.wave_generator import TERMS, WAVE_SHAPES, NeutralLine
+from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
 from pitchpoint.programs import fast_program, program
 from pitchpoint.status import Code, Status
 
 __all__ = [
-    "DOUBLE_ARCS",
-    "DoubleArcForm",
     "InvoluteForm",
     "build_strain_wave",
     "build_strain_waves",
@@ -68,20 +67,6 @@ _SLACK = 1e-6
 
 
 @dataclass(frozen=True)
-class DoubleArcForm:
-    """A double-arc tooth, all in modules; see `DoubleArcFlank`."""
-
-    convex_radius: float
-    convex_offset: float
-    convex_shift: float
-    concave_radius: float
-    concave_offset: float
-    concave_shift: float
-    addendum: float = 0.55
-    dedendum: float = 0.75
-
-
-@dataclass(frozen=True)
 class InvoluteForm:
     """An involute tooth by the basic rack that cuts it, in modules."""
 
@@ -89,13 +74,6 @@ class InvoluteForm:
     addendum: float = 1.0
     dedendum: float = 1.35
     pressure_angle: float = radians(20.0)
-
-
-DOUBLE_ARCS = {
-    "liu": DoubleArcForm(1.370, 0.664, 0.310, 1.570, 0.660, 0.268),
-    "flat": DoubleArcForm(2.000, 1.294, 0.330, 2.200, 1.290, 0.300),
-}
-"""Double-arc teeth by name: a published design (Liu et al. 2025), and one with flatter flanks."""
 
 
 def build_strain_wave(

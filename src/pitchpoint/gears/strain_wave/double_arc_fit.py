@@ -9,17 +9,11 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears.strain_wave.design import (
-    DOUBLE_ARCS,
-    LEAST_LAND,
-    RIDGE,
-    SWEPT_ACCURACY,
-    DoubleArcForm,
-    build_strain_wave,
-)
+from pitchpoint.gears.strain_wave.design import LEAST_LAND, RIDGE, SWEPT_ACCURACY, build_strain_wave
 from pitchpoint.gears.strain_wave.drive import StrainWave, nearest_points
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
 from pitchpoint.gears.strain_wave.groove import Groove, Tips, swept, tip_with_land
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
 from pitchpoint.programs import program

@@ -9,15 +9,10 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.family import Family, Followed, Turning, waves
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave.ball_bearing import Balls
-from pitchpoint.gears.strain_wave.design import (
-    DOUBLE_ARCS,
-    DoubleArcForm,
-    InvoluteForm,
-    build_strain_wave,
-    check_strain_wave,
-)
+from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave, check_strain_wave
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.in_series import Behind, dimensions
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.table import (
     BallBearing,
     DoubleArcTooth,

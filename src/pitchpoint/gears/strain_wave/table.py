@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, Tag, model_validator
 from pitchpoint.errors import InputError
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.proportions import DIMENSIONS
+from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES
 from pitchpoint.gears.table import (
     ANGLE,
     BORE,
@@ -52,18 +53,6 @@ TURNING = Quantity("rotational speed", 0.0, 1e5, "rpm", open_low=True)
 LIFE = Quantity("time", 0.0, 1e12, "h", open_low=True)
 
 
-def _double_arcs() -> list[str]:
-    from pitchpoint.gears.strain_wave.design import DOUBLE_ARCS
-
-    return list(DOUBLE_ARCS)
-
-
-def _wave_shapes() -> list[str]:
-    from pitchpoint.gears.strain_wave.wave_generator import WAVE_SHAPES
-
-    return list(WAVE_SHAPES)
-
-
 _ARCS = (
     "convex_radius",
     "convex_offset",
@@ -82,7 +71,7 @@ class DoubleArcTooth(Table):
 
     form: Literal["double arc"] = "double arc"
     """Form of the flexspline's teeth: two arcs and their tangent."""
-    set: Annotated[str, BeforeValidator(named(_double_arcs, "double-arc tooth"))] | None = None
+    set: Annotated[str, BeforeValidator(named(DOUBLE_ARCS.keys, "double-arc tooth"))] | None = None
     """Named set of dimensions, for those that are not given; liu unless given."""
     convex_radius: Annotated[float, ARC] | None = None
     """Radius ρ_a of the convex arc at the tip, in modules; that of the set unless given."""
@@ -107,7 +96,7 @@ class DoubleArcTooth(Table):
         if self.set is None and 0 < len(missing) < len(_ARCS):
             raise InputError(
                 f"a double-arc tooth by value needs {', '.join(missing)} too; or name the set that gives "
-                f"what is left out, one of {', '.join(_double_arcs())}",
+                f"what is left out, one of {', '.join(DOUBLE_ARCS)}",
             )
         return self
 
@@ -173,7 +162,7 @@ class WaveGenerator(Table):
     difference.
     """
 
-    shape: Annotated[str, BeforeValidator(named(_wave_shapes, "wave shape"))] = "cosine"
+    shape: Annotated[str, BeforeValidator(named(WAVE_SHAPES.keys, "wave shape"))] = "cosine"
     """Shape into which the flexspline is bent, by name."""
     weights: tuple[Annotated[float, AMPLITUDE], ...] = ()
     """Amplitudes of cos 2p, cos 4p, ... in place of a shape; only their ratios count."""

@@ -1,7 +1,5 @@
 """How a wave generator deforms the neutral line of a flexspline: named shapes as cosine series."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
 import equinox as eqx
@@ -10,9 +8,8 @@ from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.registry import Registry
 
-__all__ = ["TERMS", "WAVE_SHAPES", "NeutralLine", "WaveShape"]
+__all__ = ["TERMS", "NeutralLine", "cosine", "elliptical", "four_forces", "two_rollers"]
 
 TERMS = 16
 """Even harmonics of every shape; the last of an infinite series is below 1e-5 of the first."""
@@ -61,30 +58,12 @@ def _powers(angle: Float[Array, "*b"], count: int) -> Complex[Array, "term *b"]:
     return known[:count]
 
 
-@dataclass(frozen=True, eq=False)
-class WaveShape:
-    """One way in which a wave generator holds its flexspline.
-
-    Attributes:
-        name, title: by which it is picked, and what it says.
-        harmonics: amplitudes of cos 2p, cos 4p, ... that sum to one, from the angle of the forces
-            [rad] and the ratio w0/r; of no account to some.
-        sources: keys of the bibliography.
-        note: caution for the user.
-    """
-
-    name: str
-    title: str
-    harmonics: Callable[[float, float], np.ndarray]
-    sources: tuple[str, ...] = ()
-    note: str = ""
-
-
-def _cosine(force_angle: float, relative: float) -> np.ndarray:
+def cosine(force_angle: float, relative: float) -> np.ndarray:
+    """Radial displacement w0 cos 2p alone."""
     return np.asarray(np.eye(TERMS)[0])
 
 
-def _elliptical(force_angle: float, relative: float) -> np.ndarray:
+def elliptical(force_angle: float, relative: float) -> np.ndarray:
     """Ellipse with half axes r (1 + e) and r (1 - e); its constant part is left to the second order."""
     angle = np.linspace(0.0, 2.0 * np.pi, 512, endpoint=False)
     long, short = 1.0 + relative, 1.0 - relative
@@ -93,7 +72,7 @@ def _elliptical(force_angle: float, relative: float) -> np.ndarray:
     return np.asarray(found / found.sum())
 
 
-def _four_forces(force_angle: float, relative: float) -> np.ndarray:
+def four_forces(force_angle: float, relative: float) -> np.ndarray:
     """Ring under two pairs of equal outward forces at plus and minus an angle from the long axis."""
     orders = 2.0 * np.arange(1, TERMS + 1)
     found = np.cos(orders * force_angle) / (orders**2 - 1.0) ** 2
@@ -101,25 +80,6 @@ def _four_forces(force_angle: float, relative: float) -> np.ndarray:
     return np.asarray(found / abs(found.sum()))
 
 
-def _two_rollers(force_angle: float, relative: float) -> np.ndarray:
-    return _four_forces(0.0, relative)
-
-
-WAVE_SHAPES = Registry(
-    "shape of the wave generator",
-    WaveShape("cosine", "radial displacement w0 cos 2p", _cosine, ("zhao_2022",)),
-    WaveShape("elliptical", "ellipse with half axes r + w0 and r - w0", _elliptical),
-    WaveShape(
-        "two_rollers",
-        "ring under two opposite forces",
-        _two_rollers,
-        ("timoshenko_1955",),
-    ),
-    WaveShape(
-        "four_forces",
-        "ring under two pairs of forces beside the long axis",
-        _four_forces,
-        ("timoshenko_1955",),
-        note="force_angle says where; 30 degrees where it is not given.",
-    ),
-)
+def two_rollers(force_angle: float, relative: float) -> np.ndarray:
+    """Ring under two opposite outward forces."""
+    return four_forces(0.0, relative)

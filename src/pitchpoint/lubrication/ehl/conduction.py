@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
-
 import equinox as eqx
 from jax.typing import ArrayLike
 from jaxtyping import Float
@@ -12,12 +9,10 @@ from jaxtyping import Float
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials._leaves import as_array
-from pitchpoint.registry import Registry
 
-__all__ = ["ISOTHERMAL", "THERMAL", "Conduction", "ThermalEffect"]
-
-ISOTHERMAL: Final = "isothermal"
-"""Name of no heat: the film is as warm as its inlet everywhere."""
+__all__ = [
+    "Conduction",
+]
 
 
 class Conduction(eqx.Module):
@@ -41,39 +36,3 @@ class Conduction(eqx.Module):
 
     def __init__(self, *, a: Conductor, b: Conductor, oil_conductivity: ArrayLike) -> None:
         self.a, self.b, self.oil_conductivity = a, b, as_array(oil_conductivity)
-
-
-@dataclass(frozen=True, eq=False)
-class ThermalEffect:
-    """A named thermal effect of the film.
-
-    Attributes:
-        name: by which it is chosen.
-        title: name to show.
-        sources: keys of the bibliography.
-        note: what it takes for granted.
-    """
-
-    name: str
-    title: str
-    sources: tuple[str, ...]
-    note: str
-
-
-THERMAL = Registry(
-    "thermal effect of a film",
-    ThermalEffect(
-        ISOTHERMAL,
-        "isothermal film",
-        (),
-        "The film is as warm as its inlet: traction of a contact that slides much comes out too high.",
-    ),
-    ThermalEffect(
-        "mean_film",
-        "mean temperature of the film, flash temperature of both surfaces",
-        ("jaeger_1942", "johnson_1985"),
-        "Steady; viscosity, density and shear stress are those at the mean temperature across the film. The "
-        "flowing oil takes no heat along, compression makes none. Peclet numbers of both surfaces are above "
-        "about 5; a slower surface conducts heat along itself too.",
-    ),
-)

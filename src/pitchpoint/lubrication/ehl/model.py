@@ -11,28 +11,17 @@ from jax.typing import ArrayLike
 
 from pitchpoint.contact.asperities import ETA_BETA_SIGMA, SIGMA_OVER_BETA
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.conduction import ISOTHERMAL, THERMAL, Conduction
+from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
+from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH, THERMAL, USUAL_ASPERITIES
 from pitchpoint.lubrication.ehl.solve import NODES
-from pitchpoint.lubrication.ehl.texture import (
-    BOUNDARY_FRICTION,
-    USUAL_ASPERITIES,
-    Rough,
-)
+from pitchpoint.lubrication.ehl.texture import BOUNDARY_FRICTION, Rough
 from pitchpoint.lubrication.flash_temperature import Conductor
-from pitchpoint.materials.fluid import (
-    USUAL_DENSITY,
-    USUAL_SHEAR_STRESS,
-    USUAL_VISCOSITY,
-    Fluid,
-)
+from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.lubricants import Lubricant
+from pitchpoint.materials.registry import USUAL_DENSITY, USUAL_SHEAR_STRESS, USUAL_VISCOSITY
 
-__all__ = ["SMOOTH", "FilmModel"]
-
-SMOOTH = "none"
-"""Name of no asperities: the surfaces count as smooth, whatever their roughness."""
-
+__all__ = ["FilmModel"]
 
 COLDEST: Final = -100.0
 """Temperature [degC] below which no oil flows, and degC may have been given for kelvin."""

@@ -1,8 +1,6 @@
 """What the surfaces of a contact do to its film: room for oil, resistance to its flow, load on asperities."""
 
 import abc
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import equinox as eqx
@@ -13,22 +11,20 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.asperities import (
     ETA_BETA_SIGMA,
     SIGMA_OVER_BETA,
-    greenwood_tripp_1970,
     greenwood_tripp_stiffness,
     greenwood_williamson_1966,
     hu_1994,
 )
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.lubrication.ehl.registry import ASPERITIES, USUAL_ASPERITIES
 from pitchpoint.lubrication.flow_factors import mean_gap, patir_cheng_1978
 from pitchpoint.materials._leaves import as_array
-from pitchpoint.registry import Registry
 
-__all__ = ["ASPERITIES", "USUAL_ASPERITIES", "AsperityLaw", "Rough", "Smooth", "Texture"]
+__all__ = ["Rough", "Smooth", "Texture"]
 
 Each = Float[Numbers, "*#b"]
 
-USUAL_ASPERITIES: Final = "greenwood_tripp_1970"
 
 BOUNDARY_FRICTION: Final = 0.1
 """Usual coefficient of friction of steel asperities with oil between them: assumed, of 0.08 to 0.15."""
@@ -100,18 +96,7 @@ class Smooth(Texture):
         return jnp.ones_like(gap)
 
 
-@dataclass(frozen=True, eq=False)
-class AsperityLaw:
-    """A named law of the pressure that asperities carry, f(gap, Rq, E', constants) in SI."""
-
-    name: str
-    title: str
-    function: Callable[..., Array]
-    sources: tuple[str, ...]
-    note: str = ""
-
-
-def _fitted(
+def fitted_pressure(
     *, gap: Each, roughness_rq: Each, modulus: Each, eta_beta_sigma: Each, sigma_over_beta: Each
 ) -> Array:
     """Greenwood and Tripp's pressure with the usual fit of its integral [Pa]."""
@@ -120,7 +105,7 @@ def _fitted(
     return found
 
 
-def _one_rough_side(
+def one_rough_side(
     *, gap: Each, roughness_rq: Each, modulus: Each, eta_beta_sigma: Each, sigma_over_beta: Each
 ) -> Array:
     """Greenwood and Williamson's pressure with summits as high as the composite roughness [Pa]."""
@@ -133,29 +118,6 @@ def _one_rough_side(
         modulus=modulus,
     )
     return found
-
-
-ASPERITIES = Registry(
-    "law of asperity pressure",
-    AsperityLaw(
-        "greenwood_tripp_1970",
-        "Greenwood-Tripp",
-        greenwood_tripp_1970,
-        ("greenwood_tripp_1970",),
-    ),
-    AsperityLaw(
-        "hu_1994",
-        "Greenwood-Tripp with the fit of its integral by Hu",
-        _fitted,
-        ("greenwood_tripp_1970", "hu_1994"),
-    ),
-    AsperityLaw(
-        "greenwood_williamson_1966",
-        "Greenwood-Williamson",
-        _one_rough_side,
-        ("greenwood_williamson_1966",),
-    ),
-)
 
 
 class Rough(Texture):

@@ -14,7 +14,7 @@ from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw
+from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.status import Code
 

@@ -1,6 +1,5 @@
 """What Atanasiu et al. (2011) print beside what the library computes, as quantities of a result."""
 
-from pitchpoint.published.atanasiu2011 import printed
 from pitchpoint.published.publication import Publication
 from pitchpoint.results.variable import Variable
 
@@ -15,4 +14,8 @@ _VARIABLES = {
     ),
 }
 
-PUBLICATION = Publication(name="atanasiu_2011", readings=(printed.readings,), variables=_VARIABLES)
+PUBLICATION = Publication(
+    name="atanasiu_2011",
+    readings=("pitchpoint.published.atanasiu2011.printed:readings",),
+    variables=_VARIABLES,
+)

@@ -22,6 +22,7 @@ from pitchpoint.programs import program
 from pitchpoint.published.liu_xiong_torus import steady
 from pitchpoint.published.liu_xiong_torus.figures import INSTANTS, LINES, Oil, figures
 from pitchpoint.published.liu_xiong_torus.motion import Drive, Piece, course
+from pitchpoint.published.liu_xiong_torus.publication import PAIRS
 from pitchpoint.published.liu_xiong_torus.steady import Springs
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.publication import Point, Read
@@ -32,8 +33,6 @@ Values = NDArray[np.float64]
 Numbers = Sequence[float] | Values
 Known = dict[str, Float[Arrays, "..."]]
 
-PAIRS = ("torus", "standard")
-"""Torus-involute pair and standard pair of the same dimensions."""
 
 _DEGREE = 4
 

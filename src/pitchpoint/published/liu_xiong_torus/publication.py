@@ -3,11 +3,13 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from pitchpoint.published.liu_xiong_torus import printed
 from pitchpoint.published.publication import Beside, Curves, Publication
 from pitchpoint.results.variable import Variable, deviation, force, length, percent, power
 
-__all__ = ["PUBLICATION"]
+__all__ = ["PAIRS", "PUBLICATION"]
+
+PAIRS = ("torus", "standard")
+"""Torus-involute pair and standard pair of the same dimensions."""
 
 
 def _pressure(long_name: str) -> Variable:
@@ -137,7 +139,7 @@ def _curves() -> Iterator[Curves]:
             yield Curves(
                 f"{one.long_name}, {which}",
                 f"{begin or 'start_'}{along}",
-                tuple(f"{pair}_{begin}{name}" for pair in printed.PAIRS),
+                tuple(f"{pair}_{begin}{name}" for pair in PAIRS),
             )
 
 
@@ -192,12 +194,12 @@ _SIDE_BY_SIDE = Beside(
         "torque does not keep these turning."
     ),
     curves=tuple(_curves()),
-    solves={"steady state": tuple(f"{pair}_steady_status" for pair in printed.PAIRS)},
+    solves={"steady state": tuple(f"{pair}_steady_status" for pair in PAIRS)},
 )
 
 PUBLICATION = Publication(
     name="liu_xiong_2017",
-    readings=(printed.readings,),
+    readings=("pitchpoint.published.liu_xiong_torus.printed:readings",),
     variables={
         **_GEOMETRY,
         **_AT_PITCH,

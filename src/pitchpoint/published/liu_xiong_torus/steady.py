@@ -10,18 +10,16 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 from pitchpoint.dynamics.bodies import Body, across
-from pitchpoint.dynamics.contact_law import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Waves
 from pitchpoint.dynamics.grid import Grid
 from pitchpoint.dynamics.modes import modes
 from pitchpoint.dynamics.passage import passage, polynomial
+from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import Moving, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.film_thickness import FILM_THICKNESS, FilmThickness
-from pitchpoint.lubrication.friction_coefficient import LAWS
-from pitchpoint.lubrication.rolling_resistance import ROLLING_RESISTANCE
+from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, ROLLING_RESISTANCE, FilmThickness
 from pitchpoint.programs import program
 from pitchpoint.status import Code
 

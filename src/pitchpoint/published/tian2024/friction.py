@@ -6,7 +6,8 @@ from jaxtyping import Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers
-from pitchpoint.lubrication.friction_coefficient import FrictionLaw, xu_2007
+from pitchpoint.lubrication.friction_coefficient import xu_2007
+from pitchpoint.lubrication.registry import FrictionLaw
 
 __all__ = [
     "METHOD_1",

@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
-from pitchpoint.published import conjugate
+from pitchpoint.published.conjugate_variables import OF_CONJUGATES
 from pitchpoint.published.publication import Beside, Curves, Point, Publication, Read
-from pitchpoint.published.xu2021 import printed
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.results.variable import (
     Variable,
@@ -158,10 +157,14 @@ def _films(point: Point) -> Read:
 
 PUBLICATION = Publication(
     name="xu_2021",
-    readings=(printed.readings, conjugate.readings, _films),
+    readings=(
+        "pitchpoint.published.xu2021.printed:readings",
+        "pitchpoint.published.conjugate:readings",
+        _films,
+    ),
     variables={
         **_VARIABLES,
-        **conjugate.VARIABLES,
+        **OF_CONJUGATES,
         **_AXES,
         **_of_points(_OF_POINT),
         **_of_points({"films_status": _plain("status of the films", "")}),

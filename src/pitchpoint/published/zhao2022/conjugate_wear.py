@@ -18,14 +18,12 @@ from pitchpoint.published.zhao2022.printed import (
     HALF_ZONE,
     largest_tangential_load,
 )
+from pitchpoint.published.zhao2022.publication import BRANCHES
 from pitchpoint.published.zhao2022.table import ConjugateWear
 
-__all__ = ["BRANCHES", "readings"]
+__all__ = ["readings"]
 
 Array = NDArray[np.float64]
-
-BRANCHES = ("deep", "outer")
-"""Branches on which a flank touches its envelope, by the end of a name."""
 
 
 def readings(point: Point) -> Read:

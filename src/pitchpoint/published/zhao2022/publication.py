@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
-from pitchpoint.published import conjugate
+from pitchpoint.published.conjugate_variables import OF_CONJUGATES
 from pitchpoint.published.publication import Beside, Curves, Publication
-from pitchpoint.published.zhao2022 import conjugate_wear, printed, wear
 from pitchpoint.results.variable import (
     Variable,
     angle,
@@ -15,7 +14,9 @@ from pitchpoint.results.variable import (
     torque,
 )
 
-__all__ = ["PUBLICATION"]
+__all__ = ["BRANCHES", "PUBLICATION"]
+
+BRANCHES = ("deep", "outer")
 
 _VARIABLES = {
     "largest_tangential_load": Variable(
@@ -147,7 +148,7 @@ _DIMENSIONS = {
         name: "conjugate_point"
         for name in (
             "conjugate_way",
-            *(f"conjugate_course_{branch}" for branch in conjugate_wear.BRANCHES),
+            *(f"conjugate_course_{branch}" for branch in BRANCHES),
         )
     },
     **{name: "severe_time" for name in ("severe_course", *_UNTIL_SEVERE)},
@@ -246,13 +247,13 @@ _CONJUGATE = {
         **_ON_BRANCHES,
         "conjugate_course": length("wear depth along the flank by the conjugate kinematics", "h"),
     }.items()
-    for branch in conjugate_wear.BRANCHES
+    for branch in BRANCHES
 }
 
 _TOUCHING = Beside(
-    columns=tuple(f"{branch} branch" for branch in conjugate_wear.BRANCHES),
+    columns=tuple(f"{branch} branch" for branch in BRANCHES),
     rows={
-        one.long_name: tuple(f"{name}_{branch}" for branch in conjugate_wear.BRANCHES)
+        one.long_name: tuple(f"{name}_{branch}" for branch in BRANCHES)
         for name, one in _ON_BRANCHES.items()
     },
     note=(
@@ -269,7 +270,7 @@ _TOUCHING = Beside(
         Curves(
             "wear depth along the flank by the conjugate kinematics",
             "conjugate_way",
-            tuple(f"conjugate_course_{branch}" for branch in conjugate_wear.BRANCHES),
+            tuple(f"conjugate_course_{branch}" for branch in BRANCHES),
         ),
     ),
 )
@@ -277,14 +278,14 @@ _TOUCHING = Beside(
 PUBLICATION = Publication(
     name="zhao_2022",
     readings=(
-        printed.readings,
-        conjugate.readings,
-        wear.readings,
-        conjugate_wear.readings,
+        "pitchpoint.published.zhao2022.printed:readings",
+        "pitchpoint.published.conjugate:readings",
+        "pitchpoint.published.zhao2022.wear:readings",
+        "pitchpoint.published.zhao2022.conjugate_wear:readings",
     ),
     variables={
         **_VARIABLES,
-        **conjugate.VARIABLES,
+        **OF_CONJUGATES,
         **_WEAR,
         **_PLACES,
         **_LOADS,

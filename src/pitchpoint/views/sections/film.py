@@ -1,7 +1,7 @@
 """Films of the contacts solved over the mesh cycle, beside film laws and friction laws."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 import xarray as xr
@@ -34,9 +34,9 @@ from pitchpoint.views.film_courses import (
     solved_how,
 )
 from pitchpoint.views.lines import titled
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, by_variant
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, by_variant
 
-__all__ = ["FILM", "film_answer", "profiles_panel"]
+__all__ = ["film_answer", "film_blocks", "film_facts", "film_printed", "profiles_panel"]
 
 _SEEN = 0.01
 """Part of the largest pressure of the cycle from which on a profile is seen without zooming out."""
@@ -189,7 +189,8 @@ def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: Key) -> T
 # ---- words
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def film_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield from by_variant(page, "film", _of_variant)
 
 
@@ -224,13 +225,11 @@ def _of_profiles(data: xr.Dataset) -> str:
     return f"{pairs}{slices}. Oil enters from the left where the surfaces run to the right."
 
 
-FILM = Section(
-    name="film",
-    title="Films solved",
-    short="Films",
-    order=230.0,
-    parts=("film",),
-    blocks=_blocks,
-    answer=lambda one: [("Films solved", film_answer(one))] if "film" in one.parts else [],
-    screen=lambda one: printed("Films", one.parts["film"]) if "film" in one.parts else (),
-)
+def film_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
+    """Lines for the answer at the top."""
+    return [("Films solved", film_answer(outcome))]
+
+
+def film_printed(outcome: Outcome) -> Iterable[Printed]:
+    """What the screen shows."""
+    return printed("Films", outcome.parts["film"])

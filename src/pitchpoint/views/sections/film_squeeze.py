@@ -1,7 +1,7 @@
 """Squeeze of films: the film of a pair over its engagement beside steady ones, with load and entrainment."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import xarray as xr
@@ -29,14 +29,13 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Section,
     Table,
     by_variant,
 )
 from pitchpoint.views.sections.finite_film import maps_panel
 from pitchpoint.views.way import place_of
 
-__all__ = ["FILM_SQUEEZE"]
+__all__ = ["squeeze_blocks", "squeeze_facts", "squeeze_printed"]
 
 _SMALL = 1e-4
 """Part of the film by which squeeze changes it from which on it is worth a number."""
@@ -54,7 +53,8 @@ _BESIDE = {
 }
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def squeeze_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield from by_variant(page, "film_squeeze", _of_variant)
 
 
@@ -206,17 +206,11 @@ def screen(data: xr.Dataset) -> Iterator[Printed]:
     )
 
 
-FILM_SQUEEZE = Section(
-    name="film_squeeze",
-    title="Squeeze of films over the engagement",
-    short="Squeeze",
-    order=232.0,
-    parts=("film_squeeze",),
-    blocks=_blocks,
-    answer=lambda one: (
-        [("Squeeze of films", answer(one.parts["film_squeeze"]))]
-        if "film_squeeze" in one.parts
-        else []
-    ),
-    screen=lambda one: screen(one.parts["film_squeeze"]) if "film_squeeze" in one.parts else (),
-)
+def squeeze_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
+    """Lines for the answer at the top."""
+    return [("Squeeze of films", answer(outcome.parts["film_squeeze"]))]
+
+
+def squeeze_printed(outcome: Outcome) -> Iterable[Printed]:
+    """What the screen shows."""
+    return screen(outcome.parts["film_squeeze"])

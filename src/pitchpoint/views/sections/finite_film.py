@@ -1,7 +1,7 @@
 """Films over patches of finite contacts: maps of pressure and film, cuts, ends, courses of the cycle."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 import numpy as np
 import xarray as xr
@@ -40,9 +40,17 @@ from pitchpoint.views.film_courses import (
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Section, Table, by_variant
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    Page,
+    Paragraph,
+    Printed,
+    Table,
+    by_variant,
+)
 
-__all__ = ["FINITE_FILM"]
+__all__ = ["finite_film_blocks", "finite_film_facts", "finite_film_printed"]
 
 _THIN = 2.0
 """Film over that in the middle up to which a map has colours."""
@@ -418,7 +426,8 @@ _COARSE = {"film_friction": "friction"}
 _WHICH = ("carries most", "has the thinnest film")
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def finite_film_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield from by_variant(page, "finite_film", _of_variant)
 
 
@@ -475,21 +484,11 @@ def _loaded(data: xr.Dataset, at: tuple[int, ...]) -> str:
     return f"{force} on {show.quantity('line_length', long)}" if long else force
 
 
-FINITE_FILM = Section(
-    name="finite_film",
-    title="Films of finite contacts",
-    short="Finite contacts",
-    order=231.0,
-    parts=("finite_film",),
-    blocks=_blocks,
-    answer=lambda one: (
-        [("Films of finite contacts", answered(one.parts["finite_film"]))]
-        if "finite_film" in one.parts
-        else []
-    ),
-    screen=lambda one: (
-        printed("Films of finite contacts", one.parts["finite_film"])
-        if "finite_film" in one.parts
-        else ()
-    ),
-)
+def finite_film_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
+    """Lines for the answer at the top."""
+    return [("Films of finite contacts", answered(outcome.parts["finite_film"]))]
+
+
+def finite_film_printed(outcome: Outcome) -> Iterable[Printed]:
+    """What the screen shows."""
+    return printed("Films of finite contacts", outcome.parts["finite_film"])

@@ -1,6 +1,6 @@
 """Torsional vibration of a joint: natural frequencies, critical speeds, amplitudes against speed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import xarray as xr
@@ -23,9 +23,16 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.inputs import words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section, Table
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Table
 
-__all__ = ["JOINT", "critical_rows", "joint_answer", "joint_panel"]
+__all__ = [
+    "critical_rows",
+    "joint_answer",
+    "joint_blocks",
+    "joint_facts",
+    "joint_panel",
+    "joint_printed",
+]
 
 _OWN = ("natural_frequency", "joint_damping_ratio", "reduced_inertia", "torsional_stiffness")
 _CURVE = {
@@ -185,7 +192,8 @@ def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def joint_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     for position, title, outcome in page.each("joint"):
         data = outcome.parts["joint"]
         if title:
@@ -230,20 +238,14 @@ def _friction(data: xr.Dataset) -> str:
     )
 
 
-def _screen(outcome: Outcome) -> Iterator[Printed]:
+def joint_printed(outcome: Outcome) -> Iterator[Printed]:
+    """What the screen shows."""
     if "joint" in outcome.parts:
         yield Printed(
             "Torsional vibration of the joint", critical_rows(outcome), f"{joint_answer(outcome)}."
         )
 
 
-JOINT = Section(
-    name="joint",
-    title="Torsional vibration of the joint",
-    short="Joint",
-    order=320.0,
-    parts=("joint",),
-    blocks=_blocks,
-    answer=lambda one: [("Joint resonance", joint_answer(one))] if "joint" in one.parts else [],
-    screen=_screen,
-)
+def joint_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
+    """Lines for the answer at the top."""
+    return [("Joint resonance", joint_answer(outcome))]

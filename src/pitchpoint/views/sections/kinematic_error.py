@@ -1,6 +1,6 @@
 """Kinematic error by deviations of the teeth: over a turn, and by order."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -25,10 +25,12 @@ from pitchpoint.views.figures import (
     text,
 )
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed, Section
+from pitchpoint.views.section import Block, Heading, Page, Paragraph, Printed
 
 __all__ = [
-    "KINEMATIC_ERROR",
+    "error_blocks",
+    "error_facts",
+    "error_printed",
     "error_rows",
     "kinematic_error_answer",
     "kinematic_error_panels",
@@ -168,7 +170,8 @@ def error_rows(outcome: Outcome) -> list[dict[str, str]]:
     ]
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def error_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield Paragraph(
         "By the deviations that the case gives for the teeth, which differ from tooth to tooth: the mesh "
         "cycle, its losses and stiffness are those of teeth without them."
@@ -180,18 +183,12 @@ def _blocks(page: Page) -> Iterator[Block]:
         yield it
 
 
-def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+def error_facts(outcome: Outcome) -> list[tuple[str, str]]:
+    """Lines for the answer at the top."""
     told = kinematic_error_answer(outcome)
     return [("Kinematic error", told)] if told else []
 
 
-KINEMATIC_ERROR = Section(
-    name="kinematic",
-    title="Kinematic error",
-    short="Kinematic error",
-    order=310.0,
-    parts=("kinematic_error",),
-    blocks=_blocks,
-    answer=_answer,
-    screen=lambda outcome: [Printed(rows=error_rows(outcome))],
-)
+def error_printed(outcome: Outcome) -> Iterable[Printed]:
+    """What the screen shows."""
+    return [Printed(rows=error_rows(outcome))]

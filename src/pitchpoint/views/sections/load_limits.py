@@ -9,9 +9,9 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, Table, by_variant
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, by_variant
 
-__all__ = ["LOAD_LIMITS", "limit_rows", "stress_rows"]
+__all__ = ["limit_rows", "limits_blocks", "limits_facts", "limits_printed", "stress_rows"]
 
 _STRESSES = {
     "bending_strain": "largest strain by the wave ε_b",
@@ -89,7 +89,8 @@ def _life(data: xr.Dataset) -> str:
     return f"Life of the wave generator's bearing: {life}, by the rating of the case, L (T_r/T)³ n_r/n."
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def limits_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield from by_variant(page, "load_limits", _of_variant)
 
 
@@ -110,7 +111,7 @@ def _of_variant(_: int, outcome: Outcome) -> Iterator[Block]:
         yield Paragraph(_life(data))
 
 
-def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
+def limits_facts(outcome: Outcome) -> Iterator[tuple[str, str]]:
     """What follows from strengths and ratings that the case gives."""
     data = outcome.parts.get("load_limits")
     if data is None:
@@ -128,7 +129,8 @@ def _answer(outcome: Outcome) -> Iterator[tuple[str, str]]:
         yield "Wave generator's bearing", f"{life} by the rating of the case"
 
 
-def _printed(outcome: Outcome) -> Iterator[Printed]:
+def limits_printed(outcome: Outcome) -> Iterator[Printed]:
+    """What the screen shows."""
     data = outcome.parts.get("load_limits")
     if data is None:
         return
@@ -149,15 +151,3 @@ def _on_screen(data: xr.Dataset) -> Iterator[str]:
         yield f"Against {name} {margin}, by {limit} {show.unit_of('limit_torque')} {_origin(data)}."
     if "bearing_life" in data:
         yield _life(data)
-
-
-LOAD_LIMITS = Section(
-    name="load_limits",
-    title="Load limits of flexspline and wave generator",
-    short="Load limits",
-    order=106.0,
-    parts=("load_limits",),
-    blocks=_blocks,
-    answer=_answer,
-    screen=_printed,
-)

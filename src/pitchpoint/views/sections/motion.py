@@ -36,13 +36,19 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Section,
     Table,
     by_variant,
-    reason,
 )
 
-__all__ = ["MOTION", "motion_answer", "motion_panel", "speeds_panel", "start_panel"]
+__all__ = [
+    "motion_answer",
+    "motion_blocks",
+    "motion_facts",
+    "motion_panel",
+    "motion_printed",
+    "speeds_panel",
+    "start_panel",
+]
 
 TURNED = "mesh cycles that the driver has turned"
 NONE = "No steady motion was found."
@@ -423,7 +429,8 @@ def start_panel(name: str, outcome: Outcome) -> Panel:
 # ---- the section
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def motion_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield from by_variant(page, "motion", _of_period)
     for position, title, outcome in page.each("motion_against_speed"):
         yield Heading(f"Against speed: {title}" if title else "Against speed")
@@ -480,7 +487,8 @@ def _gaps(data: xr.Dataset) -> Iterator[Block]:
             )
 
 
-def _screen(outcome: Outcome) -> Iterator[Printed]:
+def motion_printed(outcome: Outcome) -> Iterator[Printed]:
+    """What the screen shows."""
     data = outcome.parts.get("motion")
     if data is None:
         return
@@ -521,17 +529,6 @@ def _frequencies(data: xr.Dataset) -> str:
     return f"{values} {show.unit_of('natural_frequency', data)}"
 
 
-def _lacks(page: Page) -> str | None:
-    return None if page.having("motion") else reason(page, "motion")
-
-
-MOTION = Section(
-    name="motion",
-    title="Motion with friction",
-    short="Motion",
-    order=420.0,
-    lacks=_lacks,
-    blocks=_blocks,
-    answer=lambda one: [("In motion", motion_answer(one))] if "motion" in one.parts else [],
-    screen=_screen,
-)
+def motion_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
+    """Lines for the answer at the top."""
+    return [("In motion", motion_answer(outcome))]

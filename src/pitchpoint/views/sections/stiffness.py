@@ -25,12 +25,14 @@ from pitchpoint.views.figures import (
     short_axis,
 )
 from pitchpoint.views.point import Period, period_of
-from pitchpoint.views.section import Block, Page, Paragraph, Section, Table, tabbed
+from pitchpoint.views.section import Block, Page, Paragraph, Table, tabbed
 
 __all__ = [
-    "STIFFNESS",
     "stiffness_answer",
+    "stiffness_blocks",
+    "stiffness_facts",
     "stiffness_panels",
+    "stiffness_warnings",
 ]
 
 _ROWS = ("mean_stiffness", "stiffness_variation", "standard_stiffness", "standard_single_stiffness")
@@ -157,7 +159,8 @@ def _level(key: Key, value: float, unit: str) -> Trace:
     return plain(key, [0.0, 1.0], [float(display("mesh_stiffness", value))] * 2, unit)
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def stiffness_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield Paragraph(
         "Along the transverse line of action: force there over the approach of the teeth. Pair I entered in "
         "this period, II one period before, and so on; the mesh is their sum."
@@ -172,25 +175,14 @@ def _of_variant(it: Panel) -> Iterator[Block]:
         yield Paragraph(it.note, "warning")
 
 
-def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+def stiffness_facts(outcome: Outcome) -> list[tuple[str, str]]:
+    """Lines for the answer at the top."""
     told = stiffness_answer(outcome)
     return [("Mesh stiffness", told)] if told else []
 
 
-def _warns(outcome: Outcome) -> list[str]:
+def stiffness_warnings(outcome: Outcome) -> list[str]:
     """What the standard's estimate does not cover stands beside that estimate."""
     data = outcome.parts.get("stiffness")
     told = [] if data is None else _outside_standard(data)
     return [*told, *(f"mesh stiffness: {text}" for text in told)]
-
-
-STIFFNESS = Section(
-    name="stiffness",
-    title="Mesh stiffness",
-    short="Mesh stiffness",
-    order=400.0,
-    parts=("stiffness",),
-    blocks=_blocks,
-    answer=_answer,
-    warns=_warns,
-)

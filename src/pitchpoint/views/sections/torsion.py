@@ -29,10 +29,19 @@ from pitchpoint.views.figures import (
 from pitchpoint.views.lines import folded
 from pitchpoint.views.point import Period, operating_point, period_of
 from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Page, Paragraph, Printed, Section, Table, tabbed
+from pitchpoint.views.section import Block, Page, Paragraph, Printed, Table, tabbed
 from pitchpoint.views.way import beside, place_of
 
-__all__ = ["TORSION", "part_rows", "slope_rows", "torsion_answer", "torsion_panels", "wind_up_rows"]
+__all__ = [
+    "part_rows",
+    "slope_rows",
+    "torsion_answer",
+    "torsion_blocks",
+    "torsion_facts",
+    "torsion_panels",
+    "torsion_printed",
+    "wind_up_rows",
+]
 
 _SHADES = ("#a6cee3", "#56a0cc", "#0072B2", "#08416b", "#02182b")
 """Colours from small to large torque, which differ in lightness alone."""
@@ -390,7 +399,8 @@ def _down(rows: list[dict[str, str]]) -> list[dict[str, str]]:
     return [{names[0]: name} | {row[names[0]]: row[name] for row in rows} for name in names[1:]]
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def torsion_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     panels = torsion_panels(page.outcomes, page.curves)
     there = zip(panels, page.having("torsion").values(), strict=True)
     return tabbed((it.title, _of_variant(it, outcome)) for it, outcome in there)
@@ -415,12 +425,14 @@ def _of_variant(it: Panel, outcome: Outcome) -> Iterator[Block]:
     yield it
 
 
-def _answer(outcome: Outcome) -> list[tuple[str, str]]:
+def torsion_facts(outcome: Outcome) -> list[tuple[str, str]]:
+    """Lines for the answer at the top."""
     told = torsion_answer(outcome)
     return [(_words(outcome.parts["torsion"]).stiffness, told)] if told else []
 
 
-def _screen(outcome: Outcome) -> list[Printed]:
+def torsion_printed(outcome: Outcome) -> list[Printed]:
+    """What the screen shows."""
     slopes, attrs = slope_rows(outcome), outcome.parts["torsion"].attrs
     note, left_out = (str(attrs.get(name, "")) for name in ("brief", "left_out"))
     return [
@@ -428,15 +440,3 @@ def _screen(outcome: Outcome) -> list[Printed]:
         Printed(rows=slopes, line=_NO_LOOP if slopes else left_out),
         Printed(rows=part_rows(outcome)),
     ]
-
-
-TORSION = Section(
-    name="torsion",
-    title="Torsion",
-    short="Torsion",
-    order=300.0,
-    parts=("torsion",),
-    blocks=_blocks,
-    answer=_answer,
-    screen=lambda one: _screen(one) if "torsion" in one.parts else [],
-)

@@ -1,7 +1,7 @@
 """Wear: the worn flanks over the cycles, how fast they wear, and what of it is taken from elsewhere."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -33,13 +33,12 @@ from pitchpoint.views.section import (
     Page,
     Paragraph,
     Printed,
-    Section,
     Table,
     by_variant,
 )
 from pitchpoint.wear.stages import SEVERE, SEVERE_BY
 
-__all__ = ["WEAR"]
+__all__ = ["wear_blocks", "wear_facts", "wear_printed"]
 
 _NONE = "No depth is known here."
 
@@ -65,7 +64,8 @@ _ENDS = {
 _FIGURES = ("final_cycles", "life_hours", "final_depth", "pressure_change")
 
 
-def _blocks(page: Page) -> Iterator[Block]:
+def wear_blocks(page: Page) -> Iterator[Block]:
+    """Blocks of the section."""
     yield from by_variant(page, "wear", _of_variant)
 
 
@@ -405,13 +405,11 @@ def _screen(data: xr.Dataset) -> Iterator[Printed]:
     yield Printed("Wear", [row], f"The march ended {_ENDS[str(data.attrs['end'])]}.")
 
 
-WEAR = Section(
-    name="wear",
-    title="Wear",
-    short="Wear",
-    order=234.0,
-    parts=("wear",),
-    blocks=_blocks,
-    answer=lambda one: [("Wear", _answer(one.parts["wear"]))] if "wear" in one.parts else [],
-    screen=lambda one: _screen(one.parts["wear"]) if "wear" in one.parts else (),
-)
+def wear_facts(outcome: Outcome) -> Iterable[tuple[str, str]]:
+    """Lines for the answer at the top."""
+    return [("Wear", _answer(outcome.parts["wear"]))]
+
+
+def wear_printed(outcome: Outcome) -> Iterable[Printed]:
+    """What the screen shows."""
+    return _screen(outcome.parts["wear"])
