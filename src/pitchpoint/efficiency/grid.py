@@ -9,7 +9,7 @@ import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
-from pitchpoint._jax import jax, jnp
+from pitchpoint._jax import array, jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, state
 from pitchpoint.programs import fast_program
 
@@ -71,7 +71,7 @@ def state_grid(
         part = _taken((design, operation), taken, count)
         for start in range(0, places, columns):
             at = np.minimum(np.arange(start, start + columns), places - 1)
-            found = _solved(part, np.asarray(phase)[at], models)
+            found = _solved(part, array(np.asarray(phase)[at]), models)
             tall, wide = min(rows, count - first), min(columns, places - start)
             force, torque, efficiency = (_cut(values, tall, wide) for values in found.states)
             locked = int(jnp.sum(~jnp.isfinite(force))) if bool(found.locks) else 0
@@ -80,7 +80,7 @@ def state_grid(
 
 
 Inputs = tuple[Design, Operation]
-States = tuple[Array, Array, Array]
+States = tuple[Array, ...]
 
 
 class _Solved(NamedTuple):
