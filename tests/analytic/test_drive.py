@@ -1,6 +1,7 @@
 """Two meshes on one shaft: torques, losses, loads on its bearings, stiffness at the output."""
 
 import dataclasses
+from functools import cache
 
 import equinox as eqx
 import numpy as np
@@ -37,9 +38,16 @@ def design(teeth, module, **options):
     return Design(pair, (STEEL, STEEL), OIL, Roughness.from_composite_rq(0.4e-6))
 
 
-FIRST = Stage(design((23, 61), 2e-3), (0, 1))
-# Gear 2 turns clockwise, and so does gear 3 on its shaft: it pushes with its right flanks.
-SECOND = Stage(design((19, 70), 3e-3, right_flank=True), (1, 2), place=jnp.asarray(0.06))
+@cache
+def stage_1():
+    return Stage(design((23, 61), 2e-3), (0, 1))
+
+
+@cache
+def stage_2():
+    """Gear 2 turns clockwise, and so does gear 3 on its shaft: it pushes with its right flanks."""
+    made = design((19, 70), 3e-3, right_flank=True)
+    return Stage(made, (1, 2), place=jnp.asarray(0.06))
 
 
 def models(mu, sharing="equal", compliance="beam_hertz"):
@@ -73,19 +81,21 @@ def solved(drive, mu, point=POINT):
     return jax.tree.map(np.asarray, answers(drive, point, jnp.asarray(mu)))
 
 
-BOTH = chained([FIRST, SECOND])
+@cache
+def both():
+    return chained([stage_1(), stage_2()])
 
 
 def test_without_losses_the_torque_is_that_of_the_ratio():
-    found = solved(BOTH, 0.0)
+    found = solved(both(), 0.0)
     np.testing.assert_allclose(found["input"], 300.0 / RATIO, rtol=1e-12)
     assert float(found["efficiency"]) == pytest.approx(1.0, rel=1e-12)
     assert float(found["ripple"]) < 1e-12
-    np.testing.assert_allclose(BOTH.ratios, [1.0, 23 / 61, 1.0 / RATIO], rtol=1e-14)
+    np.testing.assert_allclose(both().ratios, [1.0, 23 / 61, 1.0 / RATIO], rtol=1e-14)
 
 
 def test_torque_route_equals_loss_route_at_every_meeting_of_phases():
-    found = solved(BOTH, 0.06)
+    found = solved(both(), 0.06)
     put_in = found["input"] * 150.0
     assert found["input"].shape == (12, 12)
     rounding = 1e-14 * put_in.max()
@@ -105,18 +115,18 @@ def alone(design, point, mu):
 
 
 def test_one_stage_is_a_mesh_cycle():
-    found = solved(chained([FIRST]), 0.06)
-    torque, efficiency, _ = alone(FIRST.design, POINT, jnp.asarray(0.06))
+    found = solved(chained([stage_1()]), 0.06)
+    torque, efficiency, _ = alone(stage_1().design, POINT, jnp.asarray(0.06))
     assert float(found["mean_input"]) == pytest.approx(float(torque), rel=1e-13)
     assert float(found["efficiency"]) == pytest.approx(float(efficiency), rel=1e-13)
 
 
 def test_with_a_constant_coefficient_efficiencies_multiply():
     """Losses are in proportion to the load then, whatever the phase of the other stage."""
-    found = solved(BOTH, 0.06)
-    _, first, _ = alone(FIRST.design, POINT, jnp.asarray(0.06))
+    found = solved(both(), 0.06)
+    _, first, _ = alone(stage_1().design, POINT, jnp.asarray(0.06))
     slow = dataclasses.replace(POINT, speed=POINT.speed * 23 / 61)
-    _, second, _ = alone(SECOND.design, slow, jnp.asarray(0.06))
+    _, second, _ = alone(stage_2().design, slow, jnp.asarray(0.06))
     assert float(found["efficiency"]) == pytest.approx(float(first * second), rel=1e-12)
 
 
@@ -135,9 +145,9 @@ def bearing(shaft, place, other, **options):
 def test_bearings_of_the_middle_shaft_bear_both_meshes(turn):
     """Torque of the bearings over f1 d_m is the sum of their loads, which follow by hand."""
     places = -0.03, 0.1
-    second = dataclasses.replace(SECOND, turn=jnp.asarray(turn))
+    second = dataclasses.replace(stage_2(), turn=jnp.asarray(turn))
     drag = [bearing(1, *places), bearing(1, *places[::-1], thrust=False)]
-    found = solved(chained([FIRST, second], drag), 0.0)
+    found = solved(chained([stage_1(), second], drag), 0.0)
     angle = np.deg2rad(20.0)
     # On gear 2 the force pushes on; gear 3 is pushed back, by its right flank.
     own = found["force"][0][..., None] * [np.sin(angle), np.cos(angle)]
@@ -154,7 +164,7 @@ def test_bearings_of_the_middle_shaft_bear_both_meshes(turn):
 
 
 def test_the_output_drives_backwards():
-    back = BOTH.driven_backwards()
+    back = both().driven_backwards()
     assert back.links == ((2, 1), (1, 0))
     point = Operation(*map(jnp.asarray, (300.0 / RATIO, 150.0 / RATIO, 330.0)))
     smooth = solved(back, 0.0, point)
@@ -168,7 +178,7 @@ def seal(shaft, torque):
 
 
 def test_seals_of_all_shafts_are_what_starts_a_drive_without_friction():
-    drive = chained([FIRST, SECOND], [seal(0, 0.1), seal(1, 0.2), seal(2, 0.5)])
+    drive = chained([stage_1(), stage_2()], [seal(0, 0.1), seal(1, 0.2), seal(2, 0.5)])
     idle = Operation(*map(jnp.asarray, (0.0, 1e-3, 330.0)))
     laws = [models(0.0)] * 2
     first = 0.1 + 0.2 * 23 / 61 + 0.5 / RATIO
@@ -181,31 +191,31 @@ def test_stages_that_do_not_follow_each_other():
     with pytest.raises(
         InputError, match="stage 2 is driven by shaft 3, and the stage before it loads"
     ):
-        chained([FIRST, dataclasses.replace(SECOND, shafts=(2, 3))])
+        chained([stage_1(), dataclasses.replace(stage_2(), shafts=(2, 3))])
     wrong = Stage(design((19, 70), 3e-3), (1, 2))
     with pytest.raises(
         InputError, match="stage 2 turns its first shaft against the stage before it"
     ):
-        chained([FIRST, wrong])
+        chained([stage_1(), wrong])
     with pytest.raises(InputError, match="stage 2 has 2 bodies that move, and shafts"):
-        chained([FIRST, dataclasses.replace(SECOND, shafts=(1,))])
+        chained([stage_1(), dataclasses.replace(stage_2(), shafts=(1,))])
     with pytest.raises(InputError, match="at least one stage"):
         chained([])
     with pytest.raises(InputError, match="1 models were given for 2 stages"):
-        drive_cycle(BOTH, POINT, [models(0.0)])
+        drive_cycle(both(), POINT, [models(0.0)])
     with pytest.raises(InputError, match="between shafts that no stage of the drive has in common"):
-        chained([FIRST, SECOND], [Drag([1.0, 0.0, -1.0], seal_torque=0.1)])
+        chained([stage_1(), stage_2()], [Drag([1.0, 0.0, -1.0], seal_torque=0.1)])
 
 
 @pytest.mark.whole
 def test_a_loss_between_two_shafts_of_a_stage_is_overcome_by_that_stage():
     """Torque times the difference of speeds; the shafts of an external pair turn against each other."""
-    braked = chained([FIRST, SECOND], [Drag([0.0, 1.0, -1.0], seal_torque=0.1)])
-    found, free = solved(braked, 0.0), solved(BOTH, 0.0)
+    braked = chained([stage_1(), stage_2()], [Drag([0.0, 1.0, -1.0], seal_torque=0.1)])
+    found, free = solved(braked, 0.0), solved(both(), 0.0)
     lost = 0.1 * 150.0 * (23 / 61 + 1.0 / RATIO)
     np.testing.assert_allclose(found["losses"], [0.0, lost], rtol=1e-12, atol=1e-12)
-    own = dataclasses.replace(SECOND.design, drag=(Drag([1.0, -1.0], seal_torque=0.1),))
-    same = solved(chained([FIRST, dataclasses.replace(SECOND, design=own)]), 0.0)
+    own = dataclasses.replace(stage_2().design, drag=(Drag([1.0, -1.0], seal_torque=0.1),))
+    same = solved(chained([stage_1(), dataclasses.replace(stage_2(), design=own)]), 0.0)
     np.testing.assert_allclose(same["input"], found["input"], rtol=1e-14)
     assert np.all(found["input"] > free["input"])
 
