@@ -459,6 +459,7 @@ def test_sweeps_up_and_down_follow_different_branches(branches):
     assert bool(jax.vmap(lambda r: r.separated)(down)[differ[1]])
 
 
+@pytest.mark.whole
 def test_a_motion_of_twice_the_period_is_not_returned():
     sys, excite = system(1.0 / 0.66, 0.03), steps(1.0 / 1.4, 0.4)
     before = separate(system(1.0 / 0.64, 0.03), excite, UNIT)

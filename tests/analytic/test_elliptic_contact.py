@@ -138,6 +138,7 @@ def test_stiffness_is_the_slope_of_the_load(name):
     assert float(slope * stiffness) == pytest.approx(1.0, rel=1e-12)
 
 
+@pytest.mark.whole
 def test_derivatives_are_those_of_differences():
     @jax.jit
     def figures(radius):

@@ -152,6 +152,16 @@ def test_relief_begins_where_the_drawing_says():
 
 
 @eqx.filter_jit
+def gaps_at(mesh, phases):
+    return mesh.contacts(phases).gap[:, 0]
+
+
+@eqx.filter_jit
+def events_of(mesh):
+    return mesh.events()
+
+
+@eqx.filter_jit
 def wound(mesh, loads, phases):
     found = wind_up(mesh, (STEEL, STEEL), TERMS, loads[:, None], phases[None])
     contacts = mesh.contacts(phases)
@@ -177,7 +187,7 @@ def plain():
 def test_gaps_of_a_pair_at_its_entry_and_exit():
     """Straight from A, where the tip of gear 2 meets, down to nothing at B, and up from D to E."""
     mesh = relieved()
-    gap = np.asarray(mesh.contacts(jnp.asarray(PHASES)).gap)[:, 0]
+    gap = np.asarray(gaps_at(mesh, jnp.asarray(PHASES)))
     ratio = float(SPUR.contact_ratio)
     path = PHASES + np.arange(gap.shape[0])[:, None]
     overlap = ratio - 1.0
@@ -269,12 +279,11 @@ def test_zero_is_there_too_so_that_a_sweep_keeps_its_program():
 
 def test_events_know_where_a_relief_begins():
     """Long reliefs of both gears begin at B and D; the phase of both is that of the last hand-over."""
-    events, plainly = np.asarray(relieved().events()), np.asarray(SPUR.events())
+    events, plainly = np.asarray(events_of(relieved())), np.asarray(events_of(SPUR))
     assert events.size == plainly.size + 2
     assert np.sum(np.abs(events - (float(SPUR.contact_ratio) - 1.0)) < 1e-12) >= 2
     short = relieved(tip_relief_length=(2e-3, 2e-3))
-    gap = np.asarray(short.contacts(short.events() + 1e-9).gap[:, 0])
-    before = np.asarray(short.contacts(short.events() - 1e-9).gap[:, 0])
+    gap, before = (np.asarray(gaps_at(short, events_of(short) + by)) for by in (1e-9, -1e-9))
     assert np.sum((gap > 0.0) != (before > 0.0)) >= 2
 
 
